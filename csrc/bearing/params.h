@@ -1,0 +1,154 @@
+/* The one table of model parameters. It makes the C struct, the flat block that Python fills by name,
+ * the range check and the documentation. Every entry is a double so that the block is one contiguous array.
+ *
+ * TRB_PARAMS(X): X(name, unit, lower, upper, text); lower and upper are inclusive bounds of the check. */
+#ifndef TRB_BEARING_PARAMS_H
+#define TRB_BEARING_PARAMS_H
+
+#include <stddef.h>
+
+#define TRB_BIG 1e300
+
+#define TRB_PARAMS(X) \
+  /* bearing geometry */ \
+  X(n_rollers,                "1",      3,      200,    "number of rollers Z") \
+  X(cup_half_angle,           "rad",    0.01,   0.8,    "half angle of the cup (outer) raceway cone") \
+  X(roller_diameter,          "m",      1e-4,   1.0,    "Dwe: roller diameter at mid length, perpendicular to its axis") \
+  X(effective_length,         "m",      1e-4,   1.0,    "Lwe: effective length of the roller's contact line") \
+  X(total_length,             "m",      1e-4,   1.0,    "length of the roller over its ends, centred on the effective length") \
+  X(pitch_diameter,           "m",      1e-3,   10.0,   "Dpw: pitch diameter at roller mid length") \
+  X(roller_density,           "kg/m3",  100,    30000,  "density of the rollers") \
+  X(youngs_modulus,           "Pa",     1e8,    1e13,   "Young's modulus of rings, rollers and cage faces") \
+  X(poisson_ratio,            "1",      0,      0.4999, "Poisson's ratio") \
+  X(sphere_ratio,             "1",      0.05,   0.999,  "large-end sphere radius over the apex distance of the roller's large end") \
+  X(rib_contact_height,       "m",      0,      0.1,    "height of the nominal rib contact above the inner raceway, perpendicular to it") \
+  X(rib_edge_low,             "m",      0,      0.1,    "height of the back-face rib's lower edge above the raceway") \
+  X(rib_edge_high,            "m",      0,      0.1,    "height of the back-face rib's upper edge above the raceway") \
+  X(front_rib_clearance,      "m",      0,      0.1,    "nominal gap between the roller's small end and the front rib") \
+  X(front_rib_low,            "m",      0,      0.1,    "height of the front rib's lower edge above the raceway") \
+  X(front_rib_high,           "m",      0,      0.1,    "height of the front rib's upper edge above the raceway") \
+  X(end_stiffness,            "N/m^1.5",1,      1e14,   "stiffness of roller end against a flat: force = k d^1.5") \
+  X(roughness_raceway,        "m",      1e-10,  1e-3,   "composite rms roughness of roller and raceway") \
+  X(roughness_rib,            "m",      1e-10,  1e-3,   "composite rms roughness of roller end and rib") \
+  /* roller profile and quadrature along the contact */ \
+  X(profile,                  "1",      0,      2,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic") \
+  X(crown_radius,             "m",      1e-3,   1e9,    "radius of the crowning arc") \
+  X(profile_k1,               "1",      0,      100,    "K1 of the logarithmic profile") \
+  X(profile_k2,               "1",      0.001,  1,      "K2 of the logarithmic profile") \
+  X(profile_zm,               "m",      0,      1e-3,   "zm of the logarithmic profile: drop at the end") \
+  X(profile_load,             "N",      1e-3,   1e9,    "design load Q of the logarithmic profile") \
+  X(quadrature,               "1",      0,      1,      "nodes along the contact: 0 uniform slices, 1 Gauss-Legendre") \
+  X(n_slices,                 "1",      1,      200,    "number of slices or nodes along a contact line") \
+  /* cage */ \
+  X(cage_mass,                "kg",     1e-6,   1e4,    "mass of the cage") \
+  X(cage_inertia_axial,       "kg m2",  1e-12,  1e6,    "moment of inertia about the cage's axis") \
+  X(cage_inertia_transverse,  "kg m2",  1e-12,  1e6,    "moment of inertia about a transverse axis through the cage's centre of mass") \
+  X(cage_offset,              "m",      -1,     1,      "axial position of the cage's centre of mass from the roller-centre plane") \
+  X(cage_rail_offset,         "m",      -1,     1,      "axial position of the large-end rail (where the sensors look) from the roller-centre plane") \
+  /* lubricant */ \
+  X(viscosity,                "Pa s",   1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \
+  X(pressure_coefficient,     "1/Pa",   0,      1e-6,   "alpha0: pressure-viscosity coefficient, used by the films") \
+  X(temperature_coefficient,  "1/K",    0,      1,      "beta: -d ln(eta0)/dt") \
+  X(conductivity,             "W/mK",   1e-4,   1e3,    "k': thermal conductivity of the oil") \
+  X(temperature,              "C",      -80,    400,    "oil temperature") \
+  X(viscosity_law,            "1",      0,      2,      "pressure law of viscosity: 0 Dicke, 1 Roelands, 2 Barus (capped)") \
+  X(dicke_a,                  "bar",    1e-3,   1e6,    "Dicke: constant term") \
+  X(dicke_b,                  "bar/C",  -1e4,   1e4,    "Dicke: factor of temperature") \
+  X(dicke_c,                  "1",      0,      1e3,    "Dicke: factor of pressure") \
+  X(dicke_d,                  "1/C",    -1,     1,      "Dicke: factor of pressure times temperature") \
+  X(viscosity_exponent_cap,   "1",      1,      60,     "largest exponent ln(eta/eta0) of the Roelands and Barus laws") \
+  X(eyring_stress,            "Pa",     1e3,    1e9,    "tau0: characteristic shear stress") \
+  X(shear_modulus_floor,      "Pa",     1,      1e10,   "smallest limiting shear modulus Ginf") \
+  X(starvation_factor,        "1",      1e-4,   1,      "factor of every film thickness") \
+  /* friction */ \
+  X(lambda_boundary,          "1",      0,      100,    "film parameter below which friction is boundary") \
+  X(lambda_full,              "1",      1e-3,   100,    "film parameter above which friction is full film") \
+  X(boundary_limit,           "1",      0,      10,     "boundary friction at large slip (0.1)") \
+  X(boundary_slope,           "1",      0,      1e4,    "slope term of boundary friction (22.28)") \
+  X(boundary_decay,           "1",      1e-3,   1e5,    "decay of boundary friction (181.46)") \
+  X(dry_friction,             "1",      0,      10,     "Coulomb friction coefficient of dry contacts and of traction 'coulomb'") \
+  X(coulomb_speed,            "m/s",    1e-9,   10,     "sliding speed over which Coulomb friction turns smoothly through zero") \
+  X(cage_entrainment_speed,   "m/s",    1e-6,   100,    "ue: speed that guards the slide-roll ratio where surfaces do not roll") \
+  X(speed_floor,              "m/s",    1e-12,  1,      "smallest mean speed in films and slide-roll ratios (smooth)") \
+  X(thermal_floor,            "1",      1e-6,   0.9,    "smallest thermal film reduction factor (smooth)") \
+  X(rolling_blend,            "1",      1e-6,   0.9,    "half width in h_PE/h_IR over which rolling resistance sets in") \
+  X(damping_race,             "s/m",    0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
+  X(damping_cage,             "s/m",    0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
+  /* effects */ \
+  X(with_cage,                "1",      0,      1,      "0 rollers only, 1 rollers and cage") \
+  X(planar,                   "1",      0,      1,      "1: axial positions and tilts are frozen") \
+  X(lubrication,              "1",      0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
+  X(traction,                 "1",      0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
+  X(thermal,                  "1",      0,      1,      "thermal reduction of films") \
+  X(rolling_resistance,       "1",      0,      1,      "EHL rolling resistance") \
+  X(rolling_pressure_force,   "1",      0,      1,      "pressure force of the rolling film on the roller") \
+  X(back_rib,                 "1",      0,      1,      "large end against the back-face rib") \
+  X(front_rib,                "1",      0,      1,      "small end against the front rib") \
+  X(rib_film,                 "1",      0,      1,      "film at the rib: 0 the thicker of PE and IR, 1 PE") \
+  X(pocket_bars,              "1",      0,      1,      "flank against the pocket's faces") \
+  X(pocket_ends,              "1",      0,      1,      "roller ends against the pocket's faces") \
+  X(pocket_edges,             "1",      0,      1,      "faces end at their outline (0: faces are unbounded planes)") \
+  X(damping,                  "1",      0,      1,      "Hunt-Crossley normal damping")
+
+typedef struct trb_params {
+#define TRB_PARAM_MEMBER(name, unit, lower, upper, text) double name;
+  TRB_PARAMS(TRB_PARAM_MEMBER)
+#undef TRB_PARAM_MEMBER
+} trb_params;
+
+typedef struct trb_param_info {
+  const char *name;  /* member of trb_params */
+  const char *unit;  /* SI */
+  double      lower; /* smallest allowed value */
+  double      upper; /* largest allowed value */
+  const char *text;  /* what it is */
+} trb_param_info;
+
+enum { TRB_N_PARAMS = (int)(sizeof(trb_params) / sizeof(double)) };
+
+/* What a pocket face is: a row of doubles, one column per entry. A face is a convex polygon in the frame of its pocket: origin
+ * at the nominal roller's mid length, axes n (outward, perpendicular to the roller axis), t (direction of rotation), a (roller axis,
+ * towards the large end). normal points from the face to the roller. Columns u, v span the plane; the outline is given in (u, v). */
+#define TRB_MAX_VERTICES 12
+#define TRB_FACE_COLUMNS(X) \
+  X(pocket,           1, "1",  "pocket the face belongs to; -1: every pocket") \
+  X(slot,             1, "1",  "number of the face in its pocket, 0..: the column of its forces in results") \
+  X(part,             1, "1",  "part of the roller it meets: 0 flank, 1 large end, 2 small end") \
+  X(origin,           3, "m",  "a point of the plane, in the pocket frame (n, t, a)") \
+  X(u,                3, "1",  "first unit vector in the plane") \
+  X(v,                3, "1",  "second unit vector in the plane; u x v = normal, towards the roller") \
+  X(stiffness_factor, 1, "1",  "factor of the contact's stiffness") \
+  X(friction_factor,  1, "1",  "factor of the contact's friction coefficient") \
+  X(n_vertices,       1, "1",  "number of vertices, 3..12") \
+  X(outline,         24, "m",  "vertices (u, v) in turn, counter-clockwise seen from the roller")
+
+typedef struct trb_face {
+#define TRB_FACE_MEMBER(name, count, unit, text) double name[count];
+  TRB_FACE_COLUMNS(TRB_FACE_MEMBER)
+#undef TRB_FACE_MEMBER
+} trb_face;
+
+enum { TRB_N_FACE_COLUMNS = (int)(sizeof(trb_face) / sizeof(double)) };
+
+/* Prescribed motion: channels given as value and slope at knots, cubic Hermite between them, constant outside. */
+#define TRB_MOTION_CHANNELS(X) \
+  X(displacement_x, "m",     "inner ring, translation along x") \
+  X(displacement_y, "m",     "inner ring, translation along y") \
+  X(displacement_z, "m",     "inner ring, translation along z") \
+  X(rotation_x,     "rad",   "inner ring, misalignment about x, through the roller-centre plane") \
+  X(rotation_y,     "rad",   "inner ring, misalignment about y, through the roller-centre plane") \
+  X(shaft_speed,    "rad/s", "inner ring, speed of rotation about its axis") \
+  X(gravity_x,      "m/s2",  "acceleration of gravity along x") \
+  X(gravity_y,      "m/s2",  "acceleration of gravity along y") \
+  X(gravity_z,      "m/s2",  "acceleration of gravity along z")
+
+enum {
+#define TRB_CHANNEL_ENUM(name, unit, text) TRB_CHANNEL_##name,
+  TRB_MOTION_CHANNELS(TRB_CHANNEL_ENUM)
+#undef TRB_CHANNEL_ENUM
+  TRB_N_CHANNELS
+};
+
+extern const trb_param_info trb_param_table[TRB_N_PARAMS];
+
+#endif

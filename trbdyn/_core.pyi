@@ -1,0 +1,99 @@
+"""The C core. Everything is SI; arrays are C-contiguous float64. Users reach it through trbdyn's classes."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+class CoreError(Exception):
+    """Base of the core's errors; `args[0]` is a sentence for a person. Subclasses follow the C status codes."""
+
+class CoreInputError(CoreError, ValueError): ...
+class CoreLoadError(CoreError): ...
+class CoreStepError(CoreError): ...
+
+def parameter_table() -> list[tuple[str, str, float, float, str]]:
+    """(name, unit, lower, upper, text) of every entry of the parameter block, in order."""
+
+def face_table() -> list[tuple[str, int, str, str]]:
+    """(name, count, unit, text) of the columns of a pocket face's row, in order."""
+
+def motion_table() -> list[tuple[str, str, str]]:
+    """(name, unit, text) of the channels of prescribed motion, in order."""
+
+def field_table() -> list[tuple[str, str, str, str, str]]:
+    """(name, group, kind, unit, text) of every recorded quantity, in order; kind is scalar, vec2, vec3, quaternion,
+    roller, roller_vec3, roller_quat or pocket_face."""
+
+def geometry_table() -> list[tuple[str, str, str]]:
+    """(name, unit, text) of every derived geometric quantity."""
+
+def quadrature_table() -> list[str]:
+    """Names of the energy quadratures, as record fields."""
+
+def counter_table() -> list[str]:
+    """Names of the evaluation counters."""
+
+def law_table() -> list[tuple[str, tuple[str, ...], str]]:
+    """(name, arguments, text) of the laws callable through `law`."""
+
+def law(name: str, *arguments: Array) -> Array:
+    """A law of the core over broadcast float64 arrays."""
+
+def geometry(params: Array) -> Array:
+    """Derived geometry, in the order of geometry_table(), of a parameter block."""
+
+def instruction_sets() -> list[str]:
+    """Kernel variants that this machine can run, slowest first: 'scalar', 'base', 'avx2', 'avx512'."""
+
+def sundials_version() -> str: ...
+def version() -> str: ...
+
+class Model:
+    """One bearing with its lubricant and effects; immutable."""
+
+    def __init__(self, params: Array, diameter_deviation: Array, faces: Array, instruction_set: str = "") -> None: ...
+    n_rollers: int
+    n_slots: int
+    n_state: int
+    record_length: int
+    instruction_set: str
+    def equilibrium(
+        self, force: Array, moment: Array, fixed: Array, displacement: Array, shaft_speed: float, gravity: Array
+    ) -> dict[str, Any]:
+        """Static equilibrium at speed. force (3,), moment (2,) applied to the ring; fixed (5,): 1 where `displacement`
+        (dx, dy, dz, rx, ry) is prescribed instead. Gives displacement (5,), roller_state (Z, 3: r, z, tilt offsets),
+        outer_load, inner_load, rib_load (Z,), residual, iterations."""
+    def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
+        """(name, offset, shape) of every field of a record."""
+    def state_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
+        """(name, offset, shape) of the parts of a state vector."""
+
+class Simulation:
+    """One integration: model, prescribed motion, state, integrator."""
+
+    def __init__(self, model: Model, motion: Array, time: float, state: Array, settings: dict[str, float | str]) -> None:
+        """motion (K, 1 + 18): knot time, then value and slope of each channel. settings: integrator ('bdf', 'erk'), rtol,
+        atol_position, atol_angle, atol_velocity, atol_spin, max_order, max_step, first_step, max_steps."""
+    time: float
+    def run(self, times: Array, records: Array, max_steps: int) -> tuple[int, int]:
+        """Integrate until every time in `times` is passed, filling a row of `records` for each; stop after max_steps. Gives
+        (rows filled, steps taken). Raises CoreStepError; what was filled stays. Releases the GIL."""
+    def step(self) -> float:
+        """One step of the integrator; gives the new time."""
+    def state(self) -> Array: ...
+    def set_state(self, time: float, state: Array) -> None:
+        """Restart the integrator at this state."""
+    def restart(self) -> None:
+        """Restart the integrator where it is (a checkpoint)."""
+    def observe(self, time: float, state: Array) -> Array:
+        """A record at any time and state."""
+    def derivative(self, time: float, state: Array) -> Array: ...
+    def jacobian(self, time: float, state: Array) -> Array: ...
+    def contacts(self, time: float, state: Array) -> dict[str, Array]:
+        """Every intermediate quantity of every contact."""
+    def counters(self) -> dict[str, int]: ...
+    def statistics(self) -> dict[str, float]: ...
