@@ -1,0 +1,93 @@
+# Tasks; each sets up what it needs in .venv and build, and a second call installs nothing again.
+#
+#   make demo       the 30310 test bearing at 3000 rpm, in demo/
+#   make test       C unit tests and the Python tests (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones)
+#   make lint       style, types, symbols and include directions (make format repairs the style)
+#   make bench      timings
+#   make stability  the hard cases, minutes long
+#   make sanitize   the C tests and the quick Python tests under address and undefined-behaviour sanitizers
+#   make install    only the environment and the package
+#   make clean      remove what was built; make distclean: .venv too
+#
+# PYTHON=... picks the Python, SUNDIALS_ROOT=... the SUNDIALS, WERROR=OFF lets a new compiler's warnings pass.
+
+PYTHON ?= python3
+WERROR ?= ON
+PYTEST ?=
+SLOW   ?=
+
+VENV    := .venv
+PY      := $(VENV)/bin/python
+PIP     := $(PY) -m pip --disable-pip-version-check
+SOURCES := $(shell find csrc trbdyn -type f -not -path '*/__pycache__/*')
+DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=ON
+
+# -P and PYTHONSAFEPATH: import the installed package, not the source folder of the same name, which has no compiled core
+export PYTHONSAFEPATH := 1
+export MPLBACKEND := Agg
+
+.PHONY: demo test lint format bench stability sanitize install clean distclean
+.NOTPARALLEL:
+
+demo: install
+	$(PY) -m trbdyn demo -o demo
+
+test: install
+	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
+	$(PY) -m pytest tests $(if $(SLOW),-m "slow or not slow") $(PYTEST)
+
+lint: $(VENV)/.lint build/.package
+	$(PY) -m ruff check .
+	$(PY) -m ruff format --check .
+	$(PY) -m mypy
+	$(PY) .ci/lint_c.py --objects build/package
+
+format: $(VENV)/.lint
+	$(PY) -m ruff check --fix .
+	$(PY) -m ruff format .
+
+bench: install
+	PYTHONSAFEPATH= $(PY) benchmarks/run.py
+
+stability: install
+	$(PY) -m pytest tests/stability -m "slow or not slow" $(PYTEST)
+
+install: build/.package
+
+sanitize: $(VENV)/.tools
+	$(PIP) -q install --no-build-isolation --no-deps --upgrade --target build/sanitize/site \
+	  -C build-dir=build/sanitize/package $(DEFINES) -C cmake.define.TRB_SANITIZE=ON -C cmake.build-type=RelWithDebInfo .
+	$(VENV)/bin/ctest --test-dir build/sanitize/package --output-on-failure --no-tests=ignore
+	LD_PRELOAD="$$($${CC:-cc} -print-file-name=libasan.so) $$($${CC:-cc} -print-file-name=libubsan.so)" \
+	  ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=build/sanitize/site \
+	  $(PY) -m pytest -p no:cacheprovider tests/laws tests/geometry tests/api $(PYTEST)
+
+clean:
+	rm -rf build demo .pytest_cache .mypy_cache .ruff_cache
+	find trbdyn tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+
+distclean: clean
+	rm -rf $(VENV)
+
+# the environment: build tools, what the package needs, what its tests need
+$(VENV)/.tools: pyproject.toml .ci/system .ci/requirements.py
+	@PYTHON=$(PYTHON) .ci/system
+	@test -x $(PY) || { echo "making $(VENV)"; $(PYTHON) -m venv $(VENV); }
+	@echo "installing what the package needs"
+	@mkdir -p build
+	@$(PY) .ci/requirements.py build dependencies test >build/requirements.txt
+	@$(PIP) -q install -r build/requirements.txt
+	@touch $@
+
+$(VENV)/.lint: $(VENV)/.tools
+	@$(PY) .ci/requirements.py lint >build/requirements-lint.txt
+	@$(PIP) -q install -r build/requirements-lint.txt
+	@touch $@
+
+# the package; build/package stays, so that only what changed is compiled again
+build/.package: $(VENV)/.tools $(SOURCES)
+	@echo "building the package"
+	@mkdir -p build
+	@$(PIP) -q install --no-build-isolation --no-deps --force-reinstall -C build-dir=build/package $(DEFINES) .
+	@cat build/package/sundials.txt
+	@touch $@
