@@ -2,7 +2,7 @@
 #
 #   make demo       the 30310 test bearing at 3000 rpm, in demo/
 #   make test       C unit tests and the Python tests (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones)
-#   make lint       style, types, symbols and include directions (make format repairs the style)
+#   make lint       style, types, rules of the C sources (make format rewrites the style)
 #   make bench      timings
 #   make stability  the hard cases, minutes long
 #   make sanitize   the C tests and the quick Python tests under address and undefined-behaviour sanitizers
@@ -38,13 +38,13 @@ test: install
 
 lint: $(VENV)/.lint build/.package
 	$(PY) -m ruff check .
-	$(PY) -m ruff format --check .
 	$(PY) -m mypy
 	$(PY) .ci/lint_c.py --objects build/package
 
 format: $(VENV)/.lint
 	$(PY) -m ruff check --fix .
 	$(PY) -m ruff format .
+	$(VENV)/bin/clang-format -i $(wildcard csrc/*.h csrc/*/*.[ch])
 
 bench: install
 	PYTHONSAFEPATH= $(PY) benchmarks/run.py

@@ -1,0 +1,118 @@
+"""Rules of the C sources that no compiler checks. Prints each breach as file:line: text and exits with 1 if there is one.
+
+Sources: includes point one way (ORDER), SUNDIALS and Python headers stay where they belong, nothing prints, exits or aborts.
+Objects (with --objects BUILD): exported symbols start with trb_, the core keeps no writable globals, the extension module shows
+nothing but its init function.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+CSRC = ROOT / "csrc"
+ORDER = ["base", "laws", "bearing", "contact", "motion", "stepping", "python"]
+SUNDIALS_HEADERS = re.compile(r"(sundials|cvodes?|arkode|kinsol|idas?|nvector|sunmatrix|sunlinsol|sunnonlinsol)/")
+FORBIDDEN = re.compile(r"\b((?:v?f?printf|f?puts|putchar|perror|exit|_Exit|_exit|quick_exit|abort|system)\s*\(|(?:stdout|stderr)\b)")
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
+# comments, strings, characters
+NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.S)
+
+
+def code_only(text: str) -> str:
+    """The text with comments, strings and characters blanked out, lines kept."""
+    return NOT_CODE.sub(lambda found: re.sub(r"[^\n]", " ", found.group()), text)
+
+
+def may_include_sundials(path: str) -> bool:
+    return path.startswith("stepping/") or path == "motion/equilibrium.c"
+
+
+def check_includes(path: str, text: str) -> list[tuple[int, str]]:
+    found = []
+    folder = path.split("/")[0]
+    commented = re.sub(r"/\*.*?\*/", lambda comment: re.sub(r"[^\n]", " ", comment.group()), text, flags=re.S)
+    for match in INCLUDE.finditer(commented):
+        line = text.count("\n", 0, match.start()) + 1
+        quote, header = match.groups()
+        if SUNDIALS_HEADERS.match(header):
+            if not may_include_sundials(path):
+                found.append((line, f"{header}: SUNDIALS belongs to stepping/ and motion/equilibrium.c"))
+        elif header == "Python.h" or header.startswith("numpy/"):
+            if folder != "python":
+                found.append((line, f"{header}: Python belongs to python/"))
+        elif quote == '"' and folder in ORDER:
+            if not (CSRC / header).is_file():
+                found.append((line, f"{header}: write included paths from csrc/ on"))
+            elif "/" in header:
+                other = header.split("/")[0]
+                if other not in ORDER or ORDER.index(other) > ORDER.index(folder):
+                    found.append((line, f"{header}: {folder}/ must not include {other}/ ({' <- '.join(ORDER)})"))
+    return found
+
+
+def check_sources() -> list[str]:
+    breaches = []
+    for file in sorted([*CSRC.glob("*/*.[ch]"), *CSRC.glob("*.h")]):
+        path = file.relative_to(CSRC).as_posix()
+        if path.startswith(("tests/", "cmake/")):
+            continue
+        text = file.read_text(encoding="utf-8")
+        found = check_includes(path, text)
+        code = code_only(text)
+        for match in FORBIDDEN.finditer(code):
+            line = code.count("\n", 0, match.start()) + 1
+            found.append((line, f"{match.group(1).rstrip('( ')}: the core reports through trb_message and status codes"))
+        if path.endswith(".h") and "#ifndef TRB_" not in text and "#pragma once" not in text:
+            found.append((1, "no include guard TRB_..."))
+        breaches += [f"csrc/{path}:{line}: {text}" for line, text in sorted(found)]
+    return breaches
+
+
+def run(*command: str | Path) -> list[str]:
+    return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True).stdout.splitlines()
+
+
+def check_objects(build: Path) -> list[str]:
+    objects = [
+        file for file in sorted(build.rglob("*.o")) if re.search(r"CMakeFiles/(trbdyn_core|trb_kernel_\w+|_core)\.dir", str(file))
+    ]
+    if not objects:
+        return [f"{build}: holds no object files; build first"]
+    breaches = []
+    for file in objects:
+        name = str(file.relative_to(build)).split(".dir/")[1].removesuffix(".o")
+        if not (CSRC / name).is_file():
+            continue  # left over from a source that is gone
+        for line in run("nm", "--extern-only", "--defined-only", file):
+            symbol = line.split()[-1]
+            if not symbol.startswith(("trb_", "PyInit_")):
+                breaches.append(f"csrc/{name}: symbol {symbol} does not start with trb_")
+        if not name.startswith("python/"):
+            for line in run("objdump", "--syms", file):
+                match = re.search(r"\bO\s+(\.(?:data|bss|tbss|tdata)\S*)\s+\S+\s+(?:\.hidden\s+)?(\S+)$", line)
+                if match and not match.group(1).startswith(".data.rel.ro"):
+                    breaches.append(f"csrc/{name}: {match.group(2)} is a writable global ({match.group(1)})")
+    for module in build.glob("_core*.so"):
+        symbols = [line.split()[-1] for line in run("nm", "--dynamic", "--defined-only", module)]
+        breaches += [f"{module.name}: shows {symbol}" for symbol in symbols if symbol != "PyInit__core"]
+        if any("crtfastmath" in line or line.endswith(" set_fast_math") for line in run("nm", module)):
+            breaches.append(f"{module.name}: -ffast-math reached the link: the process would flush denormals to zero")
+    return breaches
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--objects", type=Path, metavar="BUILD", help="build folder whose object files to check too")
+    options = parser.parse_args()
+    breaches = check_sources() + (check_objects(options.objects) if options.objects else [])
+    for breach in breaches:
+        print(breach, file=sys.stderr)
+    print(f"C rules: {len(breaches)} breach(es)" if breaches else "C rules: kept")
+    return bool(breaches)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
