@@ -1,0 +1,127 @@
+#include "bearing/geometry.h"
+
+#include <math.h>
+
+#include "base/vec3.h"
+#include "laws/hertz.h"
+#include "laws/smooth.h"
+
+const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY] = {
+#define TRB_GEOMETRY_INFO(name, unit, text) {#name, unit, text},
+    TRB_GEOMETRY(TRB_GEOMETRY_INFO)
+#undef TRB_GEOMETRY_INFO
+};
+
+/* Cones: tan(nu) = (Dwe/2)/Rc, Rc = (Dpw/2)/sin(alpha_o - nu); two equations for nu, solved by fixed-point steps. */
+static void derive_cones(const trb_params *p, trb_geometry *g)
+{
+  double nu = 0.0;
+  for (int i = 0; i < 200; i++) {
+    const double rc = 0.5 * p->pitch_diameter / sin(p->cup_half_angle - nu), next = atan2(0.5 * p->roller_diameter, rc);
+    const double change = fabs(next - nu);
+    nu = next;
+    if (change < 1e-16) break;
+  }
+  g->roller_half_angle = nu;
+  g->roller_axis_angle = p->cup_half_angle - nu;
+  g->cone_half_angle = p->cup_half_angle - 2.0 * nu;
+  g->apex_to_mid = 0.5 * p->pitch_diameter / sin(g->roller_axis_angle);
+  g->apex_to_large_end = g->apex_to_mid + 0.5 * p->effective_length;
+  g->centre_plane = g->apex_to_mid * cos(g->roller_axis_angle);
+}
+
+static void derive_radii(const trb_params *p, trb_geometry *g)
+{
+  const double along = g->apex_to_mid / cos(g->roller_half_angle); /* apex to mid contact, along the raceway */
+  const double roller = 0.5 * p->roller_diameter / cos(g->roller_half_angle);
+  g->outer_race_radius = along * sin(p->cup_half_angle);
+  g->inner_race_radius = along * sin(g->cone_half_angle);
+  g->outer_equivalent_radius = 1.0 / (1.0 / roller - cos(p->cup_half_angle) / g->outer_race_radius);
+  g->inner_equivalent_radius = 1.0 / (1.0 / roller + cos(g->cone_half_angle) / g->inner_race_radius);
+  const double slope = 2.0 * tan(g->roller_half_angle);
+  g->large_end_diameter = slope * g->apex_to_large_end;
+  g->small_end_diameter = slope * (g->apex_to_mid - 0.5 * p->effective_length);
+  g->large_end_station = 0.5 * p->total_length;
+  g->small_end_station = -0.5 * p->total_length;
+  g->small_end_radius = 0.5 * slope * (g->apex_to_mid + g->small_end_station);
+}
+
+/* Frustum of a cone between its ends, by Gauss nodes exact for the polynomials R^2, s R^2, s^2 R^2, R^4. */
+static void derive_mass(const trb_params *p, trb_geometry *g)
+{
+  static const double node[3] = {-0.774596669241483377, 0.0, 0.774596669241483377}, weight[3] = {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
+  const double        half = 0.5 * p->total_length, slope = tan(g->roller_half_angle);
+  double              m0 = 0.0, m1 = 0.0, m2 = 0.0, axial = 0.0;
+  for (int i = 0; i < 3; i++) {
+    const double s = half * node[i], r2 = pow(slope * (g->apex_to_mid + s), 2.0), slab = p->roller_density * TRB_PI * r2 * half * weight[i];
+    m0 += slab;
+    m1 += slab * s;
+    m2 += slab * s * s;
+    axial += 0.5 * slab * r2;
+  }
+  g->roller_mass = m0;
+  g->roller_mass_offset = m1 / m0;
+  g->roller_inertia_axial = axial;
+  g->roller_inertia_transverse = 0.5 * axial + m2 - m1 * m1 / m0;
+  const double centre = g->apex_to_mid + g->roller_mass_offset;
+  g->roller_centre_radius = centre * sin(g->roller_axis_angle);
+  g->roller_centre_height = centre * cos(g->roller_axis_angle);
+}
+
+/* Rib: the nominal sphere just touches a cone face at the given height above the inner raceway (physics: section 2). */
+static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *message)
+{
+  const double pole = g->apex_to_mid + g->large_end_station, ai = g->cone_half_angle;
+  g->sphere_radius = p->sphere_ratio * pole;
+  g->sphere_centre = pole - g->sphere_radius;
+  const double sr = g->sphere_centre * sin(g->roller_axis_angle), sz = g->sphere_centre * cos(g->roller_axis_angle);
+  const double sine = (p->rib_contact_height - (sr * cos(ai) - sz * sin(ai))) / g->sphere_radius;
+  if (!(fabs(sine) < 1.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the large end's sphere (radius %g m) does not reach it",
+                    p->rib_contact_height, g->sphere_radius);
+  g->rib_normal_angle = ai + asin(sine);
+  g->rib_contact_radius = sr + g->sphere_radius * sin(g->rib_normal_angle);
+  g->rib_contact_z = sz + g->sphere_radius * cos(g->rib_normal_angle);
+  if (!(g->rib_normal_angle > 0.0 && g->rib_normal_angle < 1.5))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the rib's face would not close towards the roller", p->rib_contact_height);
+  g->rib_curvature_radius = g->rib_contact_radius / sin(g->rib_normal_angle);
+  const double curvature = 1.0 / g->sphere_radius - 1.0 / g->rib_curvature_radius;
+  if (!(curvature > 0.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "sphere_ratio = %g: the large end (radius %g m) is flatter than the rib (%g m)", p->sphere_ratio,
+                    g->sphere_radius, g->rib_curvature_radius);
+  g->rib_rx = 1.0 / curvature;
+  g->rib_ry = g->sphere_radius;
+  const trb_hertz_point hertz = trb_hertz_point_constants(g->rib_rx, g->rib_ry, g->effective_modulus);
+  const int             rolling_is_long = g->rib_rx > g->rib_ry;
+  g->rib_ellipticity = hertz.ellipticity;
+  g->rib_stiffness = hertz.stiffness;
+  g->rib_semi_axis_rolling = rolling_is_long ? hertz.semi_long : hertz.semi_short;
+  g->rib_semi_axis_across = rolling_is_long ? hertz.semi_short : hertz.semi_long;
+  return TRB_OK;
+}
+
+trb_status trb_geometry_derive(const trb_params *params, trb_geometry *geometry, trb_message *message)
+{
+  trb_geometry *g = geometry;
+  *g = (trb_geometry){0};
+  derive_cones(params, g);
+  if (!(g->cone_half_angle > 0.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "cup_half_angle = %g rad: too small for rollers of diameter %g m on pitch diameter %g m",
+                    params->cup_half_angle, params->roller_diameter, params->pitch_diameter);
+  if (params->total_length < params->effective_length)
+    return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: must be at least the effective length, %g m", params->total_length,
+                    params->effective_length);
+  if (!(g->apex_to_mid > 0.5 * params->total_length))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: the roller would reach beyond the apex", params->total_length);
+  derive_radii(params, g);
+  derive_mass(params, g);
+  g->effective_modulus = params->youngs_modulus / (1.0 - params->poisson_ratio * params->poisson_ratio);
+  g->cage_speed_ratio = sin(g->cone_half_angle) / (sin(g->cone_half_angle) + sin(params->cup_half_angle));
+  g->roller_spin_ratio = g->cage_speed_ratio * sin(params->cup_half_angle) / sin(g->roller_half_angle);
+  /* neighbours touch where the chord between two axes is shorter than a diameter across it */
+  const double chord = params->pitch_diameter * sin(TRB_PI / params->n_rollers);
+  if (!(chord > params->roller_diameter))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "n_rollers = %g: rollers of %g m overlap on pitch diameter %g m (%g m between centres)",
+                    params->n_rollers, params->roller_diameter, params->pitch_diameter, chord);
+  return derive_rib(params, g, message);
+}

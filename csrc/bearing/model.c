@@ -1,0 +1,262 @@
+#include "bearing/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "laws/film.h"
+#include "laws/line_contact.h"
+#include "laws/profile.h"
+
+static trb_status check_params(const trb_params *params, trb_message *message)
+{
+  const double *values = (const double *)params;
+  for (int i = 0; i < TRB_N_PARAMS; i++) {
+    const trb_param_info *info = &trb_param_table[i];
+    if (!(values[i] >= info->lower && values[i] <= info->upper))
+      return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be from %g to %g %s", info->name, values[i], info->lower, info->upper, info->unit);
+  }
+  if (params->n_rollers != floor(params->n_rollers))
+    return trb_fail(message, TRB_ERR_INPUT, "n_rollers = %g: must be a whole number", params->n_rollers);
+  if (params->n_slices != floor(params->n_slices))
+    return trb_fail(message, TRB_ERR_INPUT, "n_slices = %g: must be a whole number", params->n_slices);
+  if (!(params->lambda_full > params->lambda_boundary))
+    return trb_fail(message, TRB_ERR_INPUT, "lambda_full = %g: must be above lambda_boundary = %g", params->lambda_full, params->lambda_boundary);
+  if (!(params->rib_edge_high > params->rib_edge_low))
+    return trb_fail(message, TRB_ERR_INPUT, "rib_edge_high = %g m: must be above rib_edge_low = %g m", params->rib_edge_high, params->rib_edge_low);
+  if (!(params->front_rib_high > params->front_rib_low))
+    return trb_fail(message, TRB_ERR_INPUT, "front_rib_high = %g m: must be above front_rib_low = %g m", params->front_rib_high,
+                    params->front_rib_low);
+  return TRB_OK;
+}
+
+static double profile_drop(const trb_model *m, double station)
+{
+  const trb_params *p = &m->params;
+  if (p->profile == TRB_PROFILE_CROWNED) return trb_profile_crowned(station, p->crown_radius);
+  if (p->profile == TRB_PROFILE_LOGARITHMIC)
+    return trb_profile_logarithmic(station, p->effective_length, p->profile_k1, p->profile_k2, p->profile_zm, p->profile_load,
+                                   m->geometry.effective_modulus);
+  return 0.0;
+}
+
+/* Nodes along the contact and, per roller, the chain of inscribed spheres (physics: section 3). */
+static trb_status fill_nodes(trb_model *m, trb_message *message)
+{
+  const trb_params   *p = &m->params;
+  const trb_geometry *g = &m->geometry;
+  const double        nu = g->roller_half_angle, half = 0.5 * p->effective_length;
+  double              node[200], weight[200];
+  trb_quadrature((int)p->quadrature, m->n_nodes, node, weight);
+  for (int k = 0; k < m->n_lanes; k++) {
+    const int    used = k < m->n_nodes ? k : m->n_nodes - 1;
+    const double station = half * node[used], nominal = (g->apex_to_mid + station) * tan(nu), along = (g->apex_to_mid + station) / cos(nu);
+    m->station[k] = station;
+    for (int race = 0; race < TRB_N_RACES; race++) {
+      const double angle = race == TRB_RACE_OUTER ? p->cup_half_angle : g->cone_half_angle, sign = race == TRB_RACE_OUTER ? -1.0 : 1.0;
+      const double roller_curvature = cos(nu) / nominal, race_curvature = sign * cos(angle) / (along * sin(angle));
+      const double radius = 1.0 / (roller_curvature + race_curvature);
+      m->race[race].weight[k] = k < m->n_nodes ? half * weight[used] : 0.0;
+      m->race[race].radius[k] = radius;
+      m->race[race].log_radius[k] = log(radius);
+      m->race[race].roller_share[k] = radius * roller_curvature;
+    }
+    for (int j = 0; j < m->n_rollers; j++) {
+      const double radius = nominal + 0.5 * m->diameter_deviation[j] - profile_drop(m, station);
+      if (!(radius > 0.0))
+        return trb_fail(message, TRB_ERR_GEOMETRY, "roller %d: profile and diameter deviation leave no radius at station %g m", j, station);
+      m->centre[j * m->n_lanes + k] = station + radius * tan(nu) - g->roller_mass_offset;
+      m->sphere[j * m->n_lanes + k] = radius / cos(nu);
+    }
+  }
+  return TRB_OK;
+}
+
+/* Edges of the front rib: circles about the inner ring's axis on the face that is parallel to the nominal roller's small end. */
+static trb_status fill_front_rib(trb_model *m, trb_message *message)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        heights[2] = {m->params.front_rib_low, m->params.front_rib_high};
+  const double        along = g->apex_to_mid + g->small_end_station - m->params.front_rib_clearance;
+  for (int i = 0; i < 2; i++) {
+    const double below = (along * sin(g->roller_half_angle) - heights[i]) / cos(g->roller_half_angle);
+    m->front_rib_radius[i] = along * sin(g->roller_axis_angle) - below * cos(g->roller_axis_angle);
+    m->front_rib_z[i] = along * cos(g->roller_axis_angle) + below * sin(g->roller_axis_angle);
+    if (m->params.front_rib > 0.0 && !(below > -g->small_end_radius))
+      return trb_fail(message, TRB_ERR_GEOMETRY, "front_rib_high = %g m: the rib would stand beyond the roller's small end (radius %g m)",
+                      heights[i], g->small_end_radius);
+  }
+  return TRB_OK;
+}
+
+static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_message *message)
+{
+  const double *row = (const double *)f;
+  for (int i = 0; i < TRB_N_FACE_COLUMNS; i++)
+    if (!isfinite(row[i])) return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: column %d is not finite", index, i);
+  const trb_vec3 u = trb_v(f->u[0], f->u[1], f->u[2]), v = trb_v(f->v[0], f->v[1], f->v[2]);
+  if (fabs(trb_dot(u, u) - 1.0) > 1e-9 || fabs(trb_dot(v, v) - 1.0) > 1e-9 || fabs(trb_dot(u, v)) > 1e-9)
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: u and v must be unit vectors at right angles", index);
+  if (f->pocket[0] != floor(f->pocket[0]) || f->pocket[0] < -1 || f->pocket[0] >= n_rollers)
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: pocket = %g: must be -1 (all) or 0 to %d", index, f->pocket[0], n_rollers - 1);
+  if (f->part[0] != 0.0 && f->part[0] != 1.0 && f->part[0] != 2.0)
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: part = %g: must be 0 (flank), 1 (large end) or 2 (small end)", index, f->part[0]);
+  if (f->slot[0] != floor(f->slot[0]) || f->slot[0] < 0 || f->slot[0] > 63)
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: slot = %g: must be a whole number from 0 to 63", index, f->slot[0]);
+  if (!(f->stiffness_factor[0] > 0.0) || !(f->friction_factor[0] >= 0.0))
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: stiffness_factor = %g must be > 0, friction_factor = %g must be >= 0", index,
+                    f->stiffness_factor[0], f->friction_factor[0]);
+  if (f->n_vertices[0] != floor(f->n_vertices[0]) || f->n_vertices[0] < 3 || f->n_vertices[0] > TRB_MAX_VERTICES)
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: n_vertices = %g: must be 3 to %d", index, f->n_vertices[0], TRB_MAX_VERTICES);
+  /* the nearest point is unique, and its distance differentiable, only for convex outlines */
+  const int n = (int)f->n_vertices[0];
+  double    turned = 0.0;
+  for (int i = 0; i < n; i++) {
+    const double *p = f->outline + 2 * i, *q = f->outline + 2 * ((i + 1) % n), *r = f->outline + 2 * ((i + 2) % n);
+    const double  ax = q[0] - p[0], ay = q[1] - p[1], bx = r[0] - q[0], by = r[1] - q[1], cross = ax * by - ay * bx;
+    if (!(cross > 0.0)) return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: the outline must be convex and counter-clockwise (vertex %d)", index, (i + 1) % n);
+    turned += atan2(cross, ax * bx + ay * by);
+  }
+  if (fabs(turned - 2.0 * TRB_PI) > 1e-6) return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: the outline crosses itself", index);
+  return TRB_OK;
+}
+
+static int face_in_pocket(const trb_face *f, int pocket) { return f->pocket[0] < 0.0 || (int)f->pocket[0] == pocket; }
+
+/* Faces that the scene's effects leave out never reach the loop. */
+static int face_is_on(const trb_model *m, const trb_face *f)
+{
+  return m->params.with_cage > 0.0 && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
+}
+
+static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, trb_message *message)
+{
+  size_t total = 0;
+  m->n_slots = 1;
+  for (int i = 0; i < n_faces; i++) {
+    const trb_status status = check_face(&faces[i], i, m->n_rollers, message);
+    if (status != TRB_OK) return status;
+    if ((int)faces[i].slot[0] + 1 > m->n_slots) m->n_slots = (int)faces[i].slot[0] + 1;
+    total += faces[i].pocket[0] < 0.0 ? (size_t)m->n_rollers : 1;
+  }
+  m->faces = calloc(total + 1, sizeof *m->faces);
+  m->first_face = calloc((size_t)m->n_rollers + 1, sizeof *m->first_face);
+  if (m->faces == NULL || m->first_face == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %zu pocket faces", total);
+  int count = 0;
+  for (int pocket = 0; pocket < m->n_rollers; pocket++) {
+    m->first_face[pocket] = count;
+    for (int i = 0; i < n_faces; i++) {
+      const trb_face *f = &faces[i];
+      if (!face_in_pocket(f, pocket) || !face_is_on(m, f)) continue;
+      trb_pocket_face *to = &m->faces[count++];
+      to->face = *f;
+      to->normal = trb_cross(trb_v(f->u[0], f->u[1], f->u[2]), trb_v(f->v[0], f->v[1], f->v[2]));
+      to->part = (int)f->part[0];
+      to->slot = (int)f->slot[0];
+      to->n = (int)f->n_vertices[0];
+    }
+  }
+  m->first_face[m->n_rollers] = count;
+  return TRB_OK;
+}
+
+static void fill_constants(trb_model *m)
+{
+  const trb_params   *p = &m->params;
+  const trb_geometry *g = &m->geometry;
+  m->log_modulus = log(g->effective_modulus);
+  m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->effective_length);
+  m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
+  m->log_viscosity = log(p->viscosity);
+  m->log_thermal = log(p->viscosity * trb_max(p->temperature_coefficient, 1e-30) / p->conductivity);
+  m->rib_film_shape = trb_film_point_shape(g->rib_ry / g->rib_rx);
+  m->rib_film_rigid = trb_film_point_rigid_factor(g->rib_ry / g->rib_rx);
+  const int dry = p->lubrication == TRB_LUBRICATION_DRY, full = p->lubrication == TRB_LUBRICATION_FULL;
+  m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);
+  m->pocket_friction = dry ? p->dry_friction > 0.0 : !(full && p->traction == TRB_TRACTION_NONE);
+  m->film = !dry && (p->lubrication != TRB_LUBRICATION_BOUNDARY) && (m->friction || p->rolling_resistance > 0.0);
+}
+
+/* Arrays for the vector loops start on cache lines. */
+static double *doubles(size_t count)
+{
+  const size_t bytes = (count * sizeof(double) + 63) / 64 * 64;
+  double      *array = aligned_alloc(64, bytes > 0 ? bytes : 64);
+  if (array != NULL) memset(array, 0, bytes > 0 ? bytes : 64);
+  return array;
+}
+
+static int allocate(trb_model *m)
+{
+  const size_t lanes = (size_t)m->n_lanes, all = lanes * (size_t)m->n_rollers;
+  int          ok = 1;
+  ok &= (m->diameter_deviation = doubles((size_t)m->n_rollers)) != NULL;
+  ok &= (m->station = doubles(lanes)) != NULL;
+  ok &= (m->centre = doubles(all)) != NULL;
+  ok &= (m->sphere = doubles(all)) != NULL;
+  for (int race = 0; race < TRB_N_RACES; race++) {
+    ok &= (m->race[race].weight = doubles(lanes)) != NULL;
+    ok &= (m->race[race].log_radius = doubles(lanes)) != NULL;
+    ok &= (m->race[race].radius = doubles(lanes)) != NULL;
+    ok &= (m->race[race].roller_share = doubles(lanes)) != NULL;
+  }
+  return ok;
+}
+
+static trb_status fill(trb_model *m, const double *deviation, const trb_face *faces, int n_faces, trb_message *message)
+{
+  trb_status status = trb_geometry_derive(&m->params, &m->geometry, message);
+  if (status != TRB_OK) return status;
+  m->n_rollers = (int)m->params.n_rollers;
+  m->n_nodes = (int)m->params.n_slices;
+  m->n_lanes = (m->n_nodes + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
+  if (!allocate(m)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d rollers of %d nodes", m->n_rollers, m->n_nodes);
+  for (int j = 0; j < m->n_rollers; j++) {
+    if (!(fabs(deviation[j]) < 0.1 * m->params.roller_diameter))
+      return trb_fail(message, TRB_ERR_INPUT, "diameter deviation of roller %d = %g m: must be within a tenth of the diameter", j, deviation[j]);
+    m->diameter_deviation[j] = deviation[j];
+  }
+  if ((status = fill_nodes(m, message)) != TRB_OK) return status;
+  if ((status = fill_front_rib(m, message)) != TRB_OK) return status;
+  if ((status = fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
+  fill_constants(m);
+  return TRB_OK;
+}
+
+trb_status trb_model_create(const trb_params *params, const double *deviation, int n_deviations, const trb_face *faces, int n_faces,
+                            trb_model **model, trb_message *message)
+{
+  *model = NULL;
+  trb_status status = check_params(params, message);
+  if (status != TRB_OK) return status;
+  if (n_deviations != (int)params->n_rollers)
+    return trb_fail(message, TRB_ERR_INPUT, "diameter deviation: %d values given, n_rollers = %g needed", n_deviations, params->n_rollers);
+  trb_model *m = calloc(1, sizeof *m);
+  if (m == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a model");
+  m->params = *params;
+  status = fill(m, deviation, faces, n_faces, message);
+  if (status != TRB_OK) {
+    trb_model_free(m);
+    return status;
+  }
+  *model = m;
+  return TRB_OK;
+}
+
+void trb_model_free(trb_model *model)
+{
+  if (model == NULL) return;
+  for (int race = 0; race < TRB_N_RACES; race++) {
+    free(model->race[race].weight);
+    free(model->race[race].log_radius);
+    free(model->race[race].radius);
+    free(model->race[race].roller_share);
+  }
+  free(model->diameter_deviation);
+  free(model->station);
+  free(model->centre);
+  free(model->sphere);
+  free(model->faces);
+  free(model->first_face);
+  free(model);
+}

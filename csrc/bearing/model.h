@@ -1,0 +1,68 @@
+/* The model: geometry, material, lubricant, effects, pockets. Const after creation; one model serves many states and threads. */
+#ifndef TRB_BEARING_MODEL_H
+#define TRB_BEARING_MODEL_H
+
+#include "base/status.h"
+#include "base/vec3.h"
+#include "bearing/geometry.h"
+#include "bearing/params.h"
+
+enum { TRB_RACE_OUTER = 0, TRB_RACE_INNER = 1, TRB_N_RACES = 2 };
+enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };
+enum { TRB_LUBRICATION_DRY = 0, TRB_LUBRICATION_BOUNDARY = 1, TRB_LUBRICATION_MIXED = 2, TRB_LUBRICATION_FULL = 3 };
+enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMURA = 2 };
+
+/* Nodes along one contact are padded to a multiple of this, so that no scalar remainder runs. */
+#define TRB_LANE_PAD 8
+
+/* Per node of a contact line, the same for all rollers but for the sphere's radius. Arrays of n_lanes. */
+typedef struct trb_race_nodes {
+  double *weight;     /* quadrature weight along the contact, m; 0 in padding */
+  double *log_radius; /* ln Re */
+  double *radius;     /* Re, m */
+  double *roller_share; /* Re/R1: share of the roller in the pair's curvature */
+} trb_race_nodes;
+
+typedef struct trb_pocket_face {
+  trb_face face;     /* as given */
+  trb_vec3 normal;   /* u x v, towards the roller */
+  int      part;     /* TRB_PART_* */
+  int      slot;     /* column in results */
+  int      n;        /* number of vertices */
+} trb_pocket_face;
+
+typedef struct trb_model {
+  trb_params      params;     /* as given, checked */
+  trb_geometry    geometry;   /* derived */
+  int             n_rollers;  /* Z */
+  int             n_nodes;    /* nodes along a contact line */
+  int             n_lanes;    /* the same, padded */
+  int             n_slots;    /* most faces in a pocket, at least 1 */
+  double         *diameter_deviation; /* per roller, m */
+  double         *station;    /* per lane: node's station from mid length, m */
+  double         *centre;     /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
+  double         *sphere;     /* per roller and lane: sphere's radius, m */
+  trb_race_nodes  race[TRB_N_RACES];
+  trb_pocket_face *faces;     /* all faces, grouped by pocket */
+  int            *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
+  /* constants of the laws */
+  double          log_modulus;     /* ln E' */
+  double          log_palmgren;    /* ln of load per length at d = 1 m */
+  double          log_g;           /* ln G */
+  double          log_viscosity;   /* ln eta0 */
+  double          log_thermal;     /* ln(eta0 beta/k') */
+  double          rib_film_shape;  /* factor of eq. 12 */
+  double          rib_film_rigid;  /* factor of eq. 13 */
+  double          front_rib_radius[2]; /* radii of the front rib's edges, m */
+  double          front_rib_z[2];      /* their axial positions from the apex, m */
+  int             friction;        /* any friction at raceways and ribs at all */
+  int             pocket_friction; /* any friction in the pockets */
+  int             film;            /* films are needed */
+} trb_model;
+
+/* A checked, immutable copy of everything given. deviation: a roller's diameter over nominal, n_rollers values; faces: n_faces rows. */
+trb_status trb_model_create(const trb_params *params, const double *deviation, int n_deviations, const trb_face *faces, int n_faces,
+                            trb_model **model, trb_message *message);
+void       trb_model_free(trb_model *model);
+
+#endif

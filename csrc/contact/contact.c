@@ -1,0 +1,150 @@
+#include "contact/contact.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/raceway_kernel.h"
+
+const trb_kernel_variant trb_kernel_variants[] = {
+    {"scalar", trb_raceway_kernel_scalar},
+    {"base", trb_raceway_kernel_base},
+#ifdef TRB_HAVE_AVX2
+    {"avx2", trb_raceway_kernel_avx2},
+#endif
+#ifdef TRB_HAVE_AVX512
+    {"avx512", trb_raceway_kernel_avx512},
+#endif
+};
+const int trb_n_kernel_variants = (int)(sizeof trb_kernel_variants / sizeof trb_kernel_variants[0]);
+
+int trb_kernel_runs(int variant)
+{
+  if (variant < 0 || variant >= trb_n_kernel_variants) return 0;
+#if defined(TRB_HAVE_AVX2) || defined(TRB_HAVE_AVX512)
+  const char *name = trb_kernel_variants[variant].name;
+  if (strcmp(name, "avx2") == 0) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (strcmp(name, "avx512") == 0)
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("fma");
+#endif
+  return 1;
+}
+
+static trb_status choose_variant(const char *name, int *variant, trb_message *message)
+{
+  *variant = -1;
+  for (int i = 0; i < trb_n_kernel_variants; i++)
+    if (trb_kernel_runs(i) && (name[0] == '\0' || strcmp(name, trb_kernel_variants[i].name) == 0)) *variant = i;
+  if (*variant < 0) return trb_fail(message, TRB_ERR_INPUT, "instruction_set = '%s': not one that this machine and build run", name);
+  return TRB_OK;
+}
+
+trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_workspace **work, trb_message *message)
+{
+  (void)m;
+  int chosen;
+  *work = NULL;
+  const trb_status status = choose_variant(variant, &chosen, message);
+  if (status != TRB_OK) return status;
+  trb_workspace *w = calloc(1, sizeof *w);
+  trb_lanes     *lanes = aligned_alloc(64, sizeof *lanes);
+  if (w == NULL || lanes == NULL) {
+    free(w);
+    free(lanes);
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a workspace");
+  }
+  memset(lanes, 0, sizeof *lanes);
+  w->lanes = lanes;
+  w->variant = chosen;
+  *work = w;
+  return TRB_OK;
+}
+
+void trb_workspace_free(trb_workspace *work)
+{
+  if (work == NULL) return;
+  free(work->lanes);
+  free(work);
+}
+
+typedef struct contact_pair {
+  trb_contact_function *function;
+  int (*is_on)(const trb_model *m);
+  int with_cage; /* depends on the cage's pose */
+} contact_pair;
+
+static int always(const trb_model *m) { return m != NULL; }
+static int has_rib(const trb_model *m) { return m->params.back_rib > 0.0; }
+static int has_front_rib(const trb_model *m) { return m->params.front_rib > 0.0; }
+static int has_pocket(const trb_model *m) { return m->first_face[m->n_rollers] > 0; }
+
+static const contact_pair trb_contact_pairs[] = {
+    {trb_contact_raceway, always, 0},
+    {trb_contact_rib, has_rib, 0},
+    {trb_contact_front_rib, has_front_rib, 0},
+    {trb_contact_pocket, has_pocket, 1},
+};
+
+enum { N_PAIRS = (int)(sizeof trb_contact_pairs / sizeof trb_contact_pairs[0]) };
+
+void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
+{
+  memset(loads, 0, (size_t)m->n_rollers * sizeof *loads);
+  work->counters.force_evaluations++;
+  for (int i = 0; i < N_PAIRS; i++)
+    if (trb_contact_pairs[i].is_on(m) && (at->cage != NULL || !trb_contact_pairs[i].with_cage))
+      trb_contact_pairs[i].function(m, at, work, loads, detail);
+}
+
+void trb_contact_cage_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads)
+{
+  memset(loads, 0, (size_t)m->n_rollers * sizeof *loads);
+  for (int i = 0; i < N_PAIRS; i++)
+    if (trb_contact_pairs[i].with_cage && trb_contact_pairs[i].is_on(m)) trb_contact_pairs[i].function(m, at, work, loads, NULL);
+}
+
+static size_t lane_total(const trb_model *m) { return (size_t)TRB_N_LANE_FIELDS * TRB_N_RACES * (size_t)m->n_rollers * (size_t)m->n_lanes; }
+
+trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message)
+{
+  const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
+  trb_detail  *d = calloc(1, sizeof *d);
+  *detail = NULL;
+  if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
+  d->lanes = calloc(lane_total(m), sizeof(double));
+  d->rib = calloc(rollers, sizeof *d->rib);
+  d->front_rib = calloc(rollers, sizeof *d->front_rib);
+  d->pocket_force = calloc(slots, sizeof(double));
+  d->pocket_friction = calloc(slots, sizeof(double));
+  d->pocket_interference = calloc(slots, sizeof(double));
+  if (!d->lanes || !d->rib || !d->front_rib || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
+    trb_detail_free(d);
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
+  }
+  *detail = d;
+  return TRB_OK;
+}
+
+void trb_detail_free(trb_detail *detail)
+{
+  if (detail == NULL) return;
+  free(detail->lanes);
+  free(detail->rib);
+  free(detail->front_rib);
+  free(detail->pocket_force);
+  free(detail->pocket_friction);
+  free(detail->pocket_interference);
+  free(detail);
+}
+
+void trb_detail_clear(const trb_model *m, trb_detail *detail)
+{
+  const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
+  memset(detail->lanes, 0, lane_total(m) * sizeof(double));
+  memset(detail->rib, 0, rollers * sizeof *detail->rib);
+  memset(detail->front_rib, 0, rollers * sizeof *detail->front_rib);
+  memset(detail->pocket_force, 0, slots * sizeof(double));
+  memset(detail->pocket_friction, 0, slots * sizeof(double));
+  for (size_t i = 0; i < slots; i++) detail->pocket_interference[i] = -INFINITY;
+}

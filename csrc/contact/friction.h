@@ -1,0 +1,45 @@
+/* Friction of single points (roller ends, ribs, pockets), shared by the pairs that are not raceways. */
+#ifndef TRB_CONTACT_FRICTION_H
+#define TRB_CONTACT_FRICTION_H
+
+#include "bearing/model.h"
+#include "laws/traction.h"
+
+/* A point of contact between a roller and another body, both in the same coordinates. */
+typedef struct trb_touch {
+  trb_vec3 sliding; /* tangential velocity, roller minus other, m/s */
+  double   speed;   /* its magnitude, guarded, m/s */
+  double   rate;    /* rate of the interference, m/s */
+} trb_touch;
+
+/* normal: from the roller into the other body. */
+static inline trb_touch trb_touching(trb_vec3 roller_velocity, trb_vec3 other_velocity, trb_vec3 normal)
+{
+  const trb_vec3 relative = trb_sub(roller_velocity, other_velocity);
+  trb_touch      touch;
+  touch.rate = trb_dot(relative, normal);
+  touch.sliding = trb_axpy(relative, -touch.rate, normal);
+  touch.speed = sqrt(trb_dot(touch.sliding, touch.sliding) + TRB_SLIDING_GUARD * TRB_SLIDING_GUARD);
+  return touch;
+}
+
+static inline double trb_coulomb_coefficient(const trb_params *p, double speed)
+{
+  return p->dry_friction * speed / sqrt(speed * speed + p->coulomb_speed * p->coulomb_speed);
+}
+
+/* (6) with the slide-roll ratio of surfaces that do not roll, or Coulomb's law in a dry scene. */
+static inline double trb_sliding_coefficient(const trb_model *m, double speed)
+{
+  const trb_params *p = &m->params;
+  if (p->lubrication == TRB_LUBRICATION_DRY) return trb_coulomb_coefficient(p, speed);
+  return trb_friction_boundary(trb_slide_roll_cage(speed, p->cage_entrainment_speed), p->boundary_limit, p->boundary_slope, p->boundary_decay);
+}
+
+/* Hunt & Crossley, never pulling. */
+static inline double trb_damped(const trb_model *m, double load, double coefficient, double rate)
+{
+  return m->params.damping > 0.0 ? load * trb_max(1.0 + coefficient * rate, 0.0) : load;
+}
+
+#endif

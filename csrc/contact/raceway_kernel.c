@@ -1,0 +1,405 @@
+/* Roller on raceway, a tile of contacts at a time: geometry per contact, then one pass a law over all lanes, then sums per contact.
+ * A law that a scene leaves out is a pass that does not run; inside the loops nothing branches on effects. */
+#include "contact/raceway_kernel.h"
+
+#include <math.h>
+
+#include "laws/film.h"
+#include "laws/line_contact.h"
+#include "laws/rolling_resistance.h"
+#include "laws/traction.h"
+#include "laws/viscosity.h"
+
+#ifndef TRB_KERNEL_VARIANT
+#define TRB_KERNEL_VARIANT scalar
+#endif
+#define TRB_JOIN_(a, b) a##b
+#define TRB_JOIN(a, b) TRB_JOIN_(a, b)
+#define TRB_KERNEL_NAME TRB_JOIN(trb_raceway_kernel_, TRB_KERNEL_VARIANT)
+
+#if defined(__GNUC__) && !defined(__clang__)
+#define TRB_LANES _Pragma("GCC ivdep")
+#else
+#define TRB_LANES
+#endif
+#if defined(__GNUC__)
+#define TRB_PADDED(n) if ((n) % TRB_LANE_PAD != 0) __builtin_unreachable()
+#else
+#define TRB_PADDED(n) (void)(n)
+#endif
+
+/* Interference below which a node carries nothing, m: keeps logarithms finite. */
+#define TRB_SMALLEST_INTERFERENCE 1e-15
+
+/* Interference, normal, contact point and velocities of a contact's nodes, from lane `first` on; gives the largest interference. */
+static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int first)
+{
+  const trb_roller_pose *r = in->roller;
+  const trb_ring_pose   *g = in->ring;
+  const trb_vec3         x = r->x, a = r->frame.a, v = r->v, w = r->omega, k = g->axis, o = g->apex, b = g->centre, rv = g->velocity, rw = g->omega;
+  const double           sine = in->sine, cosine = in->cosine, sign = in->sign, orbit = r->orbit_speed;
+  double                 largest = -INFINITY;
+  TRB_PADDED(n);
+  for (int i = 0; i < n; i++) {
+    const double s = in->centre[i], rho = in->sphere[i];
+    const double cx = x.x + s * a.x - o.x, cy = x.y + s * a.y - o.y, cz = x.z + s * a.z - o.z;
+    const double along = cx * k.x + cy * k.y + cz * k.z;
+    const double ex = cx - along * k.x, ey = cy - along * k.y, ez = cz - along * k.z;
+    const double off = sqrt(ex * ex + ey * ey + ez * ez);
+    /* the sphere's centre against the race's cone */
+    const double d = rho + sign * (off * cosine - along * sine), radial = sign * cosine / off;
+    const double nx = radial * ex - sign * sine * k.x, ny = radial * ey - sign * sine * k.y, nz = radial * ez - sign * sine * k.z;
+    const double reach = rho - 0.5 * d;
+    const double px = cx + o.x + reach * nx, py = cy + o.y + reach * ny, pz = cz + o.z + reach * nz;
+    /* velocities of both surfaces at the contact point; the contact itself orbits */
+    const double qx = px - x.x, qy = py - x.y, qz = pz - x.z, tx = px - b.x, ty = py - b.y, tz = pz - b.z;
+    const double ux = v.x + w.y * qz - w.z * qy, uy = v.y + w.z * qx - w.x * qz, uz = v.z + w.x * qy - w.y * qx;
+    const double gx = rv.x + rw.y * tz - rw.z * ty, gy = rv.y + rw.z * tx - rw.x * tz, gz = rv.z + rw.x * ty - rw.y * tx;
+    const double dx = ux - gx, dy = uy - gy, dz = uz - gz;
+    const double mx = 0.5 * (ux + gx) + orbit * py, my = 0.5 * (uy + gy) - orbit * px, mz = 0.5 * (uz + gz);
+    const double rate = dx * nx + dy * ny + dz * nz, mean = mx * nx + my * ny + mz * nz;
+    const int    at = first + i;
+    l->interference[at] = d;
+    l->approach[at] = rate;
+    l->reach[at] = reach;
+    l->nx[at] = nx, l->ny[at] = ny, l->nz[at] = nz;
+    l->px[at] = px, l->py[at] = py, l->pz[at] = pz;
+    l->sx[at] = dx - rate * nx, l->sy[at] = dy - rate * ny, l->sz[at] = dz - rate * nz;
+    l->mx[at] = mx - mean * nx, l->my[at] = my - mean * ny, l->mz[at] = mz - mean * nz;
+    l->weight[at] = in->nodes->weight[i];
+    l->radius[at] = in->nodes->radius[i];
+    l->log_radius[at] = in->nodes->log_radius[i];
+    l->roller_share[at] = in->nodes->roller_share[i];
+    largest = trb_max(largest, d);
+  }
+  return largest;
+}
+
+/* (1) Palmgren's load and the Hertz pressure of a line. */
+static void pass_load(const trb_model *m, int n, trb_lanes *l)
+{
+  const double base = m->log_palmgren, modulus = m->geometry.effective_modulus;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double log_d = log(trb_max(l->interference[i], TRB_SMALLEST_INTERFERENCE));
+    const double w = exp(base + TRB_PALMGREN_EXPONENT * log_d);
+    l->log_d[i] = log_d;
+    l->load_per_length[i] = w;
+    l->load[i] = l->interference[i] > 0.0 ? w * l->weight[i] : 0.0;
+    l->half_width[i] = trb_line_half_width(w, l->radius[i], modulus);
+    l->pressure[i] = trb_line_pressure(w, l->radius[i], modulus);
+  }
+}
+
+/* Mean and sliding speed, slide-roll ratio; smooth at zero. */
+static void pass_speeds(const trb_model *m, int n, trb_lanes *l)
+{
+  const double floor2 = m->params.speed_floor * m->params.speed_floor;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double mean = sqrt(l->mx[i] * l->mx[i] + l->my[i] * l->my[i] + l->mz[i] * l->mz[i] + floor2);
+    const double slide = sqrt(l->sx[i] * l->sx[i] + l->sy[i] * l->sy[i] + l->sz[i] * l->sz[i] + TRB_SLIDING_GUARD * TRB_SLIDING_GUARD);
+    l->mean_speed[i] = mean;
+    l->sliding_speed[i] = slide;
+    l->slide_roll[i] = slide / mean;
+    l->log_u[i] = log(mean);
+    l->friction_coefficient[i] = 0.0;
+    l->rolling[i] = 0.0;
+  }
+}
+
+/* (4) and (5), before the thermal factor. */
+static void pass_film(const trb_model *m, int n, trb_lanes *l)
+{
+  const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
+  const double viscosity = m->params.viscosity;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->log_d[i] - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i];
+    l->film_elastic[i] = l->radius[i] * trb_film_line_elastic(log_w, log_u, log_g);
+    l->film_rigid[i] = l->radius[i] * trb_film_line_rigid(viscosity * l->mean_speed[i] / l->load_per_length[i]);
+    l->thermal_factor[i] = 1.0;
+  }
+}
+
+static void pass_thermal(const trb_model *m, int n, trb_lanes *l)
+{
+  const double base = m->log_thermal, modulus = m->geometry.effective_modulus, floor = m->params.thermal_floor;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+      l->thermal_factor[i] = trb_film_thermal(l->pressure[i] / modulus, base + 2.0 * l->log_u[i], log(l->slide_roll[i]), floor);
+}
+
+/* (3) with a starvation factor. */
+static void pass_film_parameter(const trb_model *m, int n, trb_lanes *l)
+{
+  const double starvation = m->params.starvation_factor, per_roughness = 1.0 / m->params.roughness_raceway;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    l->film[i] = starvation * l->thermal_factor[i] * trb_max(l->film_elastic[i], l->film_rigid[i]);
+    l->film_parameter[i] = l->film[i] * per_roughness;
+  }
+}
+
+/* The traction loop once per viscosity law, so that the choice is made outside. */
+#define TRB_TRACTION_LOOP(log_ratio) \
+  TRB_PADDED(n); \
+  TRB_LANES for (int i = 0; i < n; i++) \
+  { \
+    const double mean_pressure = TRB_LINE_MEAN_PRESSURE * l->pressure[i]; \
+    const double eta = viscosity * exp(log_ratio); \
+    const double sigma = eta * l->sliding_speed[i] / (tau0 * l->film[i]); \
+    const double d = eta * l->mean_speed[i] / (trb_shear_modulus(mean_pressure, temperature, floor) * l->half_width[i]); \
+    l->traction_coefficient[i] = tau0 * trb_traction_muraki_kimura(sigma, d) / mean_pressure; \
+  }
+
+/* (7)-(9) */
+static void pass_muraki_kimura(const trb_model *m, int n, trb_lanes *l)
+{
+  const trb_params *p = &m->params;
+  const double      viscosity = p->viscosity, tau0 = p->eyring_stress, temperature = p->temperature, floor = p->shear_modulus_floor;
+  const double      alpha = p->pressure_coefficient, cap = p->viscosity_exponent_cap;
+  if (p->viscosity_law == TRB_VISCOSITY_DICKE) {
+    const double at = p->dicke_a + p->dicke_b * temperature, ct = p->dicke_c + p->dicke_d * temperature;
+    TRB_TRACTION_LOOP(trb_viscosity_dicke(mean_pressure, at, ct))
+  } else if (p->viscosity_law == TRB_VISCOSITY_ROELANDS) {
+    const double log_viscosity = m->log_viscosity;
+    TRB_TRACTION_LOOP(trb_viscosity_roelands(mean_pressure, alpha, log_viscosity, cap))
+  } else {
+    TRB_TRACTION_LOOP(trb_viscosity_barus(mean_pressure, alpha, cap))
+  }
+}
+
+static void pass_coulomb(const trb_model *m, int n, trb_lanes *l, double *restrict coefficient)
+{
+  const double mu = m->params.dry_friction, turn = m->params.coulomb_speed * m->params.coulomb_speed;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double s = l->sliding_speed[i];
+    coefficient[i] = mu * s / sqrt(s * s + turn);
+  }
+}
+
+/* (6) */
+static void pass_boundary(const trb_model *m, int n, trb_lanes *l)
+{
+  const double limit = m->params.boundary_limit, slope = m->params.boundary_slope, decay = m->params.boundary_decay;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++) l->boundary_coefficient[i] = trb_friction_boundary(l->slide_roll[i], limit, slope, decay);
+}
+
+static double thinnest(int n, const trb_lanes *l)
+{
+  double least = INFINITY;
+  TRB_PADDED(n);
+  for (int i = 0; i < n; i++) least = trb_min(least, l->film_parameter[i]);
+  return least;
+}
+
+/* (2) */
+static void pass_mix(const trb_model *m, int n, trb_lanes *l)
+{
+  const double low = m->params.lambda_boundary, high = m->params.lambda_full;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double share = trb_boundary_share(l->film_parameter[i], low, high);
+    l->friction_coefficient[i] = l->traction_coefficient[i] + share * (l->boundary_coefficient[i] - l->traction_coefficient[i]);
+  }
+}
+
+static void copy_lanes(int n, const double *restrict from, double *restrict to)
+{
+  for (int i = 0; i < n; i++) to[i] = from[i];
+}
+
+/* Friction coefficients of the scene's kind of lubrication. */
+static void pass_friction(const trb_model *m, int n, trb_lanes *l, trb_counters *counters)
+{
+  const trb_params *p = &m->params;
+  if (p->lubrication == TRB_LUBRICATION_DRY) {
+    pass_coulomb(m, n, l, l->friction_coefficient);
+    counters->coulomb_nodes += n;
+    return;
+  }
+  if (p->lubrication == TRB_LUBRICATION_BOUNDARY) {
+    pass_boundary(m, n, l);
+    counters->boundary_nodes += n;
+    copy_lanes(n, l->boundary_coefficient, l->friction_coefficient);
+    return;
+  }
+  if (p->traction == TRB_TRACTION_MURAKI_KIMURA) {
+    pass_muraki_kimura(m, n, l);
+    counters->traction_nodes += n;
+  } else if (p->traction == TRB_TRACTION_COULOMB) {
+    pass_coulomb(m, n, l, l->traction_coefficient);
+    counters->coulomb_nodes += n;
+  } else {
+    for (int i = 0; i < n; i++) l->traction_coefficient[i] = 0.0;
+  }
+  /* boundary friction only where some film is thin enough to share it */
+  if (p->lubrication == TRB_LUBRICATION_MIXED && thinnest(n, l) < p->lambda_full) {
+    pass_boundary(m, n, l);
+    counters->boundary_nodes += n;
+    pass_mix(m, n, l);
+  } else {
+    copy_lanes(n, l->traction_coefficient, l->friction_coefficient);
+  }
+}
+
+/* (10) */
+static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
+{
+  const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
+  const double per_alpha = 1.0 / m->params.pressure_coefficient, band = m->params.rolling_blend;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->log_d[i] - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i];
+    const double share = trb_rolling_share(l->film_elastic[i] / l->film_rigid[i], band);
+    const double force = share * l->radius[i] * l->weight[i] * l->thermal_factor[i] * per_alpha * trb_rolling_line(log_w, log_u, log_g);
+    l->rolling[i] = l->interference[i] > 0.0 ? force : 0.0;
+  }
+}
+
+/* Hunt & Crossley: F = q (1 + c d_dot), never pulling. */
+static double pass_damping(const trb_model *m, int first, int n, trb_lanes *l)
+{
+  const double c = m->params.damping_race;
+  double       power = 0.0;
+  TRB_PADDED(n);
+  for (int i = first; i < first + n; i++) {
+    const double damped = l->load[i] * trb_max(1.0 + c * l->approach[i], 0.0);
+    power += (damped - l->load[i]) * l->approach[i];
+    l->load[i] = damped;
+  }
+  return power;
+}
+
+static double sum_elastic(int first, int n, const trb_lanes *l)
+{
+  double sum = 0.0;
+  TRB_PADDED(n);
+  for (int i = first; i < first + n; i++) sum += l->load[i] * l->interference[i];
+  return TRB_PALMGREN_ENERGY * sum;
+}
+
+/* Wrenches of normal load, friction and rolling resistance on both surfaces. */
+static void sum_contact(const trb_race_input *in, int first, int n, const trb_lanes *l, trb_race_output *out)
+{
+  const trb_vec3 x = in->roller->x, b = in->ring->centre, k = in->ring->axis;
+  const double   orbit = in->roller->orbit_speed;
+  double         fx = 0, fy = 0, fz = 0, mx = 0, my = 0, mz = 0, gx = 0, gy = 0, gz = 0, hx = 0, hy = 0, hz = 0, lost = 0, rolled = 0;
+  double         ex = 0, ey = 0, ez = 0, jx = 0, jy = 0, jz = 0;
+  TRB_PADDED(n);
+  for (int i = first; i < first + n; i++) {
+    const double q = l->load[i], drag = q * l->friction_coefficient[i] / l->sliding_speed[i], roll = l->rolling[i] / l->mean_speed[i];
+    const double px = l->px[i], py = l->py[i], pz = l->pz[i];
+    /* rolling resistance drags both surfaces alike */
+    const double rx = -roll * l->mx[i], ry = -roll * l->my[i], rz = -roll * l->mz[i];
+    const double tx = -q * l->nx[i] - drag * l->sx[i], ty = -q * l->ny[i] - drag * l->sy[i], tz = -q * l->nz[i] - drag * l->sz[i];
+    const double ax = tx + rx, ay = ty + ry, az = tz + rz;
+    const double qx = px - x.x, qy = py - x.y, qz = pz - x.z, cx = px - b.x, cy = py - b.y, cz = pz - b.z;
+    fx += ax, fy += ay, fz += az;
+    mx += qy * az - qz * ay, my += qz * ax - qx * az, mz += qx * ay - qy * ax;
+    gx -= tx, gy -= ty, gz -= tz;
+    hx -= cy * tz - cz * ty, hy -= cz * tx - cx * tz, hz -= cx * ty - cy * tx;
+    ex += rx, ey += ry, ez += rz;
+    jx += cy * rz - cz * ry, jy += cz * rx - cx * rz, jz += cx * ry - cy * rx;
+    lost += drag * (l->sx[i] * l->sx[i] + l->sy[i] * l->sy[i] + l->sz[i] * l->sz[i]);
+    /* both surfaces' inertial velocities: twice the mean, relative to the contact, plus the contact's own */
+    rolled -= 2.0 * (rx * (l->mx[i] - orbit * py) + ry * (l->my[i] + orbit * px) + rz * l->mz[i]);
+  }
+  out->force = trb_v(fx, fy, fz);
+  out->moment = trb_v(mx, my, mz);
+  out->ring_force = trb_v(gx + ex, gy + ey, gz + ez);
+  out->ring_moment = trb_v(hx + jx, hy + jy, hz + jz);
+  out->torque_traction = hx * k.x + hy * k.y + hz * k.z;
+  out->torque_rolling = jx * k.x + jy * k.y + jz * k.z;
+  out->power_traction = lost;
+  out->power_rolling = rolled;
+}
+
+/* Pressure force of the rolling film: +2 F Re/R1 e through the roller's axis, +2 F Re/R2 e through the ring's, so that together with
+ * the drag of both surfaces force and moment balance. */
+static void sum_pressure_force(const trb_race_input *in, int first, int n, const trb_lanes *l, trb_race_output *out)
+{
+  const trb_roller_pose *r = in->roller;
+  const trb_ring_pose   *g = in->ring;
+  double                 power = 0.0;
+  for (int i = first; i < first + n; i++) {
+    const double   share = l->roller_share[i], scale = 2.0 * l->rolling[i] / l->mean_speed[i];
+    const trb_vec3 normal = trb_v(l->nx[i], l->ny[i], l->nz[i]), point = trb_v(l->px[i], l->py[i], l->pz[i]), mean = trb_v(l->mx[i], l->my[i], l->mz[i]);
+    const trb_vec3 on_roller = trb_scale(scale * share, mean), on_ring = trb_scale(scale * (1.0 - share), mean);
+    /* centres of curvature along the normal: R1 = Re/share inwards, R2 = Re/(1 - share) into the ring (negative: a cup) */
+    const trb_vec3 from_roller = trb_sub(trb_axpy(point, -l->radius[i] / share, normal), r->x);
+    const trb_vec3 from_ring = trb_sub(trb_axpy(point, l->radius[i] / (1.0 - share), normal), g->centre);
+    out->force = trb_add(out->force, on_roller);
+    out->moment = trb_add(out->moment, trb_cross(from_roller, on_roller));
+    out->ring_force = trb_add(out->ring_force, on_ring);
+    out->ring_moment = trb_add(out->ring_moment, trb_cross(from_ring, on_ring));
+    power -= trb_dot(on_roller, trb_add(r->v, trb_cross(r->omega, from_roller))) + trb_dot(on_ring, trb_add(g->velocity, trb_cross(g->omega, from_ring)));
+  }
+  out->power_pressure = power;
+}
+
+static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const int *loaded, int n_loaded, trb_lanes *l, trb_counters *counters,
+                        trb_race_output *outputs)
+{
+  const int n = m->n_lanes;
+  for (int c = 0; c < n_loaded; c++) {
+    const trb_race_input *in = &inputs[loaded[c]];
+    trb_race_output      *out = &outputs[loaded[c]];
+    out->loaded = 1;
+    sum_contact(in, c * n, n, l, out);
+    if (m->params.rolling_resistance > 0.0 && m->params.rolling_pressure_force > 0.0) {
+      sum_pressure_force(in, c * n, n, l, out);
+      counters->pressure_force_nodes += n;
+    }
+  }
+}
+
+void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inputs, trb_lanes *l, trb_counters *counters, trb_race_output *outputs)
+{
+  int       loaded[TRB_TILE_LANES / TRB_LANE_PAD], n_loaded = 0;
+  const int n = m->n_lanes, rolling = m->params.rolling_resistance > 0.0;
+  for (int c = 0; c < n_inputs; c++) {
+    outputs[c] = (trb_race_output){0};
+    /* a contact without interference leaves its lanes to the next */
+    if (pass_geometry(&inputs[c], n, l, n_loaded * n) > 0.0) loaded[n_loaded++] = c;
+    else counters->raceway_culled++;
+  }
+  const int all = n_loaded * n;
+  if (all == 0) return;
+  counters->raceway_nodes += all;
+  pass_load(m, all, l);
+  for (int c = 0; c < n_loaded; c++) {
+    trb_race_output *out = &outputs[loaded[c]];
+    out->elastic = sum_elastic(c * n, n, l);
+    if (m->params.damping > 0.0 && m->params.damping_race > 0.0) {
+      out->power_damping = pass_damping(m, c * n, n, l);
+      counters->damping_nodes += n;
+    }
+  }
+  pass_speeds(m, all, l);
+  if (m->film) {
+    pass_film(m, all, l);
+    counters->film_nodes += all;
+    if (m->params.thermal > 0.0) {
+      pass_thermal(m, all, l);
+      counters->thermal_nodes += all;
+    }
+    pass_film_parameter(m, all, l);
+  }
+  if (m->friction) pass_friction(m, all, l, counters);
+  if (rolling && m->film) {
+    pass_rolling(m, all, l);
+    counters->rolling_nodes += all;
+  }
+  sum_outputs(m, inputs, loaded, n_loaded, l, counters, outputs);
+}

@@ -1,0 +1,96 @@
+/* The loop over slices: the same source compiled for several instruction sets (TRB_KERNEL_VARIANT), chosen when a workspace is made.
+ * `scalar` is compiled without fast-math and is what the others are tested against. */
+#ifndef TRB_CONTACT_RACEWAY_KERNEL_H
+#define TRB_CONTACT_RACEWAY_KERNEL_H
+
+#include "contact/contact.h"
+
+/* Lanes of scratch; at least the largest number of nodes. */
+enum { TRB_TILE_LANES = 256 };
+
+/* Per lane. X(name, unit, text) */
+#define TRB_LANE_FIELDS(X) \
+  X(interference,   "m",   "interference of the undeformed surfaces") \
+  X(load,           "N",   "normal load of the node") \
+  X(load_per_length, "N/m", "load per length") \
+  X(half_width,     "m",   "Hertz half width") \
+  X(pressure,       "Pa",  "largest Hertz pressure") \
+  X(mean_speed,     "m/s", "mean surface speed relative to the contact") \
+  X(sliding_speed,  "m/s", "sliding speed") \
+  X(slide_roll,     "1",   "slide-roll ratio") \
+  X(film_elastic,   "m",   "piezoviscous-elastic film") \
+  X(film_rigid,     "m",   "isoviscous-rigid film") \
+  X(thermal_factor, "1",   "thermal film factor") \
+  X(film,           "m",   "central film thickness") \
+  X(film_parameter, "1",   "film parameter Lambda") \
+  X(traction_coefficient, "1", "friction coefficient of the full film") \
+  X(boundary_coefficient, "1", "friction coefficient of boundary friction") \
+  X(friction_coefficient, "1", "friction coefficient") \
+  X(rolling,        "N",   "rolling resistance of each surface") \
+  X(approach,       "m/s", "rate of the interference") \
+  X(weight,         "m",   "quadrature weight along the contact") \
+  X(radius,         "m",   "equivalent radius") \
+  X(log_radius,     "1",   "its logarithm") \
+  X(roller_share,   "1",   "share of the roller in the pair's curvature") \
+  X(reach,          "m",   "roller axis to contact point, along the normal") \
+  X(log_d,          "1",   "logarithm of the interference") \
+  X(log_u,          "1",   "logarithm of the mean speed") \
+  X(nx,             "1",   "normal, from roller to race") \
+  X(ny,             "1",   "normal, tangential part") \
+  X(nz,             "1",   "normal, axial part") \
+  X(px,             "m",   "contact point, radial") \
+  X(py,             "m",   "contact point, tangential") \
+  X(pz,             "m",   "contact point, axial") \
+  X(sx,             "m/s", "sliding velocity, roller minus race, radial") \
+  X(sy,             "m/s", "sliding velocity, tangential") \
+  X(sz,             "m/s", "sliding velocity, axial") \
+  X(mx,             "m/s", "mean velocity, radial") \
+  X(my,             "m/s", "mean velocity, tangential") \
+  X(mz,             "m/s", "mean velocity, axial")
+
+typedef struct trb_lanes {
+#define TRB_LANE_MEMBER(name, unit, text) double name[TRB_TILE_LANES];
+  TRB_LANE_FIELDS(TRB_LANE_MEMBER)
+#undef TRB_LANE_MEMBER
+} trb_lanes;
+
+enum { TRB_N_LANE_FIELDS = (int)(sizeof(trb_lanes) / (TRB_TILE_LANES * sizeof(double))) };
+
+/* One contact of a roller with a race. */
+typedef struct trb_race_input {
+  const trb_roller_pose *roller;
+  const trb_ring_pose   *ring;   /* in the roller's frame */
+  const double          *centre; /* spheres of this roller, per lane */
+  const double          *sphere;
+  const trb_race_nodes  *nodes;
+  double                 sine, cosine; /* of the race's half angle */
+  double                 sign;   /* +1 outer, -1 inner: normal away from the bearing axis or towards it */
+} trb_race_input;
+
+typedef struct trb_race_output {
+  trb_vec3 force, moment;           /* on the roller, about its centre of mass */
+  trb_vec3 ring_force, ring_moment; /* on the race, about ring->centre */
+  double   torque_traction, torque_rolling; /* on the race, about its axis */
+  double   elastic, power_traction, power_rolling, power_pressure, power_damping;
+  int      loaded; /* 0: no interference, all zero */
+} trb_race_output;
+
+typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,
+                                trb_race_output *outputs);
+
+trb_raceway_kernel trb_raceway_kernel_scalar, trb_raceway_kernel_base, trb_raceway_kernel_avx2, trb_raceway_kernel_avx512;
+
+typedef struct trb_kernel_variant {
+  const char         *name;
+  trb_raceway_kernel *kernel;
+} trb_kernel_variant;
+
+enum { TRB_MAX_KERNEL_VARIANTS = 4 };
+/* Variants that were built, slowest first. */
+extern const trb_kernel_variant trb_kernel_variants[];
+extern const int                trb_n_kernel_variants;
+
+/* Whether this machine can run a variant. */
+int trb_kernel_runs(int variant);
+
+#endif

@@ -1,0 +1,18 @@
+/* Roller generator and the nodes along it. */
+#ifndef TRB_LAWS_PROFILE_H
+#define TRB_LAWS_PROFILE_H
+
+enum { TRB_PROFILE_STRAIGHT = 0, TRB_PROFILE_CROWNED = 1, TRB_PROFILE_LOGARITHMIC = 2 };
+enum { TRB_QUADRATURE_UNIFORM = 0, TRB_QUADRATURE_GAUSS = 1 };
+
+/* Arc of radius r: y^2/(2 r) to leading order, exact here. */
+double trb_profile_crowned(double y, double radius);
+
+/* Logarithmic drop A ln{1/[1 - (1 - e^(-zm/A)) ((|y|-a)/(K2 a) + 1)^2]} for |y| > a - K2 a, A = 2 K1 Q/(pi L E'), a = L/2
+ * (Fujiwara & Kawase 2007). */
+double trb_profile_logarithmic(double y, double length, double k1, double k2, double zm, double load, double effective_modulus);
+
+/* n nodes on (-1, 1) and weights that sum to 2; kind is TRB_QUADRATURE_*. */
+void trb_quadrature(int kind, int n, double *nodes, double *weights);
+
+#endif

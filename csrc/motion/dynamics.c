@@ -1,0 +1,207 @@
+#include "motion/dynamics.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_dynamics **dynamics, trb_message *message)
+{
+  *dynamics = NULL;
+  trb_dynamics *d = calloc(1, sizeof *d);
+  if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
+  const size_t n = (size_t)m->n_rollers;
+  d->model = m;
+  d->motion = motion;
+  d->rollers = calloc(n, sizeof *d->rollers);
+  d->inner = calloc(n, sizeof *d->inner);
+  d->loads = calloc(n, sizeof *d->loads);
+  trb_status status = TRB_OK;
+  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
+  else status = trb_workspace_create(m, variant, &d->work, message);
+  if (status != TRB_OK) {
+    trb_dynamics_free(d);
+    return status;
+  }
+  *dynamics = d;
+  return TRB_OK;
+}
+
+void trb_dynamics_free(trb_dynamics *d)
+{
+  if (d == NULL) return;
+  trb_workspace_free(d->work);
+  free(d->rollers);
+  free(d->inner);
+  free(d->loads);
+  free(d);
+}
+
+void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y)
+{
+  trb_roller_pose *r = &d->rollers[roller];
+  const trb_drive *drive = &d->drive;
+  trb_roller_pose_unpack(d->model, drive, roller, y, r);
+  if (d->model->params.planar > 0.0) {
+    /* frozen tilts: the transverse angular velocity is the orbit's */
+    const trb_frame *f = &r->frame;
+    r->omega_frame.x = r->orbit_speed * f->n.z;
+    r->omega_frame.y = r->orbit_speed * f->t.z;
+    r->omega = trb_from_frame(f, r->omega_frame);
+  }
+  const double cosine = drive->cosine * r->cosine - drive->sine * r->sine, sine = drive->sine * r->cosine + drive->cosine * r->sine;
+  d->inner[roller] = trb_ring_pose_in_frame(&drive->inner, cosine, sine);
+}
+
+void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
+{
+  trb_motion_at(d->motion, d->model, time, &d->drive);
+  for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
+  trb_cage_pose_unpack(d->model, &d->drive, y + trb_state_cage(d->model), &d->cage);
+}
+
+trb_instant trb_dynamics_instant(const trb_dynamics *d)
+{
+  return (trb_instant){&d->drive, d->rollers, d->inner, d->model->params.with_cage > 0.0 ? &d->cage : NULL};
+}
+
+void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_contact_all(d->model, &at, d->work, d->loads, detail);
+}
+
+typedef struct turn_rates {
+  double   skew, tilt; /* rates of the axis' angles, rad/s */
+  double   frame_a;    /* angular velocity of the frame (n, t, a) along a, rad/s */
+  trb_vec3 spin;       /* angular acceleration in (n, t, a), rad/s2 */
+} turn_rates;
+
+/* Euler's equations in a frame that follows the axis but does not spin; parent: angular velocity of the frame that skew and tilt are
+ * measured in, along its own z. */
+static turn_rates euler(const trb_frame *f, double skew, trb_vec3 omega, double parent, double transverse, double axial, trb_vec3 moment)
+{
+  turn_rates   out;
+  const double cosine = cos(skew), sine = sin(skew);
+  out.skew = -(omega.x - parent * f->n.z);
+  out.tilt = (omega.y - parent * f->t.z) / cosine;
+  out.frame_a = parent * f->a.z + out.tilt * sine;
+  const double spin = axial * omega.z, turn = transverse * out.frame_a;
+  out.spin = trb_v((moment.x - omega.y * spin + turn * omega.y) / transverse, (moment.y - turn * omega.x + omega.x * spin) / transverse, moment.z / axial);
+  return out;
+}
+
+/* Gravity in a frame turned about z by the angle whose cosine and sine are given, on top of R. */
+static trb_vec3 gravity_in(const trb_drive *drive, double cosine, double sine)
+{
+  return trb_turn_z(trb_turn_z(drive->gravity, drive->cosine, -drive->sine), cosine, -sine);
+}
+
+static int has_gravity(const trb_drive *drive) { return drive->gravity.x != 0.0 || drive->gravity.y != 0.0 || drive->gravity.z != 0.0; }
+
+/* Planar: the frozen tilts couple the orbit to the transverse inertia; (m + It s^2/r^2) v_t' from Lagrange's equation of the orbit angle. */
+static void freeze_roller(const trb_dynamics *d, const trb_roller_pose *r, const trb_roller_load *load, double v_t_reference_rate, double gravity_t,
+                          double *rates)
+{
+  const trb_geometry *g = &d->model->geometry;
+  const trb_vec3      moment = trb_to_frame(&r->frame, load->moment);
+  const double        s = r->frame.n.z, inertia = g->roller_inertia_transverse * s * s / (r->radius * r->radius);
+  const double        force = load->force.y + g->roller_mass * gravity_t + s * moment.x / r->radius;
+  const double        coriolis = r->v.x * r->v.y / r->radius;
+  rates[TRB_ROLLER_v_t] = (force - (g->roller_mass - inertia) * coriolis) / (g->roller_mass + inertia) - v_t_reference_rate;
+  rates[TRB_ROLLER_z] = rates[TRB_ROLLER_v_z] = rates[TRB_ROLLER_skew] = rates[TRB_ROLLER_tilt] = 0.0;
+  rates[TRB_ROLLER_omega_n] = rates[TRB_ROLLER_omega_t] = 0.0;
+}
+
+void trb_dynamics_roller_rates(const trb_dynamics *d, int roller, const double *y, const trb_roller_load *load, double *rates)
+{
+  const trb_model       *m = d->model;
+  const trb_drive       *drive = &d->drive;
+  const trb_roller_pose *r = &d->rollers[roller];
+  const trb_rolling      rolling_rate = trb_pure_rolling(m, drive->shaft_rate);
+  const double           per_mass = 1.0 / m->geometry.roller_mass;
+  const trb_vec3         g = has_gravity(drive) ? gravity_in(drive, r->cosine, r->sine) : trb_v(0, 0, 0);
+  const turn_rates       turn = euler(&r->frame, y[TRB_ROLLER_skew], r->omega_frame, r->orbit_speed, m->geometry.roller_inertia_transverse,
+                                      m->geometry.roller_inertia_axial, trb_to_frame(&r->frame, load->moment));
+  rates[TRB_ROLLER_r] = r->v.x;
+  rates[TRB_ROLLER_psi] = r->orbit_speed - drive->frame_speed;
+  rates[TRB_ROLLER_z] = r->v.z;
+  rates[TRB_ROLLER_skew] = turn.skew;
+  rates[TRB_ROLLER_tilt] = turn.tilt;
+  rates[TRB_ROLLER_v_r] = per_mass * load->force.x + g.x + r->v.y * r->orbit_speed;
+  rates[TRB_ROLLER_v_t] = per_mass * load->force.y + g.y - r->v.x * r->orbit_speed - rolling_rate.v_t;
+  rates[TRB_ROLLER_v_z] = per_mass * load->force.z + g.z;
+  rates[TRB_ROLLER_omega_n] = turn.spin.x - rolling_rate.omega_n;
+  rates[TRB_ROLLER_omega_t] = turn.spin.y;
+  rates[TRB_ROLLER_omega_a] = turn.spin.z - rolling_rate.omega_a;
+  if (m->params.planar > 0.0) freeze_roller(d, r, load, rolling_rate.v_t, g.y, rates);
+}
+
+void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 force, trb_vec3 moment, double *rates)
+{
+  const trb_model     *m = d->model;
+  const trb_drive     *drive = &d->drive;
+  const trb_cage_pose *c = &d->cage;
+  memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
+  if (m->params.with_cage <= 0.0) return;
+  const double     w = drive->frame_speed, per_mass = 1.0 / m->params.cage_mass;
+  const trb_vec3   g = has_gravity(drive) ? gravity_in(drive, 1.0, 0.0) : trb_v(0, 0, 0);
+  const turn_rates turn = euler(&c->frame, y[TRB_CAGE_skew], c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial,
+                                trb_to_frame(&c->frame, moment));
+  rates[TRB_CAGE_x] = c->v.x + w * y[TRB_CAGE_y];
+  rates[TRB_CAGE_y] = c->v.y - w * y[TRB_CAGE_x];
+  rates[TRB_CAGE_psi] = c->omega_frame.z - turn.frame_a;
+  rates[TRB_CAGE_v_x] = per_mass * force.x + g.x + w * c->v.y;
+  rates[TRB_CAGE_v_y] = per_mass * force.y + g.y - w * c->v.x;
+  rates[TRB_CAGE_omega_a] = turn.spin.z - drive->frame_rate;
+  if (m->params.planar > 0.0) return;
+  rates[TRB_CAGE_z] = c->v.z;
+  rates[TRB_CAGE_skew] = turn.skew;
+  rates[TRB_CAGE_tilt] = turn.tilt;
+  rates[TRB_CAGE_v_z] = per_mass * force.z + g.z;
+  rates[TRB_CAGE_omega_n] = turn.spin.x;
+  rates[TRB_CAGE_omega_t] = turn.spin.y;
+}
+
+/* Powers of the energy audit, each a sum of its own (physics: section 10). */
+static void quadrature_rates(const trb_dynamics *d, double *q)
+{
+  const trb_model *m = d->model;
+  memset(q, 0, TRB_N_QUADRATURES * sizeof *q);
+  for (int j = 0; j < m->n_rollers; j++) {
+    const trb_roller_load *l = &d->loads[j];
+    const trb_ring_pose   *ring = &d->inner[j];
+    const double           shaft = -trb_dot(l->ring_moment, ring->axis) * d->drive.shaft_speed;
+    q[TRB_Q_work_shaft] += shaft;
+    q[TRB_Q_work_ring] += -trb_dot(l->ring_force, ring->velocity) - trb_dot(l->ring_moment, ring->omega) - shaft;
+    for (int k = 0; k < TRB_N_POWERS; k++) q[TRB_Q_loss_traction_outer + k] += l->power[k];
+  }
+  if (!has_gravity(&d->drive)) return;
+  d->work->counters.gravity_bodies += m->n_rollers;
+  for (int j = 0; j < m->n_rollers; j++) {
+    const trb_roller_pose *r = &d->rollers[j];
+    q[TRB_Q_work_gravity] += m->geometry.roller_mass * trb_dot(gravity_in(&d->drive, r->cosine, r->sine), r->v);
+  }
+  if (m->params.with_cage > 0.0) q[TRB_Q_work_gravity] += m->params.cage_mass * trb_dot(gravity_in(&d->drive, 1.0, 0.0), d->cage.v);
+}
+
+_Static_assert(TRB_Q_loss_traction_outer + TRB_N_POWERS == TRB_N_QUADRATURES, "a quadrature for every power, in the same order");
+
+void trb_dynamics_derivative(trb_dynamics *d, double time, const double *y, double *rates)
+{
+  const trb_model *m = d->model;
+  trb_vec3         force = {0, 0, 0}, moment = {0, 0, 0};
+  double          *spin = rates + trb_state_spin(m);
+  trb_dynamics_pose(d, time, y);
+  trb_dynamics_loads(d, NULL);
+  for (int j = 0; j < m->n_rollers; j++) {
+    const trb_roller_pose *r = &d->rollers[j];
+    const double          *yj = y + trb_state_roller(j);
+    double                *rj = rates + trb_state_roller(j);
+    trb_dynamics_roller_rates(d, j, yj, &d->loads[j], rj);
+    force = trb_add(force, d->loads[j].cage_force);
+    moment = trb_add(moment, d->loads[j].cage_moment);
+    const double frame_a = r->orbit_speed * r->frame.a.z + rj[TRB_ROLLER_tilt] * sin(yj[TRB_ROLLER_skew]);
+    spin[j] = r->omega_frame.z - frame_a + m->geometry.roller_spin_ratio * d->drive.shaft_speed;
+  }
+  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));
+  quadrature_rates(d, rates + trb_state_quadrature(m));
+}
