@@ -1,0 +1,151 @@
+"""Base of every input model, and the kinds of number that it accepts."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import numbers
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, ValidationError
+
+from trbdyn.errors import InputError, from_validation_error
+
+
+def unit(symbol: str, **bounds: float) -> Any:
+    """Metadata of a number: its unit and bounds (``gt``, ``ge``, ``lt``, ``le``)."""
+    options: dict[str, Any] = dict(bounds)
+    return Field(json_schema_extra={"unit": symbol}, **options)
+
+
+def as_number(value: object) -> float:
+    """A real number as float.
+
+    Raises
+    ------
+    ValueError
+        If the value is no real number; True and False are none.
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise ValueError("must be a number")
+    return float(value)
+
+
+def as_whole_number(value: object) -> int:
+    """A whole number as int.
+
+    Raises
+    ------
+    ValueError
+        If the value is no whole number; True, False and floats are none.
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+        raise ValueError("must be a whole number")
+    return int(value)
+
+
+Number = Annotated[float, BeforeValidator(as_number)]
+Whole = Annotated[int, BeforeValidator(as_whole_number)]
+Flag = StrictBool
+
+Length = Annotated[Number, unit("m", gt=0)]
+Gap = Annotated[Number, unit("m", ge=0)]
+Ratio = Annotated[Number, unit("1", ge=0)]
+Vector3 = tuple[Number, Number, Number]
+
+
+class Model(BaseModel):
+    """A frozen, validated set of named values.
+
+    Every number must be finite, every name known; anything else raises `InputError`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
+
+    _root: ClassVar[str | None] = None
+
+    def __init__(self, /, **fields: Any) -> None:
+        try:
+            super().__init__(**fields)
+        except ValidationError as error:
+            raise from_validation_error(error, type(self).model_fields, self._path_root()) from None
+
+    @classmethod
+    def _path_root(cls) -> tuple[str, ...]:
+        """What the names of fields start with in messages: the class's name in small letters, unless it sets `_root`."""
+        root = cls.__name__.lower() if cls._root is None else cls._root
+        return (root,) if root else ()
+
+    @classmethod
+    def model_validate(cls, obj: Any, **options: Any) -> Self:
+        """A model from an instance or a mapping of its fields.
+
+        Raises
+        ------
+        InputError
+            If anything is wrong with the values.
+        """
+        try:
+            return super().model_validate(obj, **options)
+        except ValidationError as error:
+            raise from_validation_error(error, cls.model_fields, cls._path_root()) from None
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed, validated again.
+
+        Raises
+        ------
+        InputError
+            If a name is unknown or a value not allowed.
+        """
+        return type(self)(**{**{name: getattr(self, name) for name in type(self).model_fields}, **changes})
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy; changed fields are validated."""
+        return self.replace(**update) if update else super().model_copy(deep=deep)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in type(self).model_fields:
+            raise InputError.of(name, value, "cannot be changed; use replace(...) to get a changed copy")
+        super().__setattr__(name, value)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dictionaries, lists, numbers and text, as `from_dict` and JSON take them."""
+        return self.model_dump(mode="json")
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Self:
+        """The model that `to_dict` described.
+
+        Raises
+        ------
+        InputError
+            If anything is wrong with the values.
+        """
+        return cls.model_validate(values)
+
+    def to_json(self) -> str:
+        """JSON text; numbers are written so that `from_json` gets back exactly the same ones."""
+        return json.dumps(self.to_dict(), allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> Self:
+        """The model that `to_json` wrote.
+
+        Raises
+        ------
+        InputError
+            If the text is no JSON or anything is wrong with the values.
+        """
+        try:
+            values = json.loads(text)
+        except ValueError as error:
+            raise InputError.of("json", text[:40], f"must be JSON text: {error}") from None
+        return cls.from_dict(values)
+
+    @property
+    def fingerprint(self) -> str:
+        """SHA-256 of the model's values, as 64 hexadecimal digits: the same in every process and on every machine."""
+        text = json.dumps(self.to_dict(), sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
