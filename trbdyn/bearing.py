@@ -1,0 +1,371 @@
+"""Tapered roller bearings by their catalogue numbers.
+
+Cup, cone and roller cones share one apex; everything else follows from these numbers (`Bearing.geometry`). Lengths in
+m, densities in kg/m3; angles in degrees where a field is called ``*_deg``. Values marked *assumed* are given by no
+source; change them where you know better.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from trbdyn.errors import InputError, Path, Problem
+from trbdyn.geometry import Geometry
+from trbdyn.pocket import Face, OtherPocket, Pocket
+from trbdyn.validation import Gap, Length, Model, Number, Whole, unit
+
+
+class Profile(Model):
+    """Shape of the roller's generator; only the numbers of its kind are used.
+
+    Parameters
+    ----------
+    kind : {'logarithmic', 'crowned', 'straight'}
+        Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((|y| - a)/(k2 a) + 1)^2]} for |y| > a - k2 a with A = 2 k1 Q/(pi
+        L E'), a = L/2.
+    crown_radius : float
+        Radius of the arc of a crowned roller (m).
+    k1, k2 : float
+        Constants of the logarithmic profile (1).
+    zm : float
+        Drop of the logarithmic profile at the end (m).
+    load : float
+        Design load Q of the logarithmic profile (N); assumed.
+    """
+
+    kind: Literal["logarithmic", "crowned", "straight"] = "logarithmic"
+    crown_radius: Annotated[Number, unit("m", ge=1e-3, le=1e9)] = 100.0
+    k1: Annotated[Number, unit("1", ge=0, le=100)] = 1.5
+    k2: Annotated[Number, unit("1", ge=0.001, le=1)] = 0.4
+    zm: Annotated[Number, unit("m", ge=0, le=1e-3)] = 10e-6
+    load: Annotated[Number, unit("N", ge=1e-3, le=1e9)] = 1833.0
+
+    @classmethod
+    def straight(cls) -> Self:
+        """A straight generator."""
+        return cls(kind="straight")
+
+    @classmethod
+    def crowned(cls, radius: float) -> Self:
+        """An arc of this radius (m)."""
+        return cls(kind="crowned", crown_radius=radius)
+
+    @classmethod
+    def logarithmic(cls, load: float, *, k1: float = 1.5, k2: float = 0.4, zm: float = 10e-6) -> Self:
+        """A logarithmic profile for a design load (N)."""
+        return cls(kind="logarithmic", load=load, k1=k1, k2=k2, zm=zm)
+
+
+class Scatter(Model):
+    """Random deviations of the rollers' diameters.
+
+    Parameters
+    ----------
+    range : float
+        Width of the range (m): each deviation is uniform over -range/2 to range/2.
+    seed : int
+        Seed of the random numbers.
+    """
+
+    range: Annotated[Number, unit("m", ge=0, le=1e-3)]
+    seed: Annotated[Whole, unit("1", ge=0)]
+
+    def draw(self, count: int) -> NDArray[np.float64]:
+        """The deviations (m), shape (count,): the same ones for the same seed."""
+        return np.random.default_rng(self.seed).uniform(-0.5 * self.range, 0.5 * self.range, count)
+
+
+class Roller(Model):
+    """A tapered roller.
+
+    Parameters
+    ----------
+    diameter : float
+        Dwe, diameter at mid length, perpendicular to the roller's axis (m).
+    effective_length : float
+        Lwe, effective length of the contact line (m).
+    total_length : float
+        Length over the ends, centred on the effective length (m).
+    density : float
+        Density (kg/m3).
+    profile : Profile
+        Shape of the generator.
+    diameter_deviation : sequence of float, optional
+        Deviation of each roller's diameter (m), one a roller; not together with `diameter_scatter`.
+    diameter_scatter : Scatter, optional
+        Random deviations, each roller its own.
+    sphere_ratio : float
+        Radius of the large end's sphere over the distance from the apex to the large end (1); assumed.
+    end_stiffness : float
+        k of roller end against a flat, force = k d^1.5 (N/m^1.5); assumed.
+    """
+
+    diameter: Length
+    effective_length: Length
+    total_length: Length
+    density: Annotated[Number, unit("kg/m3", ge=100, le=30000)] = 7810.0
+    profile: Profile = Profile()
+    diameter_deviation: tuple[Annotated[Number, unit("m", ge=-1e-3, le=1e-3)], ...] | None = None
+    diameter_scatter: Scatter | None = None
+    sphere_ratio: Annotated[Number, unit("1", ge=0.05, le=0.999)] = 0.90
+    end_stiffness: Annotated[Number, unit("N/m^1.5", ge=1, le=1e14)] = 1e10
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.total_length < self.effective_length:
+            limit = f"must be >= effective_length, {self.effective_length:g} (m)"
+            raise InputError.of("total_length", self.total_length, limit)
+        if self.diameter_deviation is not None and self.diameter_scatter is not None:
+            raise InputError.of(
+                "diameter_scatter", self.diameter_scatter, "must not be given together with diameter_deviation"
+            )
+        return self
+
+
+class Ribs(Model):
+    """Back-face rib (against the large ends) and front-face rib of the inner ring. Heights are above the raceway,
+    perpendicular to it.
+
+    Parameters
+    ----------
+    contact_height : float
+        Height of the nominal contact of the large end (m).
+    edge_low, edge_high : float
+        Heights of the back-face rib's edges (m); assumed.
+    front_clearance : float
+        Nominal gap between small end and front rib (m); assumed. The front rib's face is perpendicular to the roller's
+        axis.
+    front_low, front_high : float
+        Heights of the front rib's edges (m); assumed.
+    """
+
+    contact_height: Length
+    edge_low: Gap = 0.3e-3
+    edge_high: Length = 3.5e-3
+    front_clearance: Gap = 0.2e-3
+    front_low: Gap = 0.3e-3
+    front_high: Length = 2.0e-3
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not self.edge_low < self.contact_height < self.edge_high:
+            limit = f"must lie between the rib's edges, {self.edge_low:g} and {self.edge_high:g} (m)"
+            raise InputError.of("contact_height", self.contact_height, limit)
+        if self.front_high <= self.front_low:
+            raise InputError.of("front_high", self.front_high, f"must be > front_low, {self.front_low:g} (m)")
+        return self
+
+
+class Cage(Model):
+    """The cage and its pockets.
+
+    Parameters
+    ----------
+    mass : float
+        Mass (kg).
+    inertia_axial, inertia_transverse : float
+        Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2).
+    play_radial, play_circumferential : float
+        Cpr and Cpc: plays in the x-y plane, radial and circumferential, one-sided, measured to one roller with the cage
+        centred and the roller's large end touching its pocket (m).
+    play_axial : float
+        Play along the roller's axis from large-end to small-end contact (m); assumed.
+    offset : float
+        Axial position of the centre of mass from the roller-centre plane (m); assumed.
+    rail_offset : float
+        Axial position of the large-end rail, where sensors look, from the roller-centre plane (m); assumed.
+    bar_width : float
+        Width of the bars' faces across the contact line (m); assumed.
+    wall_inner, wall_outer : float
+        The end walls' bands reach from here to here, outward of the roller's axis (m); assumed.
+    wall_half_width : float
+        Half width of the end walls' bands (m); assumed.
+    pocket : Pocket, optional
+        Faces of every pocket; without it the default pocket of `trbdyn.pocket_shapes` is built from the plays.
+    other_pockets : sequence of OtherPocket
+        Pockets that differ from the others.
+    """
+
+    mass: Annotated[Number, unit("kg", gt=0)]
+    inertia_axial: Annotated[Number, unit("kg m2", gt=0)]
+    inertia_transverse: Annotated[Number, unit("kg m2", gt=0)]
+    play_radial: Length
+    play_circumferential: Length
+    play_axial: Gap = 0.4e-3
+    offset: Annotated[Number, unit("m", ge=-1, le=1)] = 0.0
+    rail_offset: Annotated[Number, unit("m", ge=-1, le=1)] = 12e-3
+    bar_width: Length = 3e-3
+    wall_inner: Gap = 1.5e-3
+    wall_outer: Length = 4.5e-3
+    wall_half_width: Length = 6e-3
+    pocket: Pocket | None = None
+    other_pockets: tuple[OtherPocket, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.inertia_axial > 2.0 * self.inertia_transverse:
+            limit = f"must be <= 2 inertia_transverse, {2 * self.inertia_transverse:g} (kg m2): no body has more"
+            raise InputError.of("inertia_axial", self.inertia_axial, limit)
+        if self.wall_outer <= self.wall_inner:
+            raise InputError.of("wall_outer", self.wall_outer, f"must be > wall_inner, {self.wall_inner:g} (m)")
+        indices = [other.index for other in self.other_pockets]
+        for place, index in enumerate(indices):
+            if index in indices[:place]:
+                raise InputError.of(("other_pockets", place, "index"), index, "must differ from the other indices")
+        return self
+
+
+class Material(Model):
+    """Elasticity of rings, rollers and cage faces.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        Young's modulus (Pa).
+    poisson_ratio : float
+        Poisson's ratio (1).
+    """
+
+    youngs_modulus: Annotated[Number, unit("Pa", ge=1e8, le=1e13)] = 206e9
+    poisson_ratio: Annotated[Number, unit("1", ge=0, le=0.4999)] = 0.3
+
+
+class Roughness(Model):
+    """Composite rms roughness of the rolling contacts.
+
+    Parameters
+    ----------
+    raceway : float
+        Roller and raceway (m).
+    rib : float
+        Roller end and back-face rib (m).
+    """
+
+    raceway: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.16e-6
+    rib: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.24e-6
+
+
+class Bearing(Model):
+    """A single-row tapered roller bearing.
+
+    Parameters
+    ----------
+    n_rollers : int
+        Z, number of rollers.
+    cup_half_angle_deg : float
+        alpha_o, half angle of the outer raceway's cone (deg).
+    pitch_diameter : float
+        Dpw, pitch diameter at the rollers' mid length (m).
+    roller : Roller
+        The rollers.
+    ribs : Ribs
+        Ribs of the inner ring.
+    cage : Cage
+        The cage.
+    material : Material
+        Elasticity.
+    roughness : Roughness
+        Roughness of the contacts.
+    name : str
+        Name in titles and files.
+
+    Raises
+    ------
+    InputError
+        If a number is not allowed, rollers overlap, or pockets do not fit the rollers.
+    """
+
+    n_rollers: Annotated[Whole, unit("1", ge=3, le=200)]
+    cup_half_angle_deg: Annotated[Number, unit("deg", ge=0.6, le=45)]
+    pitch_diameter: Length
+    roller: Roller
+    ribs: Ribs
+    cage: Cage
+    material: Material = Material()
+    roughness: Roughness = Roughness()
+    name: Annotated[str, Field(min_length=1)] = "bearing"
+
+    @cached_property
+    def geometry(self) -> Geometry:
+        """Everything that follows from the catalogue numbers (m, rad), as the core derives it."""
+        from trbdyn.flatten import bearing_geometry
+
+        return bearing_geometry(self)
+
+    @property
+    def pocket(self) -> Pocket:
+        """The pocket of the cage that every roller has unless `cage.other_pockets` says otherwise."""
+        from trbdyn.pocket_shapes import default_pocket
+
+        return self.cage.pocket if self.cage.pocket is not None else default_pocket(self)
+
+    def pocket_of(self, index: int) -> Pocket:
+        """The pocket of a roller, 0 to Z - 1."""
+        for other in self.cage.other_pockets:
+            if other.index == index:
+                return other.pocket
+        return self.pocket
+
+    def pocket_faces(self) -> list[tuple[int, Face]]:
+        """Every face of every pocket: (pocket, face); pocket -1 stands for all of them."""
+        if not self.cage.other_pockets:
+            return [(-1, face) for face in self.pocket.faces]
+        return [(index, face) for index in range(self.n_rollers) for face in self.pocket_of(index).faces]
+
+    @property
+    def slot_names(self) -> tuple[str, ...]:
+        """Name of each slot of the pockets, in order: the columns of pocket forces in results; empty where no face has
+        the slot.
+        """
+        faces = [face for _, face in self.pocket_faces()]
+        names = [""] * (1 + max(face.slot for face in faces))
+        for face in faces:
+            names[face.slot] = names[face.slot] or face.name
+        return tuple(names)
+
+    @property
+    def diameter_deviation(self) -> NDArray[np.float64]:
+        """Deviation of each roller's diameter (m), shape (Z,)."""
+        if self.roller.diameter_scatter is not None:
+            return self.roller.diameter_scatter.draw(self.n_rollers)
+        given = self.roller.diameter_deviation
+        return np.zeros(self.n_rollers) if given is None else np.array(given)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        given = self.roller.diameter_deviation
+        if given is not None and len(given) != self.n_rollers:
+            limit = f"must have one entry a roller: {self.n_rollers}"
+            raise InputError.of(("roller", "diameter_deviation"), given, limit)
+        most = int(np.pi / np.arcsin(min(self.roller.diameter / self.pitch_diameter, 1.0)))
+        if self.pitch_diameter * np.sin(np.pi / self.n_rollers) <= self.roller.diameter:
+            size = f"{self.roller.diameter:g} m overlap on pitch diameter {self.pitch_diameter:g} m"
+            limit = f"must be <= {most}: more rollers of {size}"
+            raise InputError.of("n_rollers", self.n_rollers, limit)
+        self._check_pockets(self.geometry)
+        return self
+
+    def _check_pockets(self, geometry: Geometry) -> None:
+        try:
+            pocket = self.pocket
+        except InputError as error:
+            raise error.under(("cage",)) from None
+        problems = _under(("cage", "pocket"), pocket.problems(geometry))
+        for place, other in enumerate(self.cage.other_pockets):
+            path = ("cage", "other_pockets", place)
+            if other.index >= self.n_rollers:
+                problems.append(
+                    Problem((*path, "index"), other.index, f"must be <= {self.n_rollers - 1}: the last pocket")
+                )
+            problems += _under((*path, "pocket"), other.pocket.problems(geometry))
+        if problems:
+            raise InputError(problems)
+
+
+def _under(path: Path, problems: list[Problem]) -> list[Problem]:
+    return [Problem(path + problem.path, problem.value, problem.allowed) for problem in problems]
