@@ -153,7 +153,7 @@ function(trb_sundials_fetch_wheel folder)
     file(REMOVE_RECURSE ${folder})
     file(MAKE_DIRECTORY ${folder})
     execute_process(
-      COMMAND ${Python_EXECUTABLE} -m pip --disable-pip-version-check download --quiet --no-deps --only-binary=:all:
+      COMMAND ${Python_EXECUTABLE} -m pip --disable-pip-version-check download --quiet --retries 2 --no-deps --only-binary=:all:
               --python-version 3.12 --require-hashes --dest ${folder} -r ${trb_sundials_dir}/sundials_wheel.txt
       RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
     if(result)
@@ -248,6 +248,9 @@ if(NOT trb_found)
     "  - your own build:  set SUNDIALS_ROOT to the folder that holds its include and lib\n")
 endif()
 
+if(trb_tried)
+  message(STATUS "SUNDIALS: tried before:${trb_tried}")
+endif()
 message(STATUS "SUNDIALS ${trb_version}, ${trb_kind}, from ${trb_origin}")
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/sundials.txt "SUNDIALS ${trb_version}, ${trb_kind}, from ${trb_origin}\n")
 add_library(trb_sundials INTERFACE)
