@@ -48,7 +48,7 @@ OPERATING_POINTS: Final = {
 """The paper's speeds and loads (Sakaguchi and Harada 2006) for the 30310 rig, by name."""
 
 MEASURED_TORQUE_32216: Final = {500.0: 1.30, 2000.0: 2.95, 4000.0: 3.75}
-"""Measured torque (N m) of the 32216 at an axial load of 6 kN, FVA3 at 50 C, by speed (rpm) (Schwarz 2023)."""
+"""Measured torque (N m) of the 32216 at an axial load of 6 kN, FVA3 at 50 C, by speed (rpm)."""
 
 
 def rig_30310() -> Bearing:
@@ -78,7 +78,7 @@ def rig_30310() -> Bearing:
 def bearing_32216() -> Bearing:
     """A 32216 (80 x 140 x 35.25 mm) from catalogue numbers; 16 rollers.
 
-    Known are the pitch diameter, diameter, length and number of the rollers and the cup's angle (Schwarz 2023). All
+    Known are the pitch diameter, diameter, length and number of the rollers and the cup's angle. All
     other numbers are assumed: those of the 30310 rig, lengths of rib and pocket scaled with the roller's diameter
     (17/14), bars with its length, the cage's mass with pitch diameter squared times length, its inertias with pitch
     diameter squared in addition. The profile's design load is the outer load of a roller at 6 kN.

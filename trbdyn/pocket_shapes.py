@@ -140,7 +140,7 @@ def chamfered_pocket(bearing: Bearing, chamfer: float = 1e-3) -> Pocket:
 
 def one_sided_pocket(bearing: Bearing, missing: str = "leading") -> Pocket:
     """The default pocket without one of its bars, 'leading' or 'trailing'."""
-    if missing not in SIDES:
+    if not isinstance(missing, str) or missing not in SIDES:
         raise InputError.of("missing", missing, "must be 'leading' or 'trailing'")
     return default_pocket(bearing).without(f"{missing}_bar")
 
@@ -236,12 +236,13 @@ def _box(start: float, end: float, half_width: float) -> Outline:
 
 
 def _between(name: str, value: float, low: float, high: float, symbol: str) -> float:
+    suffix = "" if symbol == "1" else f" ({symbol})"
     try:
         number = as_number(value)
     except ValueError as error:
-        raise InputError.of(name, value, f"{error} ({symbol})") from None
+        raise InputError.of(name, value, f"{error}{suffix}") from None
     if not low <= number <= high:
-        raise InputError.of(name, value, f"must be between {low:g} and {high:g} ({symbol})")
+        raise InputError.of(name, value, f"must be between {low:g} and {high:g}{suffix}")
     return number
 
 
