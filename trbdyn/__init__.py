@@ -1,0 +1,103 @@
+"""Dynamics of tapered roller bearings: rollers, ribs and cage with six degrees of freedom, and lubricated contacts.
+
+    import trbdyn as trb
+
+    scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0)
+    result = trb.Simulation(scene).run(revolutions=50)
+    trb.plot.cage_locus(result)
+
+Everything is SI unless a name says otherwise. Names are imported when they are first used.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from trbdyn import animation, cases, errors, laws, lubricants, observables, pocket_shapes
+    from trbdyn import plotting as plot
+    from trbdyn.bearing import Bearing
+    from trbdyn.effects import Effects
+    from trbdyn.errors import FileError, InputError, LoadError, StepError, TrbError
+    from trbdyn.lubricants import Lubricant
+    from trbdyn.motion import History
+    from trbdyn.results import Result, load
+    from trbdyn.scene import Scene
+    from trbdyn.simulation import Simulation
+    from trbdyn.toml_case import load_case
+
+_MODULES = {
+    "animation": "trbdyn.animation",
+    "cases": "trbdyn.cases",
+    "errors": "trbdyn.errors",
+    "laws": "trbdyn.laws",
+    "lubricants": "trbdyn.lubricants",
+    "observables": "trbdyn.observables",
+    "plot": "trbdyn.plotting",
+    "pocket_shapes": "trbdyn.pocket_shapes",
+}
+
+_NAMES = {
+    "Bearing": "trbdyn.bearing",
+    "Effects": "trbdyn.effects",
+    "FileError": "trbdyn.errors",
+    "History": "trbdyn.motion",
+    "InputError": "trbdyn.errors",
+    "LoadError": "trbdyn.errors",
+    "Lubricant": "trbdyn.lubricants",
+    "Result": "trbdyn.results",
+    "Scene": "trbdyn.scene",
+    "Simulation": "trbdyn.simulation",
+    "StepError": "trbdyn.errors",
+    "TrbError": "trbdyn.errors",
+    "load": "trbdyn.results",
+    "load_case": "trbdyn.toml_case",
+}
+
+__all__ = [
+    "Bearing",
+    "Effects",
+    "FileError",
+    "History",
+    "InputError",
+    "LoadError",
+    "Lubricant",
+    "Result",
+    "Scene",
+    "Simulation",
+    "StepError",
+    "TrbError",
+    "__version__",
+    "animation",
+    "cases",
+    "errors",
+    "laws",
+    "load",
+    "load_case",
+    "lubricants",
+    "observables",
+    "plot",
+    "pocket_shapes",
+]
+
+try:
+    __version__ = importlib.metadata.version("trbdyn")
+except importlib.metadata.PackageNotFoundError:
+    __version__ = "0+unknown"
+
+
+def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        value = importlib.import_module(_MODULES[name])
+    elif name in _NAMES:
+        value = getattr(importlib.import_module(_NAMES[name]), name)
+    else:
+        raise AttributeError(f"module 'trbdyn' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,209 @@
+"""What follows from recorded fields: the observables of a result, by name."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import observables
+from trbdyn.errors import InputError
+from trbdyn.fields import Field
+
+if TYPE_CHECKING:
+    from trbdyn.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Clearances:
+    """Plays of the cage against one roller, with the cage centred and the roller's large end touching; one-sided, m.
+
+    Attributes
+    ----------
+    radial, circumferential, axial : float
+        Cpr, Cpc, and the axial play of the pocket.
+    """
+
+    radial: float
+    circumferential: float
+    axial: float
+
+
+class Derived(ABC):
+    """Observables over recorded fields, each computed when it is asked for; `trbdyn.observables` says how.
+
+    All need their fields recorded and raise `InputError` otherwise.
+    """
+
+    @abstractmethod
+    def __getitem__(self, name: str) -> Array:
+        """A recorded field."""
+
+    @property
+    @abstractmethod
+    def fields(self) -> tuple[Field, ...]:
+        """The recorded fields."""
+
+    @property
+    @abstractmethod
+    def scene(self) -> Scene:
+        """The scene that was run."""
+
+    @property
+    @abstractmethod
+    def geometry(self) -> dict[str, float]:
+        """Derived geometry of the bearing, SI."""
+
+    def settling(self) -> observables.Settling:
+        """When the cage's whirl radius and the spread of the rollers' spacing have settled (see `observables.settling`).
+
+        A batch is one turn of the cage or longer, and there are at most 50; a record of fewer than four turns has not settled.
+        """
+        turns = int(abs(self["cage_angle"][-1] - self["cage_angle"][0]) / (2.0 * np.pi))
+        if turns < 4:
+            middle = self["time"].size // 2
+            return observables.Settling(middle, float(self["time"][middle]), False)
+        signals = np.column_stack([self.whirl_radius, self.spacing_std])
+        return observables.settling(self["time"], signals, min(turns, 50))
+
+    @property
+    def duration(self) -> float:
+        """Recorded time, s."""
+        time = self["time"]
+        return float(time[-1] - time[0]) if time.size else 0.0
+
+    @property
+    def revolutions(self) -> float:
+        """Turns of the shaft between the first and the last record."""
+        angle = self["shaft_angle"]
+        return float(abs(angle[-1] - angle[0]) / (2.0 * np.pi)) if angle.size else 0.0
+
+    @property
+    def clearances(self) -> Clearances:
+        """Radial, circumferential and axial play of the cage, m."""
+        cage = self.scene.bearing.cage
+        return Clearances(cage.play_radial, cage.play_circumferential, cage.play_axial)
+
+    @property
+    def slot_names(self) -> tuple[str, ...]:
+        """Name of each face of a pocket: the columns of pocket_force and pocket_friction."""
+        return tuple(self.scene.bearing.slot_names)
+
+    def cage_locus(self, plane: Literal["centre", "rail"] = "centre") -> Array:
+        """Locus of the cage's centre, in units of the radial play Cpr, shape (T, 2).
+
+        Parameters
+        ----------
+        plane : {"centre", "rail"}
+            The roller-centre plane, or the plane of the large-end rail, where sensors look.
+        """
+        if plane not in ("centre", "rail"):
+            raise InputError.of("plane", plane, "must be 'centre' or 'rail'")
+        name = "cage_position" if plane == "centre" else "cage_rail_position"
+        return observables.locus(self[name], self.clearances.radial)
+
+    @property
+    def axial_motion(self) -> Array:
+        """Axial position of the cage in units of its axial play, shape (T,); zero where large ends touch, nan without play."""
+        return self["cage_position"][:, 2] / (self.clearances.axial or np.nan)
+
+    @property
+    def whirl_radius(self) -> Array:
+        """Distance of the cage's centre from the bearing axis in the roller-centre plane, m, shape (T,)."""
+        return observables.whirl_radius(self["cage_position"])
+
+    @property
+    def whirl_radius_over_cpr(self) -> Array:
+        """The whirl radius in units of the radial play, shape (T,)."""
+        return self.whirl_radius / self.clearances.radial
+
+    @property
+    def whirl_frequency(self) -> float:
+        """Frequency at which the cage's centre turns about its mean place, Hz; negative for backward whirl."""
+        return observables.whirl_frequency(self["time"], self["cage_position"])
+
+    @property
+    def cage_frequency(self) -> float:
+        """Rotation frequency of the cage, Hz."""
+        return observables.cage_frequency(self["time"], self["cage_angle"])
+
+    @property
+    def whirl_ratio(self) -> float:
+        """Whirl frequency over the cage's rotation frequency."""
+        return self.whirl_frequency / self.cage_frequency if self.cage_frequency else float("nan")
+
+    @property
+    def cage_speed_ratio(self) -> float:
+        """Turn of the cage over the turn of the shaft."""
+        return observables.cage_speed_ratio(self["cage_angle"], self["shaft_angle"])
+
+    @property
+    def cage_motion(self) -> observables.CageMotion:
+        """Class of the cage's motion: stable, circling or unstable (see `observables.classify`)."""
+        return observables.classify(self["cage_position"], self["cage_velocity"], self.clearances.radial)
+
+    def spacing_angles(self, n: int = 1) -> Array:
+        """Angle from each roller to the n-th after it (the sum of n gaps), rad, shape (T, Z)."""
+        return observables.spacing(self["roller_orbit_angle"], n)
+
+    @property
+    def spacing_std(self) -> Array:
+        """Standard deviation of the gaps between neighbours, degrees, shape (T,)."""
+        return observables.spacing_std(self["roller_orbit_angle"])
+
+    @property
+    def roller_slip(self) -> Array:
+        """Slip of each roller's orbit against pure rolling, shape (T, Z); positive when slower."""
+        ratio = self.geometry["cage_speed_ratio"]
+        return observables.kinematic_slip(self["roller_orbit_speed"], self["shaft_speed"], ratio)
+
+    @property
+    def cage_slip(self) -> Array:
+        """Slip of the roller set against pure rolling: mean over the rollers, shape (T,)."""
+        return self.roller_slip.mean(axis=1)
+
+    @property
+    def spin_slip(self) -> Array:
+        """Slip of each roller's spin against pure rolling, shape (T, Z); positive when slower."""
+        ratio = self.geometry["roller_spin_ratio"]
+        return observables.kinematic_slip(np.abs(self["roller_spin_speed"]), np.abs(self["shaft_speed"]), ratio)
+
+    def pocket_statistics(self, threshold: float = 0.0) -> observables.PocketStatistics:
+        """Peak, 95th percentile, mean and duty of the force on each face of each pocket (forces above `threshold`, N)."""
+        return observables.pocket_statistics(self["pocket_force"], threshold)
+
+    def _starting(self, prefix: str) -> dict[str, Array]:
+        return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}
+
+    @property
+    def torque_split(self) -> dict[str, float]:
+        """Mean share of each source in the shaft's friction torque, N m."""
+        return observables.torque_split(self._starting("inner_torque_"))
+
+    @property
+    def power_split(self) -> dict[str, float]:
+        """Mean power loss of each kind, W: from the energies lost where they were recorded, else from the powers."""
+        return observables.power_split(self["time"], self._starting("loss_"), self._starting("power_"))
+
+    def _energies(self) -> dict[str, Array]:
+        return {field.name: self[field.name] for field in self.fields if field.group == "energy"}
+
+    @property
+    def energy_balance(self) -> dict[str, Array]:
+        """Every term of the energy audit since the first record, and the residual, J, shapes (T,)."""
+        return observables.energy_balance(self._energies())
+
+    @property
+    def energy_audit(self) -> observables.EnergyAudit:
+        """The energy audit between the first and the last record."""
+        return observables.energy_audit(self._energies())
+
+    @property
+    def energy_closure(self) -> float:
+        """Size of the audit's residual over the dissipated work."""
+        return self.energy_audit.closure

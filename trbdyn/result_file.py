@@ -1,0 +1,309 @@
+"""Result files: HDF5, written while a run goes on, read field by field.
+
+Schema ``trbdyn-result``, version 1:
+
+- attributes of the root: ``schema``, ``schema_version``, ``trbdyn_version``, ``created``, ``segment``, ``finished``, ``success``,
+  ``message``, ``final_time``; as JSON ``stats``, ``counters``, ``geometry`` and ``meta`` (versions of the core and of SUNDIALS,
+  instruction set, settings), whose texts and numbers are attributes too
+- ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
+- ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
+  ``kind``, ``dims`` and ``index`` (its place in the record)
+- ``/final_state``: the state vector at ``final_time``, once the run has finished
+
+A file is data: nothing in it is executed, and links or storage that lead out of the file are refused. It is written without
+SWMR, whose flags would block reopening after a kill: what was flushed last stays readable. A file is one segment (number
+``segment``) of a run, and readers see records only through `trbdyn.sources.FileSource`, so that several segments can be joined.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import h5py
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn import fields as field_table
+from trbdyn.errors import FileError
+from trbdyn.fields import Field, Layout
+
+Array = NDArray[np.float64]
+
+SCHEMA = "trbdyn-result"
+SCHEMA_VERSION = 1
+
+CHUNK_BYTES = 16384
+"""Size aimed at for an HDF5 chunk: small enough that a short run wastes little, large enough to read fast."""
+
+FLUSH_SECONDS = 2.0
+"""Longest wall time that records wait in memory before they are written."""
+
+FLUSH_BYTES = 8 << 20
+"""Most bytes of records that wait in memory."""
+
+JSON_ATTRIBUTES = ("stats", "counters", "geometry", "meta")
+
+
+@dataclass(slots=True)
+class RunInfo:
+    """What is known of a run besides its records.
+
+    Attributes
+    ----------
+    scene : dict
+        The scene as plain data.
+    success : bool
+        Whether the run reached its end.
+    message : str
+        How it ended, in a sentence.
+    stats : dict
+        Solver statistics: steps, rhs_evaluations, wall_s and others.
+    counters : dict
+        Evaluations of each effect.
+    final_time : float
+        Time of the final state, s.
+    final_state : ndarray or None
+        The state vector there.
+    geometry : dict
+        Derived geometry of the bearing, SI.
+    meta : dict
+        Versions, instruction set and settings.
+    """
+
+    scene: dict[str, Any]
+    success: bool = False
+    message: str = ""
+    stats: dict[str, Any] = field(default_factory=dict)
+    counters: dict[str, int] = field(default_factory=dict)
+    final_time: float = float("nan")
+    final_state: Array | None = None
+    geometry: dict[str, float] = field(default_factory=dict)
+    meta: dict[str, Any] = field(default_factory=dict)
+
+
+def _plain(value: Any) -> Any:
+    """NumPy scalars and arrays as plain Python, for JSON."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"cannot write {type(value).__name__} as JSON")
+
+
+def first_line(error: BaseException) -> str:
+    """The first line of an exception's text, or its kind if it has none."""
+    lines = str(error).splitlines()
+    return lines[0] if lines else type(error).__name__
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, default=_plain)
+
+
+def _chunk_rows(shape: tuple[int, ...]) -> int:
+    return max(1, CHUNK_BYTES // (8 * max(1, int(np.prod(shape)))))
+
+
+class ResultWriter:
+    """Writes the records of a run into an HDF5 file while it goes on.
+
+    Parameters
+    ----------
+    path : path-like
+        File to write; an older one is replaced.
+    scene : Scene
+        The scene; ``scene.to_dict()`` is stored.
+    layout : sequence of (name, offset, shape)
+        Places of the fields in a record.
+    fields : sequence of Field
+        The table that describes them.
+    groups : iterable of str, optional
+        Groups of fields to write; all by default. The group ``"time"`` is always written.
+    meta : mapping, optional
+        Versions, instruction set, settings: anything that JSON can hold.
+    geometry : mapping of str to float, optional
+        Derived geometry of the bearing, SI.
+    compression : {"gzip", "lzf"}, optional
+        Compression of the datasets; none by default.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be created.
+    InputError
+        If a group is unknown.
+
+    Notes
+    -----
+    Records are written and flushed when two seconds have gone by or 8 MB wait. A run that is killed leaves a file that holds
+    everything up to the last flush. Use it as a context manager, or call `close`.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        scene: Any,
+        layout: Layout,
+        fields: Sequence[Field],
+        groups: Sequence[str] | None = None,
+        meta: Mapping[str, Any] | None = None,
+        geometry: Mapping[str, float] | None = None,
+        compression: str | None = None,
+    ) -> None:
+        self.path = Path(path)
+        self.n_written = 0
+        self._places = {name: (offset, tuple(shape)) for name, offset, shape in layout}
+        self._fields = [f for f in field_table.select(fields, groups) if f.name in self._places]
+        self._pending: list[Array] = []
+        self._pending_bytes = 0
+        self._last_flush = time.monotonic()
+        with self._guard("cannot be written"):
+            self._file = h5py.File(self.path, "w")
+            self._write_header(scene.to_dict(), dict(meta or {}), dict(geometry or {}), compression)
+            self._file.flush()
+
+    def _write_header(
+        self, scene: dict[str, Any], meta: dict[str, Any], geometry: dict[str, float], compression: str | None
+    ) -> None:
+        from trbdyn import __version__
+
+        head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__}
+        head |= {"created": datetime.now(UTC).isoformat(), "segment": 0, "finished": False, "success": False}
+        head |= {"message": "", "stats": "{}", "counters": "{}", "geometry": _json(geometry), "meta": _json(meta)}
+        head |= {name: value for name, value in meta.items() if isinstance(value, str | bool | int | float)}
+        self._file.attrs.update(head)
+        self._file.create_dataset("scene", data=_json(scene), dtype=h5py.string_dtype())
+        group = self._file.create_group("fields")
+        for index, entry in enumerate(self._fields):
+            shape = self._places[entry.name][1]
+            dataset = group.create_dataset(
+                entry.name,
+                shape=(0, *shape),
+                maxshape=(None, *shape),
+                dtype="f8",
+                chunks=(_chunk_rows(shape), *shape),
+                compression=compression,
+                shuffle=compression is not None,
+            )
+            attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
+            dataset.attrs.update(attributes | {"dims": " ".join(("time", *entry.dims)), "index": index})
+
+    @contextmanager
+    def _guard(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except (OSError, RuntimeError) as error:
+            raise FileError(f"{self.path}: the result file {what}: {first_line(error)}") from error
+
+    def append(self, records: ArrayLike) -> None:
+        """Add records.
+
+        Parameters
+        ----------
+        records : array_like, shape (n, record_length)
+            Full records in the layout given at the start.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        rows = np.array(records, dtype=float, ndmin=2)
+        if rows.shape[0] == 0:
+            return
+        self._pending.append(rows)
+        self._pending_bytes += rows.nbytes
+        if self._pending_bytes >= FLUSH_BYTES or time.monotonic() - self._last_flush >= FLUSH_SECONDS:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what waits in memory, so that it survives a kill.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        with self._guard("cannot be written"):
+            if self._pending:
+                rows = self._pending[0] if len(self._pending) == 1 else np.concatenate(self._pending)
+                start, stop = self.n_written, self.n_written + rows.shape[0]
+                for entry in self._fields:
+                    offset, shape = self._places[entry.name]
+                    size = int(np.prod(shape))
+                    dataset = self._file["fields"][entry.name]
+                    dataset.resize(stop, axis=0)
+                    dataset[start:stop] = rows[:, offset : offset + size].reshape(-1, *shape)
+                self.n_written = stop
+                self._pending, self._pending_bytes = [], 0
+            self._file.flush()
+        self._last_flush = time.monotonic()
+
+    def finish(
+        self,
+        success: bool,
+        message: str,
+        stats: Mapping[str, Any],
+        counters: Mapping[str, int],
+        final_time: float,
+        final_state: ArrayLike | None,
+    ) -> None:
+        """Write how the run ended, and close the file.
+
+        Parameters
+        ----------
+        success : bool
+            Whether the run reached its end.
+        message : str
+            How it ended, in a sentence.
+        stats : mapping
+            Solver statistics.
+        counters : mapping of str to int
+            Evaluations of each effect.
+        final_time : float
+            Time of the final state, s.
+        final_state : array_like or None, shape (n_state,)
+            The last good state.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        self.flush()
+        with self._guard("cannot be written"):
+            attributes = self._file.attrs
+            attributes["stats"], attributes["counters"] = _json(dict(stats)), _json(dict(counters))
+            attributes["success"], attributes["message"] = bool(success), str(message)
+            attributes["final_time"] = float(final_time)
+            if final_state is not None:
+                self._file["final_state"] = np.asarray(final_state, dtype=float)
+            attributes["finished"] = True
+        self.close()
+
+    def close(self) -> None:
+        """Write what waits and close the file; an unfinished run stays marked as such."""
+        if self._file:
+            self.flush()
+            with self._guard("cannot be closed"):
+                self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
