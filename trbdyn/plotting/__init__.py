@@ -1,0 +1,129 @@
+"""Engineers' pictures of a result: ``trb.plot.cage_locus(result)``.
+
+Every function takes a `Result`, and axes to draw into (``ax=``) unless it needs a whole figure; it gives the axes, or the
+figure, back. The style holds for the new picture only: nothing global is changed, and no window is opened.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from trbdyn.errors import FileError
+from trbdyn.plotting.cage import axial_motion, cage_locus, spectrum, tilt, whirl_map, whirl_radius
+from trbdyn.plotting.energy import energy_audit, power_split, torque_split
+from trbdyn.plotting.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
+from trbdyn.plotting.style import SAVE_DPI, STYLE
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+
+__all__ = [
+    "PICTURES",
+    "STYLE",
+    "all",
+    "axial_motion",
+    "cage_locus",
+    "contact_loads",
+    "energy_audit",
+    "film_parameter",
+    "pocket_forces",
+    "pocket_statistics",
+    "power_split",
+    "save",
+    "spacing_angles",
+    "spectrum",
+    "tilt",
+    "torque_split",
+    "whirl_map",
+    "whirl_radius",
+]
+
+Picture = Callable[["Result"], Axes | Figure]
+
+PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
+    "cage_locus": (cage_locus, ("cage",)),
+    "whirl_radius": (whirl_radius, ("cage", "rollers")),
+    "axial_motion": (axial_motion, ("cage",)),
+    "tilt": (tilt, ("cage",)),
+    "spectrum": (spectrum, ("cage",)),
+    "spacing_angles": (spacing_angles, ("rollers",)),
+    "pocket_forces": (pocket_forces, ("pocket",)),
+    "pocket_statistics": (pocket_statistics, ("pocket",)),
+    "contact_loads": (contact_loads, ("rollers", "contacts")),
+    "film_parameter": (film_parameter, ("rollers", "contacts")),
+    "torque_split": (torque_split, ("torque",)),
+    "power_split": (power_split, ("power",)),
+    "energy_audit": (energy_audit, ("energy",)),
+}
+"""Pictures of one result, by name, and the groups that each needs."""
+
+
+def save(picture: Axes | Figure, path: str | os.PathLike[str]) -> Path:
+    """Save a picture and close its figure.
+
+    Parameters
+    ----------
+    picture : Axes or Figure
+        What a function of this module gave.
+    path : path-like
+        File to write; its ending gives the format.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    figure = picture if isinstance(picture, Figure) else picture.get_figure(root=True)
+    assert figure is not None
+    try:
+        with plt.rc_context(STYLE):
+            figure.savefig(path, dpi=SAVE_DPI)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: the picture cannot be written: {error}") from error
+    finally:
+        plt.close(figure)
+    return Path(path)
+
+
+def all(result: Result, folder: str | os.PathLike[str]) -> list[Path]:
+    """Save every picture that the recorded groups allow, as PNG.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+    folder : path-like
+        Folder to write to; made if it is missing.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    FileError
+        If the folder or a file cannot be written.
+    """
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{folder}: the folder cannot be made: {error.strerror}") from error
+    return [
+        save(draw(result), folder / f"{name}.png")
+        for name, (draw, groups) in PICTURES.items()
+        if set(groups) <= set(result.groups)
+    ]

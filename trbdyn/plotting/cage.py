@@ -1,0 +1,255 @@
+"""Pictures of the cage's motion: locus, whirl radius, axial motion, tilt, spectrum and the map of whirl over operating points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Circle
+from matplotlib.ticker import MultipleLocator
+
+from trbdyn import observables
+from trbdyn.plotting.style import COLOURS, GREY, LINES, canvas, legend, line, sequence
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+
+
+def revolutions(result: Result) -> np.ndarray:
+    """Turns of the shaft since the start, shape (T,)."""
+    return np.abs(result["shaft_angle"]) / (2.0 * np.pi)
+
+
+def last_turns(result: Result, turns: float | None) -> Result:
+    """The last `turns` revolutions of the shaft; all of them for None."""
+    if turns is None:
+        return result
+    turned = revolutions(result)
+    first = int(np.searchsorted(turned, turned[-1] - turns - 1e-9))
+    return result.window(start=float(result["time"][first]))
+
+
+def cage_locus(
+    result: Result,
+    ax: Axes | None = None,
+    plane: Literal["centre", "rail"] = "centre",
+    colour_by_time: bool = True,
+    circles: Mapping[str, float] | None = None,
+) -> Axes:
+    """Locus of the cage's centre in units of the radial play, with circles of clearance.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and cage.
+    ax : Axes, optional
+        Axes to draw into.
+    plane : {"centre", "rail"}
+        Roller-centre plane, or plane of the large-end rail.
+    colour_by_time : bool
+        Colour the path by the turns of the shaft, dark to light; else one colour.
+    circles : mapping of str to float, optional
+        Labels and radii (in units of Cpr) of circles to draw; by default Cpr and Cpc.
+
+    Returns
+    -------
+    Axes
+    """
+    path = result.cage_locus(plane)
+    plays = result.clearances
+    if circles is None:
+        circles = {"$C_{pr}$": 1.0, "$C_{pc}$": plays.circumferential / plays.radial}
+    with canvas(ax, (5.4, 4.8)) as ax:
+        if colour_by_time and len(path) > 1:
+            keep = max(1, len(path) // 50000)
+            points, turned = path[::keep], revolutions(result)[::keep]
+            segments = LineCollection(
+                list(np.stack([points[:-1], points[1:]], axis=1)), array=turned[:-1], cmap=sequence(), linewidths=0.9
+            )
+            ax.add_collection(segments)
+            bar = ax.figure.colorbar(segments, ax=ax, shrink=0.8, pad=0.02)
+            bar.set_label("shaft revolutions")
+        else:
+            ax.plot(path[:, 0], path[:, 1], color=COLOURS[0], linewidth=0.9)
+        for index, (label, radius) in enumerate(circles.items()):
+            ax.add_patch(Circle((0, 0), radius, fill=False, linestyle=LINES[index], linewidth=1.2))
+            ax.plot([], [], color="black", linestyle=LINES[index], label=label)
+        ax.plot(*path[-1], marker="o", color="black", markersize=5, linestyle="none", label="end")
+        ax.axhline(0, color=GREY, linewidth=0.5)
+        ax.axvline(0, color=GREY, linewidth=0.5)
+        reach = 1.08 * max(1.0, *circles.values(), float(np.abs(path).max()))
+        ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+        ax.xaxis.set_major_locator(MultipleLocator(0.5))
+        ax.yaxis.set_major_locator(MultipleLocator(0.5))
+        ax.set(xlabel="$x/C_{pr}$", ylabel="$y/C_{pr}$  (gravity points down)")
+        legend(ax, ncols=3)
+    return ax
+
+
+def whirl_radius(result: Result, ax: Axes | None = None) -> Axes:
+    """Whirl radius in units of the radial play over the turns of the shaft, with the start of the settled part.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time, cage and rollers.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+    """
+    radius, turned, settling = result.whirl_radius_over_cpr, revolutions(result), result.settling()
+    with canvas(ax, (6.4, 3.2)) as ax:
+        line(ax, turned, radius, linewidth=0.8)
+        mean = float(radius[settling.index :].mean())
+        name = "mean after settling" if settling.settled else "mean of the second half (not settled)"
+        ax.plot(
+            [turned[settling.index], turned[-1]],
+            [mean, mean],
+            color="black",
+            linestyle="--",
+            label=f"{name}: {mean:.3f}",
+        )
+        ax.axvline(turned[settling.index], color=GREY, linewidth=0.8, linestyle=":")
+        ax.set(xlabel="shaft revolutions", ylabel="whirl radius / $C_{pr}$", xlim=(turned[0], turned[-1]))
+        ax.set_ylim(0, 1.08 * max(1.0, float(radius.max())))
+        legend(ax)
+    return ax
+
+
+def axial_motion(result: Result, ax: Axes | None = None) -> Axes:
+    """Axial motion of the cage as a share of its axial play; zero is contact at the large ends.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and cage.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+    """
+    with canvas(ax, (6.4, 3.2)) as ax:
+        turned = revolutions(result)
+        line(ax, turned, 100.0 * result.axial_motion, linewidth=0.8)
+        ax.axhline(0, color=GREY, linewidth=0.8)
+        ax.set(xlabel="shaft revolutions", ylabel="axial motion (% of play)", xlim=(turned[0], turned[-1]))
+    return ax
+
+
+def tilt(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> Axes:
+    """Tilt of the cage's axis, theta_x and theta_y, over the turns of the shaft.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and cage.
+    ax : Axes, optional
+        Axes to draw into.
+    last : float or None
+        Number of last shaft revolutions to show; None shows all.
+
+    Returns
+    -------
+    Axes
+    """
+    shown = last_turns(result, last)
+    with canvas(ax, (6.4, 3.4)) as ax:
+        turned = revolutions(shown)
+        for index, name in enumerate(("x", "y")):
+            line(
+                ax,
+                turned,
+                1e3 * shown["cage_tilt"][:, index],
+                2 * index,
+                rf"$\theta_{name}$",
+                linestyle=("-", "--")[index],
+            )
+        ax.axhline(0, color=GREY, linewidth=0.8)
+        ax.set(xlabel="shaft revolutions", ylabel="cage tilt (mrad)", xlim=(turned[0], turned[-1]))
+        legend(ax)
+    return ax
+
+
+def spectrum(result: Result, ax: Axes | None = None, orders: float = 4.0, segments: int = 1) -> Axes:
+    """Two-sided spectrum of the cage centre's motion x + i y over the order of the cage's rotation.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and cage; best after settling.
+    ax : Axes, optional
+        Axes to draw into.
+    orders : float
+        Highest order to show; negative orders are backward whirl.
+    segments : int
+        Number of segments to average.
+
+    Returns
+    -------
+    Axes
+    """
+    path = result.cage_locus()
+    frequency, density = observables.spectrum(result["time"], path[:, 0] + 1j * path[:, 1], segments)
+    cage = abs(result.cage_frequency)
+    order = frequency / cage
+    shown = np.abs(order) <= orders
+    with canvas(ax, (6.4, 3.4)) as ax:
+        ax.semilogy(order[shown], density[shown], color=COLOURS[0])
+        highest = float(density[shown].max()) if shown.any() else 1.0
+        ax.set_ylim(max(highest * 1e-10, float(np.min(density[shown], initial=highest))), 4 * highest)
+        ax.axvline(1.0, color="black", linewidth=0.9, linestyle="--", label=f"cage frequency, {cage:.2f} Hz")
+        ax.set(
+            xlabel="whirl frequency / cage frequency", ylabel="spectral density ($C_{pr}^2$/Hz)", xlim=(-orders, orders)
+        )
+        legend(ax)
+    return ax
+
+
+def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
+    """Whirl radius over speed and axial load: one mark an operating point, with its mean after settling.
+
+    Parameters
+    ----------
+    results : iterable of Result
+        Runs at several operating points, with the groups time, cage, rollers and ring.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+    """
+    points = [
+        (
+            float(np.mean(np.abs(result["shaft_speed"]))) * 30.0 / np.pi,
+            float(np.mean(np.abs(result["ring_force"][:, 2]))) / 1e3,
+            float(result.settled.whirl_radius_over_cpr.mean()),
+        )
+        for result in results
+    ]
+    speed, load, radius = np.array(points).T
+    with canvas(ax, (5.6, 4.2)) as ax:
+        marks = ax.scatter(
+            speed,
+            load,
+            s=60 + 400 * np.clip(radius, 0, 1.2),
+            c=radius,
+            cmap=sequence(),
+            vmin=0,
+            vmax=1,
+            edgecolors="black",
+        )
+        for x, y, value in zip(speed, load, radius, strict=True):
+            ax.annotate(f"{value:.2f}", (x, y), xytext=(14, 8), textcoords="offset points", fontsize=9)
+        ax.figure.colorbar(marks, ax=ax, shrink=0.8, pad=0.02).set_label("whirl radius / $C_{pr}$")
+        ax.margins(0.18)
+        ax.set(xlabel="shaft speed (rpm)", ylabel="axial load (kN)")
+    return ax

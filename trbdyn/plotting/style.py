@@ -1,0 +1,96 @@
+"""How the pictures look: readable in print, safe for colour-blind readers, told apart in grey."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import Colormap, ListedColormap
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Okabe and Ito's colours, ordered so that neighbours differ in lightness too.
+COLOURS = ("#0072B2", "#E69F00", "#000000", "#009E73", "#CC79A7", "#56B4E9", "#D55E00")
+LINES: tuple[Any, ...] = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (1, 1)),
+    (0, (6, 1.5, 1, 1.5)),
+    (0, (3, 1, 1, 1, 1, 1)),
+    (0, (9, 2)),
+    "-",
+)
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+GREY = "#666666"
+LIGHT = "#BFBFBF"
+
+STYLE: Any = {
+    "font.size": 10,
+    "axes.titlesize": 10,
+    "axes.labelsize": 10,
+    "xtick.labelsize": 9,
+    "ytick.labelsize": 9,
+    "legend.fontsize": 9,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "axes.linewidth": 0.8,
+    "lines.linewidth": 1.2,
+    "figure.dpi": 110,
+    "figure.figsize": (6.4, 4.0),
+    "figure.constrained_layout.use": True,
+    "image.cmap": "cividis",
+    "agg.path.chunksize": 20000,
+    "axes.formatter.useoffset": False,
+}
+
+SAVE_DPI = 200
+
+
+@contextmanager
+def canvas(ax: Axes | None, figsize: tuple[float, float] = (6.4, 4.0)) -> Iterator[Axes]:
+    """The given axes, or new ones in a figure of their own; the style holds inside the block only."""
+    with plt.rc_context(STYLE):
+        yield ax if ax is not None else plt.subplots(figsize=figsize)[1]
+
+
+def sequence() -> Colormap:
+    """A sequential map from dark blue to a yellow that still shows on white: even in lightness, so it works in grey."""
+    return ListedColormap(plt.get_cmap("cividis")(np.linspace(0.0, 0.88, 256)), name="trbdyn")
+
+
+def legend(ax: Axes, **options: Any) -> None:
+    """A legend above the axes, where it covers no data."""
+    handles, labels = ax.get_legend_handles_labels()
+    if handles:
+        columns = options.pop("ncols", min(len(labels), 4))
+        ax.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
+
+
+def thin(x: Array, y: Array, points: int = 6000) -> tuple[Array, Array]:
+    """A curve with at most about `points` points that looks the same: the smallest and the largest value of each bin."""
+    if x.size <= points:
+        return x, y
+    bins = points // 2
+    edges = np.linspace(0, x.size, bins + 1).astype(int)
+    low = np.array([a + int(np.argmin(y[a:b])) for a, b in pairwise(edges)])
+    high = np.array([a + int(np.argmax(y[a:b])) for a, b in pairwise(edges)])
+    kept = np.unique(np.concatenate([low, high, [0, x.size - 1]]))
+    return x[kept], y[kept]
+
+
+def line(ax: Axes, x: Array, y: Array, index: int = 0, label: str | None = None, **options: Any) -> Line2D:
+    """A thinned curve in the colour and dashes of its index."""
+    style = {"color": COLOURS[index % len(COLOURS)], "linestyle": LINES[index % len(LINES)], "label": label} | options
+    return ax.plot(*thin(x, y), **style)[0]

@@ -1,0 +1,236 @@
+"""The numbers of a run that an engineer asks for first: as a dictionary, as JSON, as a table.
+
+Averages are taken over the window after settling (``window_start`` to ``window_end``; see `Result.settling`); if the run
+has not settled, ``settled`` is False and the window is its second half. Energies are those of the whole run. Numbers whose
+fields were not recorded, or that do not exist (a whirl ratio at standstill), are None.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trbdyn.errors import FileError
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+
+LABELS: dict[str, tuple[str, str]] = {
+    "success": ("finished", ""),
+    "message": ("how it ended", ""),
+    "revolutions": ("shaft revolutions", ""),
+    "duration": ("bearing time", "s"),
+    "settled": ("settled", ""),
+    "window_start": ("averages from", "s"),
+    "window_end": ("averages to", "s"),
+    "speed_rpm": ("shaft speed", "rpm"),
+    "cage_speed_ratio": ("cage speed / shaft speed", ""),
+    "cage_speed_ratio_kinematic": ("the same, pure rolling", ""),
+    "cage_slip": ("slip of the roller set", ""),
+    "cage_motion": ("cage motion", ""),
+    "whirl_radius_over_cpr": ("whirl radius / Cpr", ""),
+    "whirl_radius_over_cpr_p05": ("    5 %", ""),
+    "whirl_radius_over_cpr_p95": ("    95 %", ""),
+    "orbit_radius_over_cpr": ("orbit radius about its own centre / Cpr", ""),
+    "whirl_ratio": ("whirl frequency / cage frequency", ""),
+    "whirl_frequency": ("whirl frequency", "Hz"),
+    "speed_deviation_ratio": ("cage centre speed, deviation / mean", ""),
+    "axial_over_clearance": ("axial position / axial play", ""),
+    "tilt_rms": ("cage tilt, rms", "rad"),
+    "spacing_std_deg": ("roller spacing, deviation", "deg"),
+    "pocket_force_p95": ("pocket force, 95 % in contact", "N"),
+    "pocket_force_peak": ("pocket force, peak", "N"),
+    "pocket_duty": ("share of time that a pocket is touched", ""),
+    "outer_load_mean": ("load a roller, outer raceway", "N"),
+    "inner_load_mean": ("load a roller, inner raceway", "N"),
+    "rib_load_mean": ("load a roller, back-face rib", "N"),
+    "outer_pressure_max": ("largest pressure, outer raceway", "Pa"),
+    "inner_pressure_max": ("largest pressure, inner raceway", "Pa"),
+    "rib_pressure_max": ("largest pressure, rib", "Pa"),
+    "film_parameter_outer": ("film parameter, outer raceway", ""),
+    "film_parameter_inner": ("film parameter, inner raceway", ""),
+    "film_parameter_rib": ("film parameter, rib", ""),
+    "skew_rms": ("roller skew, rms", "rad"),
+    "torque": ("friction torque of the shaft", "N m"),
+    "torque_outer": ("friction torque on the outer ring", "N m"),
+    "power_loss": ("power loss", "W"),
+    "energy_closure": ("energy audit: residual / dissipated work", ""),
+    "energy_residual": ("energy audit: residual", "J"),
+    "steps": ("steps", ""),
+    "rhs_evaluations": ("evaluations of the equations of motion", ""),
+    "wall_s": ("wall time", "s"),
+    "wall_s_per_revolution": ("wall time a revolution", "s"),
+    "torque_split": ("friction torque by source", "N m"),
+    "power_split": ("power loss by kind", "W"),
+}
+"""Words and units of the summary's entries, in the order of the table."""
+
+
+def summary(result: Result) -> dict[str, Any]:
+    """Summarise a run.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+
+    Returns
+    -------
+    dict
+        Numbers by the names of `LABELS`, SI units; ``torque_split`` and ``power_split`` are dictionaries.
+    """
+    groups = set(result.groups)
+    out: dict[str, Any] = {"success": result.success, "message": result.message}
+    out |= {"revolutions": result.revolutions, "duration": result.duration}
+    if len(result) < 2:
+        return {name: _clean(value) for name, value in ({name: None for name in LABELS} | out | _cost(result)).items()}
+    if {"cage", "rollers"} <= groups:
+        settling = result.settling()
+        window, settled = result.window(settling.time), settling.settled
+    else:
+        window, settled = result.window(float(result["time"][len(result) // 2])), False
+    time = window["time"]
+    out |= {"settled": settled, "window_start": float(time[0]), "window_end": float(time[-1])}
+    out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
+    parts: tuple[tuple[set[str], Callable[[Result], dict[str, Any]]], ...] = (
+        ({"cage"}, _cage),
+        ({"rollers"}, _rollers),
+        ({"pocket"}, _pocket),
+        ({"contacts"}, _contacts),
+        ({"torque"}, _torque),
+        ({"power"}, _power),
+    )
+    for needed, part in parts:
+        if needed <= groups:
+            out |= part(window)
+    if "energy" in groups:
+        audit = result.energy_audit
+        out |= {"energy_closure": audit.closure, "energy_residual": audit.residual}
+    out |= _cost(result)
+    return {name: _clean(out.get(name)) for name in LABELS}
+
+
+def _cage(window: Result) -> dict[str, Any]:
+    radius, motion = window.whirl_radius_over_cpr, window.cage_motion
+    low, high = np.percentile(radius, (5.0, 95.0))
+    return {
+        "cage_speed_ratio": window.cage_speed_ratio,
+        "cage_motion": motion.kind,
+        "whirl_radius_over_cpr": radius.mean(),
+        "whirl_radius_over_cpr_p05": low,
+        "whirl_radius_over_cpr_p95": high,
+        "orbit_radius_over_cpr": motion.orbit_over_play,
+        "whirl_ratio": window.whirl_ratio,
+        "whirl_frequency": window.whirl_frequency,
+        "speed_deviation_ratio": motion.speed_deviation_ratio,
+        "axial_over_clearance": window.axial_motion.mean(),
+        "tilt_rms": np.sqrt(np.mean(np.sum(window["cage_tilt"] ** 2, axis=1))),
+    }
+
+
+def _rollers(window: Result) -> dict[str, Any]:
+    return {
+        "cage_speed_ratio_kinematic": window.geometry.get("cage_speed_ratio"),
+        "cage_slip": window.cage_slip.mean() if "cage_speed_ratio" in window.geometry else None,
+        "spacing_std_deg": window.spacing_std.mean(),
+        "skew_rms": np.sqrt(np.mean(window["roller_skew"] ** 2)),
+    }
+
+
+def _pocket(window: Result) -> dict[str, Any]:
+    force = window["pocket_force"]
+    touched = force[force > 0]
+    return {
+        "pocket_force_p95": np.percentile(touched, 95.0) if touched.size else 0.0,
+        "pocket_force_peak": force.max(),
+        "pocket_duty": (force > 0).any(axis=2).mean(),
+    }
+
+
+def _contacts(window: Result) -> dict[str, Any]:
+    out: dict[str, Any] = {f"{side}_load_mean": window[f"{side}_load"].mean() for side in ("outer", "inner", "rib")}
+    out |= {f"{side}_pressure_max": window[f"{side}_pressure"].max() for side in ("outer", "inner", "rib")}
+    return out | {
+        f"film_parameter_{side}": window[f"{side}_film_parameter"].mean() for side in ("outer", "inner", "rib")
+    }
+
+
+def _torque(window: Result) -> dict[str, Any]:
+    means = {"torque": window["inner_torque"].mean(), "torque_outer": window["outer_torque"].mean()}
+    return means | {"torque_split": window.torque_split}
+
+
+def _power(window: Result) -> dict[str, Any]:
+    return {"power_loss": window["power_loss"].mean(), "power_split": window.power_split}
+
+
+def _cost(result: Result) -> dict[str, Any]:
+    out = {name: result.stats.get(name) for name in ("steps", "rhs_evaluations", "wall_s")}
+    wall, turns = out["wall_s"], result.revolutions
+    return out | {"wall_s_per_revolution": wall / turns if wall is not None and turns else None}
+
+
+def _clean(value: Any) -> Any:
+    """Plain Python; numbers that are not finite become None."""
+    if isinstance(value, Mapping):
+        return {name: _clean(entry) for name, entry in value.items()}
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def write_json(values: Mapping[str, Any], path: str | os.PathLike[str]) -> Path:
+    """Write a summary as JSON.
+
+    Parameters
+    ----------
+    values : mapping
+        What `summary` gave.
+    path : path-like
+        File to write.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    try:
+        Path(path).write_text(json.dumps(values, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise FileError(f"{path}: the summary cannot be written: {error.strerror}") from error
+    return Path(path)
+
+
+def table(values: Mapping[str, Any]) -> str:
+    """A summary as a table for people: words, number, unit; entries that are None are left out."""
+    rows: list[tuple[str, str, str]] = []
+    for name, (words, unit) in LABELS.items():
+        value = values.get(name)
+        if value is None:
+            continue
+        if isinstance(value, Mapping):
+            rows.append((words, "", ""))
+            rows.extend(
+                (f"    {part.replace('_', ' ')}", _number(entry), unit) for part, entry in value.items() if entry
+            )
+        else:
+            rows.append((words, _number(value), unit))
+    width = max(len(words) for words, _, _ in rows)
+    return "\n".join(f"{words:<{width}}  {number} {unit}".rstrip() for words, number, unit in rows)
+
+
+def _number(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
