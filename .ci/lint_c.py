@@ -105,6 +105,8 @@ def check_objects(build: Path) -> list[str]:
     for module in build.glob("_core*.so"):
         symbols = [line.split()[-1] for line in run("nm", "--dynamic", "--defined-only", module)]
         breaches += [f"{module.name}: shows {symbol}" for symbol in symbols if symbol != "PyInit__core"]
+        missing = [line.split()[-1] for line in run("nm", "--dynamic", "--undefined-only", module)]
+        breaches += [f"{module.name}: {symbol} is defined nowhere" for symbol in missing if symbol.startswith("trb_")]
         if any("crtfastmath" in line or line.endswith(" set_fast_math") for line in run("nm", module)):
             breaches.append(f"{module.name}: -ffast-math reached the link: the process would flush denormals to zero")
     return breaches
