@@ -54,7 +54,19 @@ typedef struct trb_lanes {
 #undef TRB_LANE_MEMBER
 } trb_lanes;
 
-enum { TRB_N_LANE_FIELDS = (int)(sizeof(trb_lanes) / (TRB_TILE_LANES * sizeof(double))) };
+enum {
+#define TRB_LANE_ENUM(name, unit, text) TRB_LANE_##name,
+  TRB_LANE_FIELDS(TRB_LANE_ENUM)
+#undef TRB_LANE_ENUM
+  TRB_N_LANE_FIELDS
+};
+
+/* The nodes (n_lanes) of a lane field in a detail. */
+static inline const double *trb_detail_lane(const trb_model *m, const trb_detail *detail, int field, int race, int roller)
+{
+  const size_t lanes = (size_t)m->n_lanes, rollers = (size_t)m->n_rollers;
+  return detail->lanes + (((size_t)field * TRB_N_RACES + (size_t)race) * rollers + (size_t)roller) * lanes;
+}
 
 /* One contact of a roller with a race. */
 typedef struct trb_race_input {

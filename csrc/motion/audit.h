@@ -1,0 +1,12 @@
+/* Energies that are functions of the state; works and losses are quadratures of their own (bearing/state.h). */
+#ifndef TRB_MOTION_AUDIT_H
+#define TRB_MOTION_AUDIT_H
+
+#include "motion/dynamics.h"
+
+/* Kinetic energy of rollers and cage at the poses kept, J. */
+double trb_audit_kinetic(const trb_dynamics *d);
+/* Elastic energy of all contacts at the loads kept, J. */
+double trb_audit_elastic(const trb_dynamics *d);
+
+#endif

@@ -1,0 +1,323 @@
+#include "motion/equilibrium.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/raceway_kernel.h"
+
+enum { MOST_STEPS = 300 };
+/* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */
+#define TRB_BALANCE_SHARE 1e-10
+#define TRB_BALANCE_FORCE 1e-7
+/* Steps of differences. */
+#define TRB_STEP_LENGTH 1e-10
+#define TRB_STEP_ANGLE 1e-8
+
+typedef struct solver {
+  const trb_model *m;
+  trb_equilibrium *e;
+  trb_dynamics    *d;
+  double          *forces;   /* per roller (3): generalised force */
+  double          *ring;     /* per roller (5): generalised force on the ring */
+  double          *shifted;  /* the same after a difference */
+  double          *ring_shifted;
+  double          *own;      /* per roller (3x3) stiffness */
+  double          *to_ring;  /* per roller (3x5): d force of roller / d ring */
+  double          *from_ring; /* per roller (5x3): d force on ring / d roller */
+  double          *solved;   /* per roller (3x6): own^-1 [to_ring, force] */
+  double          *trial;    /* per roller (3) */
+  double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS]; /* of the ring at fixed rollers */
+  double           total[TRB_RING_FREEDOMS];                         /* generalised force on the ring with its load */
+  double           energy;
+} solver;
+
+static const double difference[TRB_ROLLER_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE};
+static const double ring_difference[TRB_RING_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE, TRB_STEP_ANGLE};
+
+/* At rest the contacts are frictionless: no sliding, no rolling. */
+static void place(solver *s, const double *rollers, const double *displacement)
+{
+  const trb_model *m = s->m;
+  trb_drive       *drive = &s->d->drive;
+  const double     still[2] = {0.0, 0.0};
+  memset(drive, 0, sizeof *drive);
+  drive->cosine = 1.0;
+  trb_ring_place(m, trb_v(displacement[0], displacement[1], displacement[2]), trb_v(0, 0, 0), displacement + 3, still, 0.0, drive);
+  for (int j = 0; j < m->n_rollers; j++) {
+    double y[TRB_ROLLER_SIZE] = {0};
+    y[TRB_ROLLER_r] = rollers[3 * j];
+    y[TRB_ROLLER_z] = rollers[3 * j + 1];
+    y[TRB_ROLLER_tilt] = rollers[3 * j + 2];
+    y[TRB_ROLLER_psi] = s->e->angles[j] - trb_nominal_angle(m, j);
+    trb_dynamics_pose_roller(s->d, j, y);
+  }
+}
+
+/* Generalised forces on rollers and ring at a place; gives the potential. */
+static double evaluate(solver *s, const double *rollers, const double *displacement, double *forces, double *ring)
+{
+  const trb_model    *m = s->m;
+  const trb_geometry *g = &m->geometry;
+  const trb_rolling   rolling = trb_pure_rolling(m, s->e->shaft_speed);
+  const double        orbit = g->cage_speed_ratio * s->e->shaft_speed;
+  /* gyroscopic moment: rate of the angular momentum of a roller that spins and orbits */
+  const double gyro = orbit * cos(g->roller_axis_angle) * g->roller_inertia_transverse * rolling.omega_n - rolling.omega_n * g->roller_inertia_axial * rolling.omega_a;
+  double       energy = 0.0;
+  place(s, rollers, displacement);
+  trb_instant at = trb_dynamics_instant(s->d);
+  at.cage = NULL;
+  trb_contact_all(m, &at, s->d->work, s->d->loads, NULL);
+  for (int j = 0; j < m->n_rollers; j++) {
+    const trb_roller_load *l = &s->d->loads[j];
+    const trb_roller_pose *r = &s->d->rollers[j];
+    const double           moment = trb_dot(l->moment, r->frame.t);
+    forces[3 * j] = l->force.x + g->roller_mass * orbit * orbit * r->radius;
+    forces[3 * j + 1] = l->force.z;
+    forces[3 * j + 2] = moment - gyro;
+    energy += l->elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[3 * j + 2];
+    const trb_vec3 force = trb_turn_z(l->ring_force, r->cosine, r->sine), torque = trb_turn_z(l->ring_moment, r->cosine, r->sine);
+    double        *q = ring + TRB_RING_FREEDOMS * j;
+    q[0] = force.x, q[1] = force.y, q[2] = force.z, q[3] = torque.x, q[4] = torque.y;
+  }
+  for (int i = 0; i < TRB_RING_FREEDOMS; i++) energy -= s->e->load[i] * displacement[i];
+  return energy;
+}
+
+static void sum_ring(solver *s)
+{
+  for (int i = 0; i < TRB_RING_FREEDOMS; i++) {
+    s->total[i] = s->e->fixed[i] ? 0.0 : s->e->load[i];
+    for (int j = 0; j < s->m->n_rollers && !s->e->fixed[i]; j++) s->total[i] += s->ring[TRB_RING_FREEDOMS * j + i];
+  }
+}
+
+/* Largest unbalanced force; moments as forces at half the contact's length or at the pitch radius. */
+static double imbalance(const solver *s)
+{
+  const double arm[TRB_ROLLER_FREEDOMS] = {1.0, 1.0, 0.5 * s->m->params.effective_length};
+  double       worst = 0.0;
+  for (int j = 0; j < s->m->n_rollers; j++)
+    for (int i = 0; i < TRB_ROLLER_FREEDOMS; i++) worst = fmax(worst, fabs(s->forces[3 * j + i]) / arm[i]);
+  for (int i = 0; i < TRB_RING_FREEDOMS; i++) worst = fmax(worst, fabs(s->total[i]) / (i < 3 ? 1.0 : 0.5 * s->m->params.pitch_diameter));
+  return worst;
+}
+
+/* Stiffness by differences: one evaluation of all contacts a column, all rollers at once. */
+static void differentiate(solver *s)
+{
+  const int n = s->m->n_rollers;
+  double    moved[TRB_RING_FREEDOMS];
+  memset(s->stiffness, 0, sizeof s->stiffness);
+  for (int c = 0; c < TRB_ROLLER_FREEDOMS; c++) {
+    memcpy(s->trial, s->e->rollers, (size_t)n * TRB_ROLLER_FREEDOMS * sizeof(double));
+    for (int j = 0; j < n; j++) s->trial[3 * j + c] += difference[c];
+    (void)evaluate(s, s->trial, s->e->displacement, s->shifted, s->ring_shifted);
+    for (int j = 0; j < n; j++) {
+      for (int i = 0; i < 3; i++) s->own[9 * j + 3 * i + c] = -(s->shifted[3 * j + i] - s->forces[3 * j + i]) / difference[c];
+      for (int i = 0; i < 5; i++) s->from_ring[15 * j + 3 * i + c] = -(s->ring_shifted[5 * j + i] - s->ring[5 * j + i]) / difference[c];
+    }
+  }
+  for (int c = 0; c < TRB_RING_FREEDOMS; c++) {
+    memcpy(moved, s->e->displacement, sizeof moved);
+    moved[c] += ring_difference[c];
+    (void)evaluate(s, s->e->rollers, moved, s->shifted, s->ring_shifted);
+    for (int j = 0; j < n; j++) {
+      for (int i = 0; i < 3; i++) s->to_ring[15 * j + 5 * i + c] = -(s->shifted[3 * j + i] - s->forces[3 * j + i]) / ring_difference[c];
+      for (int i = 0; i < 5; i++) s->stiffness[5 * i + c] -= (s->ring_shifted[5 * j + i] - s->ring[5 * j + i]) / ring_difference[c];
+    }
+  }
+}
+
+/* Gaussian elimination with row pivoting on a small system of n equations and k right-hand sides, row-major [A | B]. */
+static int eliminate(double *a, int n, int k)
+{
+  const int width = n + k;
+  for (int c = 0; c < n; c++) {
+    int pivot = c;
+    for (int i = c + 1; i < n; i++)
+      if (fabs(a[i * width + c]) > fabs(a[pivot * width + c])) pivot = i;
+    if (!(fabs(a[pivot * width + c]) > 0.0)) return 0;
+    for (int i = 0; i < width; i++) {
+      const double keep = a[c * width + i];
+      a[c * width + i] = a[pivot * width + i];
+      a[pivot * width + i] = keep;
+    }
+    for (int i = 0; i < n; i++) {
+      if (i == c) continue;
+      const double factor = a[i * width + c] / a[c * width + c];
+      for (int q = c; q < width; q++) a[i * width + q] -= factor * a[c * width + q];
+    }
+  }
+  for (int c = 0; c < n; c++)
+    for (int q = n; q < width; q++) a[c * width + q] /= a[c * width + c];
+  return 1;
+}
+
+/* Damped Newton step: (K + damping D) step = force, rollers eliminated onto the ring. D is the stiffness of a typical contact. */
+static int newton_step(solver *s, double damping, double *step_rollers, double *step_ring)
+{
+  const int    n = s->m->n_rollers;
+  const double contact = 1e9, arm = 0.5 * s->m->params.effective_length, radius = 0.5 * s->m->params.pitch_diameter;
+  const double roller_scale[3] = {contact, contact, contact * arm * arm / 3.0};
+  const double ring_scale[5] = {contact, contact, contact, contact * radius * radius, contact * radius * radius};
+  double       ring[5 * 6];
+  for (int i = 0; i < 5; i++) {
+    for (int c = 0; c < 5; c++) ring[6 * i + c] = s->stiffness[5 * i + c];
+    ring[6 * i + i] += damping * ring_scale[i];
+    ring[6 * i + 5] = s->total[i];
+  }
+  for (int j = 0; j < n; j++) {
+    double a[3 * 9];
+    for (int i = 0; i < 3; i++) {
+      for (int c = 0; c < 3; c++) a[9 * i + c] = s->own[9 * j + 3 * i + c];
+      a[9 * i + i] += damping * roller_scale[i];
+      for (int c = 0; c < 5; c++) a[9 * i + 3 + c] = s->to_ring[15 * j + 5 * i + c];
+      a[9 * i + 8] = s->forces[3 * j + i];
+    }
+    if (!eliminate(a, 3, 6)) return 0;
+    for (int i = 0; i < 3; i++)
+      for (int c = 0; c < 6; c++) s->solved[18 * j + 6 * i + c] = a[9 * i + 3 + c];
+    for (int i = 0; i < 5; i++)
+      for (int q = 0; q < 3; q++)
+        for (int c = 0; c < 6; c++) ring[6 * i + c] -= s->from_ring[15 * j + 3 * i + q] * s->solved[18 * j + 6 * q + c];
+  }
+  for (int i = 0; i < 5; i++) {
+    if (!s->e->fixed[i]) continue;
+    for (int c = 0; c < 6; c++) ring[6 * i + c] = 0.0;
+    ring[6 * i + i] = 1.0;
+  }
+  if (!eliminate(ring, 5, 1)) return 0;
+  for (int i = 0; i < 5; i++) step_ring[i] = ring[6 * i + 5];
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < 3; i++) {
+      double value = s->solved[18 * j + 6 * i + 5];
+      for (int c = 0; c < 5; c++) value -= s->solved[18 * j + 6 * i + c] * step_ring[c];
+      step_rollers[3 * j + i] = value;
+    }
+  return 1;
+}
+
+/* Steps longer than a contact's interference by far are shortened: the stiffness says nothing about them. */
+static double shorten(const solver *s, const double *step_rollers, const double *step_ring)
+{
+  const double most = 5e-5, arm = 0.5 * s->m->params.effective_length, radius = 0.5 * s->m->params.pitch_diameter;
+  double       longest = 0.0;
+  for (int j = 0; j < s->m->n_rollers; j++)
+    for (int i = 0; i < 3; i++) longest = fmax(longest, fabs(step_rollers[3 * j + i]) * (i < 2 ? 1.0 : arm));
+  for (int i = 0; i < 5; i++) longest = fmax(longest, fabs(step_ring[i]) * (i < 3 ? 1.0 : radius));
+  return longest > most ? most / longest : 1.0;
+}
+
+static double largest_load(const solver *s)
+{
+  double largest = 0.0;
+  for (int i = 0; i < 3; i++) largest = fmax(largest, fabs(s->e->load[i]));
+  for (int j = 0; j < s->m->n_rollers; j++) largest = fmax(largest, fabs(s->d->loads[j].force.x));
+  return largest;
+}
+
+static trb_status iterate(solver *s, double *step_rollers, double *step_ring, trb_message *message)
+{
+  trb_equilibrium *e = s->e;
+  const int        n = s->m->n_rollers;
+  double           damping = 1e-3, ring_trial[TRB_RING_FREEDOMS];
+  s->energy = evaluate(s, e->rollers, e->displacement, s->forces, s->ring);
+  sum_ring(s);
+  double off = imbalance(s);
+  for (e->iterations = 0; e->iterations < MOST_STEPS; e->iterations++) {
+    e->residual = off;
+    if (off < fmax(TRB_BALANCE_FORCE, TRB_BALANCE_SHARE * largest_load(s))) return TRB_OK;
+    differentiate(s);
+    int accepted = 0;
+    for (int attempt = 0; attempt < 40 && !accepted; attempt++) {
+      if (!newton_step(s, damping, step_rollers, step_ring)) {
+        damping = fmax(10.0 * damping, 1e-12);
+        continue;
+      }
+      const double scale = shorten(s, step_rollers, step_ring);
+      for (int i = 0; i < 3 * n; i++) s->trial[i] = e->rollers[i] + scale * step_rollers[i];
+      for (int i = 0; i < 5; i++) ring_trial[i] = e->displacement[i] + scale * step_ring[i];
+      const double energy = evaluate(s, s->trial, ring_trial, s->shifted, s->ring_shifted);
+      double       keep_total[5];
+      memcpy(keep_total, s->total, sizeof keep_total);
+      double *const old_forces = s->forces, *const old_ring = s->ring;
+      s->forces = s->shifted, s->ring = s->ring_shifted;
+      sum_ring(s);
+      const double next = imbalance(s);
+      /* downhill, or, where the potential no longer resolves it, closer to balance */
+      accepted = isfinite(energy) && isfinite(next) && (energy < s->energy - 1e-13 * fabs(s->energy) || next < off);
+      if (accepted) {
+        s->shifted = old_forces, s->ring_shifted = old_ring;
+        memcpy(e->rollers, s->trial, (size_t)(3 * n) * sizeof(double));
+        memcpy(e->displacement, ring_trial, sizeof ring_trial);
+        s->energy = energy;
+        off = next;
+        damping = damping < 1e-13 ? 0.0 : 0.1 * damping;
+      } else {
+        s->forces = old_forces, s->ring = old_ring;
+        memcpy(s->total, keep_total, sizeof keep_total);
+        damping = fmax(10.0 * damping, 1e-10);
+      }
+    }
+    if (!accepted) break;
+  }
+  e->residual = off;
+  if (off < 1e-5 * fmax(largest_load(s), 1e-3)) return TRB_OK;
+  return trb_fail(message, TRB_ERR_LOAD,
+                  "no equilibrium: after %d steps %g N stay unbalanced under force (%g, %g, %g) N, moment (%g, %g) N m; the bearing cannot carry this "
+                  "load (an axial load towards -z must seat the rollers)",
+                  e->iterations, off, e->load[0], e->load[1], e->load[2], e->load[3], e->load[4]);
+}
+
+/* Normal loads of the contacts at the solution. */
+static trb_status read_loads(solver *s, trb_message *message)
+{
+  trb_detail *detail;
+  trb_status  status = trb_detail_create(s->m, &detail, message);
+  if (status != TRB_OK) return status;
+  trb_detail_clear(s->m, detail);
+  place(s, s->e->rollers, s->e->displacement);
+  trb_instant at = trb_dynamics_instant(s->d);
+  at.cage = NULL;
+  trb_contact_all(s->m, &at, s->d->work, s->d->loads, detail);
+  for (int j = 0; j < s->m->n_rollers; j++) {
+    const double *outer = trb_detail_lane(s->m, detail, TRB_LANE_load, TRB_RACE_OUTER, j);
+    const double *inner = trb_detail_lane(s->m, detail, TRB_LANE_load, TRB_RACE_INNER, j);
+    double       *to = s->e->loads + 3 * j;
+    to[0] = to[1] = 0.0;
+    for (int k = 0; k < s->m->n_lanes; k++) {
+      to[0] += outer[k];
+      to[1] += inner[k];
+    }
+    to[2] = detail->rib[j].load;
+  }
+  trb_detail_free(detail);
+  return TRB_OK;
+}
+
+trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_message *message)
+{
+  const size_t n = (size_t)m->n_rollers;
+  solver       s = {.m = m, .e = e};
+  trb_status   status = trb_dynamics_create(m, NULL, "scalar", &s.d, message);
+  if (status != TRB_OK) return status;
+  enum { DOUBLES = 3 + 5 + 3 + 5 + 9 + 15 + 15 + 18 + 3 + 3 };
+  double *block = calloc(n * DOUBLES, sizeof(double));
+  double  step_ring[TRB_RING_FREEDOMS] = {0};
+  if (block == NULL) {
+    trb_dynamics_free(s.d);
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the equilibrium");
+  }
+  double *at = block, **const parts[] = {&s.forces, &s.ring, &s.shifted, &s.ring_shifted, &s.own, &s.to_ring, &s.from_ring, &s.solved, &s.trial};
+  const size_t sizes[] = {3, 5, 3, 5, 9, 15, 15, 18, 3};
+  for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+    *parts[i] = at;
+    at += n * sizes[i];
+  }
+  status = iterate(&s, at, step_ring, message);
+  if (status == TRB_OK) status = read_loads(&s, message);
+  free(block);
+  trb_dynamics_free(s.d);
+  return status;
+}

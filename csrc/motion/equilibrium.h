@@ -1,0 +1,27 @@
+/* Static equilibrium at speed: where the inner ring and the rollers settle under a load, without friction, gravity or cage.
+ *
+ * Unknowns: (r, z, tilt) of each roller and five coordinates of the ring (dx, dy, dz, rx, ry), each free under its load or prescribed.
+ * Rollers couple only through the ring, so a Newton step is one small system a roller and one of five. Contacts are gradients of an
+ * energy: steps are damped until the total potential falls (Levenberg-Marquardt). */
+#ifndef TRB_MOTION_EQUILIBRIUM_H
+#define TRB_MOTION_EQUILIBRIUM_H
+
+#include "motion/dynamics.h"
+
+enum { TRB_RING_FREEDOMS = 5, TRB_ROLLER_FREEDOMS = 3 };
+
+typedef struct trb_equilibrium {
+  double  load[TRB_RING_FREEDOMS];         /* in: force (3), N, and moment about x, y (2), N m, applied to the ring */
+  int     fixed[TRB_RING_FREEDOMS];        /* in: 1 where the displacement is prescribed */
+  double  displacement[TRB_RING_FREEDOMS]; /* in: prescribed values and the guess; out: m and rad */
+  double  shaft_speed;                     /* in: rad/s */
+  double *angles;                          /* in: orbit angles of the rollers, rad */
+  double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt) offsets */
+  double *loads;                           /* out: n_rollers rows of (outer, inner, rib) normal loads, N */
+  double  residual;                        /* out: largest unbalanced force, N */
+  int     iterations;                      /* out */
+} trb_equilibrium;
+
+trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_message *message);
+
+#endif

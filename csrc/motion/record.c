@@ -1,0 +1,260 @@
+#include "motion/record.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/raceway_kernel.h"
+#include "motion/audit.h"
+
+const trb_field_info trb_field_table[TRB_N_FIELDS] = {
+#define TRB_FIELD_INFO(name, group, kind, unit, text) {#name, #group, TRB_FIELD_##kind, unit, text},
+    TRB_FIELDS(TRB_FIELD_INFO)
+#undef TRB_FIELD_INFO
+};
+
+const char *trb_field_kind_name(trb_field_kind kind)
+{
+  static const char *const names[] = {"scalar", "vec2", "vec3", "quaternion", "roller", "roller_vec3", "roller_quat", "pocket_face"};
+  return names[kind];
+}
+
+int trb_field_shape(const trb_model *m, trb_field_kind kind, int shape[2])
+{
+  shape[0] = shape[1] = 1;
+  switch (kind) {
+    case TRB_FIELD_SCALAR: return 0;
+    case TRB_FIELD_VEC2: shape[0] = 2; return 1;
+    case TRB_FIELD_VEC3: shape[0] = 3; return 1;
+    case TRB_FIELD_QUATERNION: shape[0] = 4; return 1;
+    case TRB_FIELD_ROLLER: shape[0] = m->n_rollers; return 1;
+    case TRB_FIELD_ROLLER_VEC3: shape[0] = m->n_rollers; shape[1] = 3; return 2;
+    case TRB_FIELD_ROLLER_QUAT: shape[0] = m->n_rollers; shape[1] = 4; return 2;
+    case TRB_FIELD_POCKET_FACE: shape[0] = m->n_rollers; shape[1] = m->n_slots; return 2;
+  }
+  return 0;
+}
+
+int trb_record_offset(const trb_model *m, int field)
+{
+  int offset = 0, shape[2];
+  for (int i = 0; i < field; i++) {
+    (void)trb_field_shape(m, trb_field_table[i].kind, shape);
+    offset += shape[0] * shape[1];
+  }
+  return offset;
+}
+
+/* Where each field of this record goes. */
+typedef struct writer {
+  trb_dynamics     *d;
+  const trb_detail *detail;
+  double           *at[TRB_N_FIELDS];
+} writer;
+
+#define PUT(name, index) w->at[TRB_FIELD_AT_##name][index]
+
+static void put3(double *to, trb_vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+/* R -> inertial, orbiting frame -> inertial. */
+static trb_vec3 from_r(const trb_drive *drive, trb_vec3 v) { return trb_turn_z(v, drive->cosine, drive->sine); }
+static trb_vec3 from_orbit(const trb_drive *drive, const trb_roller_pose *r, trb_vec3 v)
+{
+  return from_r(drive, trb_turn_z(v, r->cosine, r->sine));
+}
+
+/* Quaternion of a rotation whose columns are the frame's axes (Shepperd), w >= 0. */
+static void put_quaternion(double *to, const trb_frame *f)
+{
+  const double m[3][3] = {{f->n.x, f->t.x, f->a.x}, {f->n.y, f->t.y, f->a.y}, {f->n.z, f->t.z, f->a.z}};
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  if (trace > 0.0) {
+    const double s = 2.0 * sqrt(1.0 + trace);
+    to[0] = 0.25 * s, to[1] = (m[2][1] - m[1][2]) / s, to[2] = (m[0][2] - m[2][0]) / s, to[3] = (m[1][0] - m[0][1]) / s;
+    return;
+  }
+  const int    i = m[0][0] >= m[1][1] && m[0][0] >= m[2][2] ? 0 : (m[1][1] >= m[2][2] ? 1 : 2), j = (i + 1) % 3, k = (i + 2) % 3;
+  const double s = 2.0 * sqrt(fmax(1.0 + m[i][i] - m[j][j] - m[k][k], 0.0)), sign = m[k][j] - m[j][k] < 0.0 ? -1.0 : 1.0;
+  to[0] = sign * (m[k][j] - m[j][k]) / s;
+  to[1 + i] = sign * 0.25 * s, to[1 + j] = sign * (m[j][i] + m[i][j]) / s, to[1 + k] = sign * (m[k][i] + m[i][k]) / s;
+}
+
+/* A frame turned about its own third axis. */
+static trb_frame spun(const trb_frame *f, double angle)
+{
+  const double c = cos(angle), s = sin(angle);
+  return (trb_frame){trb_add(trb_scale(c, f->n), trb_scale(s, f->t)), trb_sub(trb_scale(c, f->t), trb_scale(s, f->n)), f->a};
+}
+
+static void put_cage(writer *w, const double *y)
+{
+  const trb_dynamics  *d = w->d;
+  const trb_model     *m = d->model;
+  const trb_drive     *drive = &d->drive;
+  const trb_cage_pose *c = &d->cage;
+  const trb_vec3       plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage_rail_offset);
+  const trb_vec3       axis = from_r(drive, c->frame.a), centre = from_r(drive, c->x);
+  const trb_frame      body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};
+  trb_vec3             force = {0, 0, 0}, moment = {0, 0, 0};
+  for (int j = 0; j < m->n_rollers; j++) {
+    force = trb_add(force, d->loads[j].cage_force);
+    moment = trb_add(moment, d->loads[j].cage_moment);
+  }
+  put3(&PUT(cage_position, 0), trb_sub(trb_axpy(centre, -m->params.cage_offset, axis), plane));
+  put3(&PUT(cage_rail_position, 0), trb_sub(trb_axpy(centre, m->params.cage_rail_offset - m->params.cage_offset, axis), rail));
+  put3(&PUT(cage_velocity, 0), from_r(drive, c->v));
+  put_quaternion(&PUT(cage_orientation, 0), &body);
+  put3(&PUT(cage_angular_velocity, 0), from_r(drive, c->omega));
+  PUT(cage_angle, 0) = drive->frame_angle + y[TRB_CAGE_psi];
+  /* small rotations that take z to the axis */
+  PUT(cage_tilt, 0) = -atan2(axis.y, axis.z);
+  PUT(cage_tilt, 1) = atan2(axis.x, axis.z);
+  put3(&PUT(cage_force, 0), from_r(drive, force));
+  put3(&PUT(cage_moment, 0), from_r(drive, moment));
+}
+
+static void put_roller(writer *w, int j, const double *y, double spin_offset)
+{
+  const trb_dynamics    *d = w->d;
+  const trb_drive       *drive = &d->drive;
+  const trb_roller_pose *r = &d->rollers[j];
+  const double           kinematic = -d->model->geometry.roller_spin_ratio * drive->shaft_angle;
+  const trb_frame        spinning = spun(&r->frame, kinematic + spin_offset);
+  const trb_frame        body = {from_orbit(drive, r, spinning.n), from_orbit(drive, r, spinning.t), from_orbit(drive, r, spinning.a)};
+  put3(&PUT(roller_position, 3 * j), from_orbit(drive, r, r->x));
+  put_quaternion(&PUT(roller_orientation, 4 * j), &body);
+  put3(&PUT(roller_velocity, 3 * j), from_orbit(drive, r, r->v));
+  put3(&PUT(roller_angular_velocity, 3 * j), from_orbit(drive, r, r->omega));
+  PUT(roller_orbit_angle, j) = drive->frame_angle + r->angle;
+  PUT(roller_orbit_speed, j) = r->orbit_speed;
+  PUT(roller_spin_speed, j) = r->omega_frame.z - r->orbit_speed * r->frame.a.z;
+  PUT(roller_skew, j) = y[TRB_ROLLER_skew];
+  PUT(roller_tilt, j) = y[TRB_ROLLER_tilt];
+}
+
+typedef struct race_means {
+  double load, pressure, film, film_parameter, slide_roll, traction;
+} race_means;
+
+/* Sums over the nodes of a contact; means are weighted by load. */
+static race_means race_mean(const trb_model *m, const trb_detail *detail, int race, int roller)
+{
+  const double *field[TRB_N_LANE_FIELDS];
+  race_means    out = {0};
+  for (int f = 0; f < TRB_N_LANE_FIELDS; f++) field[f] = trb_detail_lane(m, detail, f, race, roller);
+  for (int k = 0; k < m->n_nodes; k++) {
+    const double q = field[TRB_LANE_load][k];
+    if (!(q > 0.0)) continue;
+    out.load += q;
+    out.pressure = fmax(out.pressure, field[TRB_LANE_pressure][k]);
+    out.film += q * field[TRB_LANE_film][k];
+    out.film_parameter += q * field[TRB_LANE_film_parameter][k];
+    /* sliding along rolling: the mean velocity's direction */
+    const double along = field[TRB_LANE_sx][k] * field[TRB_LANE_mx][k] + field[TRB_LANE_sy][k] * field[TRB_LANE_my][k] + field[TRB_LANE_sz][k] * field[TRB_LANE_mz][k];
+    const double mean = field[TRB_LANE_mean_speed][k];
+    out.slide_roll += q * along / (mean * mean);
+    out.traction -= q * field[TRB_LANE_friction_coefficient][k] / field[TRB_LANE_sliding_speed][k] * field[TRB_LANE_sy][k] +
+                    field[TRB_LANE_rolling][k] / mean * field[TRB_LANE_my][k];
+  }
+  if (out.load > 0.0) {
+    out.film /= out.load;
+    out.film_parameter /= out.load;
+    out.slide_roll /= out.load;
+  }
+  return out;
+}
+
+#define PUT_RACE(side, means) \
+  PUT(side##_load, j) = means.load, PUT(side##_pressure, j) = means.pressure, PUT(side##_film, j) = means.film, \
+  PUT(side##_film_parameter, j) = means.film_parameter, PUT(side##_slide_roll, j) = means.slide_roll, PUT(side##_traction, j) = means.traction
+
+static void put_contacts(writer *w, int j)
+{
+  const trb_model        *m = w->d->model;
+  const race_means        outer = race_mean(m, w->detail, TRB_RACE_OUTER, j), inner = race_mean(m, w->detail, TRB_RACE_INNER, j);
+  const trb_point_detail *rib = &w->detail->rib[j];
+  PUT_RACE(outer, outer);
+  PUT_RACE(inner, inner);
+  PUT(rib_load, j) = rib->load;
+  PUT(rib_pressure, j) = rib->pressure;
+  PUT(rib_film, j) = rib->film;
+  PUT(rib_film_parameter, j) = rib->film_parameter;
+  PUT(rib_slide_roll, j) = rib->slide_roll;
+  PUT(rib_friction, j) = rib->friction;
+  PUT(rib_height, j) = rib->height;
+  PUT(rib_overhang, j) = rib->overhang;
+  PUT(front_rib_load, j) = w->detail->front_rib[j].load;
+}
+
+static void put_ring(writer *w)
+{
+  const trb_dynamics *d = w->d;
+  const trb_model    *m = d->model;
+  trb_vec3            force = {0, 0, 0}, moment = {0, 0, 0};
+  double              torque[TRB_N_TORQUES] = {0}, outer = 0.0, all = 0.0;
+  for (int j = 0; j < m->n_rollers; j++) {
+    const trb_roller_load *l = &d->loads[j];
+    force = trb_add(force, from_orbit(&d->drive, &d->rollers[j], l->ring_force));
+    moment = trb_add(moment, from_orbit(&d->drive, &d->rollers[j], l->ring_moment));
+    all += trb_dot(l->ring_moment, d->inner[j].axis);
+    outer += l->outer_moment.z;
+    for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += l->torque[k];
+  }
+  const double sign = d->drive.shaft_speed < 0.0 ? -1.0 : 1.0;
+  put3(&PUT(ring_position, 0), d->drive.displacement);
+  put3(&PUT(ring_force, 0), force);
+  put3(&PUT(ring_moment, 0), moment);
+  PUT(inner_torque, 0) = -sign * all;
+  PUT(outer_torque, 0) = sign * outer;
+  PUT(inner_torque_traction, 0) = -sign * torque[TRB_TORQUE_TRACTION];
+  PUT(inner_torque_rolling, 0) = -sign * torque[TRB_TORQUE_ROLLING];
+  PUT(inner_torque_rib, 0) = -sign * torque[TRB_TORQUE_RIB];
+  PUT(inner_torque_front_rib, 0) = -sign * torque[TRB_TORQUE_FRONT_RIB];
+}
+
+static void put_energy(writer *w, const double *quadratures)
+{
+  const trb_dynamics *d = w->d;
+  double             *power = &PUT(power_traction_outer, 0), total = 0.0;
+  for (int k = 0; k < TRB_N_POWERS; k++) {
+    power[k] = 0.0;
+    for (int j = 0; j < d->model->n_rollers; j++) power[k] += d->loads[j].power[k];
+    total += power[k];
+  }
+  PUT(power_loss, 0) = total;
+  PUT(kinetic_energy, 0) = trb_audit_kinetic(d);
+  PUT(elastic_energy, 0) = trb_audit_elastic(d);
+  memcpy(&PUT(work_shaft, 0), quadratures, TRB_N_QUADRATURES * sizeof(double));
+}
+
+/* Losses stand in a record as in the state and in the list of powers, one after the other. */
+_Static_assert(TRB_FIELD_AT_loss_damping - TRB_FIELD_AT_work_shaft + 1 == TRB_N_QUADRATURES, "a field for every quadrature, in order");
+_Static_assert(TRB_FIELD_AT_power_damping - TRB_FIELD_AT_power_traction_outer + 1 == TRB_N_POWERS, "a field for every power, in order");
+
+void trb_record_fill(trb_dynamics *d, double time, const double *y, trb_detail *detail, double *record)
+{
+  const trb_model *m = d->model;
+  writer           it = {.d = d, .detail = detail}, *w = &it;
+  int              offset = 0, shape[2];
+  for (int i = 0; i < TRB_N_FIELDS; i++) {
+    w->at[i] = record + offset;
+    (void)trb_field_shape(m, trb_field_table[i].kind, shape);
+    offset += shape[0] * shape[1];
+  }
+  trb_dynamics_pose(d, time, y);
+  trb_detail_clear(m, detail);
+  const trb_counters keep = d->work->counters;
+  trb_dynamics_loads(d, detail);
+  d->work->counters = keep; /* looking is not integrating */
+  PUT(time, 0) = time;
+  PUT(shaft_angle, 0) = d->drive.shaft_angle;
+  PUT(shaft_speed, 0) = d->drive.shaft_speed;
+  put_cage(w, y + trb_state_cage(m));
+  for (int j = 0; j < m->n_rollers; j++) {
+    put_roller(w, j, y + trb_state_roller(j), y[trb_state_spin(m) + j]);
+    put_contacts(w, j);
+  }
+  memcpy(&PUT(pocket_force, 0), detail->pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
+  memcpy(&PUT(pocket_friction, 0), detail->pocket_friction, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
+  put_ring(w);
+  put_energy(w, y + trb_state_quadrature(m));
+}
