@@ -110,6 +110,14 @@ class Model(BaseModel):
             raise InputError.of(name, value, "cannot be changed; use replace(...) to get a changed copy")
         super().__setattr__(name, value)
 
+    def __eq__(self, other: object) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name in type(self).model_fields)
+
+    def __hash__(self) -> int:
+        return hash((type(self), *(getattr(self, name) for name in type(self).model_fields)))
+
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionaries, lists, numbers and text, as `from_dict` and JSON take them."""
         return self.model_dump(mode="json")

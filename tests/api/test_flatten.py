@@ -38,6 +38,13 @@ class TestHistory:
         assert fine.max() <= 12.0
         assert (history.value(-3.0), history.value(9.0)) == pytest.approx((0.0, 5.0))
 
+    def test_use_leaves_it_equal(self) -> None:
+        used, fresh = History.table(self.times, self.values), History.table(self.times, self.values)
+        used.value(0.2)
+        assert used == fresh
+        assert hash(used) == hash(fresh)
+        assert used != fresh.replace(values=(0.0, 10.0, 12.0, 5.1))
+
     def test_is_smooth_everywhere(self) -> None:
         history = History.table(self.times, self.values)
         assert (history.slope(0.0), history.slope(0.5)) == (0.0, 0.0)
