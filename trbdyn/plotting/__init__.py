@@ -6,8 +6,9 @@ figure, back. The style holds for the new picture only: nothing global is change
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -15,7 +16,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trbdyn.errors import FileError
+from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.plotting.cage import axial_motion, cage_locus, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plotting.energy import energy_audit, power_split, torque_split
 from trbdyn.plotting.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
@@ -30,9 +31,11 @@ __all__ = [
     "all",
     "axial_motion",
     "cage_locus",
+    "conditions",
     "contact_loads",
     "energy_audit",
     "film_parameter",
+    "make_folder",
     "pocket_forces",
     "pocket_statistics",
     "power_split",
@@ -65,7 +68,7 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
 """Pictures of one result, by name, and the groups that each needs."""
 
 
-def save(picture: Axes | Figure, path: str | os.PathLike[str]) -> Path:
+def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None = None) -> Path:
     """Save a picture and close its figure.
 
     Parameters
@@ -74,6 +77,8 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str]) -> Path:
         What a function of this module gave.
     path : path-like
         File to write; its ending gives the format.
+    title : str, optional
+        Title above the whole figure.
 
     Returns
     -------
@@ -89,6 +94,8 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str]) -> Path:
     assert figure is not None
     try:
         with plt.rc_context(STYLE):
+            if title:
+                figure.suptitle(title, fontsize=10)
             figure.savefig(path, dpi=SAVE_DPI)
     except (OSError, ValueError) as error:
         raise FileError(f"{path}: the picture cannot be written: {error}") from error
@@ -97,7 +104,9 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
-def all(result: Result, folder: str | os.PathLike[str]) -> list[Path]:
+def all(
+    result: Result, folder: str | os.PathLike[str], only: Iterable[str] | None = None, title: str | None = None
+) -> list[Path]:
     """Save every picture that the recorded groups allow, as PNG.
 
     Parameters
@@ -106,6 +115,10 @@ def all(result: Result, folder: str | os.PathLike[str]) -> list[Path]:
         The run.
     folder : path-like
         Folder to write to; made if it is missing.
+    only : iterable of str, optional
+        Names of the pictures to draw, of those in `PICTURES`; all by default.
+    title : str, optional
+        Title of every picture; by default bearing, speed and loads.
 
     Returns
     -------
@@ -116,14 +129,43 @@ def all(result: Result, folder: str | os.PathLike[str]) -> list[Path]:
     ------
     FileError
         If the folder or a file cannot be written.
+    InputError
+        If a picture is unknown, or needs a group that was not recorded.
     """
-    folder = Path(folder)
+    if only is None:
+        chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= set(result.groups)]
+    else:
+        chosen = list(only)
+    for name in chosen:
+        if name not in PICTURES:
+            raise InputError.of("only", name, unknown_name(name, PICTURES))
+    if len(result) < 2:
+        raise InputError.of("result", len(result), "must have at least two records to draw")
+    folder = make_folder(folder)
+    heading = conditions(result) if title is None else title
+    return [save(PICTURES[name][0](result), folder / f"{name}.png", heading) for name in chosen]
+
+
+def conditions(result: Result) -> str:
+    """Bearing, speed and loads of a run, for a title."""
+    scene = result.scene
+    parts = [f"{float(abs(result['shaft_speed']).mean()) * 30.0 / math.pi:.4g} rpm"]
+    for load, name in ((scene.axial_load, "$F_a$"), (scene.radial_load, "$F_r$")):
+        if isinstance(load, int | float) and load:
+            parts.append(f"{name} {load:g} N")
+    return f"{scene.bearing.name}: {', '.join(parts)}"
+
+
+def make_folder(folder: str | os.PathLike[str]) -> Path:
+    """A folder, made if it is missing.
+
+    Raises
+    ------
+    FileError
+        If it cannot be made.
+    """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(f"{folder}: the folder cannot be made: {error.strerror}") from error
-    return [
-        save(draw(result), folder / f"{name}.png")
-        for name, (draw, groups) in PICTURES.items()
-        if set(groups) <= set(result.groups)
-    ]
+    return Path(folder)

@@ -1,0 +1,310 @@
+"""The command line: run cases, draw pictures, look into files and cases.
+
+Exit codes: 0 done; 1 a run failed (what it recorded is kept); 2 input, case or file that cannot be used; 130 stopped by Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tomllib
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from trbdyn.errors import FileError, InputError, LoadError, TrbError
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+    from trbdyn.run_options import RunOptions
+    from trbdyn.scene import Scene
+
+DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+DEMO_PICTURES: Final = ("cage_locus", "spacing_angles", "tilt", "pocket_forces")
+
+_SIMULATION_OPTIONS: Final = (
+    "accuracy",
+    "integrator",
+    "rtol",
+    "atol_position",
+    "atol_angle",
+    "atol_velocity",
+    "atol_spin",
+    "max_order",
+    "max_step",
+    "first_step",
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after the program's name; those of the process by default.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    options = _parser().parse_args(arguments)
+    command: Callable[[argparse.Namespace], int] = options.command
+    try:
+        return command(options)
+    except (InputError, LoadError, FileError) as error:
+        return _report(error, BAD_INPUT, options.debug)
+    except TrbError as error:
+        return _report(error, FAILED, options.debug)
+    except KeyboardInterrupt:
+        print("trbdyn: stopped", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _report(error: TrbError, code: int, debug: bool) -> int:
+    if debug:
+        traceback.print_exception(error)
+    print(f"trbdyn: {error}", file=sys.stderr)
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    from trbdyn import __version__
+
+    parser = argparse.ArgumentParser(prog="trbdyn", description="Dynamics of tapered roller bearings.")
+    parser.add_argument("--version", action="version", version=f"trbdyn {__version__}")
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument("--debug", action="store_true", help="show where an error arose")
+    length = argparse.ArgumentParser(add_help=False)
+    length.add_argument("--revolutions", type=float, metavar="N", help="turns of the shaft")
+    length.add_argument("--accuracy", choices=("fast", "standard", "reference"), help="preset of the tolerances")
+    length.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    run = commands.add_parser("run", parents=[common, length], help="run a case")
+    run.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
+    run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
+    run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
+    run.add_argument("--save-every", type=float, metavar="S", help="time between saved records (s)")
+    run.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    _add_set(run)
+    run.set_defaults(command=_run)
+
+    plot = commands.add_parser("plot", parents=[common], help="draw a result's pictures")
+    plot.add_argument("file", metavar="FILE", help="a result file")
+    plot.add_argument("-o", "--output", metavar="FOLDER", help="folder (default: FILE without its ending, + _plots)")
+    plot.add_argument("--only", nargs="+", metavar="NAME", help="draw these pictures only")
+    plot.add_argument("--animation", action="store_true", help="also write animation.gif")
+    plot.set_defaults(command=_plot)
+
+    info = commands.add_parser("info", parents=[common], help="show what a result file or a case holds")
+    info.add_argument("file", metavar="FILE|CASE", help="a result file, a TOML file or the name of a shipped case")
+    info.add_argument("--json", action="store_true", help="as JSON")
+    _add_set(info)
+    info.set_defaults(command=_info)
+
+    demo = commands.add_parser(
+        "demo", parents=[common, length], help="the 30310 at 3000 rpm and 4930 N, from a whirling start"
+    )
+    demo.add_argument("-o", "--output", metavar="FOLDER", default="demo", help="folder (default: demo)")
+    demo.set_defaults(command=_demo)
+
+    cases = commands.add_parser("cases", parents=[common], help="list the cases that ship with the package")
+    cases.set_defaults(command=_cases)
+    return parser
+
+
+def _add_set(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="changes",
+        metavar="KEY=VALUE",
+        help="change a value of the case, for instance scene.speed_rpm=1000 (may be given several times)",
+    )
+
+
+def _load_case(name: str, changes: Sequence[str]) -> tuple[Scene, RunOptions]:
+    """A case, with ``table.key=value`` changes put in."""
+    from trbdyn.toml_case import case_from_dict, find_case, load_case
+
+    if not changes:
+        return load_case(name)
+    path = Path(name) if Path(name).exists() else find_case(name)
+    try:
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: {error}") from error
+    for change in changes:
+        key, equals, text = change.partition("=")
+        *tables, last = key.strip().split(".")
+        if not equals or not last:
+            raise InputError.of("--set", change, "must be KEY=VALUE, for instance scene.speed_rpm=1000")
+        table = values
+        for part in tables:
+            table = table.setdefault(part, {})
+            if not isinstance(table, dict):
+                raise InputError.of("--set", change, f"{part!r} is a value, not a table")
+        table[last] = _toml_value(text)
+    return case_from_dict(values)
+
+
+def _toml_value(text: str) -> Any:
+    """A TOML value; what is none is text."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+
+
+def _run(options: argparse.Namespace) -> int:
+    scene, run = _load_case(options.case, options.changes)
+    changes = {
+        name: getattr(options, name)
+        for name in ("revolutions", "duration", "save_every", "accuracy")
+        if getattr(options, name) is not None
+    }
+    if "revolutions" in changes and "duration" not in changes:
+        changes["duration"] = None
+    if "duration" in changes and "revolutions" not in changes:
+        changes["revolutions"] = None
+    output = Path(options.output or f"{Path(options.case).stem}.h5")
+    result = _simulate(scene, run.replace(**changes), output, quiet=options.quiet)
+    return _finish(result, output, options.summary, quiet=options.quiet)
+
+
+def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool) -> Result:
+    from trbdyn.run_options import RunOptions
+    from trbdyn.simulation import Simulation
+
+    run.end_time(scene.speed_rpm)
+    default = RunOptions()
+    settings = {
+        name: getattr(run, name) for name in _SIMULATION_OPTIONS if getattr(run, name) != getattr(default, name)
+    }
+    return Simulation(scene, **settings).run(
+        revolutions=run.revolutions,
+        duration=run.duration,
+        save_every=run.save_every,
+        save_groups=run.save_groups,
+        progress=not quiet,
+        output=output,
+    )
+
+
+def _finish(result: Result, output: Path, summary_file: str | Path | None, *, quiet: bool) -> int:
+    """Write and print the summary; the exit code says whether the run reached its end."""
+    from trbdyn import summary
+
+    values = result.summary()
+    if summary_file is not None:
+        summary.write_json(values, summary_file)
+    if not quiet:
+        print(summary.table(values))
+        print(f"\nrecords in {output}")
+    if not result.success:
+        print(f"trbdyn: {result.message}", file=sys.stderr)
+    return DONE if result.success else FAILED
+
+
+def _plot(options: argparse.Namespace) -> int:
+    from trbdyn import plotting
+    from trbdyn.results import load
+
+    result = load(options.file)
+    folder = Path(options.output or f"{Path(options.file).with_suffix('')}_plots")
+    written = plotting.all(result, folder, options.only)
+    if options.animation:
+        from trbdyn import animation
+
+        written.append(animation.save(animation.animate(result), folder / "animation.gif"))
+    for path in written:
+        print(path)
+    return DONE
+
+
+def _info(options: argparse.Namespace) -> int:
+    path = Path(options.file)
+    if path.is_file() and path.suffix != ".toml":
+        return _info_result(path, as_json=options.json)
+    scene, run = _load_case(options.file, options.changes)
+    if options.json:
+        print(json.dumps({"scene": scene.to_dict(), "run": run.to_dict()}, indent=2))
+        return DONE
+    print(_describe(scene))
+    print("\nderived geometry (m, rad, kg)")
+    for name, value in asdict(scene.bearing.geometry).items():
+        print(f"    {name:<28} {value:.6g}")
+    return DONE
+
+
+def _info_result(path: Path, *, as_json: bool) -> int:
+    from trbdyn import summary
+    from trbdyn.results import load
+
+    result = load(path)
+    values = result.summary()
+    if as_json:
+        about = {"meta": result.meta, "records": len(result), "groups": result.groups, "stats": result.stats}
+        print(json.dumps(about | {"summary": values}, indent=2))
+        return DONE
+    print(_describe(result.scene))
+    print(f"{len(result)} records, groups {', '.join(result.groups)}")
+    print(", ".join(f"{name} {value}" for name, value in result.meta.items() if isinstance(value, str | int)))
+    print()
+    print(summary.table(values))
+    return DONE
+
+
+def _describe(scene: Scene) -> str:
+    """What is run, in a few lines."""
+    bearing, cage = scene.bearing, scene.bearing.cage
+    effects = scene.effects.to_dict()
+    effects.pop("friction")
+    return "\n".join(
+        (
+            f"bearing {bearing.name}: {bearing.n_rollers} rollers, pitch diameter {1e3 * bearing.pitch_diameter:.4g} mm, "
+            f"cage play {1e3 * cage.play_radial:.3g} mm radial, {1e3 * cage.play_circumferential:.3g} mm circumferential",
+            f"speed {_amount(scene.speed_rpm)} rpm, axial load {_amount(scene.axial_load)} N, "
+            f"radial load {_amount(scene.radial_load)} N, oil at {scene.lubricant.temperature_c:g} C, start {scene.start.kind}",
+            "effects: " + ", ".join(f"{name} {value}" for name, value in effects.items()),
+        )
+    )
+
+
+def _amount(quantity: Any) -> str:
+    return f"{quantity:g}" if isinstance(quantity, int | float) else "history"
+
+
+def _demo(options: argparse.Namespace) -> int:
+    from trbdyn import plotting
+    from trbdyn.cases import scene_30310
+    from trbdyn.effects import Effects
+    from trbdyn.run_options import RunOptions
+    from trbdyn.scene import Start
+
+    revolutions = 50.0 if options.revolutions is None else options.revolutions
+    run = RunOptions(revolutions=revolutions, accuracy=options.accuracy or "standard")
+    scene = scene_30310(3000.0, 4930.0, effects=Effects.paper(), start=Start.whirl(0.9))
+    folder = plotting.make_folder(options.output)
+    result = _simulate(scene, run, folder / "run.h5", quiet=options.quiet)
+    plotting.all(result, folder, DEMO_PICTURES)
+    code = _finish(result, folder / "run.h5", folder / "summary.json", quiet=options.quiet)
+    if not options.quiet:
+        print(f"pictures {', '.join(f'{name}.png' for name in DEMO_PICTURES)} and summary.json in {folder}")
+    return code
+
+
+def _cases(options: argparse.Namespace) -> int:
+    from trbdyn.toml_case import find_case, shipped_cases
+
+    for name in shipped_cases():
+        first = find_case(name).read_text(encoding="utf-8").partition("\n")[0]
+        print(f"{name:<16} {first.lstrip('# ')}")
+    return DONE
