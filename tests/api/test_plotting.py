@@ -1,0 +1,149 @@
+"""Pictures show the numbers they should, change no global setting and save themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection
+from PIL import Image
+
+from trbdyn import animation, plotting
+from trbdyn.errors import FileError, InputError
+from trbdyn.plotting.style import COLOURS, thin
+from trbdyn.results import Result
+
+
+@pytest.fixture(autouse=True)
+def _no_traces() -> Iterator[None]:
+    before = dict(mpl.rcParams)
+    yield
+    plt.close("all")
+    assert dict(mpl.rcParams) == before
+
+
+def test_cage_locus_shows_the_path_and_the_circles(whirling: Result) -> None:
+    ax = plotting.cage_locus(whirling)
+    path = next(item for item in ax.collections if isinstance(item, LineCollection))
+    points = np.concatenate(path.get_segments())
+    np.testing.assert_allclose(np.hypot(points[:, 0], points[:, 1]), 0.9, rtol=1e-9)
+    assert [patch.get_radius() for patch in ax.patches] == [1.0, pytest.approx(0.48)]
+    assert ax.get_aspect() == 1.0
+    assert "C_{pr}" in ax.get_xlabel()
+    plain = plotting.cage_locus(
+        whirling, plane="rail", colour_by_time=False, circles={"Cpr": 1.0, "equal spacing": 0.436}
+    )
+    assert len(plain.patches) == 2
+    assert not plain.collections
+
+
+def test_pictures_draw_into_given_axes(whirling: Result) -> None:
+    figure, axes = plt.subplots(2, 2)
+    for draw, ax in zip(
+        (plotting.tilt, plotting.axial_motion, plotting.spacing_angles, plotting.torque_split), axes.flat, strict=True
+    ):
+        assert draw(whirling, ax=ax) is ax
+    assert len(plt.get_fignums()) == 1
+    assert figure.axes == list(axes.flat)
+
+
+def test_axes_carry_units_and_numbers(whirling: Result) -> None:
+    tilt = plotting.tilt(whirling, last=5.0)
+    assert tilt.get_ylabel() == "cage tilt (mrad)"
+    assert tilt.get_xlim() == pytest.approx((15.0, 20.0), abs=0.01)
+    np.testing.assert_allclose(np.abs(tilt.lines[0].get_ydata()).max(), 0.2, rtol=1e-4)
+    spacing = plotting.spacing_angles(whirling, n=5)
+    assert "5 gaps" in spacing.get_ylabel()
+    named = [line for line in spacing.lines if not line.get_label().startswith("_")]
+    assert [line.get_label() for line in named] == ["1–6", "2–7", "3–8", "4–9", "5–10"]
+    expected = np.degrees(whirling.spacing_angles(5)[0, 0])
+    assert named[0].get_ydata()[0] == pytest.approx(expected)
+    loads = plotting.contact_loads(whirling)
+    assert "1833 N" in loads.get_legend().get_texts()[0].get_text()
+    audit = plotting.energy_audit(whirling)
+    assert any("1.3e-06" in text.get_text() for text in audit.get_legend().get_texts())
+
+
+def test_spectrum_peaks_at_the_cage_frequency(whirling: Result) -> None:
+    ax = plotting.spectrum(whirling)
+    order, density = ax.lines[0].get_data()
+    assert order[np.argmax(density)] == pytest.approx(1.0, abs=0.1)
+
+
+def test_pocket_forces_have_a_panel_a_pocket(whirling: Result) -> None:
+    figure = plotting.pocket_forces(whirling, last=4.0)
+    assert len(figure.axes) == 12
+    labels = [line.get_label() for line in figure.axes[0].lines]
+    assert labels == ["leading bar", "trailing bar", "large end wall"]
+    top = whirling.pocket_force[:, 0, 0].max()
+    assert 0.8 * top < figure.axes[0].lines[0].get_ydata().max() <= top
+    few = plotting.pocket_forces(whirling, pockets=[0, 6], last=None)
+    assert sum(ax.get_visible() for ax in few.axes) == 2
+    with pytest.raises(InputError, match="rollers"):
+        plotting.spacing_angles(whirling, rollers=[12])
+
+
+def test_whirl_map_marks_every_run(build: Callable[..., tuple[Any, Result]]) -> None:
+    runs = [build(radius=radius, n=2001)[1] for radius in (0.1e-3, 0.225e-3)]
+    ax = plotting.whirl_map(runs)
+    np.testing.assert_allclose(ax.collections[0].get_array(), [0.4, 0.9], rtol=1e-9)
+    np.testing.assert_allclose(ax.collections[0].get_offsets(), [[3000.0, 4.93]] * 2)
+
+
+def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
+    files = plotting.all(whirling, tmp_path / "new" / "pictures")
+    assert [file.stem for file in files] == list(plotting.PICTURES)
+    for file in files:
+        with Image.open(file) as image:
+            assert image.width > 800
+            assert len(image.convert("L").getcolors(256) or []) > 2
+    assert not plt.get_fignums()
+    some = plotting.all(whirling.select(["torque", "cage"]), tmp_path / "some")
+    assert {file.stem for file in some} == {"cage_locus", "axial_motion", "tilt", "spectrum", "torque_split"}
+    assert plotting.conditions(whirling) == "stub: 3000 rpm, $F_a$ 4930 N"
+
+
+def test_all_refuses_unknown_pictures_and_bad_folders(tmp_path: Path, whirling: Result) -> None:
+    with pytest.raises(InputError, match="did you mean 'tilt'"):
+        plotting.all(whirling, tmp_path, only=["tilts"])
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileError, match="folder"):
+        plotting.all(whirling, tmp_path / "file" / "below", only=["tilt"])
+    with pytest.raises(FileError, match="cannot be written"):
+        plotting.save(plotting.tilt(whirling), tmp_path / "missing" / "tilt.png")
+    assert not plt.get_fignums()
+
+
+def test_colours_differ_in_grey() -> None:
+    grey = [np.dot(mpl.colors.to_rgb(colour), (0.299, 0.587, 0.114)) for colour in COLOURS[:3]]
+    assert min(abs(a - b) for i, a in enumerate(grey) for b in grey[:i]) > 0.2
+
+
+def test_thin_keeps_the_extremes() -> None:
+    x = np.linspace(0, 1, 100_001)
+    y = np.zeros_like(x)
+    y[[12345, 67890]] = 5.0, -7.0
+    tx, ty = thin(x, y)
+    assert tx.size < 7000
+    assert (ty.max(), ty.min()) == (5.0, -7.0)
+    assert tx[np.argmax(ty)] == x[12345]
+    assert (tx[0], tx[-1]) == (0.0, 1.0)
+
+
+def test_animation_moves_and_saves(tmp_path: Path, whirling: Result) -> None:
+    path = animation.save(animation.animate(whirling, last=2.0, frames=6), tmp_path / "cage.gif", dpi=40)
+    with Image.open(path) as image:
+        assert image.n_frames == 6
+        first = np.asarray(image.convert("L"), dtype=float)
+        image.seek(3)
+        assert np.abs(np.asarray(image.convert("L"), dtype=float) - first).max() > 50
+    with pytest.raises(InputError, match="frames"):
+        animation.animate(whirling, frames=0)

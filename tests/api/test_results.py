@@ -1,0 +1,379 @@
+"""Results in memory and in files: the same arrays, whole or cut off, and damaged files told apart."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from trbdyn import fields as field_table
+from trbdyn.errors import FileError, InputError
+from trbdyn.result_file import ResultWriter
+from trbdyn.results import Result, load
+
+
+def write(path: Path, run: Any, scene: Any, *, chunk: int = 500, finish: bool = True, **options: Any) -> Path:
+    with ResultWriter(
+        path, scene=scene, layout=run.layout, fields=run.fields, geometry=run.geometry, **options
+    ) as writer:
+        for start in range(0, len(run.records), chunk):
+            writer.append(run.records[start : start + chunk])
+        if finish:
+            writer.finish(**run.ending())
+    return path
+
+
+def test_the_header_has_all_fields(header_fields: list[tuple[str, ...]]) -> None:
+    assert len(header_fields) == len({row[0] for row in header_fields}) > 70
+    assert header_fields[0][0] == "time"
+    groups = ("time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy")
+    assert tuple(dict.fromkeys(row[1] for row in header_fields)) == groups
+
+
+def test_the_table_of_the_core_is_that_of_the_header(header_fields: list[tuple[str, ...]]) -> None:
+    core = pytest.importorskip("trbdyn._core")
+    assert [tuple(row) for row in core.field_table()] == header_fields
+    assert field_table.table()[0].name == "time"
+
+
+def test_shapes_of_fields() -> None:
+    def shape(kind: str) -> tuple[int, ...]:
+        return field_table.Field("x", "cage", kind, "m", "").shape(12, 4)
+
+    kinds = ("scalar", "vec2", "vec3", "quaternion", "roller", "roller_vec3", "roller_quat", "pocket_face")
+    assert [shape(kind) for kind in kinds] == [(), (2,), (3,), (4,), (12,), (12, 3), (12, 4), (12, 4)]
+    with pytest.raises(InputError, match="tensor"):
+        field_table.Field("x", "cage", "tensor", "m", "")
+
+
+def test_attributes_are_the_recorded_fields(synthetic: Any, whirling: Result) -> None:
+    for name, _, shape in synthetic.layout:
+        values = getattr(whirling, name)
+        assert values.shape == (4001, *shape)
+        np.testing.assert_array_equal(values, synthetic.column(name))
+    assert whirling.success
+    assert whirling.message == "reached the end"
+    assert whirling.stats["steps"] == 1234
+    assert whirling.counters["front_rib"] == 0
+    assert whirling.final_state.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert "cage_position" in dir(whirling)
+    assert "cage_position" in whirling
+    assert len(whirling) == 4001
+    assert whirling.n_rollers == 12
+    with pytest.raises(ValueError, match="read-only"):
+        whirling.cage_position[0, 0] = 1.0
+    with pytest.raises(AttributeError, match="no_such"):
+        whirling.no_such  # noqa: B018
+
+
+def test_observables_of_a_known_whirl(synthetic: Any, whirling: Result) -> None:
+    assert whirling.duration == pytest.approx(0.4)
+    assert whirling.revolutions == pytest.approx(20.0)
+    np.testing.assert_allclose(whirling.whirl_radius_over_cpr, 0.9, rtol=1e-12)
+    np.testing.assert_allclose(whirling.whirl_radius, synthetic.whirl_radius, rtol=1e-12)
+    assert whirling.cage_frequency == pytest.approx(synthetic.cage_frequency, rel=1e-9)
+    assert whirling.whirl_ratio == pytest.approx(1.0, abs=1e-3)
+    assert whirling.cage_speed_ratio == pytest.approx(0.41662)
+    np.testing.assert_allclose(whirling.roller_slip, 1e-3, rtol=1e-9)
+    np.testing.assert_allclose(whirling.spin_slip, 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.hypot(*whirling.cage_locus("rail").T), 0.945, rtol=1e-9)
+    np.testing.assert_allclose(whirling.axial_motion[0], 0.1)
+    np.testing.assert_allclose(whirling.spacing_angles(3).sum(axis=1), 6 * np.pi)
+    assert whirling.cage_motion.kind == "circling"
+    assert whirling.energy_closure == pytest.approx(synthetic.residual / synthetic.dissipated, rel=1e-6)
+    assert whirling.power_split["rolling"] == pytest.approx(220.0)
+    assert whirling.torque_split["rib"] == pytest.approx(0.25)
+    assert whirling.pocket_statistics().duty[0, 0] == 1.0
+    assert whirling.settling().settled
+    with pytest.raises(InputError, match="plane"):
+        whirling.cage_locus("side")  # type: ignore[arg-type]
+
+
+def test_selection_and_windows(whirling: Result) -> None:
+    cage = whirling.select(["cage"])
+    assert cage.groups == ("time", "cage")
+    with pytest.raises(InputError, match="was not recorded"):
+        cage["power_loss"]
+    part = whirling.window(0.1, 0.2)
+    assert part.time[0] == pytest.approx(0.1)
+    assert part.time[-1] == pytest.approx(0.2)
+    assert len(part.window(0.15)) == 501
+    assert part.energy_audit.dissipated == pytest.approx(39.27)
+    with pytest.raises(InputError, match="window"):
+        whirling.window(5.0, 6.0)
+    with pytest.raises(InputError, match="did you mean 'cage'"):
+        whirling.select(["cages"])
+    with pytest.raises(InputError, match="sequence"):
+        whirling.select("cage")
+
+
+def test_records_must_fit_the_layout(synthetic: Any, stub_scene: Any) -> None:
+    about = {"scene": stub_scene, "geometry": {}, "fields": synthetic.fields} | synthetic.ending()
+    with pytest.raises(InputError, match="records"):
+        Result.from_records(synthetic.records[:, :100], synthetic.layout, **about)
+    chosen = Result.from_records(synthetic.records, synthetic.layout, groups=["torque"], **about)
+    assert chosen.groups == ("time", "torque")
+    assert not np.shares_memory(chosen.inner_torque, synthetic.records)
+
+
+def test_xarray_has_names_units_and_coordinates(whirling: Result) -> None:
+    dataset = whirling.to_xarray()
+    assert dict(dataset.sizes) == {"time": 4001, "xyz": 3, "xy": 2, "wxyz": 4, "roller": 12, "slot": 4}
+    assert dataset.pocket_force.dims == ("time", "roller", "slot")
+    assert dataset.cage_position.attrs["units"] == "m"
+    assert "cage centre" in dataset.cage_position.attrs["long_name"]
+    assert float(dataset.cage_position.sel(xyz="x").isel(time=0)) == whirling.cage_position[0, 0]
+    assert float(dataset.time[-1]) == pytest.approx(0.4)
+
+
+def test_no_records_make_no_trouble(synthetic: Any, stub_scene: Any) -> None:
+    synthetic.records = synthetic.records[:0]
+    about = {"scene": stub_scene, "geometry": {}, "fields": synthetic.fields, "final_time": 0.0, "final_state": None}
+    about |= {"success": False, "message": "failed at once", "stats": {}, "counters": {}}
+    empty = Result.from_records(synthetic.records, synthetic.layout, **about)
+    assert empty.duration == empty.revolutions == 0.0
+    assert empty.summary()["success"] is False
+
+
+@pytest.mark.parametrize("compression", [None, "gzip"])
+def test_a_file_gives_back_every_number(
+    tmp_path: Path, synthetic: Any, whirling: Result, stub_scene: Any, compression: str | None
+) -> None:
+    meta = {"core_version": "1.2", "settings": {"rtol": 1e-5, "integrator": "bdf"}}
+    loaded = load(write(tmp_path / "run.h5", synthetic, stub_scene, chunk=777, meta=meta, compression=compression))
+    assert [f.name for f in loaded.fields] == [f.name for f in whirling.fields]
+    assert loaded.fields == whirling.fields
+    for field in whirling.fields:
+        np.testing.assert_array_equal(loaded[field.name], whirling[field.name])
+    assert loaded.success
+    assert loaded.message == whirling.message
+    assert loaded.stats == whirling.stats
+    assert loaded.counters == whirling.counters
+    assert loaded.geometry == whirling.geometry
+    assert loaded.final_time == whirling.final_time
+    np.testing.assert_array_equal(loaded.final_state, whirling.final_state)
+    assert loaded.meta["settings"] == meta["settings"]
+    assert loaded.meta["schema_version"] == 1
+
+
+def test_a_file_describes_itself(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
+    path = write(tmp_path / "run.h5", synthetic, stub_scene, meta={"instruction_set": "avx2"}, groups=["cage"])
+    with h5py.File(path) as file:
+        assert file.attrs["schema"] == "trbdyn-result"
+        assert file.attrs["instruction_set"] == "avx2"
+        assert json.loads(file["scene"][()]) == {"stub": True}
+        assert set(file["fields"]) == {f.name for f in synthetic.fields if f.group in ("time", "cage")}
+        attributes = file["fields/cage_position"].attrs
+        assert attributes["unit"] == "m"
+        assert attributes["dims"] == "time xyz"
+        assert "cage centre" in attributes["description"]
+
+
+def test_a_real_scene_survives_the_file(tmp_path: Path, synthetic: Any) -> None:
+    pytest.importorskip("trbdyn._core")
+    from trbdyn.cases import scene_30310
+    from trbdyn.pocket_shapes import drafted_pocket
+    from trbdyn.scene import Start
+
+    scene = scene_30310(start=Start.state(np.linspace(0.0, 1.0, 20000) / 3.0, time=0.25))
+    cage = scene.bearing.cage.replace(pocket=drafted_pocket(scene.bearing, 30.0))
+    scene = scene.replace(bearing=scene.bearing.replace(cage=cage))
+    loaded = load(write(tmp_path / "run.h5", synthetic, scene))
+    assert loaded.scene == scene
+    np.testing.assert_allclose(loaded.whirl_radius_over_cpr, 0.9, rtol=1e-12)
+
+
+def test_an_unfinished_file_is_readable_and_says_so(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
+    loaded = load(write(tmp_path / "run.h5", synthetic, stub_scene, finish=False))
+    assert not loaded.success
+    assert "cut off" in loaded.message
+    assert loaded.final_state is None
+    assert loaded.final_time == pytest.approx(0.4)
+    assert len(loaded) == 4001
+
+
+WRITER = """
+import sys, time
+sys.path.insert(0, sys.argv[2])
+import importlib.util
+spec = importlib.util.spec_from_file_location("synthetic_runs", sys.argv[2] + "/conftest.py")
+module = importlib.util.module_from_spec(spec)
+sys.modules["synthetic_runs"] = module
+spec.loader.exec_module(module)
+from trbdyn import result_file
+result_file.FLUSH_SECONDS = 0.0
+run = module.make_run(n=2001)
+writer = result_file.ResultWriter(sys.argv[1], scene=module.StubScene(), layout=run.layout, fields=run.fields)
+print("ready", flush=True)
+for _ in range(10000):
+    for start in range(0, 2000, 40):
+        writer.append(run.records[start : start + 40])
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+@pytest.mark.parametrize("seed", range(3))
+def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, synthetic: Any, seed: int) -> None:
+    path, script = tmp_path / "run.h5", tmp_path / "writer.py"
+    script.write_text(textwrap.dedent(WRITER))
+    command = [sys.executable, str(script), str(path), str(Path(__file__).parent)]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"ready\n"
+        time.sleep(0.4 + 0.237 * seed)
+        process.send_signal(signal.SIGKILL)
+    loaded = load(path)
+    assert not loaded.success
+    assert len(loaded) >= 40
+    assert len(loaded) % 40 == 0
+    step = np.diff(loaded.time[: min(len(loaded), 2000)])
+    np.testing.assert_allclose(step, 0.4 / 2000, rtol=1e-9)
+    assert loaded.pocket_force.shape == (len(loaded), 12, 4)
+
+
+def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
+    writer = ResultWriter(tmp_path / "run.h5", scene=stub_scene, layout=synthetic.layout, fields=synthetic.fields)
+    writer.append(synthetic.records[:10])
+    writer.append(synthetic.records[10])
+    writer.append(synthetic.records[:0])
+    assert writer.n_written == 0
+    writer.flush()
+    assert writer.n_written == 11
+    writer.close()
+    writer.close()
+    np.testing.assert_array_equal(load(tmp_path / "run.h5").time, synthetic.column("time")[:11])
+
+
+def test_foreign_and_missing_files_are_told_apart(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="no such file"):
+        load(tmp_path / "nothing.h5")
+    (tmp_path / "text.h5").write_text("not a result")
+    with pytest.raises(FileError, match="not an HDF5 file"):
+        load(tmp_path / "text.h5")
+    with h5py.File(tmp_path / "foreign.h5", "w") as file:
+        file["data"] = [1.0]
+    with pytest.raises(FileError, match="not a result of trbdyn"):
+        load(tmp_path / "foreign.h5")
+
+
+def damage(name: str) -> Callable[[h5py.File], None]:
+    def newer(file: h5py.File) -> None:
+        file.attrs["schema_version"] = 99
+
+    def no_scene(file: h5py.File) -> None:
+        del file["scene"]
+
+    def bad_json(file: h5py.File) -> None:
+        file.attrs["stats"] = "{oops"
+
+    def wrong_type(file: h5py.File) -> None:
+        del file["fields/time"]
+        file["fields/time"] = np.arange(3)
+        file["fields/time"].attrs.update(
+            {"group": "time", "kind": "scalar", "unit": "s", "description": "", "index": 0}
+        )
+
+    def wrong_kind(file: h5py.File) -> None:
+        file["fields/time"].attrs["kind"] = "tensor"
+
+    def leads_out(file: h5py.File) -> None:
+        del file["fields/time"]
+        file["fields/time"] = h5py.ExternalLink("/etc/passwd", "/x")
+
+    def external(file: h5py.File) -> None:
+        del file["final_state"]
+        file.create_dataset("final_state", (4,), "f8", external=[("/etc/hostname", 0, h5py.h5f.UNLIMITED)])
+
+    return locals()[name]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("newer", "schema version 99"),
+        ("no_scene", "scene"),
+        ("bad_json", "damaged"),
+        ("wrong_type", "damaged"),
+        ("wrong_kind", "tensor"),
+        ("leads_out", "leads out of the file"),
+        ("external", "leads out of the file"),
+    ],
+)
+def test_damaged_files_are_refused_clearly(
+    tmp_path: Path, synthetic: Any, stub_scene: Any, name: str, words: str
+) -> None:
+    path = write(tmp_path / "run.h5", synthetic, stub_scene)
+    with h5py.File(path, "r+") as file:
+        damage(name)(file)
+    with pytest.raises(FileError, match=words):
+        load(path)
+
+
+def test_truncated_files_raise_file_errors(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
+    data = write(tmp_path / "run.h5", synthetic, stub_scene).read_bytes()
+    for share in (0.0, 0.001, 0.01, 0.3, 0.9, 0.999):
+        path = tmp_path / f"cut{share}.h5"
+        path.write_bytes(data[: int(share * len(data))])
+        with pytest.raises(FileError, match="cut"):
+            load(path)
+
+
+def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
+    path = write(tmp_path / "run.h5", synthetic, stub_scene)
+    loaded = load(path)
+    time_before = loaded.time
+    write(path, synthetic, stub_scene)
+    assert loaded.time is time_before
+    with pytest.raises(FileError, match="replaced"):
+        loaded.cage_position  # noqa: B018
+
+
+def test_files_that_cannot_be_made(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
+    with pytest.raises(FileError, match="cannot be written"):
+        write(tmp_path / "missing" / "run.h5", synthetic, stub_scene)
+    with pytest.raises(InputError, match="groups"):
+        write(tmp_path / "run.h5", synthetic, stub_scene, groups=["wheels"])
+
+
+def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
+    from trbdyn import summary
+
+    values = whirling.summary()
+    assert values["whirl_radius_over_cpr"] == pytest.approx(0.9)
+    assert values["outer_load_mean"] == pytest.approx(1833.0, rel=1e-3)
+    assert values["rib_load_mean"] == pytest.approx(122.0, rel=1e-3)
+    assert values["film_parameter_outer"] == pytest.approx(4.0, rel=1e-2)
+    assert values["torque"] == pytest.approx(1.25, rel=1e-2)
+    assert values["wall_s_per_revolution"] == pytest.approx(2.5 / 20.0)
+    assert values["steps"] == 1234
+    assert values["rhs_evaluations"] == 5678
+    assert values["settled"] is True
+    assert values["speed_rpm"] == pytest.approx(3000.0)
+    written = json.loads(summary.write_json(values, tmp_path / "summary.json").read_text())
+    assert written == values
+    text = summary.table(values)
+    assert "whirl radius / Cpr" in text
+    assert "0.9" in text
+    with pytest.raises(FileError, match="cannot be written"):
+        summary.write_json(values, tmp_path / "missing" / "summary.json")
+
+
+def test_summary_leaves_out_what_was_not_recorded(whirling: Result) -> None:
+    values = whirling.select(["torque"]).summary()
+    assert values["torque"] == pytest.approx(1.25, rel=1e-2)
+    assert values["whirl_radius_over_cpr"] is None
+    assert values["energy_closure"] is None
+    assert json.dumps(values, allow_nan=False)
