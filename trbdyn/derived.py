@@ -62,9 +62,11 @@ class Derived(ABC):
     def settling(self) -> observables.Settling:
         """When the cage's whirl radius and the spread of the rollers' spacing have settled (see `observables.settling`).
 
-        A batch is one turn of the cage or longer, and there are at most 50; a record of fewer than four turns has not settled.
+        A batch is one turn of the roller set or longer, and there are at most 50; a record of fewer than four turns has not
+        settled.
         """
-        turns = int(abs(self["cage_angle"][-1] - self["cage_angle"][0]) / (2.0 * np.pi))
+        orbit = self["roller_orbit_angle"]
+        turns = int(abs(np.mean(orbit[-1] - orbit[0])) / (2.0 * np.pi))
         if turns < 4:
             middle = self["time"].size // 2
             return observables.Settling(middle, float(self["time"][middle]), False)

@@ -85,35 +85,39 @@ def summary(result: Result) -> dict[str, Any]:
     dict
         Numbers by the names of `LABELS`, SI units; ``torque_split`` and ``power_split`` are dictionaries.
     """
-    groups = set(result.groups)
     out: dict[str, Any] = {"success": result.success, "message": result.message}
     out |= {"revolutions": result.revolutions, "duration": result.duration}
-    if len(result) < 2:
-        return {name: _clean(value) for name, value in ({name: None for name in LABELS} | out | _cost(result)).items()}
+    if len(result) > 1:
+        out |= _motion(result)
+    out |= _cost(result)
+    return {name: _clean(out.get(name)) for name in LABELS}
+
+
+def _motion(result: Result) -> dict[str, Any]:
+    groups = set(result.groups)
     if {"cage", "rollers"} <= groups:
         settling = result.settling()
         window, settled = result.window(settling.time), settling.settled
     else:
         window, settled = result.window(float(result["time"][len(result) // 2])), False
     time = window["time"]
-    out |= {"settled": settled, "window_start": float(time[0]), "window_end": float(time[-1])}
+    out: dict[str, Any] = {"settled": settled, "window_start": float(time[0]), "window_end": float(time[-1])}
     out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
-    parts: tuple[tuple[set[str], Callable[[Result], dict[str, Any]]], ...] = (
-        ({"cage"}, _cage),
-        ({"rollers"}, _rollers),
-        ({"pocket"}, _pocket),
-        ({"contacts"}, _contacts),
-        ({"torque"}, _torque),
-        ({"power"}, _power),
-    )
-    for needed, part in parts:
-        if needed <= groups:
+    parts: dict[str, Callable[[Result], dict[str, Any]]] = {
+        "cage": _cage,
+        "rollers": _rollers,
+        "pocket": _pocket,
+        "contacts": _contacts,
+        "torque": _torque,
+        "power": _power,
+    }
+    for group, part in parts.items():
+        if group in groups and not (group == "cage" and result.scene.effects.bodies == "rollers"):
             out |= part(window)
     if "energy" in groups:
         audit = result.energy_audit
         out |= {"energy_closure": audit.closure, "energy_residual": audit.residual}
-    out |= _cost(result)
-    return {name: _clean(out.get(name)) for name in LABELS}
+    return out
 
 
 def _cage(window: Result) -> dict[str, Any]:

@@ -62,6 +62,10 @@ def spacing_angles(result: Result, ax: Axes | None = None, n: int = 1, rollers: 
     return ax
 
 
+def _face_name(result: Result, slot: int) -> str:
+    return result.slot_names[slot].replace("_", " ") or f"face {slot}"
+
+
 def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: float | None = 12.0) -> Figure:
     """Normal forces between rollers and cage: a panel a pocket, a curve a face.
 
@@ -93,7 +97,7 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
         )
         for ax, pocket in zip(axes.flat, chosen, strict=False):
             for index, slot in enumerate(touched):
-                label = result.slot_names[slot] or f"face {slot}"
+                label = _face_name(result, slot)
                 line(ax, turned, force[:, pocket, slot], index, label, linestyle="-", linewidth=0.8)
             ax.set_title(f"pocket {pocket + 1}", loc="right", fontsize=9, pad=2)
             ax.set_xlim(turned[0], turned[-1])
@@ -130,8 +134,7 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
         place = np.arange(1, stats.peak.shape[0] + 1)
         for index, slot in enumerate(touched):
             shift = 0.16 * (index - 0.5 * (len(touched) - 1))
-            name = result.slot_names[slot] or f"face {slot}"
-            label = f"{name} (touched {100 * stats.duty[:, slot].mean():.2g} % of the time)"
+            label = f"{_face_name(result, slot)} (touched {100 * stats.duty[:, slot].mean():.2g} % of the time)"
             look: dict[str, Any] = {
                 "color": COLOURS[index % 7],
                 "marker": MARKERS[index % 7],
