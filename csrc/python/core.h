@@ -1,0 +1,35 @@
+/* What the files of the extension module share. Python.h is included here and nowhere outside python/. */
+#ifndef TRB_PYTHON_CORE_H
+#define TRB_PYTHON_CORE_H
+
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#ifndef TRB_PYTHON_MAIN
+#define NO_IMPORT_ARRAY
+#endif
+#define PY_ARRAY_UNIQUE_SYMBOL trb_numpy
+#include <numpy/arrayobject.h>
+
+#include "bearing/model.h"
+#include "base/status.h"
+
+typedef struct model_object {
+  PyObject_HEAD
+  trb_model *model;
+  char       variant[16]; /* kernel variant in use */
+} model_object;
+
+extern PyTypeObject trb_model_type, trb_simulation_type;
+
+/* Raise the exception of a status; NULL, so that callers can write: return raise_status(...). */
+PyObject *trb_raise(trb_status status, const trb_message *message);
+extern PyObject *trb_step_error;
+
+/* A C-contiguous float64 array with ndim dimensions (new reference); NULL with an error that names it. */
+PyArrayObject *trb_array(PyObject *object, int ndim, const char *name);
+/* A new float64 vector with a copy of values (which may be NULL: zeros). */
+PyObject *trb_vector(const double *values, npy_intp n);
+/* Put a new reference under a key and give it up; -1 on error. */
+int trb_put(PyObject *dictionary, const char *key, PyObject *value);
+
+#endif

@@ -1,0 +1,197 @@
+/* trbdyn._core.Model */
+#include "python/core.h"
+
+#include <structmember.h>
+#include <string.h>
+
+#include "contact/raceway_kernel.h"
+#include "motion/equilibrium.h"
+#include "motion/record.h"
+
+static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
+{
+  static char *names[] = {"params", "diameter_deviation", "faces", "instruction_set", NULL};
+  PyObject    *params_object, *deviation_object, *faces_object;
+  const char  *variant = "";
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|s", names, &params_object, &deviation_object, &faces_object, &variant)) return NULL;
+  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL;
+  model_object  *self = NULL;
+  trb_model     *model = NULL;
+  trb_workspace *work = NULL;
+  trb_message    message = {TRB_OK, ""};
+  trb_status     status = TRB_OK;
+  if (params != NULL) deviation = trb_array(deviation_object, 1, "diameter_deviation");
+  if (deviation != NULL) faces = trb_array(faces_object, 2, "faces");
+  if (faces != NULL) {
+    if (PyArray_DIM(params, 0) != TRB_N_PARAMS)
+      status = trb_fail(&message, TRB_ERR_INPUT, "params: %d values needed, %d given", TRB_N_PARAMS, (int)PyArray_DIM(params, 0));
+    else if (PyArray_DIM(faces, 0) > 0 && PyArray_DIM(faces, 1) != TRB_N_FACE_COLUMNS)
+      status = trb_fail(&message, TRB_ERR_INPUT, "faces: %d columns needed, %d given", TRB_N_FACE_COLUMNS, (int)PyArray_DIM(faces, 1));
+    else
+      status = trb_model_create(PyArray_DATA(params), PyArray_DATA(deviation), (int)PyArray_DIM(deviation, 0), PyArray_DATA(faces),
+                                (int)PyArray_DIM(faces, 0), &model, &message);
+    /* a workspace tells whether the variant runs, and which one "" stands for */
+    if (status == TRB_OK) status = trb_workspace_create(model, variant, &work, &message);
+    if (status == TRB_OK) self = (model_object *)type->tp_alloc(type, 0);
+    if (self != NULL) {
+      self->model = model;
+      (void)PyOS_snprintf(self->variant, sizeof self->variant, "%s", trb_kernel_variants[work->variant].name);
+    } else {
+      trb_model_free(model);
+      if (status != TRB_OK) (void)trb_raise(status, &message);
+    }
+    trb_workspace_free(work);
+  }
+  Py_XDECREF(params);
+  Py_XDECREF(deviation);
+  Py_XDECREF(faces);
+  return (PyObject *)self;
+}
+
+static void model_dealloc(PyObject *object)
+{
+  trb_model_free(((model_object *)object)->model);
+  Py_TYPE(object)->tp_free(object);
+}
+
+static PyObject *get_number(PyObject *self, void *closure)
+{
+  const trb_model *m = ((model_object *)self)->model;
+  const char      *name = closure;
+  if (strcmp(name, "n_rollers") == 0) return PyLong_FromLong(m->n_rollers);
+  if (strcmp(name, "n_slots") == 0) return PyLong_FromLong(m->n_slots);
+  if (strcmp(name, "n_state") == 0) return PyLong_FromLong(trb_state_size(m));
+  return PyLong_FromLong(trb_record_offset(m, TRB_N_FIELDS));
+}
+
+static PyObject *get_variant(PyObject *self, void *closure)
+{
+  (void)closure;
+  return PyUnicode_FromString(((model_object *)self)->variant);
+}
+
+static PyObject *shape_tuple(int n, const int *shape)
+{
+  if (n == 0) return PyTuple_New(0);
+  return n == 1 ? Py_BuildValue("(i)", shape[0]) : Py_BuildValue("(ii)", shape[0], shape[1]);
+}
+
+static PyObject *record_layout(PyObject *self, PyObject *none)
+{
+  const trb_model *m = ((model_object *)self)->model;
+  PyObject        *list = PyList_New(0);
+  (void)none;
+  for (int i = 0; list != NULL && i < TRB_N_FIELDS; i++) {
+    int       shape[2];
+    const int n = trb_field_shape(m, trb_field_table[i].kind, shape);
+    PyObject *row = Py_BuildValue("(siN)", trb_field_table[i].name, trb_record_offset(m, i), shape_tuple(n, shape));
+    if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
+    Py_XDECREF(row);
+  }
+  return list;
+}
+
+static PyObject *state_layout(PyObject *self, PyObject *none)
+{
+#define NAME(name, kind, text) #name,
+  static const char *const roller[] = {TRB_ROLLER_STATE(NAME)}, *const cage[] = {TRB_CAGE_STATE(NAME)};
+#undef NAME
+  const trb_model *m = ((model_object *)self)->model;
+  PyObject        *list = PyList_New(0);
+  (void)none;
+  const int total = TRB_ROLLER_SIZE + TRB_CAGE_SIZE + 2;
+  for (int i = 0; list != NULL && i < total; i++) {
+    PyObject *row;
+    if (i < TRB_ROLLER_SIZE) row = Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), i, m->n_rollers, TRB_ROLLER_SIZE);
+    else if (i < TRB_ROLLER_SIZE + TRB_CAGE_SIZE)
+      row = Py_BuildValue("(Ni())", PyUnicode_FromFormat("cage_%s", cage[i - TRB_ROLLER_SIZE]), trb_state_cage(m) + i - TRB_ROLLER_SIZE);
+    else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(m), m->n_rollers);
+    else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(m), TRB_N_QUADRATURES);
+    if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
+    Py_XDECREF(row);
+  }
+  return list;
+}
+
+static int read_doubles(PyObject *object, const char *name, npy_intp n, double *to)
+{
+  PyArrayObject *array = trb_array(object, 1, name);
+  if (array == NULL) return -1;
+  if (PyArray_DIM(array, 0) != n) {
+    PyErr_Format(PyExc_ValueError, "%s: %d values needed, %d given", name, (int)n, (int)PyArray_DIM(array, 0));
+    Py_DECREF(array);
+    return -1;
+  }
+  memcpy(to, PyArray_DATA(array), (size_t)n * sizeof(double));
+  Py_DECREF(array);
+  return 0;
+}
+
+static PyObject *columns(const double *values, int rows, int width)
+{
+  npy_intp  shape[2] = {rows, width};
+  PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+  if (array != NULL) memcpy(PyArray_DATA((PyArrayObject *)array), values, (size_t)rows * (size_t)width * sizeof(double));
+  return array;
+}
+
+static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
+{
+  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", NULL};
+  const trb_model *m = ((model_object *)self)->model;
+  PyObject        *load, *fixed, *displacement, *angles;
+  trb_equilibrium  e = {0};
+  trb_message      message = {TRB_OK, ""};
+  double           held[TRB_RING_FREEDOMS];
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO", names, &load, &fixed, &displacement, &e.shaft_speed, &angles)) return NULL;
+  if (read_doubles(load, "load", TRB_RING_FREEDOMS, e.load) != 0 || read_doubles(fixed, "fixed", TRB_RING_FREEDOMS, held) != 0 ||
+      read_doubles(displacement, "displacement", TRB_RING_FREEDOMS, e.displacement) != 0)
+    return NULL;
+  for (int i = 0; i < TRB_RING_FREEDOMS; i++) e.fixed[i] = held[i] != 0.0;
+  const size_t n = (size_t)m->n_rollers;
+  double      *block = PyMem_Calloc(n * 7, sizeof(double));
+  if (block == NULL) return PyErr_NoMemory();
+  e.angles = block;
+  e.rollers = block + n;
+  e.loads = block + 4 * n;
+  PyObject *out = NULL;
+  if (read_doubles(angles, "angles", m->n_rollers, e.angles) == 0) {
+    trb_status status;
+    Py_BEGIN_ALLOW_THREADS
+    status = trb_equilibrium_solve(m, &e, &message);
+    Py_END_ALLOW_THREADS
+    if (status != TRB_OK) (void)trb_raise(status, &message);
+    else out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
+                             columns(e.rollers, m->n_rollers, 3), "loads", columns(e.loads, m->n_rollers, 3), "residual", e.residual, "iterations",
+                             e.iterations);
+  }
+  PyMem_Free(block);
+  return out;
+}
+
+static PyMethodDef methods[] = {
+    {"record_layout", record_layout, METH_NOARGS, "(name, offset, shape) of every field of a record."},
+    {"state_layout", state_layout, METH_NOARGS, "(name, offset, shape) of the parts of a state vector."},
+    {"equilibrium", (PyCFunction)(void (*)(void))equilibrium, METH_VARARGS | METH_KEYWORDS, "Static equilibrium at speed."},
+    {NULL, NULL, 0, NULL},
+};
+
+static PyGetSetDef properties[] = {
+    {"n_rollers", get_number, NULL, "number of rollers", "n_rollers"},
+    {"n_slots", get_number, NULL, "most faces in a pocket", "n_slots"},
+    {"n_state", get_number, NULL, "length of a state vector", "n_state"},
+    {"record_length", get_number, NULL, "length of a record", "record_length"},
+    {"instruction_set", get_variant, NULL, "kernel variant in use", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+
+PyTypeObject trb_model_type = {
+    PyVarObject_HEAD_INIT(NULL, 0).tp_name = "trbdyn._core.Model",
+    .tp_basicsize = sizeof(model_object),
+    .tp_dealloc = model_dealloc,
+    .tp_flags = Py_TPFLAGS_DEFAULT,
+    .tp_doc = "One bearing with its lubricant and effects; immutable.",
+    .tp_methods = methods,
+    .tp_getset = properties,
+    .tp_new = model_new,
+};

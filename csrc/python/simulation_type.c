@@ -1,0 +1,394 @@
+/* trbdyn._core.Simulation */
+#include "python/core.h"
+
+#include <string.h>
+
+#include "contact/raceway_kernel.h"
+#include "stepping/simulation.h"
+
+typedef struct simulation_object {
+  PyObject_HEAD
+  PyObject       *model;      /* keeps the model alive */
+  trb_motion     *motion;
+  trb_simulation *simulation;
+  int             busy;       /* another thread is inside */
+} simulation_object;
+
+/* Settings by name out of a dict; integrator is the one that is not a number. */
+static int read_settings(PyObject *dictionary, trb_settings *settings, const char **kind)
+{
+  double    *values = (double *)settings;
+  PyObject  *key, *value;
+  Py_ssize_t position = 0;
+  *kind = "bdf";
+  for (int i = 0; i < TRB_N_SETTINGS; i++) values[i] = trb_setting_table[i].standard;
+  while (PyDict_Next(dictionary, &position, &key, &value)) {
+    const char *name = PyUnicode_AsUTF8(key);
+    if (name == NULL) return -1;
+    if (strcmp(name, "integrator") == 0) {
+      if ((*kind = PyUnicode_AsUTF8(value)) == NULL) return -1;
+      continue;
+    }
+    int found = -1;
+    for (int i = 0; i < TRB_N_SETTINGS; i++)
+      if (strcmp(name, trb_setting_table[i].name) == 0) found = i;
+    if (found < 0) {
+      PyErr_Format(PyExc_ValueError, "setting '%s': not one of setting_table()", name);
+      return -1;
+    }
+    values[found] = PyFloat_AsDouble(value);
+    if (values[found] == -1.0 && PyErr_Occurred()) return -1;
+  }
+  return 0;
+}
+
+static const trb_model *model_of(const simulation_object *self) { return ((model_object *)self->model)->model; }
+
+static PyArrayObject *state_array(const simulation_object *self, PyObject *object)
+{
+  PyArrayObject *state = trb_array(object, 1, "state");
+  if (state != NULL && PyArray_DIM(state, 0) != trb_state_size(model_of(self))) {
+    PyErr_Format(PyExc_ValueError, "state: %d values needed, %d given", trb_state_size(model_of(self)), (int)PyArray_DIM(state, 0));
+    Py_CLEAR(state);
+  }
+  return state;
+}
+
+static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
+{
+  static char *names[] = {"model", "motion", "time", "state", "settings", NULL};
+  PyObject    *model, *motion_object, *state_object, *settings_object;
+  double       time;
+  trb_settings settings;
+  const char  *kind;
+  trb_message  message = {TRB_OK, ""};
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!", names, &trb_model_type, &model, &motion_object, &time, &state_object, &PyDict_Type,
+                                   &settings_object))
+    return NULL;
+  if (read_settings(settings_object, &settings, &kind) != 0) return NULL;
+  PyArrayObject *motion = trb_array(motion_object, 2, "motion");
+  if (motion == NULL) return NULL;
+  simulation_object *self = (simulation_object *)type->tp_alloc(type, 0);
+  PyArrayObject     *state = NULL;
+  if (self != NULL) {
+    Py_INCREF(model);
+    self->model = model;
+    state = state_array(self, state_object);
+  }
+  if (state != NULL) {
+    trb_status status = TRB_OK;
+    if (PyArray_DIM(motion, 1) != TRB_MOTION_COLUMNS)
+      status = trb_fail(&message, TRB_ERR_INPUT, "motion: %d columns needed, %d given", TRB_MOTION_COLUMNS, (int)PyArray_DIM(motion, 1));
+    else status = trb_motion_create(PyArray_DATA(motion), (int)PyArray_DIM(motion, 0), &self->motion, &message);
+    if (status == TRB_OK)
+      status = trb_simulation_create(model_of(self), self->motion, kind, ((model_object *)model)->variant, &settings, time, PyArray_DATA(state),
+                                     &self->simulation, &message);
+    if (status != TRB_OK) {
+      (void)trb_raise(status, &message);
+      Py_CLEAR(self);
+    }
+    Py_DECREF(state);
+  } else {
+    Py_CLEAR(self);
+  }
+  Py_DECREF(motion);
+  return (PyObject *)self;
+}
+
+static void simulation_dealloc(PyObject *object)
+{
+  simulation_object *self = (simulation_object *)object;
+  trb_simulation_free(self->simulation);
+  trb_motion_free(self->motion);
+  Py_XDECREF(self->model);
+  Py_TYPE(object)->tp_free(object);
+}
+
+static int enter(simulation_object *self)
+{
+  if (self->busy) {
+    PyErr_SetString(PyExc_RuntimeError, "this simulation is stepping in another thread; give each thread its own");
+    return -1;
+  }
+  self->busy = 1;
+  return 0;
+}
+
+static PyObject *run(PyObject *object, PyObject *args)
+{
+  simulation_object *self = (simulation_object *)object;
+  PyObject          *times_object;
+  PyArrayObject     *records;
+  long               max_steps, steps = 0;
+  int                rows = 0;
+  trb_status         status;
+  trb_message        message = {TRB_OK, ""};
+  if (!PyArg_ParseTuple(args, "OO!l", &times_object, &PyArray_Type, &records, &max_steps)) return NULL;
+  PyArrayObject *times = trb_array(times_object, 1, "times");
+  if (times == NULL) return NULL;
+  const int length = trb_record_offset(model_of(self), TRB_N_FIELDS);
+  if (PyArray_TYPE(records) != NPY_DOUBLE || PyArray_NDIM(records) != 2 || !PyArray_IS_C_CONTIGUOUS(records) || !PyArray_ISWRITEABLE(records) ||
+      PyArray_DIM(records, 0) < PyArray_DIM(times, 0) || PyArray_DIM(records, 1) != length) {
+    PyErr_Format(PyExc_ValueError, "records: must be a writable C-contiguous float64 array with a row of %d a time", length);
+    Py_DECREF(times);
+    return NULL;
+  }
+  if (enter(self) != 0) {
+    Py_DECREF(times);
+    return NULL;
+  }
+  Py_INCREF(records);
+  Py_BEGIN_ALLOW_THREADS
+  status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), PyArray_DATA(records), max_steps, &rows, &steps, &message);
+  Py_END_ALLOW_THREADS
+  self->busy = 0;
+  Py_DECREF(records);
+  Py_DECREF(times);
+  if (status == TRB_OK) return Py_BuildValue("(il)", rows, steps);
+  (void)trb_raise(status, &message);
+  if (status == TRB_ERR_STEP) {
+    /* what was filled stays: the exception says how much */
+    PyObject *type, *value, *traceback;
+    PyErr_Fetch(&type, &value, &traceback);
+    PyErr_NormalizeException(&type, &value, &traceback);
+    PyObject *done = PyLong_FromLong(rows), *time = PyFloat_FromDouble(self->simulation->integrator.time);
+    if (done != NULL && time != NULL) {
+      (void)PyObject_SetAttrString(value, "rows", done);
+      (void)PyObject_SetAttrString(value, "time", time);
+    }
+    Py_XDECREF(done);
+    Py_XDECREF(time);
+    PyErr_Restore(type, value, traceback);
+  }
+  return NULL;
+}
+
+static PyObject *step(PyObject *object, PyObject *none)
+{
+  simulation_object *self = (simulation_object *)object;
+  trb_message        message = {TRB_OK, ""};
+  trb_status         status;
+  (void)none;
+  if (enter(self) != 0) return NULL;
+  Py_BEGIN_ALLOW_THREADS
+  status = trb_simulation_step(self->simulation, &message);
+  Py_END_ALLOW_THREADS
+  self->busy = 0;
+  return status == TRB_OK ? PyFloat_FromDouble(self->simulation->integrator.time) : trb_raise(status, &message);
+}
+
+static PyObject *state(PyObject *object, PyObject *none)
+{
+  const trb_integrator *it = &((simulation_object *)object)->simulation->integrator;
+  (void)none;
+  return trb_vector(it->y, it->n);
+}
+
+static PyObject *set_state(PyObject *object, PyObject *args)
+{
+  simulation_object *self = (simulation_object *)object;
+  double             time;
+  PyObject          *values;
+  trb_message        message = {TRB_OK, ""};
+  if (!PyArg_ParseTuple(args, "dO", &time, &values)) return NULL;
+  PyArrayObject *array = state_array(self, values);
+  if (array == NULL) return NULL;
+  if (enter(self) != 0) {
+    Py_DECREF(array);
+    return NULL;
+  }
+  const trb_status status = trb_simulation_set_state(self->simulation, time, PyArray_DATA(array), &message);
+  self->busy = 0;
+  Py_DECREF(array);
+  if (status != TRB_OK) return trb_raise(status, &message);
+  Py_RETURN_NONE;
+}
+
+static PyObject *restart(PyObject *object, PyObject *none)
+{
+  simulation_object *self = (simulation_object *)object;
+  trb_integrator    *it = &self->simulation->integrator;
+  trb_message        message = {TRB_OK, ""};
+  (void)none;
+  if (enter(self) != 0) return NULL;
+  const trb_status status = trb_simulation_set_state(self->simulation, it->time, it->y, &message);
+  self->busy = 0;
+  if (status != TRB_OK) return trb_raise(status, &message);
+  Py_RETURN_NONE;
+}
+
+/* (time, state) of a look from outside; the state as a new reference. */
+static PyArrayObject *look(simulation_object *self, PyObject *args, double *time)
+{
+  PyObject *values;
+  if (!PyArg_ParseTuple(args, "dO", time, &values)) return NULL;
+  PyArrayObject *array = state_array(self, values);
+  if (array != NULL && enter(self) != 0) Py_CLEAR(array);
+  return array;
+}
+
+static PyObject *observe(PyObject *object, PyObject *args)
+{
+  simulation_object *self = (simulation_object *)object;
+  trb_simulation    *s = self->simulation;
+  double             time;
+  PyArrayObject     *array = look(self, args, &time);
+  if (array == NULL) return NULL;
+  PyObject *out = trb_vector(NULL, trb_record_offset(s->model, TRB_N_FIELDS));
+  if (out != NULL) trb_record_fill(s->onlooker, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
+  self->busy = 0;
+  Py_DECREF(array);
+  return out;
+}
+
+static PyObject *derivative(PyObject *object, PyObject *args)
+{
+  simulation_object *self = (simulation_object *)object;
+  trb_simulation    *s = self->simulation;
+  double             time;
+  PyArrayObject     *array = look(self, args, &time);
+  if (array == NULL) return NULL;
+  PyObject *out = trb_vector(NULL, s->integrator.n);
+  if (out != NULL) trb_dynamics_derivative(s->onlooker, time, PyArray_DATA(array), PyArray_DATA((PyArrayObject *)out));
+  self->busy = 0;
+  Py_DECREF(array);
+  return out;
+}
+
+/* Every lane field of the raceways, shape (race, roller, node), and every field of the ribs, shape (roller,). */
+static int put_detail(const trb_model *m, const trb_detail *detail, PyObject *out)
+{
+#define NAME(name, unit, text) #name,
+  static const char *const lanes[] = {TRB_LANE_FIELDS(NAME)}, *const points[] = {TRB_POINT_FIELDS(NAME)};
+#undef NAME
+  for (int f = 0; f < TRB_N_LANE_FIELDS; f++) {
+    npy_intp  shape[3] = {TRB_N_RACES, m->n_rollers, m->n_nodes};
+    PyObject *array = PyArray_SimpleNew(3, shape, NPY_DOUBLE);
+    if (array == NULL) return -1;
+    double *to = PyArray_DATA((PyArrayObject *)array);
+    for (int race = 0; race < TRB_N_RACES; race++)
+      for (int j = 0; j < m->n_rollers; j++, to += m->n_nodes) memcpy(to, trb_detail_lane(m, detail, f, race, j), (size_t)m->n_nodes * sizeof(double));
+    char key[64];
+    (void)PyOS_snprintf(key, sizeof key, "raceway_%s", lanes[f]);
+    if (trb_put(out, key, array) != 0) return -1;
+  }
+  const int count = (int)(sizeof(trb_point_detail) / sizeof(double));
+  for (int f = 0; f < 2 * count; f++) {
+    const trb_point_detail *from = f < count ? detail->rib : detail->front_rib;
+    PyObject               *array = trb_vector(NULL, m->n_rollers);
+    if (array == NULL) return -1;
+    for (int j = 0; j < m->n_rollers; j++) ((double *)PyArray_DATA((PyArrayObject *)array))[j] = ((const double *)&from[j])[f % count];
+    char key[64];
+    (void)PyOS_snprintf(key, sizeof key, "%s_%s", f < count ? "rib" : "front_rib", points[f % count]);
+    if (trb_put(out, key, array) != 0) return -1;
+  }
+  const double *pocket[] = {detail->pocket_force, detail->pocket_friction, detail->pocket_interference};
+  const char   *keys[] = {"pocket_load", "pocket_friction", "pocket_interference"};
+  for (int f = 0; f < 3; f++) {
+    npy_intp  shape[2] = {m->n_rollers, m->n_slots};
+    PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+    if (array == NULL) return -1;
+    memcpy(PyArray_DATA((PyArrayObject *)array), pocket[f], (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
+    if (trb_put(out, keys[f], array) != 0) return -1;
+  }
+  return 0;
+}
+
+/* Wrenches of every roller's contacts, in the frames that trb_roller_load documents, shape (roller, 3) or (roller,). */
+static int put_loads(const trb_model *m, const trb_roller_load *loads, PyObject *out)
+{
+  const struct { const char *key; size_t offset; int width; } parts[] = {
+      {"force", offsetof(trb_roller_load, force), 3},           {"moment", offsetof(trb_roller_load, moment), 3},
+      {"ring_force", offsetof(trb_roller_load, ring_force), 3}, {"ring_moment", offsetof(trb_roller_load, ring_moment), 3},
+      {"outer_force", offsetof(trb_roller_load, outer_force), 3}, {"outer_moment", offsetof(trb_roller_load, outer_moment), 3},
+      {"cage_force", offsetof(trb_roller_load, cage_force), 3}, {"cage_moment", offsetof(trb_roller_load, cage_moment), 3},
+      {"elastic_energy", offsetof(trb_roller_load, elastic), 1}, {"power", offsetof(trb_roller_load, power), TRB_N_POWERS}};
+  for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++) {
+    npy_intp  shape[2] = {m->n_rollers, parts[p].width};
+    PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+    if (array == NULL) return -1;
+    for (int j = 0; j < m->n_rollers; j++)
+      memcpy((double *)PyArray_DATA((PyArrayObject *)array) + j * parts[p].width, (const char *)&loads[j] + parts[p].offset, (size_t)parts[p].width * sizeof(double));
+    if (trb_put(out, parts[p].key, array) != 0) return -1;
+  }
+  return 0;
+}
+
+static PyObject *contacts(PyObject *object, PyObject *args)
+{
+  simulation_object *self = (simulation_object *)object;
+  trb_simulation    *s = self->simulation;
+  double             time;
+  PyArrayObject     *array = look(self, args, &time);
+  if (array == NULL) return NULL;
+  trb_dynamics_pose(s->onlooker, time, PyArray_DATA(array));
+  trb_detail_clear(s->model, s->detail);
+  trb_dynamics_loads(s->onlooker, s->detail);
+  PyObject *out = PyDict_New();
+  if (out != NULL && (put_detail(s->model, s->detail, out) != 0 || put_loads(s->model, s->onlooker->loads, out) != 0)) Py_CLEAR(out);
+  self->busy = 0;
+  Py_DECREF(array);
+  return out;
+}
+
+static PyObject *counters(PyObject *object, PyObject *none)
+{
+  const trb_counters *c = &((simulation_object *)object)->simulation->dynamics->work->counters;
+  PyObject           *out = PyDict_New();
+  (void)none;
+#define PUT(name, text) \
+  if (out != NULL && trb_put(out, #name, PyLong_FromLongLong(c->name)) != 0) Py_CLEAR(out);
+  TRB_COUNTERS(PUT)
+#undef PUT
+  return out;
+}
+
+static PyObject *statistics(PyObject *object, PyObject *none)
+{
+  const trb_integrator *it = &((simulation_object *)object)->simulation->integrator;
+  trb_statistics        s = {0};
+  PyObject             *out = PyDict_New();
+  (void)none;
+  it->kind->statistics(it, &s);
+#define PUT(name, text) \
+  if (out != NULL && trb_put(out, #name, PyFloat_FromDouble(s.name)) != 0) Py_CLEAR(out);
+  TRB_STATISTICS(PUT)
+#undef PUT
+  return out;
+}
+
+static PyObject *get_time(PyObject *object, void *closure)
+{
+  (void)closure;
+  return PyFloat_FromDouble(((simulation_object *)object)->simulation->integrator.time);
+}
+
+static PyMethodDef methods[] = {
+    {"run", run, METH_VARARGS, "run(times, records, max_steps): integrate, a record a time; gives (rows, steps)."},
+    {"step", step, METH_NOARGS, "One step of the integrator; gives the new time."},
+    {"state", state, METH_NOARGS, "A copy of the state."},
+    {"set_state", set_state, METH_VARARGS, "set_state(time, state): restart the integrator there."},
+    {"restart", restart, METH_NOARGS, "Restart the integrator where it is."},
+    {"observe", observe, METH_VARARGS, "observe(time, state): a record."},
+    {"derivative", derivative, METH_VARARGS, "derivative(time, state): rates of the state."},
+    {"contacts", contacts, METH_VARARGS, "contacts(time, state): every intermediate quantity of every contact."},
+    {"counters", counters, METH_NOARGS, "What was evaluated, counted."},
+    {"statistics", statistics, METH_NOARGS, "What the integrator did."},
+    {NULL, NULL, 0, NULL},
+};
+
+static PyGetSetDef properties[] = {
+    {"time", get_time, NULL, "end of the last step, s", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+
+PyTypeObject trb_simulation_type = {
+    PyVarObject_HEAD_INIT(NULL, 0).tp_name = "trbdyn._core.Simulation",
+    .tp_basicsize = sizeof(simulation_object),
+    .tp_dealloc = simulation_dealloc,
+    .tp_flags = Py_TPFLAGS_DEFAULT,
+    .tp_doc = "One integration: model, prescribed motion, state, integrator.",
+    .tp_methods = methods,
+    .tp_getset = properties,
+    .tp_new = simulation_new,
+};

@@ -1,0 +1,121 @@
+#include "stepping/arrow_solver.h"
+
+#include <string.h>
+
+trb_arrow *trb_arrow_of(SUNMatrix matrix) { return matrix->content; }
+
+static SUNMatrix_ID matrix_id(SUNMatrix matrix)
+{
+  (void)matrix;
+  return SUNMATRIX_CUSTOM;
+}
+
+static SUNMatrix matrix_clone(SUNMatrix matrix)
+{
+  const trb_arrow *arrow = trb_arrow_of(matrix);
+  return trb_arrow_matrix(arrow->n, arrow->with_cage, matrix->sunctx);
+}
+
+static void matrix_destroy(SUNMatrix matrix)
+{
+  if (matrix == NULL) return;
+  trb_arrow_free(matrix->content);
+  matrix->content = NULL;
+  SUNMatFreeEmpty(matrix);
+}
+
+static int matrix_zero(SUNMatrix matrix)
+{
+  trb_arrow_zero(trb_arrow_of(matrix));
+  return 0;
+}
+
+static int matrix_copy(SUNMatrix from, SUNMatrix to)
+{
+  trb_arrow_copy(trb_arrow_of(from), trb_arrow_of(to));
+  return 0;
+}
+
+static int matrix_scale_add_identity(sunrealtype c, SUNMatrix matrix)
+{
+  trb_arrow_scale_add_identity(trb_arrow_of(matrix), c);
+  return 0;
+}
+
+SUNMatrix trb_arrow_matrix(int n_rollers, int with_cage, SUNContext context)
+{
+  SUNMatrix  matrix = SUNMatNewEmpty(context);
+  trb_arrow *arrow = NULL;
+  if (matrix == NULL) return NULL;
+  if (trb_arrow_create(n_rollers, with_cage, &arrow, NULL) != TRB_OK) {
+    SUNMatFreeEmpty(matrix);
+    return NULL;
+  }
+  matrix->content = arrow;
+  matrix->ops->getid = matrix_id;
+  matrix->ops->clone = matrix_clone;
+  matrix->ops->destroy = matrix_destroy;
+  matrix->ops->zero = matrix_zero;
+  matrix->ops->copy = matrix_copy;
+  matrix->ops->scaleaddi = matrix_scale_add_identity;
+  return matrix;
+}
+
+static SUNLinearSolver_Type solver_type(SUNLinearSolver solver)
+{
+  (void)solver;
+  return SUNLINEARSOLVER_DIRECT;
+}
+
+static SUNLinearSolver_ID solver_id(SUNLinearSolver solver)
+{
+  (void)solver;
+  return SUNLINEARSOLVER_CUSTOM;
+}
+
+static int solver_initialize(SUNLinearSolver solver)
+{
+  (void)solver;
+  return 0;
+}
+
+/* > 0: singular, the integrator may try again with another step. */
+static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) { return trb_arrow_factor(trb_arrow_of(matrix), solver->content) ? 0 : 1; }
+
+static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance)
+{
+  double       *to = N_VGetArrayPointer(x);
+  const double *from = N_VGetArrayPointer(b);
+  (void)tolerance;
+  if (to != from) memcpy(to, from, (size_t)N_VGetLength(b) * sizeof *to);
+  trb_arrow_solve(trb_arrow_of(matrix), solver->content, to);
+  return 0;
+}
+
+static int solver_free(SUNLinearSolver solver)
+{
+  if (solver == NULL) return 0;
+  trb_arrow_factors_free(solver->content);
+  solver->content = NULL;
+  SUNLinSolFreeEmpty(solver);
+  return 0;
+}
+
+SUNLinearSolver trb_arrow_linear_solver(int n_rollers, SUNContext context)
+{
+  SUNLinearSolver    solver = SUNLinSolNewEmpty(context);
+  trb_arrow_factors *factors = NULL;
+  if (solver == NULL) return NULL;
+  if (trb_arrow_factors_create(n_rollers, &factors, NULL) != TRB_OK) {
+    SUNLinSolFreeEmpty(solver);
+    return NULL;
+  }
+  solver->content = factors;
+  solver->ops->gettype = solver_type;
+  solver->ops->getid = solver_id;
+  solver->ops->initialize = solver_initialize;
+  solver->ops->setup = solver_setup;
+  solver->ops->solve = solver_solve;
+  solver->ops->free = solver_free;
+  return solver;
+}

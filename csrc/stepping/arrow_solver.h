@@ -1,0 +1,13 @@
+/* The arrow matrix and its solver as SUNDIALS objects. */
+#ifndef TRB_STEPPING_ARROW_SOLVER_H
+#define TRB_STEPPING_ARROW_SOLVER_H
+
+#include "stepping/arrow.h"
+#include "stepping/sundials_shim.h"
+
+/* NULL if out of memory. The tail of the state (spin angles, quadratures) has the identity. */
+SUNMatrix       trb_arrow_matrix(int n_rollers, int with_cage, SUNContext context);
+trb_arrow      *trb_arrow_of(SUNMatrix matrix);
+SUNLinearSolver trb_arrow_linear_solver(int n_rollers, SUNContext context);
+
+#endif

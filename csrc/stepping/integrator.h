@@ -1,0 +1,99 @@
+/* Integrators: a struct of functions. A kind is one file; trb_integrator_kinds lists them. */
+#ifndef TRB_STEPPING_INTEGRATOR_H
+#define TRB_STEPPING_INTEGRATOR_H
+
+#include "motion/dynamics.h"
+
+/* Settings of an integration. X(name, default, lower, upper, text) */
+#define TRB_SETTINGS(X) \
+  X(rtol,           1e-4,  1e-12, 0.1,  "relative tolerance of velocities") \
+  X(atol_position,  1e-9,  1e-16, 1e-2, "tolerance of positions, m") \
+  X(atol_angle,     1e-7,  1e-14, 1e-1, "tolerance of angles, rad") \
+  X(atol_velocity,  1e-5,  1e-14, 10,   "tolerance of velocities, m/s") \
+  X(atol_spin,      1e-3,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
+  X(max_order,      2,     1,     5,    "highest order of BDF") \
+  X(erk_order,      5,     2,     8,    "order of the explicit method") \
+  X(max_step,       1e-3,  1e-12, 1e3,  "largest step, s") \
+  X(first_step,     0,     0,     1,    "first step, s; 0: chosen by the integrator") \
+  X(smallest_step,  1e-15, 1e-18, 1,    "smallest step, s: below it the run stops with an error")
+
+typedef struct trb_settings {
+#define TRB_SETTING_MEMBER(name, standard, lower, upper, text) double name;
+  TRB_SETTINGS(TRB_SETTING_MEMBER)
+#undef TRB_SETTING_MEMBER
+} trb_settings;
+
+enum { TRB_N_SETTINGS = (int)(sizeof(trb_settings) / sizeof(double)) };
+
+typedef struct trb_setting_info {
+  const char *name;
+  double      standard, lower, upper;
+  const char *text;
+} trb_setting_info;
+
+extern const trb_setting_info trb_setting_table[TRB_N_SETTINGS];
+
+/* What an integrator did. X(name, text) */
+#define TRB_STATISTICS(X) \
+  X(steps,                 "steps taken") \
+  X(rhs_evaluations,       "evaluations of the right-hand side by the integrator") \
+  X(jacobian_evaluations,  "Jacobians") \
+  X(linear_setups,         "factorisations") \
+  X(nonlinear_iterations,  "iterations of Newton's method") \
+  X(nonlinear_failures,    "steps repeated because Newton's method did not converge") \
+  X(error_failures,        "steps repeated because their error was too large") \
+  X(restarts,              "starts of the integrator") \
+  X(last_step,             "size of the last step, s") \
+  X(smallest_step,         "size of the smallest step, s") \
+  X(last_order,            "order of the last step")
+
+typedef struct trb_statistics {
+#define TRB_STATISTIC_MEMBER(name, text) double name;
+  TRB_STATISTICS(TRB_STATISTIC_MEMBER)
+#undef TRB_STATISTIC_MEMBER
+} trb_statistics;
+
+typedef struct trb_integrator trb_integrator;
+
+typedef struct trb_integrator_kind {
+  const char *name;
+  const char *text;
+  trb_status (*create)(trb_integrator *it, trb_message *message);
+  void (*free)(trb_integrator *it);
+  /* start (again) at it->time, it->y */
+  trb_status (*restart)(trb_integrator *it, trb_message *message);
+  /* one step; moves it->time and it->y */
+  trb_status (*step)(trb_integrator *it, trb_message *message);
+  /* the solution inside the last step */
+  trb_status (*interpolate)(trb_integrator *it, double time, double *y, trb_message *message);
+  void (*statistics)(const trb_integrator *it, trb_statistics *statistics);
+  /* index of the entry with the largest scaled error of the last step, or -1 */
+  int (*worst)(trb_integrator *it);
+} trb_integrator_kind;
+
+struct trb_integrator {
+  const trb_integrator_kind *kind;
+  trb_dynamics              *dynamics; /* owned by the simulation */
+  const trb_motion          *motion;
+  const char                *variant;  /* kernel variant */
+  trb_settings               settings;
+  int                        n;        /* length of y */
+  double                     time;     /* end of the last step, s */
+  double                    *y;        /* state there */
+  double                    *scale;    /* absolute tolerance of every entry */
+  double                    *relative; /* relative tolerance of every entry */
+  trb_counters              *extra;    /* where evaluations for Jacobians are counted */
+  void                      *self;     /* of the kind */
+};
+
+extern const trb_integrator_kind trb_integrator_bdf, trb_integrator_erk;
+extern const trb_integrator_kind *const trb_integrator_kinds[];
+extern const int                        trb_n_integrator_kinds;
+
+/* Right-hand side with a finite check: 0, or 1 if a rate is not finite (the integrator then tries a smaller step). */
+int trb_integrator_rates(trb_integrator *it, double time, const double *y, double *rates);
+
+/* Error weights 1/(relative |y| + scale): positions and angles have no relative part, so that a roller's drift loosens nothing. */
+void trb_integrator_weights(const trb_integrator *it, const double *y, double *weights);
+
+#endif

@@ -1,0 +1,185 @@
+/* Backward differentiation formulas of CVODE, with the structured Jacobian. Above order 2 the formulas are unstable near the imaginary
+ * axis, where the lightly damped contact modes lie (35 kHz), and the step is pinned: the standard limit is 2. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "stepping/arrow_solver.h"
+#include "stepping/integrator.h"
+#include "stepping/jacobian.h"
+#include "stepping/sundials_context.h"
+
+typedef struct bdf {
+  trb_sundials    sundials;
+  void           *memory;
+  N_Vector        y;        /* over it->y */
+  N_Vector        scratch;  /* of its own */
+  SUNMatrix       matrix;
+  SUNLinearSolver solver;
+  trb_jacobian   *jacobian;
+  trb_statistics  before;   /* totals up to the last restart */
+  double          smallest; /* smallest step, s */
+} bdf;
+
+static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
+{
+  return trb_integrator_rates(data, time, N_VGetArrayPointer(y), N_VGetArrayPointer(out));
+}
+
+static int weights(N_Vector y, N_Vector out, void *data)
+{
+  trb_integrator_weights(data, N_VGetArrayPointer(y), N_VGetArrayPointer(out));
+  return 0;
+}
+
+static int jacobian(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix, void *data, N_Vector a, N_Vector b, N_Vector c)
+{
+  const trb_integrator *it = data;
+  const bdf            *self = it->self;
+  (void)fy;
+  (void)a;
+  (void)b;
+  (void)c;
+  trb_jacobian_fill(self->jacobian, time, N_VGetArrayPointer(y), trb_arrow_of(matrix));
+  return 0;
+}
+
+static trb_status failed(bdf *self, const char *what, trb_message *message)
+{
+  return trb_fail(message, TRB_ERR_SOLVER, "CVODE: %s failed: %s", what, self->sundials.text);
+}
+
+#define CHECK(call) \
+  do { \
+    if ((call) != CV_SUCCESS) return failed(self, #call, message); \
+  } while (0)
+
+static trb_status configure(trb_integrator *it, trb_message *message)
+{
+  bdf *self = it->self;
+  CHECK(CVodeInit(self->memory, rates, it->time, self->y));
+  CHECK(CVodeSetUserData(self->memory, it));
+  CHECK(CVodeWFtolerances(self->memory, weights));
+  CHECK(CVodeSetLinearSolver(self->memory, self->solver, self->matrix));
+  CHECK(CVodeSetJacFn(self->memory, jacobian));
+  CHECK(CVodeSetMaxOrd(self->memory, (int)it->settings.max_order));
+  CHECK(CVodeSetMaxStep(self->memory, it->settings.max_step));
+  CHECK(CVodeSetMaxErrTestFails(self->memory, 15));
+  CHECK(CVodeSetMaxConvFails(self->memory, 25));
+  if (it->settings.first_step > 0.0) CHECK(CVodeSetInitStep(self->memory, it->settings.first_step));
+  return TRB_OK;
+}
+
+static trb_status bdf_create(trb_integrator *it, trb_message *message)
+{
+  const trb_model *m = it->dynamics->model;
+  const int        with_cage = m->params.with_cage > 0.0;
+  bdf             *self = calloc(1, sizeof *self);
+  if (self == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
+  it->self = self;
+  self->smallest = INFINITY;
+  trb_status status = trb_sundials_open(&self->sundials, message);
+  if (status != TRB_OK) return status;
+  self->y = trb_sundials_vector(&self->sundials, it->n, it->y);
+  self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
+  self->matrix = trb_arrow_matrix(m->n_rollers, with_cage, self->sundials.context);
+  self->solver = trb_arrow_linear_solver(m->n_rollers, self->sundials.context);
+  self->memory = CVodeCreate(CV_BDF, self->sundials.context);
+  if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->memory)
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
+  trb_sundials_quiet_cvode(&self->sundials, self->memory);
+  status = trb_jacobian_create(m, it->motion, it->variant, &self->jacobian, message);
+  return status == TRB_OK ? configure(it, message) : status;
+}
+
+static void bdf_free(trb_integrator *it)
+{
+  bdf *self = it->self;
+  if (self == NULL) return;
+  if (self->memory != NULL) CVodeFree(&self->memory);
+  if (self->solver != NULL) (void)SUNLinSolFree(self->solver);
+  if (self->matrix != NULL) SUNMatDestroy(self->matrix);
+  if (self->scratch != NULL) N_VDestroy(self->scratch);
+  if (self->y != NULL) N_VDestroy(self->y);
+  trb_sundials_close(&self->sundials);
+  trb_jacobian_free(self->jacobian);
+  free(self);
+  it->self = NULL;
+}
+
+static void read_totals(const trb_integrator *it, trb_statistics *s)
+{
+  const bdf *self = it->self;
+  long       value = 0;
+  int        order = 0;
+  /* these getters fail only without memory, which create has checked */
+#define READ(getter, name) \
+  value = 0; \
+  (void)getter(self->memory, &value); \
+  s->name = self->before.name + (double)value
+  READ(CVodeGetNumSteps, steps);
+  READ(CVodeGetNumRhsEvals, rhs_evaluations);
+  READ(CVodeGetNumJacEvals, jacobian_evaluations);
+  READ(CVodeGetNumLinSolvSetups, linear_setups);
+  READ(CVodeGetNumNonlinSolvIters, nonlinear_iterations);
+  READ(CVodeGetNumNonlinSolvConvFails, nonlinear_failures);
+  READ(CVodeGetNumErrTestFails, error_failures);
+#undef READ
+  (void)CVodeGetLastStep(self->memory, &s->last_step);
+  (void)CVodeGetLastOrder(self->memory, &order);
+  s->last_order = order;
+  s->restarts = self->before.restarts + 1;
+  s->smallest_step = self->smallest;
+}
+
+static trb_status bdf_restart(trb_integrator *it, trb_message *message)
+{
+  bdf           *self = it->self;
+  trb_statistics so_far;
+  read_totals(it, &so_far);
+  self->before = so_far;
+  CHECK(CVodeReInit(self->memory, it->time, self->y));
+  return TRB_OK;
+}
+
+static trb_status bdf_step(trb_integrator *it, trb_message *message)
+{
+  bdf        *self = it->self;
+  sunrealtype reached = it->time, step = 0.0;
+  const int   flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
+  if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "CVODE stopped (%d): %s", flag, self->sundials.text);
+  CHECK(CVodeGetLastStep(self->memory, &step));
+  self->smallest = fmin(self->smallest, step);
+  it->time = reached;
+  if (step < it->settings.smallest_step) return trb_fail(message, TRB_ERR_STEP, "the step fell to %g s", step);
+  return TRB_OK;
+}
+
+static trb_status bdf_interpolate(trb_integrator *it, double time, double *y, trb_message *message)
+{
+  bdf     *self = it->self;
+  N_Vector out = trb_sundials_vector(&self->sundials, it->n, y);
+  if (out == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for an output");
+  const int flag = CVodeGetDky(self->memory, time, 0, out);
+  N_VDestroy(out);
+  return flag == CV_SUCCESS ? TRB_OK : failed(self, "CVodeGetDky", message);
+}
+
+static int bdf_worst(trb_integrator *it)
+{
+  bdf   *self = it->self;
+  int    worst = -1;
+  double largest = 0.0;
+  if (CVodeGetEstLocalErrors(self->memory, self->scratch) != CV_SUCCESS) return -1;
+  const double *error = N_VGetArrayPointer(self->scratch);
+  for (int i = 0; i < trb_state_main_size(it->dynamics->model); i++) {
+    const double scaled = fabs(error[i]) / (it->relative[i] * fabs(it->y[i]) + it->scale[i]);
+    if (scaled > largest || !isfinite(scaled)) {
+      largest = scaled;
+      worst = i;
+    }
+  }
+  return worst;
+}
+
+const trb_integrator_kind trb_integrator_bdf = {"bdf", "backward differentiation of CVODE with the structured Jacobian",
+                                                bdf_create, bdf_free, bdf_restart, bdf_step, bdf_interpolate, read_totals, bdf_worst};

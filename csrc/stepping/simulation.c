@@ -1,0 +1,198 @@
+#include "stepping/simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static trb_status check_settings(const trb_settings *settings, trb_message *message)
+{
+  const double *values = (const double *)settings;
+  for (int i = 0; i < TRB_N_SETTINGS; i++) {
+    const trb_setting_info *info = &trb_setting_table[i];
+    if (!(values[i] >= info->lower && values[i] <= info->upper))
+      return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be from %g to %g", info->name, values[i], info->lower, info->upper);
+  }
+  return TRB_OK;
+}
+
+/* Name of a state entry, for a person. */
+static void describe(const trb_model *m, int index, char *text, size_t size)
+{
+#define TRB_STATE_NAME(name, kind, what) #name " (" what ")",
+  static const char *const roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_NAME)};
+  static const char *const cage[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(TRB_STATE_NAME)};
+#undef TRB_STATE_NAME
+  trb_message out;
+  if (index < 0) (void)trb_fail(&out, TRB_OK, "no single quantity");
+  else if (index < trb_state_cage(m)) (void)trb_fail(&out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
+  else if (index < trb_state_main_size(m)) (void)trb_fail(&out, TRB_OK, "cage, %s", cage[index - trb_state_cage(m)]);
+  else (void)trb_fail(&out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(m));
+  strncpy(text, out.text, size - 1);
+  text[size - 1] = '\0';
+}
+
+static trb_status check_state(const trb_model *m, double time, const double *state, trb_message *message)
+{
+  char what[160];
+  if (!isfinite(time)) return trb_fail(message, TRB_ERR_STATE, "time = %g: must be finite", time);
+  for (int i = 0; i < trb_state_size(m); i++)
+    if (!isfinite(state[i])) {
+      describe(m, i, what, sizeof what);
+      return trb_fail(message, TRB_ERR_STATE, "state[%d] = %g, %s: must be finite", i, state[i], what);
+    }
+  for (int j = 0; j < m->n_rollers; j++) {
+    const double *y = state + trb_state_roller(j);
+    if (!(m->geometry.roller_centre_radius + y[TRB_ROLLER_r] > 0.0) || fabs(y[TRB_ROLLER_skew]) > 1.5)
+      return trb_fail(message, TRB_ERR_STATE, "roller %d: r = %g m, skew = %g rad: beyond what the coordinates hold", j, y[TRB_ROLLER_r],
+                      y[TRB_ROLLER_skew]);
+  }
+  if (fabs(state[trb_state_cage(m) + TRB_CAGE_skew]) > 1.5)
+    return trb_fail(message, TRB_ERR_STATE, "cage: skew = %g rad: beyond what the coordinates hold", state[trb_state_cage(m) + TRB_CAGE_skew]);
+  return TRB_OK;
+}
+
+static const trb_integrator_kind *find_kind(const char *name)
+{
+  for (int i = 0; i < trb_n_integrator_kinds; i++)
+    if (strcmp(trb_integrator_kinds[i]->name, name) == 0) return trb_integrator_kinds[i];
+  return NULL;
+}
+
+/* Quadratures are integrated along, but do not control the step. */
+static void fill_tolerances(trb_integrator *it)
+{
+  const trb_settings *s = &it->settings;
+  const double        scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, s->atol_velocity, s->atol_spin, 1e30};
+  const double        relative[TRB_N_TOLERANCES] = {0.0, 0.0, s->rtol, s->rtol, 0.0};
+  for (int i = 0; i < it->n; i++) {
+    const trb_tolerance kind = trb_state_tolerance(it->dynamics->model, i);
+    it->scale[i] = scale[kind];
+    it->relative[i] = relative[kind];
+  }
+}
+
+static trb_status open(trb_simulation *s, const char *variant, trb_message *message)
+{
+  trb_integrator *it = &s->integrator;
+  trb_status      status;
+  it->n = trb_state_size(s->model);
+  it->y = calloc((size_t)it->n, sizeof(double));
+  it->scale = calloc((size_t)it->n, sizeof(double));
+  it->relative = calloc((size_t)it->n, sizeof(double));
+  s->between = calloc((size_t)it->n, sizeof(double));
+  if (!it->y || !it->scale || !it->relative || !s->between) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->dynamics, message)) != TRB_OK) return status;
+  if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->onlooker, message)) != TRB_OK) return status;
+  if ((status = trb_detail_create(s->model, &s->detail, message)) != TRB_OK) return status;
+  it->dynamics = s->dynamics;
+  it->motion = s->motion;
+  it->variant = variant;
+  fill_tolerances(it);
+  return TRB_OK;
+}
+
+trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant, const trb_settings *settings,
+                                 double time, const double *state, trb_simulation **simulation, trb_message *message)
+{
+  *simulation = NULL;
+  trb_status status = check_settings(settings, message);
+  if (status != TRB_OK) return status;
+  if ((status = check_state(m, time, state, message)) != TRB_OK) return status;
+  trb_simulation *s = calloc(1, sizeof *s);
+  if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  s->model = m;
+  s->motion = motion;
+  s->previous = time;
+  s->integrator.settings = *settings;
+  s->integrator.time = time;
+  s->integrator.kind = find_kind(kind);
+  if (s->integrator.kind == NULL) status = trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'bdf' or 'erk'", kind);
+  if (status == TRB_OK) status = open(s, variant, message);
+  if (status == TRB_OK) {
+    memcpy(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
+    status = s->integrator.kind->create(&s->integrator, message);
+  }
+  if (status != TRB_OK) {
+    trb_simulation_free(s);
+    return status;
+  }
+  *simulation = s;
+  return TRB_OK;
+}
+
+void trb_simulation_free(trb_simulation *s)
+{
+  if (s == NULL) return;
+  if (s->integrator.kind != NULL) s->integrator.kind->free(&s->integrator);
+  free(s->integrator.y);
+  free(s->integrator.scale);
+  free(s->integrator.relative);
+  free(s->between);
+  trb_detail_free(s->detail);
+  trb_dynamics_free(s->dynamics);
+  trb_dynamics_free(s->onlooker);
+  free(s);
+}
+
+trb_status trb_simulation_set_state(trb_simulation *s, double time, const double *state, trb_message *message)
+{
+  const trb_status status = check_state(s->model, time, state, message);
+  if (status != TRB_OK) return status;
+  memmove(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
+  s->integrator.time = s->previous = time;
+  return s->integrator.kind->restart(&s->integrator, message);
+}
+
+trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
+{
+  trb_integrator *it = &s->integrator;
+  const double    from = it->time;
+  memcpy(s->between, it->y, (size_t)it->n * sizeof(double));
+  const trb_status status = it->kind->step(it, message);
+  if (status == TRB_OK) {
+    s->previous = from;
+    return TRB_OK;
+  }
+  char        what[160];
+  trb_message cause = *message;
+  describe(s->model, it->kind->worst(it), what, sizeof what);
+  memcpy(it->y, s->between, (size_t)it->n * sizeof(double));
+  it->time = from;
+  return trb_fail(message, status, "at t = %.9g s: %.200s; largest error: %s", from, cause.text, what);
+}
+
+static trb_status output(trb_simulation *s, double time, double *record, trb_message *message)
+{
+  trb_integrator *it = &s->integrator;
+  const double   *y = it->y;
+  if (time != it->time) {
+    const trb_status status = it->kind->interpolate(it, time, s->between, message);
+    if (status != TRB_OK) return status;
+    y = s->between;
+  }
+  trb_record_fill(s->onlooker, time, y, s->detail, record);
+  return TRB_OK;
+}
+
+trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double *records, long max_steps, int *rows, long *steps,
+                              trb_message *message)
+{
+  const size_t length = (size_t)trb_record_offset(s->model, TRB_N_FIELDS);
+  *rows = 0;
+  *steps = 0;
+  while (*rows < n) {
+    const double time = times[*rows];
+    if (time < s->previous) return trb_fail(message, TRB_ERR_INPUT, "output time %g s lies before the last step, at %g s", time, s->previous);
+    if (time <= s->integrator.time) {
+      const trb_status status = output(s, time, records + (size_t)*rows * length, message);
+      if (status != TRB_OK) return status;
+      ++*rows;
+      continue;
+    }
+    if (*steps >= max_steps) return TRB_OK;
+    const trb_status status = trb_simulation_step(s, message);
+    if (status != TRB_OK) return status;
+    ++*steps;
+  }
+  return TRB_OK;
+}

@@ -1,0 +1,34 @@
+/* A simulation owns what changes: dynamics, state, integrator, buffers of a record. The model and the motion are shared and const. */
+#ifndef TRB_STEPPING_SIMULATION_H
+#define TRB_STEPPING_SIMULATION_H
+
+#include "motion/record.h"
+#include "stepping/integrator.h"
+
+typedef struct trb_simulation {
+  const trb_model  *model;
+  const trb_motion *motion;
+  trb_dynamics     *dynamics;   /* of the integration */
+  trb_dynamics     *onlooker;   /* of records and looks from outside */
+  trb_integrator    integrator;
+  trb_detail       *detail;
+  double           *between;    /* state at an output time */
+  double            previous;   /* start of the last step, s */
+} trb_simulation;
+
+/* kind: name of an integrator; variant: name of a kernel variant or "". */
+trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant, const trb_settings *settings,
+                                 double time, const double *state, trb_simulation **simulation, trb_message *message);
+void       trb_simulation_free(trb_simulation *s);
+
+/* Start the integrator again at a state. */
+trb_status trb_simulation_set_state(trb_simulation *s, double time, const double *state, trb_message *message);
+
+/* One step. On an error time and state are those of the last good step. */
+trb_status trb_simulation_step(trb_simulation *s, trb_message *message);
+
+/* Steps until every one of n increasing times is passed, at most max_steps; a record a time. Output times never change the steps. */
+trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double *records, long max_steps, int *rows, long *steps,
+                              trb_message *message);
+
+#endif
