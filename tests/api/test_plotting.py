@@ -87,6 +87,8 @@ def test_pocket_forces_have_a_panel_a_pocket(whirling: Result) -> None:
     assert 0.8 * top < figure.axes[0].lines[0].get_ydata().max() <= top
     few = plotting.pocket_forces(whirling, pockets=[0, 6], last=None)
     assert sum(ax.get_visible() for ax in few.axes) == 2
+    uneven = plotting.pocket_forces(whirling, pockets=range(4))
+    assert [ax.get_xlabel() for ax in uneven.axes if ax.get_visible()] == ["", "", "", "shaft revolutions"]
     with pytest.raises(InputError, match="rollers"):
         plotting.spacing_angles(whirling, rollers=[12])
 

@@ -84,7 +84,7 @@ def cage_locus(
         ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
         ax.xaxis.set_major_locator(MultipleLocator(0.5))
         ax.yaxis.set_major_locator(MultipleLocator(0.5))
-        ax.set(xlabel="$x/C_{pr}$", ylabel="$y/C_{pr}$  (gravity points down)")
+        ax.set(xlabel="$x/C_{pr}$", ylabel="$y/C_{pr}$")
         legend(ax, ncols=3)
     return ax
 

@@ -104,11 +104,13 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
         for ax in axes.flat[len(chosen) :]:
             ax.set_visible(False)
         axes[0, 0].set_ylim(bottom=0)
-        figure.supxlabel("shaft revolutions", fontsize=10)
+        in_last_row = len(chosen) - (rows - 1) * columns
+        axes[-1, min(columns // 2, in_last_row - 1)].set_xlabel("shaft revolutions")
+        for ax in axes[-2, in_last_row:] if rows > 1 else ():
+            ax.tick_params(labelbottom=True)
         figure.supylabel("normal force (N)", fontsize=10)
-        handles, labels = axes[0, 0].get_legend_handles_labels()
-        if handles:
-            figure.legend(handles, labels, loc="outside upper left", ncols=4)
+        if touched:
+            figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
 
@@ -129,7 +131,7 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
     Axes
     """
     stats = result.pocket_statistics(threshold)
-    touched = np.flatnonzero(stats.peak.max(axis=0) > 0)
+    touched = np.flatnonzero(stats.peak.max(axis=0) > 0).tolist()
     with canvas(ax) as ax:
         place = np.arange(1, stats.peak.shape[0] + 1)
         for index, slot in enumerate(touched):
