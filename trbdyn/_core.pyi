@@ -1,6 +1,5 @@
 """The C core. Everything is SI; arrays are C-contiguous float64. Users reach it through trbdyn's classes."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -34,14 +33,17 @@ def geometry_table() -> list[tuple[str, str, str]]:
 def quadrature_table() -> list[str]:
     """Names of the energy quadratures, as record fields."""
 
-def counter_table() -> list[str]:
-    """Names of the evaluation counters."""
+def counter_table() -> list[tuple[str, str]]:
+    """(name, text) of the evaluation counters."""
 
-def law_table() -> list[tuple[str, tuple[str, ...], str]]:
-    """(name, arguments, text) of the laws callable through `law`."""
+def law_table() -> list[tuple[str, str, str]]:
+    """(name, arguments separated by spaces, text) of the laws callable through `law`."""
 
-def law(name: str, *arguments: Array) -> Array:
-    """A law of the core over broadcast float64 arrays."""
+def setting_table() -> list[tuple[str, float, float, float, str]]:
+    """(name, default, lower, upper, text) of the settings of an integration."""
+
+def law(name: str, arguments: Array) -> Array:
+    """A law of the core: arguments (number of arguments, n), gives (n,)."""
 
 def geometry(params: Array) -> Array:
     """Derived geometry, in the order of geometry_table(), of a parameter block."""
@@ -62,11 +64,11 @@ class Model:
     record_length: int
     instruction_set: str
     def equilibrium(
-        self, force: Array, moment: Array, fixed: Array, displacement: Array, shaft_speed: float, gravity: Array
+        self, load: Array, fixed: Array, displacement: Array, shaft_speed: float, angles: Array
     ) -> dict[str, Any]:
-        """Static equilibrium at speed. force (3,), moment (2,) applied to the ring; fixed (5,): 1 where `displacement`
-        (dx, dy, dz, rx, ry) is prescribed instead. Gives displacement (5,), roller_state (Z, 3: r, z, tilt offsets),
-        outer_load, inner_load, rib_load (Z,), residual, iterations."""
+        """Static equilibrium at speed. load (5,): force (3) and moment about x, y (2) on the ring; fixed (5,): 1 where
+        `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers. Gives displacement (5,), rollers
+        (Z, 3: r, z, tilt offsets), loads (Z, 3: outer, inner, rib), residual, iterations."""
     def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of every field of a record."""
     def state_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
@@ -76,8 +78,8 @@ class Simulation:
     """One integration: model, prescribed motion, state, integrator."""
 
     def __init__(self, model: Model, motion: Array, time: float, state: Array, settings: dict[str, float | str]) -> None:
-        """motion (K, 1 + 18): knot time, then value and slope of each channel. settings: integrator ('bdf', 'erk'), rtol,
-        atol_position, atol_angle, atol_velocity, atol_spin, max_order, max_step, first_step, max_steps."""
+        """motion (K, 1 + 18): knot time, then value and slope of each channel. settings: integrator ('bdf', 'erk')
+        and those of setting_table()."""
     time: float
     def run(self, times: Array, records: Array, max_steps: int) -> tuple[int, int]:
         """Integrate until every time in `times` is passed, filling a row of `records` for each; stop after max_steps. Gives
@@ -92,7 +94,6 @@ class Simulation:
     def observe(self, time: float, state: Array) -> Array:
         """A record at any time and state."""
     def derivative(self, time: float, state: Array) -> Array: ...
-    def jacobian(self, time: float, state: Array) -> Array: ...
     def contacts(self, time: float, state: Array) -> dict[str, Array]:
         """Every intermediate quantity of every contact."""
     def counters(self) -> dict[str, int]: ...

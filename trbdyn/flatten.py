@@ -265,7 +265,7 @@ def diameter_deviation(scene: Scene) -> FloatArray:
 
 @dataclass(frozen=True)
 class RingLoad:
-    """What acts on the inner ring at an instant: the arguments of `_core.Model.equilibrium`, in order.
+    """What acts on the inner ring at an instant.
 
     Attributes
     ----------
@@ -289,10 +289,6 @@ class RingLoad:
     displacement: FloatArray
     shaft_speed: float
     gravity: FloatArray
-
-    def arguments(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, FloatArray]:
-        """In the order that the core takes them."""
-        return self.force, self.moment, self.fixed, self.displacement, self.shaft_speed, self.gravity
 
 
 def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:

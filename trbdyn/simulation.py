@@ -1,0 +1,431 @@
+"""A simulation: a scene, the state it is in, and what steps it on."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn import _core
+from trbdyn import fields as field_table
+from trbdyn.errors import InputError, StepError
+from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
+from trbdyn.motion import History
+from trbdyn.result_file import ResultWriter
+from trbdyn.results import Result, load
+from trbdyn.run_options import Group, RunOptions
+from trbdyn.scene import Scene
+from trbdyn.start import Equilibrium, StateView, ring_motion, start_state
+
+Array = NDArray[np.float64]
+Callback = Callable[["Simulation"], bool | None]
+
+CHUNK_RECORDS = 256
+"""Records between looks at signals, callbacks and the file."""
+CHUNK_STEPS = 4000
+"""Steps between looks at signals: about a tenth of a second."""
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of a simulation: what is needed to go on from it.
+
+    Attributes
+    ----------
+    time : float
+        Time (s).
+    vector : ndarray, shape (n_state,)
+        The core's state vector.
+    """
+
+    time: float
+    vector: Array
+
+
+def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
+    """The core's model of a scene.
+
+    Raises
+    ------
+    InputError
+        If the scene's numbers do not fit together.
+    """
+    try:
+        return _core.Model(parameter_block(scene), diameter_deviation(scene), face_rows(scene), instruction_set)
+    except _core.CoreInputError as error:
+        raise input_error_of_core(error, scene_entries(scene)) from None
+
+
+class Simulation:
+    """Steps a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated.
+    accuracy : {'fast', 'standard', 'reference'}
+        Preset of the tolerances.
+    instruction_set : str
+        Kernel variant: 'scalar', 'base', 'avx2', 'avx512'; by default the fastest that this machine runs. Results of two
+        variants differ in rounding.
+    **options
+        Fields of `RunOptions` that set the integrator: integrator, rtol, atol_position, atol_angle, atol_velocity,
+        atol_spin, max_order, max_step, first_step.
+
+    Raises
+    ------
+    InputError
+        If the scene or an option cannot be used.
+    LoadError
+        If the bearing cannot carry the load.
+    """
+
+    def __init__(self, scene: Scene, *, accuracy: str = "standard", instruction_set: str = "", **options: Any) -> None:
+        self.scene = scene
+        self.options = RunOptions(accuracy=accuracy, **options)  # type: ignore[arg-type]
+        self._model = build_model(scene, instruction_set)
+        self._motion, self.equilibrium = ring_motion(self._model, scene)
+        vector = start_state(self._model, scene, self._motion, self.equilibrium)
+        self._core = self._open(scene.start.time, vector)
+        self._reached = scene.start.time
+        self._wall = 0.0
+        self._totals: dict[str, int] = {}
+
+    equilibrium: Equilibrium
+
+    def _open(self, time: float, vector: Array) -> _core.Simulation:
+        settings = {name: value for name, value in self.options.settings().items() if value != 0.0}
+        try:
+            return _core.Simulation(self._model, self._motion, time, vector, settings)
+        except _core.CoreInputError as error:
+            raise InputError.of("state", "given", str(error)) from None
+
+    @property
+    def time(self) -> float:
+        """End of the last step (s)."""
+        return self._core.time
+
+    @property
+    def instruction_set(self) -> str:
+        """Kernel variant in use."""
+        return self._model.instruction_set
+
+    @property
+    def state(self) -> State:
+        """A copy of the present state."""
+        return State(self._core.time, self._core.state())
+
+    def view(self, vector: Array | None = None) -> StateView:
+        """Parts of a state vector by name; of a copy of the present one by default."""
+        return StateView(self._model, self._core.state() if vector is None else vector)
+
+    def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
+        """Go on from another state; the integrator starts anew.
+
+        Parameters
+        ----------
+        vector : array_like of shape (n_state,), or State
+            The state.
+        time : float, optional
+            Its time (s); the present one by default.
+
+        Raises
+        ------
+        InputError
+            If it is not finite, not possible, or of the wrong length.
+        """
+        if isinstance(vector, State):
+            vector, time = vector.vector, vector.time if time is None else time
+        when = self._core.time if time is None else float(time)
+        try:
+            self._core.set_state(when, np.ascontiguousarray(vector, dtype=np.float64))
+        except ValueError as error:
+            raise InputError.of("state", "given", str(error)) from None
+        self._reached = when
+
+    def copy(self) -> Self:
+        """An independent simulation at the same state; its integrator starts there."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
+        other._core = self._open(self._core.time, self._core.state())
+        other._reached, other._wall = self._core.time, 0.0
+        return other
+
+    def restart(self) -> None:
+        """Start the integrator anew at the present state, as a checkpoint does."""
+        self._core.restart()
+
+    def step(self) -> float:
+        """One step of the integrator; gives the new time (s).
+
+        Raises
+        ------
+        StepError
+            If the integrator cannot go on; the state stays the last good one.
+        """
+        try:
+            return self._core.step()
+        except _core.CoreStepError as error:
+            raise StepError(str(error), time=self._core.time) from None
+
+    def derivative(self, vector: ArrayLike | None = None, time: float | None = None) -> Array:
+        """Rates of the state, shape (n_state,); at the present state by default."""
+        return self._core.derivative(*self._place(vector, time))
+
+    def record(self, vector: ArrayLike | None = None, time: float | None = None) -> dict[str, Array]:
+        """Every recorded quantity by name; at the present state by default."""
+        row = self._core.observe(*self._place(vector, time))
+        layout = self._model.record_layout()
+        return {name: row[offset : offset + math.prod(shape)].reshape(shape) for name, offset, shape in layout}
+
+    def contacts(self, vector: ArrayLike | None = None, time: float | None = None) -> dict[str, Array]:
+        """Every intermediate quantity of every contact; at the present state by default.
+
+        Returns
+        -------
+        dict of str to ndarray
+            ``raceway_<quantity>``, shape (2, Z, n): outer and inner race, roller, node, for interference, load, pressure,
+            films, film parameter, slide-roll ratio, friction coefficient and others; ``rib_<quantity>`` and
+            ``front_rib_<quantity>``, shape (Z,); ``pocket_load``, ``pocket_friction``, ``pocket_interference`` (negative:
+            gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); all SI.
+        """
+        return self._core.contacts(*self._place(vector, time))
+
+    def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
+        when = self._core.time if time is None else float(time)
+        return when, self._core.state() if vector is None else np.ascontiguousarray(vector, dtype=np.float64)
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """How often each effect was evaluated; zero for effects that are off."""
+        return self._core.counters()
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        """What the integrator did."""
+        return self._core.statistics()
+
+    def run(
+        self,
+        *,
+        revolutions: float | None = None,
+        duration: float | None = None,
+        save_every: float = 1e-4,
+        save_groups: Sequence[Group] | None = None,
+        output: str | Path | None = None,
+        progress: bool = False,
+        callback: Callback | None = None,
+    ) -> Result:
+        """Step on and keep records; output times never change the steps.
+
+        Parameters
+        ----------
+        revolutions : float, optional
+            How far to go, in turns of the shaft.
+        duration : float, optional
+            How far to go (s); one of both must be given.
+        save_every : float
+            Time between records (s).
+        save_groups : sequence of str, optional
+            Groups of quantities to keep; all by default.
+        output : path-like, optional
+            HDF5 file to write while running; without it records stay in memory.
+        progress : bool
+            Show a progress bar.
+        callback : callable, optional
+            Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run too,
+            after the file is closed.
+
+        Returns
+        -------
+        Result
+            Ended by Ctrl-C or the callback it has ``success`` False and says so in ``message``.
+
+        Raises
+        ------
+        InputError
+            If an argument cannot be used.
+        StepError
+            If a step failed; its ``result`` holds everything up to the last good time.
+        FileError
+            If the file cannot be written.
+        """
+        changes = {"revolutions": revolutions, "duration": duration, "save_every": save_every}
+        options = self.options.replace(**changes, **({} if save_groups is None else {"save_groups": tuple(save_groups)}))
+        end = options.end_time(self.scene.speed_rpm, self._reached)
+        count = max(int(math.ceil((end - self._reached) / save_every - 1e-9)), 1)
+        times = self._reached + save_every * np.arange(count + 1)
+        times[-1] = end
+        return _Run(self, options, times, None if output is None else Path(output), callback).go(progress=progress)
+
+
+class _Run:
+    """One call of `Simulation.run`."""
+
+    def __init__(
+        self, sim: Simulation, options: RunOptions, times: Array, output: Path | None, callback: Callback | None
+    ) -> None:
+        self.sim = sim
+        self.options = options
+        self.times = times
+        self.output = output
+        self.callback = callback
+        self.done = 0
+        self.kept: list[Array] = []
+        self.writer: ResultWriter | None = None
+        self.began = clock.perf_counter()
+        self.spent = 0.0
+
+    def go(self, *, progress: bool) -> Result:
+        from tqdm import tqdm
+
+        sim = self.sim
+        if self.output is not None:
+            self.writer = ResultWriter(
+                self.output,
+                scene=sim.scene,
+                layout=sim._model.record_layout(),
+                fields=field_table.table(),
+                groups=self.options.save_groups,
+                meta=self._meta(),
+                geometry=asdict(sim.scene.bearing.geometry),
+            )
+        span = float(self.times[-1] - self.times[0])
+        with tqdm(total=span, disable=not progress, unit="s", bar_format=_BAR) as bar:
+            try:
+                message = self._loop(bar)
+            except _core.CoreStepError as error:
+                result = self._finish(False, str(error))
+                time, body, quantity = sim.time, *_culprit(str(error))
+                raise StepError(str(error), time=time, body=body, quantity=quantity, result=result) from None
+            except KeyboardInterrupt:
+                return self._finish(False, f"stopped by the user at {sim.time:.6g} s")
+            except BaseException as error:
+                self._finish(False, f"ended by {type(error).__name__} at {sim.time:.6g} s: {error}")
+                raise
+        return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
+
+    def _loop(self, bar: Any) -> str | None:
+        """Until all records are filled; what ended the run before, or None."""
+        sim = self.sim
+        while self.done < self.times.size:
+            chunk = self.times[self.done : self.done + CHUNK_RECORDS]
+            records = np.empty((chunk.size, sim._model.record_length))
+            before = clock.perf_counter()
+            try:
+                rows, _ = sim._core.run(chunk, records, CHUNK_STEPS)
+            except _core.CoreStepError as error:
+                self._keep(records[: getattr(error, "rows", 0)])
+                raise
+            finally:
+                self.spent += clock.perf_counter() - before
+            self._keep(records[:rows])
+            bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
+            if sim.scene.effects.bodies == "rollers" and rows:
+                _check_apart(sim, records[:rows])
+            if self.callback is not None and self.callback(sim):
+                return f"ended by the callback at {sim.time:.6g} s"
+        return None
+
+    def _keep(self, records: Array) -> None:
+        if not len(records):
+            return
+        self.done += len(records)
+        self.sim._reached = float(self.times[self.done - 1])
+        if self.writer is None:
+            self.kept.append(records)
+        else:
+            self.writer.append(records)
+
+    def _meta(self) -> dict[str, Any]:
+        settings = {name: value for name, value in self.options.to_dict().items() if name not in ("save_groups",)}
+        return {
+            "instruction_set": self.sim.instruction_set,
+            "sundials_version": _core.sundials_version(),
+            "core_version": _core.version(),
+            "settings": settings,
+        }
+
+    def _stats(self) -> dict[str, Any]:
+        """Solver statistics of the whole simulation, and the wall time of this run."""
+        sim = self.sim
+        turned = abs(_turns(sim.scene.speed_rpm, float(self.times[0]), sim._reached))
+        bearing = sim._reached - float(self.times[0])
+        stats: dict[str, Any] = {
+            name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
+            for name, value in sim.statistics.items()
+        }
+        return stats | {
+            "wall_s": clock.perf_counter() - self.began,
+            "stepping_s": self.spent,
+            "bearing_time_s": bearing,
+            "revolutions": turned,
+            "wall_s_per_revolution": self.spent / turned if turned > 0.0 else math.nan,
+            "real_time_factor": bearing / self.spent if self.spent > 0.0 else math.nan,
+            "integrator": self.options.integrator,
+            "instruction_set": sim.instruction_set,
+        }
+
+    def _finish(self, success: bool, message: str) -> Result:
+        sim, ended = self.sim, self.sim.state
+        how: dict[str, Any] = {
+            "success": success,
+            "message": message,
+            "stats": self._stats(),
+            "counters": sim.counters,
+            "final_time": ended.time,
+            "final_state": ended.vector,
+        }
+        if self.writer is not None:
+            self.writer.finish(**how)
+            return load(self.writer.path)
+        records = np.concatenate(self.kept) if self.kept else np.empty((0, sim._model.record_length))
+        return Result.from_records(
+            records,
+            sim._model.record_layout(),
+            scene=sim.scene,
+            geometry=asdict(sim.scene.bearing.geometry),
+            meta=self._meta(),
+            groups=self.options.save_groups,
+            **how,
+        )
+
+
+_BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"
+
+
+def _turns(speed_rpm: float | History, start: float, end: float) -> float:
+    if isinstance(speed_rpm, History):
+        return speed_rpm.integral(start, end) / 60.0
+    return speed_rpm * (end - start) / 60.0
+
+
+def _culprit(text: str) -> tuple[str | None, str | None]:
+    """Body and quantity named at the end of the core's message."""
+    _, _, named = text.partition("largest error: ")
+    body, _, quantity = named.partition(", ")
+    return (body or None, quantity or None) if quantity else (None, None)
+
+
+def _check_apart(sim: Simulation, records: Array) -> None:
+    """Rollers without a cage must not touch each other, as nothing in the model keeps them apart."""
+    places = {name: (offset, shape) for name, offset, shape in sim._model.record_layout()}
+    offset, (count,) = places["roller_orbit_angle"]
+    angles = np.sort(np.mod(records[:, offset : offset + count], 2.0 * math.pi), axis=1)
+    gaps = np.diff(np.concatenate([angles, angles[:, :1] + 2.0 * math.pi], axis=1), axis=1)
+    bearing = sim.scene.bearing
+    nearest = bearing.pitch_diameter * np.sin(0.5 * gaps.min(axis=1))
+    if float(nearest.min()) < bearing.roller.diameter:
+        raise StepError(
+            f"two rollers touch before {sim.time:.6g} s: without a cage nothing in the model keeps them apart; "
+            "shorten the run or give effects.bodies = 'rollers_and_cage'",
+            time=sim.time,
+            body="rollers",
+            quantity="spacing",
+        )
