@@ -17,8 +17,10 @@ SWMR, whose flags would block reopening after a kill: what was flushed last stay
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -49,6 +51,9 @@ FLUSH_SECONDS = 2.0
 
 FLUSH_BYTES = 8 << 20
 """Most bytes of records that wait in memory."""
+
+SPARE_BYTES = 1 << 20
+"""Room for HDF5's own bookkeeping that is made sure of before a write."""
 
 JSON_ATTRIBUTES = ("stats", "counters", "geometry", "meta")
 
@@ -147,7 +152,8 @@ class ResultWriter:
     Notes
     -----
     Records are written and flushed when two seconds have gone by or 8 MB wait. A run that is killed leaves a file that holds
-    everything up to the last flush. Use it as a context manager, or call `close`.
+    everything up to the last flush. Room on the disk is made sure of before each write, so that a full disk is an error and
+    leaves a readable file too. Use it as a context manager, or call `close`.
     """
 
     def __init__(
@@ -234,22 +240,36 @@ class ResultWriter:
         Raises
         ------
         FileError
-            If the file cannot be written.
+            If the file cannot be written. What waited is lost then; what was written before stays readable.
         """
+        if not self._file:
+            raise FileError(f"{self.path}: the result file is closed already")
+        pending, size = self._pending, self._pending_bytes
+        self._pending, self._pending_bytes = [], 0
         with self._guard("cannot be written"):
-            if self._pending:
-                rows = self._pending[0] if len(self._pending) == 1 else np.concatenate(self._pending)
-                start, stop = self.n_written, self.n_written + rows.shape[0]
-                for entry in self._fields:
-                    offset, shape = self._places[entry.name]
-                    size = int(np.prod(shape))
-                    dataset = self._file["fields"][entry.name]
-                    dataset.resize(stop, axis=0)
-                    dataset[start:stop] = rows[:, offset : offset + size].reshape(-1, *shape)
-                self.n_written = stop
-                self._pending, self._pending_bytes = [], 0
+            if pending:
+                self._reserve(size + len(self._fields) * CHUNK_BYTES + SPARE_BYTES)
+                self._write(pending[0] if len(pending) == 1 else np.concatenate(pending))
             self._file.flush()
         self._last_flush = time.monotonic()
+
+    def _reserve(self, size: int) -> None:
+        """Make sure that the disk has room: HDF5 brings the process down when it runs out of it in the middle of a write."""
+        if hasattr(os, "posix_fallocate"):
+            with self.path.open("r+b") as stream:
+                os.posix_fallocate(stream.fileno(), self._file.id.get_filesize(), size)
+        elif shutil.disk_usage(self.path.parent).free < size:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    def _write(self, rows: Array) -> None:
+        start, stop = self.n_written, self.n_written + rows.shape[0]
+        for entry in self._fields:
+            offset, shape = self._places[entry.name]
+            size = int(np.prod(shape))
+            dataset = self._file["fields"][entry.name]
+            dataset.resize(stop, axis=0)
+            dataset[start:stop] = rows[:, offset : offset + size].reshape(-1, *shape)
+        self.n_written = stop
 
     def finish(
         self,
@@ -284,6 +304,7 @@ class ResultWriter:
         """
         self.flush()
         with self._guard("cannot be written"):
+            self._reserve(SPARE_BYTES)
             attributes = self._file.attrs
             attributes["stats"], attributes["counters"] = _json(dict(stats)), _json(dict(counters))
             attributes["success"], attributes["message"] = bool(success), str(message)
@@ -295,10 +316,15 @@ class ResultWriter:
 
     def close(self) -> None:
         """Write what waits and close the file; an unfinished run stays marked as such."""
-        if self._file:
+        if not self._file:
+            return
+        try:
             self.flush()
+        finally:
             with self._guard("cannot be closed"):
+                used = self._file.id.get_filesize()
                 self._file.close()
+                os.truncate(self.path, used)
 
     def __enter__(self) -> Self:
         return self

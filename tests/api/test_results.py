@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import textwrap
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -203,8 +202,8 @@ def test_an_unfinished_file_is_readable_and_says_so(tmp_path: Path, synthetic: A
     assert len(loaded) == 4001
 
 
-WRITER = """
-import sys, time
+LOADER = """
+import sys
 sys.path.insert(0, sys.argv[2])
 import importlib.util
 spec = importlib.util.spec_from_file_location("synthetic_runs", sys.argv[2] + "/conftest.py")
@@ -215,27 +214,60 @@ from trbdyn import result_file
 result_file.FLUSH_SECONDS = 0.0
 run = module.make_run(n=2001)
 writer = result_file.ResultWriter(sys.argv[1], scene=module.StubScene(), layout=run.layout, fields=run.fields)
+"""
+
+WRITE_ON = """
 print("ready", flush=True)
 for _ in range(10000):
     for start in range(0, 2000, 40):
         writer.append(run.records[start : start + 40])
 """
 
+FILL_UP = """
+import resource
+from trbdyn.errors import FileError
+resource.setrlimit(resource.RLIMIT_FSIZE, (6_000_000, 6_000_000))
+try:
+    for start in range(0, 2000, 40):
+        writer.append(run.records[start : start + 40])
+except FileError as error:
+    print(error)
+    writer.finish(**run.ending() | {"success": False, "message": "the disk was full"})
+"""
+
+
+def start_writer(tmp_path: Path, then: str) -> subprocess.Popen[bytes]:
+    """A process that opens run.h5 for writing, flushes every record at once, and then does as told."""
+    script = tmp_path / "writer.py"
+    script.write_text(LOADER + then)
+    command = [sys.executable, str(script), str(tmp_path / "run.h5"), str(Path(__file__).parent)]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    )
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="needs a limit of file size")
+def test_a_full_disk_is_an_error_and_leaves_a_readable_file(tmp_path: Path) -> None:
+    with start_writer(tmp_path, FILL_UP) as process:
+        said, _ = process.communicate()
+    assert process.returncode == 0
+    assert b"cannot be written" in said
+    loaded = load(tmp_path / "run.h5")
+    assert loaded.message == "the disk was full"
+    assert not loaded.success
+    assert len(loaded) >= 40
+    np.testing.assert_allclose(np.diff(loaded.time), 0.4 / 2000, rtol=1e-9)
+
 
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize("seed", range(3))
-def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, synthetic: Any, seed: int) -> None:
-    path, script = tmp_path / "run.h5", tmp_path / "writer.py"
-    script.write_text(textwrap.dedent(WRITER))
-    command = [sys.executable, str(script), str(path), str(Path(__file__).parent)]
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    ) as process:
+def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, seed: int) -> None:
+    with start_writer(tmp_path, WRITE_ON) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"ready\n"
         time.sleep(0.4 + 0.237 * seed)
         process.send_signal(signal.SIGKILL)
-    loaded = load(path)
+    loaded = load(tmp_path / "run.h5")
     assert not loaded.success
     assert len(loaded) >= 40
     assert len(loaded) % 40 == 0
@@ -254,6 +286,8 @@ def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: An
     assert writer.n_written == 11
     writer.close()
     writer.close()
+    with pytest.raises(FileError, match="closed already"):
+        writer.finish(**synthetic.ending())
     np.testing.assert_array_equal(load(tmp_path / "run.h5").time, synthetic.column("time")[:11])
 
 
@@ -377,3 +411,16 @@ def test_summary_leaves_out_what_was_not_recorded(whirling: Result) -> None:
     assert values["whirl_radius_over_cpr"] is None
     assert values["energy_closure"] is None
     assert json.dumps(values, allow_nan=False)
+
+
+def test_the_package_gives_its_names_lazily() -> None:
+    code = "import sys, trbdyn; assert 'numpy' not in sys.modules; trbdyn.plot; print(sorted(trbdyn.__all__))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "Scene" in done.stdout
+    import trbdyn
+
+    assert trbdyn.load is load
+    assert trbdyn.Result is Result
+    assert "Simulation" in dir(trbdyn)
+    with pytest.raises(AttributeError, match="wheels"):
+        trbdyn.wheels  # noqa: B018
