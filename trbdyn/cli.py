@@ -252,7 +252,7 @@ def _info_result(path: Path, *, as_json: bool) -> int:
     values = result.summary()
     if as_json:
         about = {"meta": result.meta, "records": len(result), "groups": result.groups, "stats": result.stats}
-        print(json.dumps(about | {"summary": values}, indent=2))
+        print(json.dumps(summary.clean(about | {"summary": values}), indent=2, allow_nan=False))
         return DONE
     print(_describe(result.scene))
     print(f"{len(result)} records, groups {', '.join(result.groups)}")

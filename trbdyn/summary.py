@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trbdyn import observables
 from trbdyn.errors import FileError
 
 if TYPE_CHECKING:
@@ -40,9 +41,11 @@ LABELS: dict[str, tuple[str, str]] = {
     "orbit_radius_over_cpr": ("orbit radius about its own centre / Cpr", ""),
     "whirl_ratio": ("whirl frequency / cage frequency", ""),
     "whirl_frequency": ("whirl frequency", "Hz"),
+    "whirl_coherence": ("share of turning in the cage centre's motion", ""),
     "speed_deviation_ratio": ("cage centre speed, deviation / mean", ""),
     "axial_over_clearance": ("axial position / axial play", ""),
     "tilt_rms": ("cage tilt, rms", "rad"),
+    "lean_mean": ("tilt to the side of the cage's displacement, mean", "rad"),
     "spacing_std_deg": ("roller spacing, deviation", "deg"),
     "pocket_force_p95": ("pocket force, 95 % in contact", "N"),
     "pocket_force_peak": ("pocket force, peak", "N"),
@@ -90,7 +93,7 @@ def summary(result: Result) -> dict[str, Any]:
     if len(result) > 1:
         out |= _motion(result)
     out |= _cost(result)
-    return {name: _clean(out.get(name)) for name in LABELS}
+    return {name: clean(out.get(name)) for name in LABELS}
 
 
 def _motion(result: Result) -> dict[str, Any]:
@@ -132,8 +135,10 @@ def _cage(window: Result) -> dict[str, Any]:
         "orbit_radius_over_cpr": motion.orbit_over_play,
         "whirl_ratio": window.whirl_ratio,
         "whirl_frequency": window.whirl_frequency,
+        "whirl_coherence": motion.whirl_coherence,
         "speed_deviation_ratio": motion.speed_deviation_ratio,
         "axial_over_clearance": window.axial_motion.mean(),
+        "lean_mean": observables.lean(window["cage_position"], window["cage_tilt"]).mean(),
         "tilt_rms": np.sqrt(np.mean(np.sum(window["cage_tilt"] ** 2, axis=1))),
     }
 
@@ -175,15 +180,19 @@ def _power(window: Result) -> dict[str, Any]:
 
 
 def _cost(result: Result) -> dict[str, Any]:
-    out = {name: result.stats.get(name) for name in ("steps", "rhs_evaluations", "wall_s")}
-    wall, turns = out["wall_s"], result.revolutions
-    return out | {"wall_s_per_revolution": wall / turns if wall is not None and turns else None}
+    """Cost of the run; wall time a revolution is that of stepping where the statistics tell it."""
+    out = {name: result.stats.get(name) for name in ("steps", "rhs_evaluations", "wall_s", "wall_s_per_revolution")}
+    if out["wall_s_per_revolution"] is None and out["wall_s"] is not None and result.revolutions:
+        out["wall_s_per_revolution"] = out["wall_s"] / result.revolutions
+    return out
 
 
-def _clean(value: Any) -> Any:
-    """Plain Python; numbers that are not finite become None."""
+def clean(value: Any) -> Any:
+    """Plain Python, as strict JSON takes it: numbers that are not finite become None."""
     if isinstance(value, Mapping):
-        return {name: _clean(entry) for name, entry in value.items()}
+        return {name: clean(entry) for name, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [clean(entry) for entry in value]
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value

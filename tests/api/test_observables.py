@@ -90,17 +90,29 @@ def test_lean_is_positive_for_negative_theta_x_at_positive_y() -> None:
 
 
 def test_classification_of_three_motions() -> None:
-    t, p = circle(radius=0.2e-3)
-    circling = obs.classify(p, np.gradient(p, t, axis=0), PLAY)
+    t, p = circle(radius=0.2e-3, hertz=20.0)
+    v = np.gradient(p, t, axis=0)
+    circling = obs.classify(p, v, PLAY)
     assert circling.kind == "circling"
     assert circling.orbit_over_play == pytest.approx(0.8, rel=1e-2)
     assert circling.speed_deviation_ratio < 0.02
-    still = obs.classify(1e-2 * p - [0, 0.2e-3, 0], 1e-2 * np.gradient(p, t, axis=0), PLAY)
+    assert circling.whirl_coherence == pytest.approx(1.0, abs=1e-3)
+    assert obs.classify(p * [1, -1, 1], v * [1, -1, 1], PLAY).whirl_coherence == pytest.approx(-1.0, abs=1e-3)
+    still = obs.classify(1e-2 * p - [0, 0.2e-3, 0], 1e-2 * v, PLAY)
     assert still.kind == "stable"
     rng = np.random.default_rng(5)
     velocity = rng.normal(size=(20000, 2))
     assert obs.speed_deviation_ratio(velocity) == pytest.approx(np.sqrt(4 / np.pi - 1), rel=0.02)
     assert obs.classify(rng.normal(0.0, 0.1e-3, (20000, 2)), velocity, PLAY).kind == "unstable"
+
+
+def test_whirl_coherence_of_ellipses_and_lines() -> None:
+    angle = np.linspace(0.0, 2 * np.pi, 2000, endpoint=False)
+    for b in (1.0, 0.5, 0.0):
+        place = np.column_stack([np.cos(angle), b * np.sin(angle)]) + 7.0
+        velocity = np.column_stack([-np.sin(angle), b * np.cos(angle)])
+        assert obs.whirl_coherence(place, velocity) == pytest.approx(2 * b / (1 + b**2), abs=1e-9)
+    assert np.isnan(obs.whirl_coherence(np.zeros((9, 2)), np.zeros((9, 2))))
 
 
 def test_spacing_sums_gaps_and_closes_the_circle() -> None:

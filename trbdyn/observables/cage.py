@@ -18,9 +18,6 @@ from trbdyn.observables.signals import peak_frequency, spectrum
 Array = NDArray[np.float64]
 About = Literal["mean", "axis"]
 
-RANDOM_DEVIATION_RATIO = float(np.sqrt(4.0 / np.pi - 1.0))
-"""Standard deviation over mean of the length of a random planar vector with normal components: 0.5227."""
-
 
 def _planar(position: ArrayLike) -> Array:
     p = np.asarray(position, dtype=float)
@@ -199,7 +196,7 @@ def lean(position: ArrayLike, tilt: ArrayLike) -> Array:
 def speed_deviation_ratio(velocity: ArrayLike) -> float:
     """Standard deviation over mean of the speed of the cage's centre in the x-y plane.
 
-    Zero for a steady circle, 0.523 for a random planar velocity.
+    Zero for a steady circle, sqrt(4/pi - 1) = 0.523 for a random planar velocity.
 
     Parameters
     ----------
@@ -222,6 +219,28 @@ def speed_deviation_ratio(velocity: ArrayLike) -> float:
     return float(speed.std() / mean) if mean > 0 else float("nan")
 
 
+def whirl_coherence(position: ArrayLike, velocity: ArrayLike) -> float:
+    """How far the motion is a turn in one sense: mean of r x v over the product of the root mean squares of r and v.
+
+    r is the place of the cage's centre from its mean place, v its velocity less its mean, both in the x-y plane. One for a
+    steady circle, minus one for a steady backward circle, 2 a b/(a^2 + b^2) for a harmonic ellipse of semi-axes a and b, zero
+    for motion along a line and for random motion.
+
+    Parameters
+    ----------
+    position, velocity : array_like, shape (T, 2) or (T, 3)
+        Cage centre (m) and its velocity (m/s), over at least one whole turn of the cage.
+
+    Returns
+    -------
+    float
+        Coherence, from -1 to 1; nan for a cage at rest.
+    """
+    r, v = _centred(position, "mean"), _centred(velocity, "mean")
+    size = float(np.sqrt(np.sum(r**2) * np.sum(v**2)))
+    return float(np.sum(r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]) / size) if size > 0 else float("nan")
+
+
 @dataclass(frozen=True, slots=True)
 class CageMotion:
     """What kind of motion the cage makes.
@@ -232,12 +251,15 @@ class CageMotion:
         Class of the motion.
     orbit_over_play : float
         Root mean square distance from the mean place over the radial play.
+    whirl_coherence : float
+        How far the motion is a turn in one sense, see `whirl_coherence`.
     speed_deviation_ratio : float
-        Standard deviation over mean of the cage centre's speed.
+        Standard deviation over mean of the cage centre's speed, the indicator of Ghaisas et al.; for comparison.
     """
 
     kind: Literal["stable", "circling", "unstable"]
     orbit_over_play: float
+    whirl_coherence: float
     speed_deviation_ratio: float
 
 
@@ -246,12 +268,13 @@ def classify(
     velocity: ArrayLike,
     radial_play: float,
     rest_orbit: float = 0.1,
-    deviation_limit: float = 0.5 * RANDOM_DEVIATION_RATIO,
+    least_coherence: float = 0.5,
 ) -> CageMotion:
     """Classify the cage's motion.
 
-    Stable: the centre stays near one place (root mean square distance from it below ``rest_orbit`` times the play). Else
-    circling, if its speed is steady (standard deviation over mean below ``deviation_limit``), else unstable.
+    Stable: the centre stays near one place (root mean square distance from it below `rest_orbit` times the play). Else
+    circling, if it goes round in one sense (`whirl_coherence` at least `least_coherence`, either way), else unstable. The
+    deviation of the speed alone would not do: an orbit that repeats itself but is not round has a large one.
 
     Parameters
     ----------
@@ -263,16 +286,17 @@ def classify(
         Radial play Cpr, m.
     rest_orbit : float
         Largest orbit of a stable cage, in units of the play.
-    deviation_limit : float
-        Largest speed deviation ratio of a circling cage; by default halfway between a steady circle and a random velocity.
+    least_coherence : float
+        Least coherence of a circling cage.
 
     Returns
     -------
     CageMotion
-        The class and the two numbers that decide it.
+        The class and the numbers behind it.
     """
     orbit = float(np.sqrt(np.mean(orbit_radius(position) ** 2)) / radial_play)
-    ratio = speed_deviation_ratio(velocity)
+    coherence, ratio = whirl_coherence(position, velocity), speed_deviation_ratio(velocity)
     if orbit < rest_orbit:
-        return CageMotion("stable", orbit, ratio)
-    return CageMotion("circling" if ratio < deviation_limit else "unstable", orbit, ratio)
+        return CageMotion("stable", orbit, coherence, ratio)
+    kind: Literal["circling", "unstable"] = "circling" if abs(coherence) >= least_coherence else "unstable"
+    return CageMotion(kind, orbit, coherence, ratio)

@@ -107,7 +107,7 @@ def whirl_radius(result: Result, ax: Axes | None = None) -> Axes:
     with canvas(ax, (6.4, 3.2)) as ax:
         line(ax, turned, radius, linewidth=0.8)
         mean = float(radius[settling.index :].mean())
-        name = "mean after settling" if settling.settled else "mean of the second half (not settled)"
+        name = "mean after settling" if settling.settled else "mean of the second half (whirl or spacing not settled)"
         ax.plot(
             [turned[settling.index], turned[-1]],
             [mean, mean],
