@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from trbdyn.lubricants import Lubricant
     from trbdyn.motion import History
     from trbdyn.results import Result, load
-    from trbdyn.scene import Scene
+    from trbdyn.run_options import RunOptions
+    from trbdyn.scene import Scene, Start
     from trbdyn.simulation import Simulation
     from trbdyn.toml_case import load_case
 
@@ -48,8 +49,10 @@ _NAMES = {
     "LoadError": "trbdyn.errors",
     "Lubricant": "trbdyn.lubricants",
     "Result": "trbdyn.results",
+    "RunOptions": "trbdyn.run_options",
     "Scene": "trbdyn.scene",
     "Simulation": "trbdyn.simulation",
+    "Start": "trbdyn.scene",
     "StepError": "trbdyn.errors",
     "TrbError": "trbdyn.errors",
     "load": "trbdyn.results",
@@ -65,8 +68,10 @@ __all__ = [
     "LoadError",
     "Lubricant",
     "Result",
+    "RunOptions",
     "Scene",
     "Simulation",
+    "Start",
     "StepError",
     "TrbError",
     "__version__",
