@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import tomllib
 import traceback
@@ -61,6 +62,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _report(error, BAD_INPUT, options.debug)
     except TrbError as error:
         return _report(error, FAILED, options.debug)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
     except KeyboardInterrupt:
         print("trbdyn: stopped", file=sys.stderr)
         return INTERRUPTED

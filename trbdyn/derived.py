@@ -86,6 +86,11 @@ class Derived(ABC):
         return float(abs(angle[-1] - angle[0]) / (2.0 * np.pi)) if angle.size else 0.0
 
     @property
+    def has_cage(self) -> bool:
+        """Whether the scene has a cage; without one, what is recorded of it means nothing."""
+        return self.scene.effects.bodies == "rollers_and_cage"
+
+    @property
     def clearances(self) -> Clearances:
         """Radial, circumferential and axial play of the cage, m."""
         cage = self.scene.bearing.cage

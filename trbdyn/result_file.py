@@ -106,10 +106,18 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"cannot write {type(value).__name__} as JSON")
 
 
-def first_line(error: BaseException) -> str:
-    """The first line of an exception's text, or its kind if it has none."""
-    lines = str(error).splitlines()
-    return lines[0] if lines else type(error).__name__
+def reason(error: BaseException) -> str:
+    """Why HDF5 failed, in a few words."""
+    text = str(error)
+    if "file signature not found" in text:
+        return "this is not an HDF5 file"
+    if "unable to lock file" in text:
+        return "the file is still open in another program"
+    if "truncated file" in text:
+        return "the file is cut short and cannot be read"
+    if isinstance(error, OSError) and error.errno:
+        return os.strerror(error.errno).lower()
+    return text.splitlines()[0] if text else type(error).__name__
 
 
 def _json(value: Any) -> str:
@@ -211,7 +219,7 @@ class ResultWriter:
         try:
             yield
         except (OSError, RuntimeError) as error:
-            raise FileError(f"{self.path}: the result file {what}: {first_line(error)}") from error
+            raise FileError(f"{self.path}: the result file {what}: {reason(error)}") from error
 
     def append(self, records: ArrayLike) -> None:
         """Add records.

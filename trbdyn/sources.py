@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
 from trbdyn.fields import Field
-from trbdyn.result_file import JSON_ATTRIBUTES, SCHEMA, SCHEMA_VERSION, RunInfo, first_line
+from trbdyn.result_file import JSON_ATTRIBUTES, SCHEMA, SCHEMA_VERSION, RunInfo, reason
 
 Array = NDArray[np.float64]
 
@@ -113,7 +113,8 @@ class FileSource:
         except _READ_ERRORS as error:
             if isinstance(error, FileError):
                 raise
-            raise FileError(f"{self.path}: {_reason(error)}") from error
+            why = reason(error) if isinstance(error, OSError) else f"the file is damaged ({reason(error)})"
+            raise FileError(f"{self.path}: the result cannot be read: {why}") from error
 
     def _check_schema(self, file: h5py.File) -> None:
         if _text(file.attrs.get("schema", "")) != SCHEMA:
@@ -195,14 +196,3 @@ def _own(group: h5py.Group, name: str, kind: type) -> Any:
 
 def _text(value: Any) -> str:
     return value.decode() if isinstance(value, bytes) else str(value)
-
-
-def _reason(error: Exception) -> str:
-    text = str(error)
-    if "file signature not found" in text:
-        return "this is not an HDF5 file"
-    if "unable to lock file" in text:
-        return "the file is still open for writing in another program"
-    if "truncated file" in text:
-        return "the file is cut short and cannot be read"
-    return f"the file is damaged ({first_line(error)})"

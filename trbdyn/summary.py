@@ -115,7 +115,7 @@ def _motion(result: Result) -> dict[str, Any]:
         "power": _power,
     }
     for group, part in parts.items():
-        if group in groups and not (group == "cage" and result.scene.effects.bodies == "rollers"):
+        if group in groups and (result.has_cage or group not in ("cage", "pocket")):
             out |= part(window)
     if "energy" in groups:
         audit = result.energy_audit

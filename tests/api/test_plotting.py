@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import matplotlib as mpl
@@ -110,6 +111,11 @@ def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
     assert not plt.get_fignums()
     some = plotting.all(whirling.select(["torque", "cage"]), tmp_path / "some")
     assert {file.stem for file in some} == {"cage_locus", "axial_motion", "tilt", "spectrum", "torque_split"}
+    whirling.scene.effects = SimpleNamespace(bodies="rollers")
+    assert not whirling.has_cage
+    bare = plotting.all(whirling.select(["cage", "rollers", "pocket"]), tmp_path / "bare")
+    assert [file.stem for file in bare] == ["spacing_angles"]
+    assert whirling.summary()["whirl_radius_over_cpr"] is None
     assert plotting.conditions(whirling) == "stub: 3000 rpm, $F_a$ 4930 N"
 
 

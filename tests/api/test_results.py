@@ -303,6 +303,15 @@ def test_foreign_and_missing_files_are_told_apart(tmp_path: Path) -> None:
         load(tmp_path / "foreign.h5")
 
 
+def refusal(path: Path) -> str:
+    """Why a file is refused, without its name."""
+    with pytest.raises(FileError) as caught:
+        load(path)
+    text = str(caught.value)
+    assert text.startswith(f"{path}: ")
+    return text.removeprefix(f"{path}: ")
+
+
 def damage(name: str) -> Callable[[h5py.File], None]:
     def newer(file: h5py.File) -> None:
         file.attrs["schema_version"] = 99
@@ -352,8 +361,7 @@ def test_damaged_files_are_refused_clearly(
     path = write(tmp_path / "run.h5", synthetic, stub_scene)
     with h5py.File(path, "r+") as file:
         damage(name)(file)
-    with pytest.raises(FileError, match=words):
-        load(path)
+    assert words in refusal(path)
 
 
 def test_truncated_files_raise_file_errors(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
@@ -361,8 +369,7 @@ def test_truncated_files_raise_file_errors(tmp_path: Path, synthetic: Any, stub_
     for share in (0.0, 0.001, 0.01, 0.3, 0.9, 0.999):
         path = tmp_path / f"cut{share}.h5"
         path.write_bytes(data[: int(share * len(data))])
-        with pytest.raises(FileError, match="cut"):
-            load(path)
+        assert "cut short" in refusal(path) or "not an HDF5 file" in refusal(path)
 
 
 def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
@@ -376,8 +383,13 @@ def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic:
 
 
 def test_files_that_cannot_be_made(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
-    with pytest.raises(FileError, match="cannot be written"):
+    with pytest.raises(FileError, match=r"cannot be written: no such file or directory$"):
         write(tmp_path / "missing" / "run.h5", synthetic, stub_scene)
+    with (
+        ResultWriter(tmp_path / "open.h5", scene=stub_scene, layout=synthetic.layout, fields=synthetic.fields),
+        pytest.raises(FileError),
+    ):
+        write(tmp_path / "open.h5", synthetic, stub_scene)
     with pytest.raises(InputError, match="groups"):
         write(tmp_path / "run.h5", synthetic, stub_scene, groups=["wheels"])
 

@@ -107,7 +107,7 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
 def all(
     result: Result, folder: str | os.PathLike[str], only: Iterable[str] | None = None, title: str | None = None
 ) -> list[Path]:
-    """Save every picture that the recorded groups allow, as PNG.
+    """Save every picture that the recorded groups allow, as PNG; those of the cage only if there is one.
 
     Parameters
     ----------
@@ -133,7 +133,8 @@ def all(
         If a picture is unknown, or needs a group that was not recorded.
     """
     if only is None:
-        chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= set(result.groups)]
+        there = set(result.groups) - (set() if result.has_cage else {"cage", "pocket"})
+        chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
     else:
         chosen = list(only)
     for name in chosen:
