@@ -160,10 +160,28 @@ static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, t
   return TRB_OK;
 }
 
+/* Where each pocket stands in the cage. */
+static void fill_pockets(trb_model *m)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = g->apex_to_mid * sm;
+  for (int j = 0; j < m->n_rollers; j++) {
+    const double angle = 2.0 * TRB_PI * j / m->n_rollers, cosine = cos(angle), sine = sin(angle);
+    m->pocket_axes[j] = (trb_frame){{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
+    m->pocket_origin[j] = trb_v(radius * cosine, radius * sine, -m->params.cage_offset);
+  }
+}
+
 static void fill_constants(trb_model *m)
 {
   const trb_params   *p = &m->params;
   const trb_geometry *g = &m->geometry;
+  m->race[TRB_RACE_OUTER].sine = sin(p->cup_half_angle);
+  m->race[TRB_RACE_OUTER].cosine = cos(p->cup_half_angle);
+  m->race[TRB_RACE_INNER].sine = sin(g->cone_half_angle);
+  m->race[TRB_RACE_INNER].cosine = cos(g->cone_half_angle);
+  m->rib_sine = sin(g->rib_normal_angle);
+  m->rib_cosine = cos(g->rib_normal_angle);
   m->log_modulus = log(g->effective_modulus);
   m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->effective_length);
   m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
@@ -194,6 +212,8 @@ static int allocate(trb_model *m)
   ok &= (m->station = doubles(lanes)) != NULL;
   ok &= (m->centre = doubles(all)) != NULL;
   ok &= (m->sphere = doubles(all)) != NULL;
+  ok &= (m->pocket_axes = calloc((size_t)m->n_rollers, sizeof *m->pocket_axes)) != NULL;
+  ok &= (m->pocket_origin = calloc((size_t)m->n_rollers, sizeof *m->pocket_origin)) != NULL;
   for (int race = 0; race < TRB_N_RACES; race++) {
     ok &= (m->race[race].weight = doubles(lanes)) != NULL;
     ok &= (m->race[race].log_radius = doubles(lanes)) != NULL;
@@ -220,6 +240,7 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   if ((status = fill_front_rib(m, message)) != TRB_OK) return status;
   if ((status = fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
   fill_constants(m);
+  fill_pockets(m);
   return TRB_OK;
 }
 
@@ -256,6 +277,8 @@ void trb_model_free(trb_model *model)
   free(model->station);
   free(model->centre);
   free(model->sphere);
+  free(model->pocket_axes);
+  free(model->pocket_origin);
   free(model->faces);
   free(model->first_face);
   free(model);

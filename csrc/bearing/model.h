@@ -21,6 +21,7 @@ typedef struct trb_race_nodes {
   double *log_radius; /* ln Re */
   double *radius;     /* Re, m */
   double *roller_share; /* Re/R1: share of the roller in the pair's curvature */
+  double  sine, cosine; /* of the race's half angle */
 } trb_race_nodes;
 
 typedef struct trb_pocket_face {
@@ -53,6 +54,9 @@ typedef struct trb_model {
   double          log_thermal;     /* ln(eta0 beta/k') */
   double          rib_film_shape;  /* factor of eq. 12 */
   double          rib_film_rigid;  /* factor of eq. 13 */
+  double          rib_sine, rib_cosine; /* of the rib's normal */
+  trb_frame      *pocket_axes;     /* per pocket: n, t, a of the nominal roller, in the cage's body */
+  trb_vec3       *pocket_origin;   /* per pocket: nominal mid length, from the cage's centre of mass, m */
   double          front_rib_radius[2]; /* radii of the front rib's edges, m */
   double          front_rib_z[2];      /* their axial positions from the apex, m */
   int             friction;        /* any friction at raceways and ribs at all */

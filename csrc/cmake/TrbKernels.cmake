@@ -1,5 +1,5 @@
-# contact/raceway_kernel.c, the hot loop, is compiled once per variant: each into an object library of its own with its flags and
-# TRB_KERNEL_VARIANT=<name>, which makes the names of its functions. The core picks one when it runs. TRB_HAVE_<NAME>=1 tells
+# The hot loops, contact/*_kernel.c, are compiled once per variant: each into an object library of its own with its flags and
+# TRB_KERNEL_VARIANT=<name>, which makes the names of their functions. The core picks one when it runs. TRB_HAVE_<NAME>=1 tells
 # the other sources which of the optional variants exist.
 #
 #   scalar  plain C, strict arithmetic: what the others are compared with
@@ -9,10 +9,10 @@
 # -ffast-math lets the compiler vectorise exp, log and pow through glibc's libmvec. It must never reach the link: there it draws in
 # crtfastmath.o, which makes the whole process flush denormals to zero.
 
-set(kernel contact/raceway_kernel.c)
+file(GLOB trb_kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/contact/*_kernel.c)
 
 function(trb_kernel variant)
-  add_library(trb_kernel_${variant} OBJECT ${kernel})
+  add_library(trb_kernel_${variant} OBJECT ${trb_kernel_sources})
   target_include_directories(trb_kernel_${variant} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_compile_definitions(trb_kernel_${variant} PRIVATE TRB_KERNEL_VARIANT=${variant})
   target_compile_options(trb_kernel_${variant} PRIVATE ${ARGN})
@@ -22,7 +22,7 @@ function(trb_kernel variant)
   target_compile_definitions(trbdyn_core PRIVATE TRB_HAVE_${name}=1)
 endfunction()
 
-if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${kernel})
+if(trb_kernel_sources)
   include(CheckCCompilerFlag)
   set(fast -O3 -ffast-math)
   trb_kernel(scalar -O2)

@@ -30,15 +30,8 @@ typedef struct pocket_sums {
 
 static pocket_view view_pocket(const trb_model *m, const trb_roller_pose *r, const trb_cage_pose *cage, int roller)
 {
-  const trb_geometry *g = &m->geometry;
-  const double        nominal = trb_nominal_angle(m, roller), cosine = cos(nominal), sine = sin(nominal);
-  const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle);
-  /* pocket axes in the cage's body: n, t, a of the nominal roller */
-  const trb_frame nominal_axes = {{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
-  const trb_frame in_r = trb_compose(&cage->body, &nominal_axes);
-  const double    radius = g->apex_to_mid * sm;
-  const trb_vec3  origin_body = trb_v(radius * cosine, radius * sine, -m->params.cage_offset);
-  const trb_vec3  origin = trb_add(cage->x, trb_from_frame(&cage->body, origin_body));
+  const trb_frame in_r = trb_compose(&cage->body, &m->pocket_axes[roller]);
+  const trb_vec3  origin = trb_add(cage->x, trb_from_frame(&cage->body, m->pocket_origin[roller]));
   const trb_vec3  origin_here = trb_turn_z(origin, r->cosine, -r->sine), cage_here = trb_turn_z(cage->x, r->cosine, -r->sine);
   pocket_view     p = {0};
   p.axes = (trb_frame){trb_turn_z(in_r.n, r->cosine, -r->sine), trb_turn_z(in_r.t, r->cosine, -r->sine), trb_turn_z(in_r.a, r->cosine, -r->sine)};

@@ -1,22 +1,20 @@
 /* Rollers on both raceways: hands tiles of contacts to the kernel and adds what comes back. */
-#include <math.h>
 #include <string.h>
 
-#include "contact/raceway_kernel.h"
+#include "contact/kernels.h"
 
 static const trb_ring_pose fixed_ring = {{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 
 static trb_race_input race_input(const trb_model *m, const trb_instant *at, int contact)
 {
-  const int    roller = contact / TRB_N_RACES, race = contact % TRB_N_RACES, outer = race == TRB_RACE_OUTER;
-  const double angle = outer ? m->params.cup_half_angle : m->geometry.cone_half_angle;
+  const int roller = contact / TRB_N_RACES, race = contact % TRB_N_RACES, outer = race == TRB_RACE_OUTER;
   return (trb_race_input){&at->rollers[roller],
                           outer ? &fixed_ring : &at->inner[roller],
                           m->centre + (size_t)roller * (size_t)m->n_lanes,
                           m->sphere + (size_t)roller * (size_t)m->n_lanes,
                           &m->race[race],
-                          sin(angle),
-                          cos(angle),
+                          m->race[race].sine,
+                          m->race[race].cosine,
                           outer ? 1.0 : -1.0};
 }
 
@@ -66,7 +64,7 @@ void trb_contact_raceway(const trb_model *m, const trb_instant *at, trb_workspac
   for (int first = 0; first < total; first += per_tile) {
     const int n = total - first < per_tile ? total - first : per_tile;
     for (int c = 0; c < n; c++) inputs[c] = race_input(m, at, first + c);
-    trb_kernel_variants[work->variant].kernel(m, inputs, n, work->lanes, &work->counters, outputs);
+    trb_kernel_variants[work->variant].raceway(m, inputs, n, work->lanes, &work->counters, outputs);
     for (int c = 0; c < n; c++) add_output(&outputs[c], (first + c) % TRB_N_RACES, &loads[(first + c) / TRB_N_RACES]);
     if (detail != NULL) copy_detail(m, work->lanes, outputs, first, n, detail);
   }

@@ -1,35 +1,13 @@
 /* Roller on raceway, a tile of contacts at a time: geometry per contact, then one pass a law over all lanes, then sums per contact.
  * A law that a scene leaves out is a pass that does not run; inside the loops nothing branches on effects. */
-#include "contact/raceway_kernel.h"
+#include "contact/kernels.h"
 
 #include <math.h>
 
-#include "laws/film.h"
-#include "laws/line_contact.h"
+#include "contact/passes.h"
 #include "laws/rolling_resistance.h"
-#include "laws/traction.h"
-#include "laws/viscosity.h"
 
-#ifndef TRB_KERNEL_VARIANT
-#define TRB_KERNEL_VARIANT scalar
-#endif
-#define TRB_JOIN_(a, b) a##b
-#define TRB_JOIN(a, b) TRB_JOIN_(a, b)
 #define TRB_KERNEL_NAME TRB_JOIN(trb_raceway_kernel_, TRB_KERNEL_VARIANT)
-
-#if defined(__GNUC__) && !defined(__clang__)
-#define TRB_LANES _Pragma("GCC ivdep")
-#else
-#define TRB_LANES
-#endif
-#if defined(__GNUC__)
-#define TRB_PADDED(n) if ((n) % TRB_LANE_PAD != 0) __builtin_unreachable()
-#else
-#define TRB_PADDED(n) (void)(n)
-#endif
-
-/* Interference below which a node carries nothing, m: keeps logarithms finite. */
-#define TRB_SMALLEST_INTERFERENCE 1e-15
 
 /* Interference, normal, contact point and velocities of a contact's nodes, from lane `first` on; gives the largest interference. */
 static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int first)
@@ -92,24 +70,6 @@ static void pass_load(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
-/* Mean and sliding speed, slide-roll ratio; smooth at zero. */
-static void pass_speeds(const trb_model *m, int n, trb_lanes *l)
-{
-  const double floor2 = m->params.speed_floor * m->params.speed_floor;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-  {
-    const double mean = sqrt(l->mx[i] * l->mx[i] + l->my[i] * l->my[i] + l->mz[i] * l->mz[i] + floor2);
-    const double slide = sqrt(l->sx[i] * l->sx[i] + l->sy[i] * l->sy[i] + l->sz[i] * l->sz[i] + TRB_SLIDING_GUARD * TRB_SLIDING_GUARD);
-    l->mean_speed[i] = mean;
-    l->sliding_speed[i] = slide;
-    l->slide_roll[i] = slide / mean;
-    l->log_u[i] = log(mean);
-    l->friction_coefficient[i] = 0.0;
-    l->rolling[i] = 0.0;
-  }
-}
-
 /* (4) and (5), before the thermal factor. */
 static void pass_film(const trb_model *m, int n, trb_lanes *l)
 {
@@ -122,133 +82,6 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
     l->film_elastic[i] = l->radius[i] * trb_film_line_elastic(log_w, log_u, log_g);
     l->film_rigid[i] = l->radius[i] * trb_film_line_rigid(viscosity * l->mean_speed[i] / l->load_per_length[i]);
     l->thermal_factor[i] = 1.0;
-  }
-}
-
-static void pass_thermal(const trb_model *m, int n, trb_lanes *l)
-{
-  const double base = m->log_thermal, modulus = m->geometry.effective_modulus, floor = m->params.thermal_floor;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-      l->thermal_factor[i] = trb_film_thermal(l->pressure[i] / modulus, base + 2.0 * l->log_u[i], log(l->slide_roll[i]), floor);
-}
-
-/* (3) with a starvation factor. */
-static void pass_film_parameter(const trb_model *m, int n, trb_lanes *l)
-{
-  const double starvation = m->params.starvation_factor, per_roughness = 1.0 / m->params.roughness_raceway;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-  {
-    l->film[i] = starvation * l->thermal_factor[i] * trb_max(l->film_elastic[i], l->film_rigid[i]);
-    l->film_parameter[i] = l->film[i] * per_roughness;
-  }
-}
-
-/* The traction loop once per viscosity law, so that the choice is made outside. */
-#define TRB_TRACTION_LOOP(log_ratio) \
-  TRB_PADDED(n); \
-  TRB_LANES for (int i = 0; i < n; i++) \
-  { \
-    const double mean_pressure = TRB_LINE_MEAN_PRESSURE * l->pressure[i]; \
-    const double eta = viscosity * exp(log_ratio); \
-    const double sigma = eta * l->sliding_speed[i] / (tau0 * l->film[i]); \
-    const double d = eta * l->mean_speed[i] / (trb_shear_modulus(mean_pressure, temperature, floor) * l->half_width[i]); \
-    l->traction_coefficient[i] = tau0 * trb_traction_muraki_kimura(sigma, d) / mean_pressure; \
-  }
-
-/* (7)-(9) */
-static void pass_muraki_kimura(const trb_model *m, int n, trb_lanes *l)
-{
-  const trb_params *p = &m->params;
-  const double      viscosity = p->viscosity, tau0 = p->eyring_stress, temperature = p->temperature, floor = p->shear_modulus_floor;
-  const double      alpha = p->pressure_coefficient, cap = p->viscosity_exponent_cap;
-  if (p->viscosity_law == TRB_VISCOSITY_DICKE) {
-    const double at = p->dicke_a + p->dicke_b * temperature, ct = p->dicke_c + p->dicke_d * temperature;
-    TRB_TRACTION_LOOP(trb_viscosity_dicke(mean_pressure, at, ct))
-  } else if (p->viscosity_law == TRB_VISCOSITY_ROELANDS) {
-    const double log_viscosity = m->log_viscosity;
-    TRB_TRACTION_LOOP(trb_viscosity_roelands(mean_pressure, alpha, log_viscosity, cap))
-  } else {
-    TRB_TRACTION_LOOP(trb_viscosity_barus(mean_pressure, alpha, cap))
-  }
-}
-
-static void pass_coulomb(const trb_model *m, int n, trb_lanes *l, double *restrict coefficient)
-{
-  const double mu = m->params.dry_friction, turn = m->params.coulomb_speed * m->params.coulomb_speed;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-  {
-    const double s = l->sliding_speed[i];
-    coefficient[i] = mu * s / sqrt(s * s + turn);
-  }
-}
-
-/* (6) */
-static void pass_boundary(const trb_model *m, int n, trb_lanes *l)
-{
-  const double limit = m->params.boundary_limit, slope = m->params.boundary_slope, decay = m->params.boundary_decay;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++) l->boundary_coefficient[i] = trb_friction_boundary(l->slide_roll[i], limit, slope, decay);
-}
-
-static double thinnest(int n, const trb_lanes *l)
-{
-  double least = INFINITY;
-  TRB_PADDED(n);
-  for (int i = 0; i < n; i++) least = trb_min(least, l->film_parameter[i]);
-  return least;
-}
-
-/* (2) */
-static void pass_mix(const trb_model *m, int n, trb_lanes *l)
-{
-  const double low = m->params.lambda_boundary, high = m->params.lambda_full;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-  {
-    const double share = trb_boundary_share(l->film_parameter[i], low, high);
-    l->friction_coefficient[i] = l->traction_coefficient[i] + share * (l->boundary_coefficient[i] - l->traction_coefficient[i]);
-  }
-}
-
-static void copy_lanes(int n, const double *restrict from, double *restrict to)
-{
-  for (int i = 0; i < n; i++) to[i] = from[i];
-}
-
-/* Friction coefficients of the scene's kind of lubrication. */
-static void pass_friction(const trb_model *m, int n, trb_lanes *l, trb_counters *counters)
-{
-  const trb_params *p = &m->params;
-  if (p->lubrication == TRB_LUBRICATION_DRY) {
-    pass_coulomb(m, n, l, l->friction_coefficient);
-    counters->coulomb_nodes += n;
-    return;
-  }
-  if (p->lubrication == TRB_LUBRICATION_BOUNDARY) {
-    pass_boundary(m, n, l);
-    counters->boundary_nodes += n;
-    copy_lanes(n, l->boundary_coefficient, l->friction_coefficient);
-    return;
-  }
-  if (p->traction == TRB_TRACTION_MURAKI_KIMURA) {
-    pass_muraki_kimura(m, n, l);
-    counters->traction_nodes += n;
-  } else if (p->traction == TRB_TRACTION_COULOMB) {
-    pass_coulomb(m, n, l, l->traction_coefficient);
-    counters->coulomb_nodes += n;
-  } else {
-    for (int i = 0; i < n; i++) l->traction_coefficient[i] = 0.0;
-  }
-  /* boundary friction only where some film is thin enough to share it */
-  if (p->lubrication == TRB_LUBRICATION_MIXED && thinnest(n, l) < p->lambda_full) {
-    pass_boundary(m, n, l);
-    counters->boundary_nodes += n;
-    pass_mix(m, n, l);
-  } else {
-    copy_lanes(n, l->traction_coefficient, l->friction_coefficient);
   }
 }
 
@@ -374,7 +207,8 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
     if (pass_geometry(&inputs[c], n, l, n_loaded * n) > 0.0) loaded[n_loaded++] = c;
     else counters->raceway_culled++;
   }
-  const int all = n_loaded * n;
+  const int           all = n_loaded * n;
+  const trb_pass_kind kind = {TRB_LINE_MEAN_PRESSURE, m->params.roughness_raceway};
   if (all == 0) return;
   counters->raceway_nodes += all;
   pass_load(m, all, l);
@@ -394,9 +228,9 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
       pass_thermal(m, all, l);
       counters->thermal_nodes += all;
     }
-    pass_film_parameter(m, all, l);
+    pass_film_parameter(m, &kind, all, l);
   }
-  if (m->friction) pass_friction(m, all, l, counters);
+  if (m->friction) pass_friction(m, &kind, all, l, counters);
   if (rolling && m->film) {
     pass_rolling(m, all, l);
     counters->rolling_nodes += all;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/raceway_kernel.h"
+#include "contact/kernels.h"
 
 enum { MOST_STEPS = 300 };
 /* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */
@@ -73,7 +73,8 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
     const trb_roller_pose *r = &s->d->rollers[j];
     const double           moment = trb_dot(l->moment, r->frame.t);
     forces[3 * j] = l->force.x + g->roller_mass * orbit * orbit * r->radius;
-    forces[3 * j + 1] = l->force.z;
+    /* without a back-face rib nothing but friction holds a roller along its axis: it is held where it is */
+    forces[3 * j + 1] = m->params.back_rib > 0.0 ? l->force.z : 0.0;
     forces[3 * j + 2] = moment - gyro;
     energy += l->elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[3 * j + 2];
     const trb_vec3 force = trb_turn_z(l->ring_force, r->cosine, r->sine), torque = trb_turn_z(l->ring_moment, r->cosine, r->sine);
@@ -154,6 +155,13 @@ static int eliminate(double *a, int n, int k)
   return 1;
 }
 
+/* The equation "this unknown does not move". */
+static void hold_row(double *row, int width, int unknown)
+{
+  for (int c = 0; c < width; c++) row[c] = 0.0;
+  row[unknown] = 1.0;
+}
+
 /* Damped Newton step: (K + damping D) step = force, rollers eliminated onto the ring. D is the stiffness of a typical contact. */
 static int newton_step(solver *s, double damping, double *step_rollers, double *step_ring)
 {
@@ -175,6 +183,7 @@ static int newton_step(solver *s, double damping, double *step_rollers, double *
       for (int c = 0; c < 5; c++) a[9 * i + 3 + c] = s->to_ring[15 * j + 5 * i + c];
       a[9 * i + 8] = s->forces[3 * j + i];
     }
+    if (s->m->params.back_rib <= 0.0) hold_row(a + 9, 9, 1);
     if (!eliminate(a, 3, 6)) return 0;
     for (int i = 0; i < 3; i++)
       for (int c = 0; c < 6; c++) s->solved[18 * j + 6 * i + c] = a[9 * i + 3 + c];
@@ -182,11 +191,8 @@ static int newton_step(solver *s, double damping, double *step_rollers, double *
       for (int q = 0; q < 3; q++)
         for (int c = 0; c < 6; c++) ring[6 * i + c] -= s->from_ring[15 * j + 3 * i + q] * s->solved[18 * j + 6 * q + c];
   }
-  for (int i = 0; i < 5; i++) {
-    if (!s->e->fixed[i]) continue;
-    for (int c = 0; c < 6; c++) ring[6 * i + c] = 0.0;
-    ring[6 * i + i] = 1.0;
-  }
+  for (int i = 0; i < 5; i++)
+    if (s->e->fixed[i]) hold_row(ring + 6 * i, 6, i);
   if (!eliminate(ring, 5, 1)) return 0;
   for (int i = 0; i < 5; i++) step_ring[i] = ring[6 * i + 5];
   for (int j = 0; j < n; j++)

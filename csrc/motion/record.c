@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/raceway_kernel.h"
+#include "contact/kernels.h"
 #include "motion/audit.h"
 
 const trb_field_info trb_field_table[TRB_N_FIELDS] = {

@@ -4,7 +4,7 @@
 #include <structmember.h>
 #include <string.h>
 
-#include "contact/raceway_kernel.h"
+#include "contact/kernels.h"
 #include "motion/equilibrium.h"
 #include "motion/record.h"
 

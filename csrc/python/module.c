@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "contact/raceway_kernel.h"
+#include "contact/kernels.h"
 #include "laws/table.h"
 #include "motion/record.h"
 #include "stepping/integrator.h"

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "contact/raceway_kernel.h"
+#include "contact/kernels.h"
 #include "stepping/simulation.h"
 
 typedef struct simulation_object {

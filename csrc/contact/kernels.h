@@ -1,7 +1,7 @@
-/* The loop over slices: the same source compiled for several instruction sets (TRB_KERNEL_VARIANT), chosen when a workspace is made.
+/* The hot loops: the same sources compiled for several instruction sets (TRB_KERNEL_VARIANT), chosen when a workspace is made.
  * `scalar` is compiled without fast-math and is what the others are tested against. */
-#ifndef TRB_CONTACT_RACEWAY_KERNEL_H
-#define TRB_CONTACT_RACEWAY_KERNEL_H
+#ifndef TRB_CONTACT_KERNELS_H
+#define TRB_CONTACT_KERNELS_H
 
 #include "contact/contact.h"
 
@@ -68,7 +68,7 @@ static inline const double *trb_detail_lane(const trb_model *m, const trb_detail
   return detail->lanes + (((size_t)field * TRB_N_RACES + (size_t)race) * rollers + (size_t)roller) * lanes;
 }
 
-/* One contact of a roller with a race. */
+/* One contact of a roller with a race; without interference its lanes are used by the next. */
 typedef struct trb_race_input {
   const trb_roller_pose *roller;
   const trb_ring_pose   *ring;   /* in the roller's frame */
@@ -90,11 +90,17 @@ typedef struct trb_race_output {
 typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,
                                 trb_race_output *outputs);
 
+/* All rollers' large ends on the rib, a lane a roller. */
+typedef void trb_rib_kernel(const trb_model *m, const trb_roller_pose *rollers, const trb_ring_pose *rings, trb_lanes *lanes, trb_counters *counters,
+                            trb_race_output *outputs);
+
 trb_raceway_kernel trb_raceway_kernel_scalar, trb_raceway_kernel_base, trb_raceway_kernel_avx2, trb_raceway_kernel_avx512;
+trb_rib_kernel     trb_rib_kernel_scalar, trb_rib_kernel_base, trb_rib_kernel_avx2, trb_rib_kernel_avx512;
 
 typedef struct trb_kernel_variant {
   const char         *name;
-  trb_raceway_kernel *kernel;
+  trb_raceway_kernel *raceway;
+  trb_rib_kernel     *rib;
 } trb_kernel_variant;
 
 enum { TRB_MAX_KERNEL_VARIANTS = 4 };

@@ -1,0 +1,128 @@
+/* Roller large ends on the back-face rib, all rollers at once: a lane a roller. The laws of friction are the raceways' passes. */
+#include <math.h>
+
+#include "contact/passes.h"
+
+#define TRB_KERNEL_NAME TRB_JOIN(trb_rib_kernel_, TRB_KERNEL_VARIANT)
+
+/* Keeps the direction of a sphere's centre on the bearing axis finite, m. */
+#define TRB_AXIS_GUARD 1e-9
+
+/* Deepest point of the end's sphere in the rib's cone, and the velocities there. */
+static void pass_geometry(const trb_model *m, const trb_roller_pose *rollers, const trb_ring_pose *rings, int n, trb_lanes *l)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        station = g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, sine = m->rib_sine, cosine = m->rib_cosine;
+  for (int j = 0; j < n; j++) {
+    const trb_roller_pose *r = &rollers[j];
+    const trb_ring_pose   *ring = &rings[j];
+    const trb_vec3         centre = trb_axpy(r->x, station, r->frame.a), from = trb_sub(centre, ring->apex);
+    const double           along = trb_dot(from, ring->axis);
+    const trb_vec3         across = trb_axpy(from, -along, ring->axis);
+    const double           off = sqrt(trb_dot(across, across) + TRB_AXIS_GUARD * TRB_AXIS_GUARD);
+    const double           d = g->sphere_radius + sine * (off - g->rib_contact_radius) + cosine * (along - g->rib_contact_z);
+    const trb_vec3         normal = trb_add(trb_scale(sine / off, across), trb_scale(cosine, ring->axis));
+    const trb_vec3         point = trb_axpy(centre, g->sphere_radius - 0.5 * d, normal);
+    const trb_vec3         v1 = trb_add(r->v, trb_cross(r->omega, trb_sub(point, r->x)));
+    const trb_vec3         v2 = trb_add(ring->velocity, trb_cross(ring->omega, trb_sub(point, ring->centre)));
+    const trb_vec3         relative = trb_sub(v1, v2), orbit = trb_v(-r->orbit_speed * point.y, r->orbit_speed * point.x, 0.0);
+    const trb_vec3         middle = trb_sub(trb_scale(0.5, trb_add(v1, v2)), orbit);
+    const double           rate = trb_dot(relative, normal);
+    const trb_vec3         sliding = trb_axpy(relative, -rate, normal), mean = trb_axpy(middle, -trb_dot(middle, normal), normal);
+    l->interference[j] = d;
+    l->approach[j] = rate;
+    l->nx[j] = normal.x, l->ny[j] = normal.y, l->nz[j] = normal.z;
+    l->px[j] = point.x, l->py[j] = point.y, l->pz[j] = point.z;
+    l->sx[j] = sliding.x, l->sy[j] = sliding.y, l->sz[j] = sliding.z;
+    l->mx[j] = mean.x, l->my[j] = mean.y, l->mz[j] = mean.z;
+  }
+}
+
+/* Lanes that fill up the last vector repeat the last roller, so that they take no path of their own. */
+static void pad(int n, int padded, trb_lanes *l)
+{
+  double *const fields[] = {l->interference, l->approach, l->sx, l->sy, l->sz, l->mx, l->my, l->mz};
+  for (int f = 0; f < (int)(sizeof fields / sizeof fields[0]); f++)
+    for (int i = n; i < padded; i++) fields[f][i] = fields[f][n - 1];
+}
+
+/* Hertz: Q = K d^1.5, semi-axis along rolling and largest pressure with Q^(1/3). */
+static void pass_load(const trb_model *m, int n, trb_lanes *l)
+{
+  const double stiffness = m->geometry.rib_stiffness, log_stiffness = log(stiffness), rolling = m->geometry.rib_semi_axis_rolling;
+  const double per_area = 1.5 / (TRB_PI * rolling * m->geometry.rib_semi_axis_across);
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double d = trb_max(l->interference[i], TRB_SMALLEST_INTERFERENCE), log_d = log(d), root = exp((log_stiffness + 1.5 * log_d) / 3.0);
+    l->log_d[i] = log_d;
+    l->load[i] = l->interference[i] > 0.0 ? stiffness * d * sqrt(d) : 0.0;
+    l->half_width[i] = rolling * root;
+    l->pressure[i] = per_area * root;
+  }
+}
+
+/* (12) and (13), or (12) alone, before the thermal factor. */
+static void pass_film(const trb_model *m, int n, trb_lanes *l)
+{
+  const double log_rx = log(m->geometry.rib_rx), rx = m->geometry.rib_rx, log_g = m->log_g, shape = m->rib_film_shape;
+  const double base_w = log(m->geometry.rib_stiffness) - m->log_modulus - 2.0 * log_rx, base_u = m->log_viscosity - m->log_modulus - log_rx;
+  const double rigid = m->params.rib_film > 0.0 ? 0.0 : rx * m->rib_film_rigid;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double log_w = base_w + 1.5 * l->log_d[i], log_u = base_u + l->log_u[i];
+    l->film_elastic[i] = rx * trb_film_point_elastic(log_w, log_u, log_g, shape);
+    l->film_rigid[i] = rigid * exp(2.0 * (log_u - log_w));
+    l->thermal_factor[i] = 1.0;
+  }
+}
+
+static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int j, const trb_lanes *l, trb_race_output *out)
+{
+  const trb_vec3 normal = trb_v(l->nx[j], l->ny[j], l->nz[j]), point = trb_v(l->px[j], l->py[j], l->pz[j]), sliding = trb_v(l->sx[j], l->sy[j], l->sz[j]);
+  const double   elastic = l->load[j];
+  double         load = elastic;
+  if (m->params.damping > 0.0) load *= trb_max(1.0 + m->params.damping_race * l->approach[j], 0.0);
+  const double   drag = load * l->friction_coefficient[j] / l->sliding_speed[j];
+  const trb_vec3 force = trb_axpy(trb_scale(-load, normal), -drag, sliding), torque = trb_cross(trb_sub(point, ring->centre), force);
+  out->loaded = 1;
+  out->force = force;
+  out->moment = trb_cross(trb_sub(point, r->x), force);
+  out->ring_force = trb_scale(-1.0, force);
+  out->ring_moment = trb_scale(-1.0, torque);
+  out->torque_traction = -trb_dot(torque, ring->axis);
+  out->elastic = 0.4 * elastic * l->interference[j];
+  out->power_traction = drag * trb_dot(sliding, sliding);
+  out->power_damping = (load - elastic) * l->approach[j];
+}
+
+void TRB_KERNEL_NAME(const trb_model *m, const trb_roller_pose *rollers, const trb_ring_pose *rings, trb_lanes *l, trb_counters *counters,
+                     trb_race_output *outputs)
+{
+  const int           n = m->n_rollers, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
+  const trb_pass_kind kind = {TRB_POINT_MEAN_PRESSURE, m->params.roughness_rib};
+  pass_geometry(m, rollers, rings, n, l);
+  pad(n, all, l);
+  counters->rib_tests += n;
+  int touching = 0;
+  for (int j = 0; j < n; j++) touching += l->interference[j] > 0.0;
+  for (int j = 0; j < n; j++) outputs[j] = (trb_race_output){0};
+  if (touching == 0) return;
+  counters->rib_contacts += touching;
+  pass_load(m, all, l);
+  pass_speeds(m, all, l);
+  if (m->film) {
+    pass_film(m, all, l);
+    counters->film_nodes += all;
+    if (m->params.thermal > 0.0) {
+      pass_thermal(m, all, l);
+      counters->thermal_nodes += all;
+    }
+    pass_film_parameter(m, &kind, all, l);
+  }
+  if (m->friction) pass_friction(m, &kind, all, l, counters);
+  if (m->params.damping > 0.0) counters->damping_nodes += touching;
+  for (int j = 0; j < n; j++)
+    if (l->interference[j] > 0.0) sum_roller(m, &rollers[j], &rings[j], j, l, &outputs[j]);
+}
