@@ -3,7 +3,7 @@
 #   make demo       the 30310 test bearing at 3000 rpm, in demo/
 #   make test       C unit tests and the Python tests (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones)
 #   make lint       style, types, rules of the C sources (make format rewrites the style)
-#   make bench      timings
+#   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the hard cases, minutes long
 #   make sanitize   the C tests and the quick Python tests under address and undefined-behaviour sanitizers
 #   make install    only the environment and the package
@@ -15,6 +15,8 @@ PYTHON ?= python3
 WERROR ?= ON
 PYTEST ?=
 SLOW   ?=
+QUICK  ?=
+BENCH  ?= $(filter-out common,$(basename $(notdir $(wildcard benchmarks/*.py))))
 
 VENV    := .venv
 PY      := $(VENV)/bin/python
@@ -47,7 +49,9 @@ format: $(VENV)/.lint
 	$(VENV)/bin/clang-format -i $(wildcard csrc/*.h csrc/*/*.[ch])
 
 bench: install
-	PYTHONSAFEPATH= $(PY) benchmarks/run.py
+	@mkdir -p build/bench
+	@set -e; for name in $(BENCH); do echo "== $$name"; \
+	  PYTHONSAFEPATH= $(PY) benchmarks/$$name.py $(if $(QUICK),--quick) --json build/bench/$$name.json; done
 
 stability: install
 	$(PY) -m pytest tests/stability -m "slow or not slow" $(PYTEST)
