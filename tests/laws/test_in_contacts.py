@@ -1,0 +1,193 @@
+"""Every node of every contact obeys the laws that trb.laws calls: kernels and laws are the same functions."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from trbdyn import Effects, Scene, Simulation, cases, laws
+from trbdyn.lubricants import vg100
+
+STARVED = {"starvation_factor": 0.1}
+"""Thin films, so that boundary friction has its share."""
+SCENES: dict[str, dict[str, Any]] = {
+    "mixed": STARVED,
+    "full_film": {"lubrication": "full_film"},
+    "no_thermal": {"thermal": False, "rolling_resistance": False},
+    "film_coulomb": {"traction": "coulomb"},
+    "boundary": {"lubrication": "boundary"},
+    "dry": {"lubrication": "dry"},
+}
+
+
+def scene_of(name: str, **changes: Any) -> Scene:
+    effects = Effects(quadrature="gauss", n_slices=9, **SCENES.get(name, STARVED))
+    oil = vg100(60.0, pressure_law=name if name in ("roelands", "barus") else "dicke")  # type: ignore[arg-type]
+    return cases.scene_30310(lubricant=oil, effects=effects, **changes)
+
+
+def look(scene: Scene, seed: int = 3) -> SimpleNamespace:
+    """Contacts at a state off equilibrium, and the numbers that the laws need."""
+    sim = Simulation(scene, instruction_set="scalar")
+    random, state = np.random.default_rng(seed), sim.state.vector
+    view = sim.view(state)
+    for part, size in (("r", 1e-6), ("z", 1e-6), ("skew", 1e-4), ("tilt", 1e-5), ("v_t", 0.02), ("omega_a", 8.0)):
+        view[f"roller_{part}"] += size * random.uniform(-1.0, 1.0, 12)
+    found = sim.contacts(state)
+    part = {name.removeprefix("raceway_"): values for name, values in found.items() if name.startswith("raceway_")}
+    rib = {name.removeprefix("rib_"): values for name, values in found.items() if name.startswith("rib_")}
+    geometry, oil = scene.bearing.geometry, scene.lubricant
+    groups = {"modulus": geometry.effective_modulus, "g": oil.pressure_coefficient * geometry.effective_modulus}
+    return SimpleNamespace(**part, rib=SimpleNamespace(**rib), oil=oil, geometry=geometry, scene=scene, **groups)
+
+
+def exact(values: np.ndarray) -> object:
+    """The same number but for rounding in another order of operations."""
+    return pytest.approx(values, rel=1e-11)
+
+
+@pytest.fixture(scope="module", params=[*SCENES, "roelands", "barus"])
+def seen(request: pytest.FixtureRequest) -> SimpleNamespace:
+    found = look(scene_of(request.param))
+    assert np.all(found.interference > 0)
+    assert np.all(found.rib.interference > 0)
+    return found
+
+
+def test_load_and_pressure(seen: SimpleNamespace) -> None:
+    assert seen.load_per_length == exact(laws.line_load(seen.interference, seen.modulus, 19.8e-3))
+    assert seen.load == exact(seen.load_per_length * seen.weight)
+    assert seen.half_width == exact(laws.line_half_width(seen.load_per_length, seen.radius, seen.modulus))
+    assert seen.pressure == exact(laws.line_pressure(seen.load_per_length, seen.radius, seen.modulus))
+    assert np.median(seen.pressure[0]) == pytest.approx(0.64e9, rel=0.2)
+
+
+def test_slide_roll(seen: SimpleNamespace) -> None:
+    assert seen.slide_roll == exact(seen.sliding_speed / seen.mean_speed)
+    slid = np.sqrt(seen.sx**2 + seen.sy**2 + seen.sz**2)
+    assert seen.sliding_speed == exact(np.hypot(slid, 1e-9))
+    assert np.ptp(seen.slide_roll) > 1e-3
+
+
+def thermal_of(seen: SimpleNamespace, pressure: Any, speed: Any, slip: Any) -> Any:
+    oil = seen.oil
+    if not seen.scene.effects.thermal:
+        return np.ones_like(speed)
+    loading = oil.viscosity * oil.temperature_coefficient * speed**2 / oil.conductivity
+    return laws.film_thermal(pressure / seen.modulus, loading, slip, 0.05)
+
+
+def test_film(seen: SimpleNamespace) -> None:
+    effects = seen.scene.effects
+    if not effects.films:
+        assert not np.any(seen.film)
+        return
+    w = seen.load_per_length / (seen.modulus * seen.radius)
+    u = seen.oil.viscosity * seen.mean_speed / (seen.modulus * seen.radius)
+    elastic, rigid = laws.film_line_elastic(w, u, seen.g), laws.film_line_rigid(w, u)
+    assert seen.film_elastic == exact(seen.radius * elastic)
+    assert seen.film_rigid == exact(seen.radius * rigid)
+    assert seen.thermal_factor == exact(thermal_of(seen, seen.pressure, seen.mean_speed, seen.slide_roll))
+    thickest = np.maximum(seen.film_elastic, seen.film_rigid)
+    assert seen.film == exact(effects.starvation_factor * seen.thermal_factor * thickest)
+    assert seen.film_parameter == exact(seen.film / 0.16e-6)
+
+
+def log_ratio(oil: Any, pressure: Any) -> Any:
+    if oil.pressure_law == "barus":
+        return laws.viscosity_barus(pressure, oil.pressure_coefficient, oil.viscosity_exponent_cap)
+    if oil.pressure_law == "roelands":
+        return laws.viscosity_roelands(pressure, oil.pressure_coefficient, oil.viscosity, oil.viscosity_exponent_cap)
+    return laws.viscosity_dicke(pressure, oil.temperature_c, oil.dicke.a, oil.dicke.b, oil.dicke.c, oil.dicke.d)
+
+
+def traction_of(seen: SimpleNamespace, contact: Any, mean_pressure: Any, semi: Any) -> Any:
+    oil, effects = seen.oil, seen.scene.effects
+    if effects.traction == "coulomb" or effects.lubrication == "dry":
+        return 0.1 * contact.sliding_speed / np.hypot(contact.sliding_speed, 0.01)
+    eta = oil.viscosity * np.exp(log_ratio(oil, mean_pressure))
+    sigma = eta * contact.sliding_speed / (oil.eyring_stress * contact.film)
+    shear = laws.shear_modulus(mean_pressure, oil.temperature_c, oil.shear_modulus_floor)
+    s = laws.traction_muraki_kimura(sigma, eta * contact.mean_speed / (shear * semi))
+    return oil.eyring_stress * s / mean_pressure
+
+
+def friction_of(seen: SimpleNamespace, contact: Any, mean_pressure: Any, semi: Any) -> Any:
+    effects = seen.scene.effects
+    boundary = laws.friction_boundary(contact.slide_roll, 0.1, 22.28, 181.46)
+    if effects.lubrication == "boundary":
+        return boundary
+    film = traction_of(seen, contact, mean_pressure, semi)
+    if effects.lubrication != "mixed":
+        return film
+    share = laws.boundary_share(contact.film_parameter, 0.01, 1.5)
+    return film + share * (boundary - film)
+
+
+def test_friction(seen: SimpleNamespace) -> None:
+    mean = math.pi / 4 * seen.pressure
+    assert seen.friction_coefficient == exact(friction_of(seen, seen, mean, seen.half_width))
+    if seen.scene.effects.lubrication == "mixed" and seen.scene.effects.starvation_factor < 1.0:
+        assert laws.boundary_share(seen.film_parameter, 0.01, 1.5).min() > 0.01
+
+
+def test_rolling_resistance(seen: SimpleNamespace) -> None:
+    effects = seen.scene.effects
+    if not (effects.films and effects.rolling_resistance):
+        assert not np.any(seen.rolling)
+        return
+    w = seen.load_per_length / (seen.modulus * seen.radius)
+    u = seen.oil.viscosity * seen.mean_speed / (seen.modulus * seen.radius)
+    share = laws.rolling_share(seen.film_elastic / seen.film_rigid, 0.1)
+    law = laws.rolling_line(w, u, seen.g) * seen.radius * seen.weight / seen.oil.pressure_coefficient
+    assert seen.rolling == exact(share * seen.thermal_factor * law)
+
+
+def test_rib(seen: SimpleNamespace) -> None:
+    rib, geometry, effects = seen.rib, seen.geometry, seen.scene.effects
+    radii = geometry.rib_rx, geometry.rib_ry
+    assert rib.load == exact(laws.point_stiffness(*radii, seen.modulus) * rib.interference**1.5)
+    along = laws.point_semi_axis_long(rib.load, *radii, seen.modulus)
+    across = laws.point_semi_axis_short(rib.load, *radii, seen.modulus)
+    assert rib.pressure == exact(1.5 * rib.load / (math.pi * along * across))
+    if effects.films:
+        w = rib.load / (seen.modulus * radii[0] ** 2)
+        u = seen.oil.viscosity * rib.mean_speed / (seen.modulus * radii[0])
+        ratio = radii[1] / radii[0]
+        assert rib.film_elastic == exact(radii[0] * laws.film_point_elastic(w, u, seen.g, ratio))
+        assert rib.film_rigid == exact(radii[0] * laws.film_point_rigid(w, u, ratio))
+        assert rib.thermal_factor == exact(thermal_of(seen, rib.pressure, rib.mean_speed, rib.slide_roll))
+        thickest = np.maximum(rib.film_elastic, rib.film_rigid)
+        assert rib.film == exact(effects.starvation_factor * rib.thermal_factor * thickest)
+        assert rib.film_parameter == exact(rib.film / 0.24e-6)
+    # the mean pressure of an ellipse, and its semi-axis along rolling
+    assert rib.friction_coefficient == exact(friction_of(seen, rib, 2 / 3 * rib.pressure, along))
+    assert rib.friction == exact(rib.load * rib.friction_coefficient)
+
+
+def test_rib_film_choice() -> None:
+    thicker = look(scene_of("no_thermal")).rib
+    effects = scene_of("no_thermal").effects.replace(rib_film="pe")
+    elastic = look(scene_of("no_thermal").replace(effects=effects)).rib
+    rigid = thicker.film_rigid > thicker.film_elastic
+    assert 0 < np.count_nonzero(rigid) < 12
+    assert np.array_equal(thicker.film, np.where(rigid, thicker.film_rigid, thicker.film_elastic))
+    assert np.array_equal(elastic.film, elastic.film_elastic)
+    assert np.array_equal(elastic.film_elastic, thicker.film_elastic)
+
+
+def test_friction_opposes_sliding_and_loses_power() -> None:
+    """Every contact loses friction times sliding speed, and no other power."""
+    seen = look(scene_of("no_thermal"))
+    sim = Simulation(seen.scene, instruction_set="scalar")
+    found = sim.contacts()
+    for race, column in ((0, 0), (1, 1)):
+        drag = found["raceway_load"] * found["raceway_friction_coefficient"] * found["raceway_sliding_speed"]
+        # without the guard of 1e-9 m/s in the speed itself: s^2/sqrt(s^2 + guard^2)
+        slid = found["raceway_sliding_speed"] ** 2 - 1e-18
+        drag *= slid / found["raceway_sliding_speed"] ** 2
+        assert found["power"][:, column] == pytest.approx(drag[race].sum(axis=-1), rel=1e-9, abs=1e-15)

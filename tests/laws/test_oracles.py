@@ -1,0 +1,177 @@
+"""Laws against other ways to the same number: SciPy's integrals, Hertz' theory solved anew, NumPy's nodes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import fsolve
+from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc, elliprd, elliprf
+
+from trbdyn import Effects, Simulation, cases, laws
+from trbdyn.bearing import Profile
+
+MODULUS = 226.37e9
+
+
+class TestEllipticIntegrals:
+    m = np.concatenate([np.linspace(0.0, 0.999, 200), 1.0 - np.geomspace(1e-12, 1e-3, 40)])
+
+    def test_first(self) -> None:
+        assert laws.elliptic_first(self.m) == pytest.approx(ellipk(self.m), rel=4e-15)
+
+    def test_second(self) -> None:
+        assert laws.elliptic_second(self.m) == pytest.approx(ellipe(self.m), rel=1e-14)
+
+    def test_incomplete_ones_at_a_right_angle(self) -> None:
+        assert laws.elliptic_first(0.7) == pytest.approx(ellipkinc(math.pi / 2, 0.7), rel=1e-14)
+        assert laws.elliptic_second(0.7) == pytest.approx(ellipeinc(math.pi / 2, 0.7), rel=1e-14)
+
+    def test_legendres_relation(self) -> None:
+        m = np.linspace(0.01, 0.99, 99)
+        k, e, k1, e1 = (f(x) for x in (m, 1 - m) for f in (laws.elliptic_first, laws.elliptic_second))
+        assert e * k1 + e1 * k - k * k1 == pytest.approx(math.pi / 2, rel=1e-13)
+
+
+def hertz(load: float, longer: float, shorter: float, modulus: float) -> tuple[float, float, float]:
+    """Semi-axes and approach from the displacements under an ellipsoidal pressure, by Carlson's integrals.
+
+    K. L. Johnson, Contact Mechanics, 3.41: pi E* [d - x^2/(2 R_long) - y^2/(2 R_short)] = L - M x^2 - N y^2.
+    """
+    star = 0.5 * modulus
+
+    def integrals(a: float, b: float) -> tuple[float, float, float]:
+        peak = 1.5 * load / (math.pi * a * b)
+        scale = 0.5 * math.pi * peak * a * b
+        return (
+            scale * 2.0 * elliprf(0.0, a * a, b * b),
+            scale * 2.0 / 3.0 * elliprd(0.0, b * b, a * a),
+            scale * 2.0 / 3.0 * elliprd(0.0, a * a, b * b),
+        )
+
+    def off(logs: np.ndarray) -> list[float]:
+        _, along, across = integrals(*np.exp(logs))
+        return [
+            math.log(along / (math.pi * star / (2 * longer))),
+            math.log(across / (math.pi * star / (2 * shorter))),
+        ]
+
+    start = (0.75 * load * math.sqrt(longer * shorter) / star) ** (1 / 3)
+    logs = fsolve(off, [math.log(start) + 0.3, math.log(start) - 0.3], xtol=1e-13)
+    a, b = np.exp(logs)
+    return a, b, integrals(a, b)[0] / (math.pi * star)
+
+
+@pytest.mark.parametrize("load", [1e-3, 119.6, 3e4])
+@pytest.mark.parametrize(
+    ("longer", "shorter"), [(1.761, 0.2022), (0.02, 0.019999), (0.05, 0.04), (1.0, 0.01), (10.0, 0.002)]
+)
+def test_hertz_point(load: float, longer: float, shorter: float) -> None:
+    a, b, approach = hertz(load, longer, shorter, MODULUS)
+    for radii in ((longer, shorter), (shorter, longer)):
+        assert laws.point_ellipticity(*radii) == pytest.approx(a / b, rel=1e-9)
+        assert laws.point_semi_axis_long(load, *radii, MODULUS) == pytest.approx(a, rel=1e-9)
+        assert laws.point_semi_axis_short(load, *radii, MODULUS) == pytest.approx(b, rel=1e-9)
+        assert laws.point_stiffness(*radii, MODULUS) * approach**1.5 == pytest.approx(load, rel=1e-9)
+
+
+def test_hertz_sphere_on_plane() -> None:
+    """Equal radii: the textbook's formulas, and no jump where the series about the circle takes over."""
+    radius, load = 0.01, 50.0
+    star = 0.5 * MODULUS
+    assert laws.point_ellipticity(radius, radius) == pytest.approx(1.0, abs=1e-9)
+    assert laws.point_stiffness(radius, radius, MODULUS) == pytest.approx(4 / 3 * star * math.sqrt(radius), rel=1e-9)
+    semi = (0.75 * load * radius / star) ** (1 / 3)
+    assert laws.point_semi_axis_long(load, radius, radius, MODULUS) == pytest.approx(semi, rel=1e-9)
+    ratio = np.geomspace(1e-9, 1e-3, 400)
+    # d ln k / d ln(R ratio) at the circle is 2/3
+    assert laws.point_ellipticity(1.0 + ratio, 1.0) - 1.0 == pytest.approx(2 / 3 * ratio, rel=2e-3, abs=1e-9)
+
+
+def test_hertz_line() -> None:
+    """Load, width and pressure of a line belong together, and Johnson's formulas with R and E*."""
+    load, radius, star = 9.2e4, 8.163e-3, 0.5 * MODULUS
+    b = math.sqrt(4 * load * radius / (math.pi * star))
+    assert laws.line_half_width(load, radius, MODULUS) == pytest.approx(b, rel=1e-14)
+    assert laws.line_pressure(load, radius, MODULUS) == pytest.approx(2 * load / (math.pi * b), rel=1e-14)
+    assert laws.line_pressure(load, radius, MODULUS) == pytest.approx(math.sqrt(load * star / (math.pi * radius)))
+
+
+def logarithmic_drop(y: float, length: float, k1: float, k2: float, zm: float, load: float, modulus: float) -> float:
+    amplitude, half = 2 * k1 * load / (math.pi * length * modulus), 0.5 * length
+    if abs(y) <= half - k2 * half:
+        return 0.0
+    t = (abs(y) - half) / (k2 * half) + 1.0
+    return amplitude * math.log(1.0 / (1.0 - (1.0 - math.exp(-zm / amplitude)) * t * t))
+
+
+class TestProfiles:
+    length, k1, k2, zm, load = 19.8e-3, 1.5, 0.4, 10e-6, 1833.0
+
+    def test_logarithmic(self) -> None:
+        y = np.linspace(-0.5, 0.5, 1001) * self.length
+        numbers = (self.length, self.k1, self.k2, self.zm, self.load, MODULUS)
+        expected = [logarithmic_drop(float(station), *numbers) for station in y]
+        found = laws.profile_logarithmic(y, *numbers)
+        assert found == pytest.approx(expected, rel=1e-9, abs=1e-20)
+        assert found[0] == pytest.approx(10e-6, rel=1e-12)
+        assert np.all(found[np.abs(y) < 0.3 * self.length] == 0.0)
+        assert found == pytest.approx(found[::-1], rel=1e-9)
+
+    def test_logarithmic_starts_smoothly(self) -> None:
+        start, step = 0.3 * self.length, 1e-9
+        drop = laws.profile_logarithmic(start + step, self.length, self.k1, self.k2, self.zm, self.load, MODULUS)
+        assert 0.0 < drop < 1e-6 * step
+
+    def test_crowned(self) -> None:
+        y, radius = np.linspace(-9e-3, 9e-3, 51), 10.0
+        # y^2/(R + sqrt(R^2 - y^2)) = R - sqrt(R^2 - y^2) without cancellation
+        assert laws.profile_crowned(y, radius) == pytest.approx(radius - np.sqrt(radius**2 - y**2), abs=1e-14)
+        assert laws.profile_crowned(y, radius) == pytest.approx(y**2 / (2 * radius), rel=1e-6)
+
+    @pytest.mark.parametrize(
+        "profile", [Profile.straight(), Profile.crowned(30.0), Profile.logarithmic(1833.0)], ids=lambda p: p.kind
+    )
+    def test_profile_reaches_the_contact(self, profile: Profile) -> None:
+        """Interference along an untilted roller falls by the drop over cos(nu) beside a straight one's."""
+        lost = []
+        for shape in (Profile.straight(), profile):
+            rig = cases.rig_30310()
+            rig = rig.replace(roller=rig.roller.replace(profile=shape))
+            sim = Simulation(cases.scene_30310(bearing=rig, effects=Effects(quadrature="gauss", n_slices=16)))
+            vector = np.zeros_like(sim.state.vector)
+            view = sim.view(vector)
+            view["roller_r"] = 5e-6
+            lost.append(sim.contacts(vector, 0.0)["raceway_interference"][0, 0])
+        station = 0.5 * self.length * np.polynomial.legendre.leggauss(16)[0]
+        drop = {
+            "straight": np.zeros(16),
+            "crowned": laws.profile_crowned(station, 30.0),
+            "logarithmic": laws.profile_logarithmic(
+                station, self.length, self.k1, self.k2, self.zm, self.load, rig.geometry.effective_modulus
+            ),
+        }[profile.kind]
+        # the sphere at a station shrinks by drop/cos(nu) and moves by drop tan(nu): along the flank that adds up to
+        # drop (1/cos(nu) - sin(nu) tan(nu)) = drop cos(nu)
+        assert lost[0] - lost[1] == pytest.approx(drop * math.cos(rig.geometry.roller_half_angle), abs=1e-16)
+
+
+class TestQuadrature:
+    """Nodes and weights as the contacts use them."""
+
+    @staticmethod
+    def weights(kind: str, n: int) -> np.ndarray:
+        sim = Simulation(cases.scene_30310(effects=Effects(quadrature=kind, n_slices=n)))
+        return sim.contacts()["raceway_weight"]
+
+    @pytest.mark.parametrize("n", [1, 2, 3, 5, 8, 16, 31, 64, 200])
+    def test_gauss(self, n: int) -> None:
+        weights = self.weights("gauss", n)
+        expected = 0.5 * 19.8e-3 * np.polynomial.legendre.leggauss(n)[1]
+        assert weights.shape == (2, 12, n)
+        assert weights == pytest.approx(np.broadcast_to(expected, weights.shape), rel=1e-11)
+
+    @pytest.mark.parametrize("n", [1, 7, 24])
+    def test_uniform(self, n: int) -> None:
+        assert self.weights("uniform", n) == pytest.approx(19.8e-3 / n, rel=1e-14)
