@@ -97,11 +97,11 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
       trb_contact_pairs[i].function(m, at, work, loads, detail);
 }
 
-void trb_contact_cage_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads)
+void trb_contact_rings_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads)
 {
   memset(loads, 0, (size_t)m->n_rollers * sizeof *loads);
   for (int i = 0; i < N_PAIRS; i++)
-    if (trb_contact_pairs[i].with_cage && trb_contact_pairs[i].is_on(m)) trb_contact_pairs[i].function(m, at, work, loads, NULL);
+    if (!trb_contact_pairs[i].with_cage && trb_contact_pairs[i].is_on(m)) trb_contact_pairs[i].function(m, at, work, loads, NULL);
 }
 
 static size_t lane_total(const trb_model *m) { return (size_t)TRB_N_LANE_FIELDS * TRB_N_RACES * (size_t)m->n_rollers * (size_t)m->n_lanes; }

@@ -128,8 +128,10 @@ void       trb_workspace_free(trb_workspace *work);
 /* Zero the loads and sum every pair that the scene has. */
 void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail);
 
-/* Only the pairs between roller and cage, for derivatives with respect to the cage. */
-void trb_contact_cage_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads);
+/* Zero the loads and sum the pairs of rollers and rings only. */
+void trb_contact_rings_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads);
+/* Add what one roller and its pocket do to each other. */
+void trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load, trb_detail *detail);
 
 /* Buffers of every intermediate quantity; freed by trb_detail_free. */
 trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message);

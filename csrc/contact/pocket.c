@@ -147,7 +147,7 @@ static int flank_out_of_reach(const trb_model *m, const trb_pocket_face *f, cons
   return 1;
 }
 
-static void pocket_of_roller(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load, trb_detail *detail)
+void trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
   pocket_view            p = view_pocket(m, r, at->cage, roller);
@@ -181,5 +181,5 @@ static void pocket_of_roller(const trb_model *m, const trb_instant *at, int roll
 
 void trb_contact_pocket(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
-  for (int j = 0; j < m->n_rollers; j++) pocket_of_roller(m, at, j, &work->counters, &loads[j], detail);
+  for (int j = 0; j < m->n_rollers; j++) trb_contact_pocket_of(m, at, j, &work->counters, &loads[j], detail);
 }

@@ -40,11 +40,15 @@ void trb_arrow_copy(const trb_arrow *from, trb_arrow *to)
 
 void trb_arrow_scale_add_identity(trb_arrow *arrow, double c)
 {
-  const size_t count = sizeof(trb_arrow_block) / sizeof(double);
   for (int j = 0; j < arrow->n; j++) {
-    double *values = (double *)&arrow->rollers[j];
-    for (size_t i = 0; i < count; i++) values[i] *= c;
-    for (int i = 0; i < TRB_NR; i++) arrow->rollers[j].own[i][i] += 1.0;
+    trb_arrow_block *b = &arrow->rollers[j];
+    for (int i = 0; i < TRB_NR * TRB_NR; i++) (&b->own[0][0])[i] *= c;
+    for (int i = 0; i < TRB_NR; i++) b->own[i][i] += 1.0;
+    if (!b->coupled) continue;
+    for (int i = 0; i < TRB_NR * TRB_NC; i++) {
+      (&b->to_cage[0][0])[i] *= c;
+      (&b->from[0][0])[i] *= c;
+    }
   }
   for (int i = 0; i < TRB_NC; i++) {
     for (int k = 0; k < TRB_NC; k++) arrow->cage[i][k] *= c;
@@ -120,64 +124,78 @@ static inline void back(const double *a, int n, double *right, int width)
   }
 }
 
-/* Exchanges and forward substitution of one right-hand side, then back. */
-static inline void solve(const double *a, const int *pivot, int n, double *x)
+/* Row exchanges were applied to whole rows while factoring, so multipliers stand in final order: exchange first, then substitute. */
+static void solve_cage(const trb_arrow_factors *f, double *x)
 {
-  for (int c = 0; c < n; c++) {
-    const double keep = x[pivot[c]];
-    x[pivot[c]] = x[c];
+  const double *a = &f->lu[0][0];
+  for (int c = 0; c < TRB_NC; c++) {
+    const double keep = x[f->pivot[c]];
+    x[f->pivot[c]] = x[c];
     x[c] = keep;
   }
-  for (int i = 1; i < n; i++) {
+  for (int i = 1; i < TRB_NC; i++) {
     double sum = x[i];
-    for (int c = 0; c < i; c++) sum -= a[i * n + c] * x[c];
+    for (int c = 0; c < i; c++) sum -= a[i * TRB_NC + c] * x[c];
     x[i] = sum;
   }
-  back(a, n, x, 1);
+  back(a, TRB_NC, x, 1);
+}
+
+/* One roller: its inverse, and where it touches the cage, inverse times border and its share of the Schur complement. */
+static int factor_roller(const trb_arrow_block *b, trb_arrow_factor_block *g, double (*schur)[TRB_NC])
+{
+  double lu[TRB_NR][TRB_NR], inverse[TRB_NR][TRB_NP] = {{0}};
+  int    pivot[TRB_NR];
+  memcpy(lu, b->own, sizeof lu);
+  for (int i = 0; i < TRB_NR; i++) inverse[i][i] = 1.0;
+  if (!factor(&lu[0][0], pivot, TRB_NR, &inverse[0][0], TRB_NP)) return 0;
+  back(&lu[0][0], TRB_NR, &inverse[0][0], TRB_NP);
+  for (int c = 0; c < TRB_NR; c++)
+    for (int i = 0; i < TRB_NR; i++) g->inverse[c][i] = inverse[i][c];
+  g->coupled = b->coupled;
+  if (!b->coupled) return 1;
+  memset(g->solved, 0, sizeof g->solved);
+  for (int c = 0; c < TRB_NC; c++)
+    for (int q = 0; q < TRB_NR; q++) {
+      const double m = b->to_cage[q][c];
+      for (int i = 0; i < TRB_NP; i++) g->solved[c][i] += m * g->inverse[q][i];
+    }
+  for (int i = 0; i < TRB_NC; i++)
+    for (int q = 0; q < TRB_NR; q++) g->from[q][i] = b->from[i][q];
+  for (int i = 0; i < TRB_NC; i++)
+    for (int k = 0; k < TRB_NC; k++)
+      for (int q = 0; q < TRB_NR; q++) schur[i][k] -= b->from[i][q] * g->solved[k][q];
+  return 1;
 }
 
 int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *f)
 {
   memcpy(f->lu, arrow->cage, sizeof f->lu);
-  for (int j = 0; j < arrow->n; j++) {
-    const trb_arrow_block  *b = &arrow->rollers[j];
-    trb_arrow_factor_block *g = &f->rollers[j];
-    memcpy(g->lu, b->own, sizeof g->lu);
-    memcpy(g->solved, b->to_cage, sizeof g->solved);
-    const int width = arrow->with_cage ? TRB_NC : 0;
-    if (width > 0 ? !factor(&g->lu[0][0], g->pivot, TRB_NR, &g->solved[0][0], TRB_NC) : !factor(&g->lu[0][0], g->pivot, TRB_NR, NULL, 0)) return 0;
-    if (width == 0) continue;
-    back(&g->lu[0][0], TRB_NR, &g->solved[0][0], TRB_NC);
-    for (int i = 0; i < TRB_NC; i++)
-      for (int q = 0; q < TRB_NR; q++) {
-        const double m = b->from[i][q];
-        if (m == 0.0) continue;
-        for (int k = 0; k < TRB_NC; k++) f->lu[i][k] -= m * g->solved[q][k];
-      }
-  }
+  for (int j = 0; j < arrow->n; j++)
+    if (!factor_roller(&arrow->rollers[j], &f->rollers[j], f->lu)) return 0;
   return factor(&f->lu[0][0], f->pivot, TRB_NC, NULL, 0);
 }
 
-/* Row exchanges were applied to whole rows while factoring, so multipliers stand in final order: exchange first, then substitute. */
-void trb_arrow_solve(const trb_arrow *arrow, const trb_arrow_factors *f, double *x)
+/* to += sign times a sum of columns */
+static inline void add_columns(const double *columns, int stride, const double *x, int n, double sign, double *to, int length)
 {
-  double *cage = x + arrow->n * TRB_NR;
-  for (int j = 0; j < arrow->n; j++) {
-    double *xj = x + j * TRB_NR;
-    solve(&f->rollers[j].lu[0][0], f->rollers[j].pivot, TRB_NR, xj);
-    if (!arrow->with_cage) continue;
-    for (int i = 0; i < TRB_NC; i++) {
-      double sum = 0.0;
-      for (int q = 0; q < TRB_NR; q++) sum += arrow->rollers[j].from[i][q] * xj[q];
-      cage[i] -= sum;
-    }
+  for (int c = 0; c < n; c++) {
+    const double m = sign * x[c];
+    for (int i = 0; i < length; i++) to[i] += m * columns[c * stride + i];
   }
-  solve(&f->lu[0][0], f->pivot, TRB_NC, cage);
-  if (!arrow->with_cage) return;
-  for (int j = 0; j < arrow->n; j++)
-    for (int q = 0; q < TRB_NR; q++) {
-      double sum = 0.0;
-      for (int k = 0; k < TRB_NC; k++) sum += f->rollers[j].solved[q][k] * cage[k];
-      x[j * TRB_NR + q] -= sum;
-    }
+}
+
+void trb_arrow_solve(const trb_arrow_factors *f, double *x)
+{
+  double *cage = x + f->n * TRB_NR;
+  for (int j = 0; j < f->n; j++) {
+    const trb_arrow_factor_block *g = &f->rollers[j];
+    double                        xj[TRB_NP] = {0};
+    add_columns(&g->inverse[0][0], TRB_NP, x + j * TRB_NR, TRB_NR, 1.0, xj, TRB_NP);
+    memcpy(x + j * TRB_NR, xj, TRB_NR * sizeof *x);
+    if (g->coupled) add_columns(&g->from[0][0], TRB_NC, xj, TRB_NR, -1.0, cage, TRB_NC);
+  }
+  solve_cage(f, cage);
+  for (int j = 0; j < f->n; j++)
+    if (f->rollers[j].coupled) add_columns(&f->rollers[j].solved[0][0], TRB_NP, cage, TRB_NC, -1.0, x + j * TRB_NR, TRB_NR);
 }

@@ -18,6 +18,7 @@ typedef struct bdf {
   trb_jacobian   *jacobian;
   trb_statistics  before;   /* totals up to the last restart */
   double          smallest; /* smallest step, s */
+  double          filled_at; /* end of the last step when the Jacobian was last evaluated, s */
 } bdf;
 
 static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
@@ -34,12 +35,17 @@ static int weights(N_Vector y, N_Vector out, void *data)
 static int jacobian(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix, void *data, N_Vector a, N_Vector b, N_Vector c)
 {
   const trb_integrator *it = data;
-  const bdf            *self = it->self;
+  bdf                  *self = it->self;
   (void)fy;
   (void)a;
   (void)b;
   (void)c;
-  trb_jacobian_fill(self->jacobian, time, N_VGetArrayPointer(y), trb_arrow_of(matrix));
+  /* the rings' part anew: when it is old, or when Newton's method failed with the older one within this step */
+  const trb_jacobian *jac = self->jacobian;
+  const int           again = it->time == self->filled_at && jac->rings_time < it->time;
+  const int           old = fabs(time - jac->rings_time) > it->settings.rings_age;
+  self->filled_at = it->time;
+  trb_jacobian_fill(self->jacobian, time, N_VGetArrayPointer(y), again || old, trb_arrow_of(matrix));
   return 0;
 }
 
@@ -65,6 +71,7 @@ static trb_status configure(trb_integrator *it, trb_message *message)
   CHECK(CVodeSetMaxStep(self->memory, it->settings.max_step));
   CHECK(CVodeSetMaxErrTestFails(self->memory, 15));
   CHECK(CVodeSetMaxConvFails(self->memory, 25));
+  CHECK(CVodeSetJacEvalFrequency(self->memory, (long)it->settings.jacobian_every));
   if (it->settings.first_step > 0.0) CHECK(CVodeSetInitStep(self->memory, it->settings.first_step));
   return TRB_OK;
 }
@@ -77,6 +84,7 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   if (self == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   it->self = self;
   self->smallest = INFINITY;
+  self->filled_at = -INFINITY;
   trb_status status = trb_sundials_open(&self->sundials, message);
   if (status != TRB_OK) return status;
   self->y = trb_sundials_vector(&self->sundials, it->n, it->y);
@@ -137,6 +145,9 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   trb_statistics so_far;
   read_totals(it, &so_far);
   self->before = so_far;
+  /* nothing is carried over a restart: what follows depends on time and state alone */
+  self->filled_at = -INFINITY;
+  self->jacobian->has_rings = 0;
   CHECK(CVodeReInit(self->memory, it->time, self->y));
   return TRB_OK;
 }

@@ -11,14 +11,11 @@ trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, con
   trb_jacobian *j = calloc(1, sizeof *j);
   *jacobian = NULL;
   if (j == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
-  const size_t n = (size_t)m->n_rollers;
-  trb_status   status = trb_dynamics_create(m, motion, variant, &j->d, message);
+  trb_status status = trb_dynamics_create(m, motion, variant, &j->d, message);
   if (status == TRB_OK) {
-    j->base = calloc(n, sizeof *j->base);
-    j->pocket = calloc(n, sizeof *j->pocket);
-    j->rates = calloc(n * TRB_NR, sizeof *j->rates);
+    j->rings = calloc((size_t)m->n_rollers, sizeof *j->rings);
     j->moved = calloc((size_t)trb_state_size(m), sizeof *j->moved);
-    if (!j->base || !j->pocket || !j->rates || !j->moved) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
+    if (!j->rings || !j->moved) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
   }
   if (status != TRB_OK) {
     trb_jacobian_free(j);
@@ -32,14 +29,64 @@ void trb_jacobian_free(trb_jacobian *jacobian)
 {
   if (jacobian == NULL) return;
   trb_dynamics_free(jacobian->d);
-  free(jacobian->base);
-  free(jacobian->pocket);
-  free(jacobian->rates);
+  free(jacobian->rings);
   free(jacobian->moved);
   free(jacobian);
 }
 
-/* Rates of the cage are affine in what the rollers put on it: this is their linear part. */
+/* Columns of raceways, ribs and inertia in every roller's block; base: n rows of TRB_NR. */
+static trb_status fill_rings(trb_jacobian *jac, const double *y)
+{
+  trb_dynamics    *d = jac->d;
+  const trb_model *m = d->model;
+  trb_instant      at = trb_dynamics_instant(d);
+  double          *base = malloc((size_t)m->n_rollers * TRB_NR * sizeof *base);
+  if (base == NULL) return TRB_ERR_MEMORY;
+  trb_contact_rings_only(m, &at, d->work, d->loads);
+  for (int j = 0; j < m->n_rollers; j++) trb_dynamics_roller_rates(d, j, y + trb_state_roller(j), &d->loads[j], base + j * TRB_NR);
+  for (int c = 0; c < TRB_NR; c++) {
+    const double h = difference[trb_state_tolerance(m, c)], per = 1.0 / h;
+    for (int j = 0; j < m->n_rollers; j++) {
+      jac->moved[trb_state_roller(j) + c] = y[trb_state_roller(j) + c] + h;
+      trb_dynamics_pose_roller(d, j, jac->moved + trb_state_roller(j));
+    }
+    trb_contact_rings_only(m, &at, d->work, d->loads);
+    for (int j = 0; j < m->n_rollers; j++) {
+      double rates[TRB_NR];
+      trb_dynamics_roller_rates(d, j, jac->moved + trb_state_roller(j), &d->loads[j], rates);
+      for (int i = 0; i < TRB_NR; i++) jac->rings[j][i][c] = per * (rates[i] - base[j * TRB_NR + i]);
+      jac->moved[trb_state_roller(j) + c] = y[trb_state_roller(j) + c];
+    }
+  }
+  for (int j = 0; j < m->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
+  free(base);
+  jac->has_rings = 1;
+  jac->rings_time = d->drive.time;
+  jac->rings_evaluations++;
+  return TRB_OK;
+}
+
+/* Loads between one roller and its pocket at the poses kept. */
+static trb_roller_load pocket_load(trb_dynamics *d, int roller)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_roller_load   load;
+  memset(&load, 0, sizeof load);
+  trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL);
+  return load;
+}
+
+/* Rates are affine in the loads: what a load adds to those of a roller, and of the cage. */
+static void roller_response(const trb_dynamics *d, int roller, const double *y, const trb_roller_load *load, double *rates)
+{
+  trb_roller_load none;
+  double          still[TRB_NR];
+  memset(&none, 0, sizeof none);
+  trb_dynamics_roller_rates(d, roller, y, load, rates);
+  trb_dynamics_roller_rates(d, roller, y, &none, still);
+  for (int i = 0; i < TRB_NR; i++) rates[i] -= still[i];
+}
+
 static void cage_response(const trb_dynamics *d, const double *y_cage, trb_vec3 force, trb_vec3 moment, double *rates)
 {
   double still[TRB_NC];
@@ -48,31 +95,32 @@ static void cage_response(const trb_dynamics *d, const double *y_cage, trb_vec3 
   for (int i = 0; i < TRB_NC; i++) rates[i] -= still[i];
 }
 
-/* Column c of every roller's block and of the border from the rollers. */
-static void roller_column(trb_jacobian *jac, int c, const double *y, trb_arrow *arrow)
+/* What a pocket in contact adds to its roller's block and to the border from it. */
+static void pocket_columns(trb_jacobian *jac, int j, const double *y, const trb_roller_load *base, trb_arrow_block *block)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
-  const double    *y_cage = y + trb_state_cage(m);
-  const double     h = difference[trb_state_tolerance(m, c)], per = 1.0 / h;
-  for (int j = 0; j < m->n_rollers; j++) {
-    jac->moved[trb_state_roller(j) + c] = y[trb_state_roller(j) + c] + h;
-    trb_dynamics_pose_roller(d, j, jac->moved + trb_state_roller(j));
+  const double    *y_cage = y + trb_state_cage(m), *yj = y + trb_state_roller(j);
+  double          *moved = jac->moved + trb_state_roller(j), was[TRB_NR];
+  roller_response(d, j, yj, base, was);
+  for (int c = 0; c < TRB_NR; c++) {
+    const double h = difference[trb_state_tolerance(m, c)], per = 1.0 / h;
+    double       now[TRB_NR], response[TRB_NC];
+    moved[c] = yj[c] + h;
+    trb_dynamics_pose_roller(d, j, moved);
+    const trb_roller_load load = pocket_load(d, j);
+    roller_response(d, j, moved, &load, now);
+    cage_response(d, y_cage, trb_sub(load.cage_force, base->cage_force), trb_sub(load.cage_moment, base->cage_moment), response);
+    for (int i = 0; i < TRB_NR; i++) block->own[i][c] += per * (now[i] - was[i]);
+    for (int i = 0; i < TRB_NC; i++) block->from[i][c] = per * response[i];
+    moved[c] = yj[c];
   }
-  trb_dynamics_loads(d, NULL);
-  for (int j = 0; j < m->n_rollers; j++) {
-    double rates[TRB_NR], response[TRB_NC];
-    trb_dynamics_roller_rates(d, j, jac->moved + trb_state_roller(j), &d->loads[j], rates);
-    for (int i = 0; i < TRB_NR; i++) arrow->rollers[j].own[i][c] = per * (rates[i] - jac->rates[j * TRB_NR + i]);
-    jac->moved[trb_state_roller(j) + c] = y[trb_state_roller(j) + c];
-    if (!arrow->with_cage) continue;
-    cage_response(d, y_cage, trb_sub(d->loads[j].cage_force, jac->base[j].cage_force), trb_sub(d->loads[j].cage_moment, jac->base[j].cage_moment), response);
-    for (int i = 0; i < TRB_NC; i++) arrow->rollers[j].from[i][c] = per * response[i];
-  }
+  trb_dynamics_pose_roller(d, j, yj);
 }
 
-/* Column c of the cage's block and of the border to the rollers; the rollers stand at the state. */
-static void cage_column(trb_jacobian *jac, int c, const double *y, const double *base_rates, trb_vec3 force, trb_vec3 moment, trb_arrow *arrow)
+/* Column c of the cage's block and of the border to the rollers that touch. base: pocket loads, with rollers' flags in `touch`. */
+static void cage_column(trb_jacobian *jac, int c, const double *y, const trb_roller_load *base, const double *base_rates, trb_vec3 force,
+                        trb_vec3 moment, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
@@ -81,47 +129,49 @@ static void cage_column(trb_jacobian *jac, int c, const double *y, const double 
   double           rates[TRB_NC];
   jac->moved[at] = y[at] + h;
   trb_cage_pose_unpack(m, &d->drive, jac->moved + trb_state_cage(m), &d->cage);
-  const trb_instant here = trb_dynamics_instant(d);
-  trb_contact_cage_only(m, &here, d->work, d->loads);
   for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_load *now = &d->loads[j], *was = &jac->pocket[j];
-    trb_roller_load        change = {.force = trb_sub(now->force, was->force), .moment = trb_sub(now->moment, was->moment)}, none = {0};
-    double                 with[TRB_NR], without[TRB_NR];
-    trb_dynamics_roller_rates(d, j, y + trb_state_roller(j), &change, with);
-    trb_dynamics_roller_rates(d, j, y + trb_state_roller(j), &none, without);
-    for (int i = 0; i < TRB_NR; i++) arrow->rollers[j].to_cage[i][c] = per * (with[i] - without[i]);
-    force = trb_add(force, trb_sub(now->cage_force, was->cage_force));
-    moment = trb_add(moment, trb_sub(now->cage_moment, was->cage_moment));
+    if (!arrow->rollers[j].coupled) continue;
+    const trb_roller_load now = pocket_load(d, j);
+    trb_roller_load       change;
+    double                response[TRB_NR];
+    memset(&change, 0, sizeof change);
+    change.force = trb_sub(now.force, base[j].force);
+    change.moment = trb_sub(now.moment, base[j].moment);
+    roller_response(d, j, y + trb_state_roller(j), &change, response);
+    for (int i = 0; i < TRB_NR; i++) arrow->rollers[j].to_cage[i][c] = per * response[i];
+    force = trb_add(force, trb_sub(now.cage_force, base[j].cage_force));
+    moment = trb_add(moment, trb_sub(now.cage_moment, base[j].cage_moment));
   }
   trb_dynamics_cage_rates(d, jac->moved + trb_state_cage(m), force, moment, rates);
   for (int i = 0; i < TRB_NC; i++) arrow->cage[i][c] = per * (rates[i] - base_rates[i]);
   jac->moved[at] = y[at];
 }
 
-void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, trb_arrow *arrow)
+static int touches(const trb_roller_load *load) { return trb_dot(load->cage_force, load->cage_force) > 0.0; }
+
+void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fresh, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
-  trb_vec3         force = {0, 0, 0}, moment = {0, 0, 0};
-  double           cage_rates[TRB_NC];
   trb_arrow_zero(arrow);
   memcpy(jac->moved, y, (size_t)trb_state_size(m) * sizeof *y);
   trb_dynamics_pose(d, time, y);
-  trb_dynamics_loads(d, NULL);
-  memcpy(jac->base, d->loads, (size_t)m->n_rollers * sizeof *jac->base);
-  for (int j = 0; j < m->n_rollers; j++) {
-    trb_dynamics_roller_rates(d, j, y + trb_state_roller(j), &d->loads[j], jac->rates + j * TRB_NR);
-    force = trb_add(force, d->loads[j].cage_force);
-    moment = trb_add(moment, d->loads[j].cage_moment);
-  }
-  for (int c = 0; c < TRB_NR; c++) {
-    roller_column(jac, c, y, arrow);
-  }
+  /* a failed allocation leaves the older part: Newton's method then converges more slowly */
+  if (fresh || !jac->has_rings) (void)fill_rings(jac, y);
+  for (int j = 0; j < m->n_rollers; j++) memcpy(arrow->rollers[j].own, jac->rings[j], sizeof jac->rings[j]);
   if (!arrow->with_cage) return;
-  trb_dynamics_pose(d, time, y);
+  trb_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
+  double   cage_rates[TRB_NC];
+  /* no pair of the rings runs from here on: their loads' place serves the pockets */
+  trb_roller_load *base = d->loads;
+  for (int j = 0; j < m->n_rollers; j++) {
+    base[j] = pocket_load(d, j);
+    arrow->rollers[j].coupled = touches(&base[j]);
+    if (!arrow->rollers[j].coupled) continue;
+    force = trb_add(force, base[j].cage_force);
+    moment = trb_add(moment, base[j].cage_moment);
+    pocket_columns(jac, j, y, &base[j], &arrow->rollers[j]);
+  }
   trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, cage_rates);
-  const trb_instant here = trb_dynamics_instant(d);
-  trb_contact_cage_only(m, &here, d->work, d->loads);
-  memcpy(jac->pocket, d->loads, (size_t)m->n_rollers * sizeof *jac->pocket);
-  for (int c = 0; c < TRB_NC; c++) cage_column(jac, c, y, cage_rates, force, moment, arrow);
+  for (int c = 0; c < TRB_NC; c++) cage_column(jac, c, y, base, cage_rates, force, moment, arrow);
 }

@@ -1,5 +1,8 @@
-/* Jacobian of the right-hand side by local differences: one evaluation of the contacts a column of a roller, for all rollers at once, and
- * one of the pockets a column of the cage. */
+/* Jacobian of the right-hand side by local differences.
+ *
+ * It is the sum of two parts. Rings: what raceways and ribs do to each roller, and the roller's own inertia; it changes slowly and costs
+ * one evaluation of these contacts a column, for all rollers at once. Pockets: it changes with every impact, and only rollers that
+ * touch their pockets have it, so that it costs next to nothing. Both are kept apart, and the first is reused while it serves. */
 #ifndef TRB_STEPPING_JACOBIAN_H
 #define TRB_STEPPING_JACOBIAN_H
 
@@ -8,14 +11,16 @@
 
 typedef struct trb_jacobian {
   trb_dynamics    *d;        /* of its own, so that poses of the integration stay */
-  trb_roller_load *base;     /* loads at the state */
-  trb_roller_load *pocket;   /* pocket loads at the state */
-  double          *rates;    /* of every roller at the state */
+  double         (*rings)[TRB_NR][TRB_NR]; /* per roller: the part of the rings */
   double          *moved;    /* state with a difference */
+  double           rings_time; /* time at which the rings' part was evaluated, s */
+  int              has_rings;  /* whether it was at all */
+  long             rings_evaluations;
 } trb_jacobian;
 
 trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian, trb_message *message);
 void       trb_jacobian_free(trb_jacobian *jacobian);
-void       trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, trb_arrow *arrow);
+/* fresh: evaluate the rings' part anew, too. */
+void       trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
 
 #endif

@@ -15,30 +15,27 @@ static trb_status check_settings(const trb_settings *settings, trb_message *mess
   return TRB_OK;
 }
 
-/* Name of a state entry, for a person. */
-static void describe(const trb_model *m, int index, char *text, size_t size)
+/* Name of a state entry, for a person, as the text of a message. */
+static void describe(const trb_model *m, int index, trb_message *out)
 {
 #define TRB_STATE_NAME(name, kind, what) #name " (" what ")",
   static const char *const roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_NAME)};
   static const char *const cage[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(TRB_STATE_NAME)};
 #undef TRB_STATE_NAME
-  trb_message out;
-  if (index < 0) (void)trb_fail(&out, TRB_OK, "no single quantity");
-  else if (index < trb_state_cage(m)) (void)trb_fail(&out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
-  else if (index < trb_state_main_size(m)) (void)trb_fail(&out, TRB_OK, "cage, %s", cage[index - trb_state_cage(m)]);
-  else (void)trb_fail(&out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(m));
-  strncpy(text, out.text, size - 1);
-  text[size - 1] = '\0';
+  if (index < 0) (void)trb_fail(out, TRB_OK, "no single quantity");
+  else if (index < trb_state_cage(m)) (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
+  else if (index < trb_state_main_size(m)) (void)trb_fail(out, TRB_OK, "cage, %s", cage[index - trb_state_cage(m)]);
+  else (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(m));
 }
 
 static trb_status check_state(const trb_model *m, double time, const double *state, trb_message *message)
 {
-  char what[160];
+  trb_message what;
   if (!isfinite(time)) return trb_fail(message, TRB_ERR_STATE, "time = %g: must be finite", time);
   for (int i = 0; i < trb_state_size(m); i++)
     if (!isfinite(state[i])) {
-      describe(m, i, what, sizeof what);
-      return trb_fail(message, TRB_ERR_STATE, "state[%d] = %g, %s: must be finite", i, state[i], what);
+      describe(m, i, &what);
+      return trb_fail(message, TRB_ERR_STATE, "state[%d] = %g, %.200s: must be finite", i, state[i], what.text);
     }
   for (int j = 0; j < m->n_rollers; j++) {
     const double *y = state + trb_state_roller(j);
@@ -153,12 +150,11 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
     s->previous = from;
     return TRB_OK;
   }
-  char        what[160];
-  trb_message cause = *message;
-  describe(s->model, it->kind->worst(it), what, sizeof what);
+  trb_message what, cause = *message;
+  describe(s->model, it->kind->worst(it), &what);
   memcpy(it->y, s->between, (size_t)it->n * sizeof(double));
   it->time = from;
-  return trb_fail(message, status, "at t = %.9g s: %.200s; largest error: %s", from, cause.text, what);
+  return trb_fail(message, status, "at t = %.9g s: %.200s; largest error: %.200s", from, cause.text, what.text);
 }
 
 static trb_status output(trb_simulation *s, double time, double *record, trb_message *message)
