@@ -1,0 +1,84 @@
+"""Parameter studies: many scenes, run side by side, with one result file each and their observables in one dataset.
+
+    import trbdyn as trb
+
+    study = trb.study.grid(
+        trb.cases.scene_30310(),
+        {"scene.speed_rpm": [1000, 2000, 3000], "bearing.cage.mass": [0.1, 0.2, 0.4]},
+        trb.study.RunOptions(revolutions=50),
+    )
+    data = trb.study.run(study, "cage_mass", progress=True)
+    data.whirl_radius_over_cpr.plot()
+
+Names are imported when they are first used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from trbdyn.run_options import RunOptions
+    from trbdyn.study.definition import (
+        Axis,
+        Case,
+        Study,
+        cases,
+        fingerprint,
+        grid,
+        load_study,
+        of_scenes,
+        random,
+        shipped_studies,
+    )
+    from trbdyn.study.gather import load, save
+    from trbdyn.study.runner import collect, run
+
+_NAMES = {
+    "Axis": "trbdyn.study.definition",
+    "Case": "trbdyn.study.definition",
+    "RunOptions": "trbdyn.run_options",
+    "Study": "trbdyn.study.definition",
+    "cases": "trbdyn.study.definition",
+    "collect": "trbdyn.study.runner",
+    "fingerprint": "trbdyn.study.definition",
+    "grid": "trbdyn.study.definition",
+    "load": "trbdyn.study.gather",
+    "load_study": "trbdyn.study.definition",
+    "of_scenes": "trbdyn.study.definition",
+    "random": "trbdyn.study.definition",
+    "run": "trbdyn.study.runner",
+    "save": "trbdyn.study.gather",
+    "shipped_studies": "trbdyn.study.definition",
+}
+
+__all__ = [
+    "Axis",
+    "Case",
+    "RunOptions",
+    "Study",
+    "cases",
+    "collect",
+    "fingerprint",
+    "grid",
+    "load",
+    "load_study",
+    "of_scenes",
+    "random",
+    "run",
+    "save",
+    "shipped_studies",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _NAMES:
+        raise AttributeError(f"module 'trbdyn.study' has no attribute {name!r}")
+    value = getattr(importlib.import_module(_NAMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

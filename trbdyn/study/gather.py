@@ -1,0 +1,143 @@
+"""Observables of a study in an xarray Dataset, and its file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.errors import FileError
+from trbdyn.study.definition import Study
+from trbdyn.study.index import Entry
+
+if TYPE_CHECKING:
+    import xarray
+
+NOT_RUN = "not run"
+
+
+def dataset(study: Study, entries: Sequence[Entry | None]) -> xarray.Dataset:
+    """Gather the observables of all cases.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    entries : sequence of Entry or None
+        How each of its cases ended; None if it was not run.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions: the axes of a grid, or ``case``. Variables: ``status``, ``message``, ``file``, ``fingerprint``, ``wall_time``
+        and every observable; nan (or empty text) where a case has none. An observable whose name a parameter has already gets
+        ``_observed`` behind it.
+    """
+    import xarray
+
+    shape = study.shape
+    dims = tuple(axis.name for axis in study.axes) or ("case",)
+    variables: dict[str, Any] = {
+        "status": (dims, _texts([entry.status if entry else NOT_RUN for entry in entries]).reshape(shape)),
+        "message": (dims, _texts([entry.message if entry else "" for entry in entries]).reshape(shape)),
+        "file": (dims, _texts([entry.file if entry else "" for entry in entries]).reshape(shape)),
+        "fingerprint": (dims, _texts([case.fingerprint for case in study.cases]).reshape(shape)),
+        "wall_time": (dims, np.array([e.wall_s if e else np.nan for e in entries]).reshape(shape), {"units": "s"}),
+    }
+    tables: list[Mapping[str, Any]] = [entry.values if entry else {} for entry in entries]
+    coordinates = _coordinates(study, dims)
+    for key in dict.fromkeys(key for table in tables for key in table):
+        column = _column([table.get(key) for table in tables])
+        name = f"{key}_observed" if key in coordinates or key in variables else key
+        extra = tuple(f"{name}_{k}" for k in range(column.ndim - 1))
+        variables[name] = ((*dims, *extra), column.reshape(*shape, *column.shape[1:]), _attributes(key))
+    return xarray.Dataset(variables, coords=coordinates, attrs={"study": study.name})
+
+
+def _texts(values: Sequence[str]) -> NDArray[Any]:
+    return np.array(values, dtype=object)
+
+
+def _coordinates(study: Study, dims: tuple[str, ...]) -> dict[str, Any]:
+    if study.axes:
+        return {axis.name: (axis.name, _column(list(axis.labels)), {"path": axis.path}) for axis in study.axes}
+    names = dict.fromkeys(key for case in study.cases for key in case.parameters)
+    columns = {name: ("case", _column([case.parameters.get(name) for case in study.cases])) for name in names}
+    return {"case": np.arange(len(study)), **{n if n != "case" else "case_": c for n, c in columns.items()}}
+
+
+def _column(values: Sequence[Any]) -> NDArray[Any]:
+    """Values of all cases as one array: truth values, whole numbers, numbers with nan, texts with '', or stacked arrays."""
+    given = [value for value in values if value is not None]
+    if given and all(isinstance(value, list) for value in given):
+        return _stacked(values)
+    if any(isinstance(value, str) for value in given):
+        return _texts(["" if value is None else str(value) for value in values])
+    whole = len(given) == len(values)
+    for kind in (bool, int):
+        if whole and given and all(type(value) is kind for value in given):
+            return np.array(values, dtype=kind)
+    return np.array([np.nan if value is None else float(value) for value in values])
+
+
+def _stacked(values: Sequence[Any]) -> NDArray[Any]:
+    arrays = [None if value is None else np.array(value, dtype=float) for value in values]
+    size = next(array.shape for array in arrays if array is not None)
+    largest = tuple(max(array.shape[k] for array in arrays if array is not None) for k in range(len(size)))
+    out = np.full((len(values), *largest), np.nan)
+    for place, array in enumerate(arrays):
+        if array is not None:
+            out[place][tuple(slice(0, length) for length in array.shape)] = array
+    return out
+
+
+def _attributes(name: str) -> dict[str, str]:
+    from trbdyn.summary import LABELS
+
+    for label, (words, unit) in LABELS.items():
+        if name == label or (name.startswith(f"{label}_") and label.endswith("_split")):
+            return {"long_name": words.strip() or label, "units": unit or "1"}
+    return {}
+
+
+def save(data: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
+    """Write a dataset as netCDF (version 3, 64-bit offsets).
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    target = Path(path)
+    part = target.with_name(f".{target.name}.part")
+    limit = np.iinfo(np.int32).max
+    written = data.copy()
+    for name, variable in data.variables.items():
+        if variable.dtype.kind in "iu" and variable.size and np.abs(variable.values).max() > limit:
+            written[name] = written[name].astype(float)
+    try:
+        written.to_netcdf(part, engine="scipy", format="NETCDF3_64BIT")
+        part.replace(target)
+    except OSError as error:
+        raise FileError(f"{target}: the dataset cannot be written: {error.strerror or error}") from error
+    return target
+
+
+def load(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """Read a dataset that `save` wrote.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
+    import xarray
+
+    try:
+        return xarray.load_dataset(path, engine="scipy")
+    except (OSError, ValueError, TypeError) as error:
+        raise FileError(f"{path}: the dataset cannot be read: {error}") from error

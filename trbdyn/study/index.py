@@ -1,0 +1,151 @@
+"""The index of a study's folder: a line of JSON a finished case, appended as they finish.
+
+A line holds ``name``, ``fingerprint``, ``parameters``, ``status`` ('done' or 'failed'), ``message``, ``file``, ``values`` (the
+observables), ``wall_s``, ``finished`` (UTC) and ``version``. The last line of a fingerprint counts. A line that was cut short
+by a crash is passed over.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from trbdyn.errors import FileError
+
+INDEX = "index.jsonl"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """How one case ended: a line of the index.
+
+    Attributes
+    ----------
+    name : str
+        Name of the case.
+    fingerprint : str
+        What it was: scene and run options.
+    status : {'done', 'failed'}
+        Whether it reached its end.
+    message : str
+        How it ended, in a sentence.
+    parameters : dict
+        What told it from the others.
+    file : str
+        Its result file, in the folder; empty if there is none.
+    values : dict
+        Observables.
+    wall_s : float
+        Wall time (s).
+    finished : str
+        When, UTC.
+    version : str
+        Version of trbdyn.
+    """
+
+    name: str
+    fingerprint: str
+    status: Literal["done", "failed"]
+    message: str
+    parameters: dict[str, Any] = field(default_factory=dict)
+    file: str = ""
+    values: dict[str, Any] = field(default_factory=dict)
+    wall_s: float = 0.0
+    finished: str = ""
+    version: str = ""
+
+
+class Index:
+    """The index of a folder.
+
+    Parameters
+    ----------
+    folder : Path or None
+        The folder, made if it is missing; None keeps the entries in memory only.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be made or the index not be read.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+        self.entries: dict[str, Entry] = {}
+        if folder is None:
+            return
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            for entry in read_lines(folder / INDEX):
+                self.entries[entry.fingerprint] = entry
+        except OSError as error:
+            raise FileError(f"{folder}: the folder cannot be used: {error.strerror or error}") from error
+
+    def add(self, entry: Entry) -> None:
+        """Add an entry, on disk too.
+
+        Raises
+        ------
+        FileError
+            If it cannot be written.
+        """
+        self.entries[entry.fingerprint] = entry
+        if self.folder is None:
+            return
+        path = self.folder / INDEX
+        try:
+            with path.open("ab+") as stream:
+                stream.seek(0, os.SEEK_END)
+                if stream.tell() and _last_byte(path) != b"\n":
+                    stream.write(b"\n")
+                stream.write(json.dumps(asdict(entry), allow_nan=False).encode() + b"\n")
+                stream.flush()
+                os.fsync(stream.fileno())
+        except OSError as error:
+            raise FileError(f"{path}: the index cannot be written: {error.strerror or error}") from error
+
+    def done(self, fingerprint: str) -> bool:
+        """Whether a case is done, and its file still there."""
+        entry = self.entries.get(fingerprint)
+        if entry is None or entry.status != "done":
+            return False
+        return self.folder is None or not entry.file or (self.folder / entry.file).is_file()
+
+
+def _last_byte(path: Path) -> bytes:
+    with path.open("rb") as stream:
+        stream.seek(-1, os.SEEK_END)
+        return stream.read(1)
+
+
+def read_lines(path: Path) -> Iterator[Entry]:
+    """Entries of an index file, in the order in which they were written; damaged lines are passed over."""
+    if not path.is_file():
+        return
+    with path.open("rb") as stream:
+        for line in stream:
+            try:
+                values = json.loads(line)
+                yield Entry(**values)
+            except (ValueError, TypeError):
+                continue
+
+
+def write_json(path: Path, values: Mapping[str, Any] | list[Any]) -> None:
+    """Write JSON to a file that is either the old one or the whole new one.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    part = path.with_name(f".{path.name}.part")
+    try:
+        part.write_text(json.dumps(values, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        part.replace(path)
+    except OSError as error:
+        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error

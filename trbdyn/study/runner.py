@@ -1,0 +1,167 @@
+"""Running a study: every case once, results in a folder, observables gathered."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trbdyn.errors import InputError
+from trbdyn.run_options import RunOptions
+from trbdyn.scene import Scene
+from trbdyn.study import gather
+from trbdyn.study.definition import Case, Study, of_scenes
+from trbdyn.study.executors import Outcome, execute
+from trbdyn.study.index import Entry, Index
+from trbdyn.study.work import Observable, Report, Task, as_plain, run_case, said
+
+if TYPE_CHECKING:
+    import xarray
+
+DATASET = "observables.nc"
+
+
+def run(
+    study: Study | Iterable[Scene | tuple[Scene, RunOptions]],
+    folder: str | os.PathLike[str] | None = None,
+    *,
+    options: RunOptions | None = None,
+    executor: Any = "processes",
+    workers: int | None = None,
+    observables: Mapping[str, Observable] | None = None,
+    resume: bool = True,
+    progress: bool = False,
+) -> xarray.Dataset:
+    """Run every case of a study and gather its observables.
+
+    Parameters
+    ----------
+    study : Study or iterable of Scene
+        The cases; scenes may come with run options of their own, as (scene, options).
+    folder : path-like, optional
+        Where each case gets its result file, beside ``index.jsonl`` and the dataset ``observables.nc``; without it no files are
+        written.
+    options : RunOptions, optional
+        How scenes are run; a study has its own.
+    executor : {'processes', 'threads', 'serial'} or object
+        Worker processes of its own (spawned: a script needs ``if __name__ == "__main__":``), threads, this thread; or any
+        executor with ``submit`` as in `concurrent.futures`; or a Dask client, whose workers must see the same folder.
+    workers : int, optional
+        Number of own workers; by default, and at most, the cores.
+    observables : mapping of str to callable, optional
+        Functions of a `Result` besides its summary, giving a number, a text or an array; for processes they must pickle.
+    resume : bool
+        Skip cases that are done: those whose scene and run options have a finished file in the folder. Cases that failed are
+        run again.
+    progress : bool
+        Show a progress bar.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `trbdyn.study.gather.dataset`. Cases that failed have the status ``failed`` and say why in ``message``.
+
+    Raises
+    ------
+    InputError
+        If no case can be built, or an argument cannot be used.
+    FileError
+        If the folder cannot be used.
+    """
+    study = study if isinstance(study, Study) else of_scenes(study, options)
+    place = None if folder is None else Path(folder)
+    index, functions = Index(place), dict(observables or {})
+    waiting = {case.fingerprint: case for case in study.cases}
+    if resume:
+        waiting = {key: case for key, case in waiting.items() if not index.done(key)}
+    for case in _unbuilt(waiting):
+        index.add(_entry(case, Report("failed", case.error)))
+    tasks = [_task(case, place, functions) for case in waiting.values() if case.scene is not None]
+    failed = sum(case.scene is None for case in waiting.values())
+    with (
+        _bar(len(study.cases), len(study.cases) - len(tasks), progress) as bar,
+        closing(execute(run_case, tasks, executor, workers)) as outcomes,
+    ):
+        for outcome in outcomes:
+            entry = _entry(waiting[outcome.task.fingerprint], _report(outcome))
+            index.add(entry)
+            failed += entry.status == "failed"
+            bar.set_postfix_str(f"{failed} failed" if failed else "", refresh=False)
+            bar.update()
+    data = gather.dataset(study, [_observed(index, case, functions) for case in study.cases])
+    if place is not None:
+        gather.save(data, place / DATASET)
+    return data
+
+
+def collect(study: Study, folder: str | os.PathLike[str]) -> xarray.Dataset:
+    """Gather what a folder holds of a study, without running anything.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be used.
+    """
+    index = Index(Path(folder))
+    return gather.dataset(study, [index.entries.get(case.fingerprint) for case in study.cases])
+
+
+def _bar(total: int, done: int, show: bool) -> Any:
+    from tqdm import tqdm
+
+    return tqdm(total=total, initial=done, disable=not show, unit="case")
+
+
+def _unbuilt(waiting: Mapping[str, Case]) -> Iterator[Case]:
+    return (case for case in waiting.values() if case.scene is None)
+
+
+def _task(case: Case, folder: Path | None, functions: Mapping[str, Observable]) -> Task:
+    if case.scene is None:
+        raise InputError.of("case", case.name, case.error)
+    path = "" if folder is None else str(folder.absolute() / f"{case.name}.h5")
+    return Task(case.fingerprint, case.scene.to_dict(), case.run.to_dict(), path, functions)
+
+
+def _report(outcome: Outcome[Task]) -> Report:
+    if outcome.error is not None:
+        return Report("failed", said(outcome.error))
+    report: Report = outcome.value
+    return report
+
+
+def _entry(case: Case, report: Report) -> Entry:
+    from trbdyn import __version__
+
+    return Entry(
+        name=case.name,
+        fingerprint=case.fingerprint,
+        status=report.status,
+        message=report.message,
+        parameters={key: as_plain(value) for key, value in case.parameters.items()},
+        file=report.file,
+        values=report.values,
+        wall_s=report.wall_s,
+        finished=datetime.now(UTC).isoformat(timespec="seconds"),
+        version=__version__,
+    )
+
+
+def _observed(index: Index, case: Case, functions: Mapping[str, Observable]) -> Entry | None:
+    """The entry of a case; observables that an earlier run was not asked for are read from its file, and kept."""
+    entry = index.entries.get(case.fingerprint)
+    if entry is None or entry.status != "done" or index.folder is None or not entry.file:
+        return entry
+    missing = {name: function for name, function in functions.items() if name not in entry.values}
+    if not missing:
+        return entry
+    from trbdyn.results import load
+
+    result = load(index.folder / entry.file)
+    values = entry.values | {name: as_plain(function(result)) for name, function in missing.items()}
+    entry = Entry(**{**entry.__dict__, "values": values})
+    index.add(entry)
+    return entry

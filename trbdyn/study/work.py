@@ -1,0 +1,177 @@
+"""What a worker does: run one case, write its file, read its observables."""
+
+from __future__ import annotations
+
+import time as clock
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+
+from trbdyn.errors import StepError, TrbError
+from trbdyn.run_options import RunOptions
+from trbdyn.scene import Scene
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+    from trbdyn.simulation import Simulation
+
+Observable = Callable[["Result"], Any]
+
+NOT_OBSERVABLE: Final = ("success", "message")
+"""Entries of a summary that are told otherwise."""
+
+_OF_A_RUN: Final = ("revolutions", "duration", "save_every", "save_groups")
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a worker is to do.
+
+    Attributes
+    ----------
+    fingerprint : str
+        Of the case.
+    scene, run : dict
+        Scene and run options, as plain data.
+    path : str
+        Result file; empty to keep records in memory.
+    observables : mapping of str to callable
+        Functions of the result whose values are wanted besides the summary.
+    """
+
+    fingerprint: str
+    scene: dict[str, Any]
+    run: dict[str, Any]
+    path: str = ""
+    observables: Mapping[str, Observable] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Report:
+    """How a task ended.
+
+    Attributes
+    ----------
+    status : {'done', 'failed'}
+        Whether the run reached its end.
+    message : str
+        How it ended.
+    file : str
+        Name of the result file; empty if there is none.
+    values : dict
+        Observables, as plain data.
+    wall_s : float
+        Wall time (s).
+    """
+
+    status: Literal["done", "failed"]
+    message: str
+    file: str = ""
+    values: dict[str, Any] = field(default_factory=dict)
+    wall_s: float = 0.0
+
+
+def simulation(scene: Scene, run: RunOptions) -> Simulation:
+    """A simulation with the settings of run options."""
+    from trbdyn.simulation import Simulation
+
+    default = RunOptions()
+    names = [name for name in RunOptions.model_fields if name not in _OF_A_RUN]
+    settings = {name: getattr(run, name) for name in names if getattr(run, name) != getattr(default, name)}
+    return Simulation(scene, **settings)
+
+
+def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
+    """Run one case.
+
+    A file appears under its name when it is complete. Records of a run that failed on the way are kept under a name of its own.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If it was stopped before its end; nothing is kept then.
+    """
+    began = clock.perf_counter()
+    path = Path(task.path) if task.path else None
+    part = path.with_name(f".{path.name}.part") if path else None
+    try:
+        result, report = _run(task, part, stopped)
+    except KeyboardInterrupt:
+        if part is not None:
+            part.unlink(missing_ok=True)
+        raise
+    file = ""
+    if path is not None and part is not None and part.is_file():
+        kept = path if report.status == "done" else path.with_suffix(".failed.h5")
+        part.replace(kept)
+        file = kept.name
+        if result is not None:
+            from trbdyn.results import load
+
+            result = load(kept)
+    values: dict[str, Any] = {}
+    if result is not None and report.status == "done":
+        try:
+            values = observe(result, task.observables)
+        except Exception as error:
+            report = Report("failed", f"an observable failed: {said(error)}")
+    return Report(report.status, report.message, file, values, clock.perf_counter() - began)
+
+
+def _run(task: Task, part: Path | None, stopped: Callable[[], bool]) -> tuple[Result | None, Report]:
+    try:
+        scene, run = Scene.from_dict(task.scene), RunOptions.from_dict(task.run)
+        result = simulation(scene, run).run(
+            revolutions=run.revolutions,
+            duration=run.duration,
+            save_every=run.save_every,
+            save_groups=run.save_groups,
+            output=part,
+            callback=lambda _: stopped(),
+        )
+    except StepError as error:
+        return None, Report("failed", str(error))
+    except Exception as error:
+        if part is not None:
+            part.unlink(missing_ok=True)
+        return None, Report("failed", said(error))
+    if not result.success:
+        raise KeyboardInterrupt
+    return result, Report("done", result.message)
+
+
+def said(error: Exception) -> str:
+    """What an error says: its text, with its kind and place unless it is meant for users."""
+    if isinstance(error, TrbError):
+        return str(error)
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+    return f"{type(error).__name__}: {error}{place}"
+
+
+def observe(result: Result, functions: Mapping[str, Observable]) -> dict[str, Any]:
+    """Summary and further observables of a result, as plain data; tables of the summary become ``table_entry``."""
+    values: dict[str, Any] = {}
+    for name, value in result.summary().items():
+        if isinstance(value, Mapping):
+            values |= {f"{name}_{part}": entry for part, entry in value.items()}
+        elif name not in NOT_OBSERVABLE:
+            values[name] = value
+    return values | {name: as_plain(function(result)) for name, function in functions.items()}
+
+
+def as_plain(value: Any) -> Any:
+    """A number, text or array as JSON holds it; numbers that are not finite become None."""
+    if isinstance(value, str | bool | int) or value is None:
+        return value
+    array = np.asarray(value)
+    if array.dtype == object:
+        raise TypeError(f"an observable must give a number, a text or an array of numbers, not {type(value).__name__}")
+    if array.ndim:
+        return [as_plain(entry) for entry in array.tolist()]
+    scalar = array.item()
+    return None if isinstance(scalar, float) and not np.isfinite(scalar) else scalar
