@@ -16,7 +16,7 @@ import importlib.metadata
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from trbdyn import animation, cases, errors, laws, lubricants, observables, pocket_shapes
+    from trbdyn import animation, cases, errors, laws, lubricants, observables, pocket_shapes, study
     from trbdyn import plotting as plot
     from trbdyn.bearing import Bearing
     from trbdyn.effects import Effects
@@ -38,6 +38,7 @@ _MODULES = {
     "observables": "trbdyn.observables",
     "plot": "trbdyn.plotting",
     "pocket_shapes": "trbdyn.pocket_shapes",
+    "study": "trbdyn.study",
 }
 
 _NAMES = {
@@ -85,6 +86,7 @@ __all__ = [
     "observables",
     "plot",
     "pocket_shapes",
+    "study",
 ]
 
 try:

@@ -119,6 +119,10 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("-o", "--output", metavar="FOLDER", default="demo", help="folder (default: demo)")
     demo.set_defaults(command=_demo)
 
+    from trbdyn.study.command import add_sweep_parser
+
+    add_sweep_parser(commands, [common])
+
     cases = commands.add_parser("cases", parents=[common], help="list the cases that ship with the package")
     cases.set_defaults(command=_cases)
     return parser
