@@ -15,6 +15,8 @@
   X(erk_order,      5,     2,     8,    "order of the explicit method") \
   X(rings_age,      1e-2,  0,     1e3,  "bearing time after which the rings' part of the Jacobian is evaluated anew, s") \
   X(jacobian_every, 51,    1,     1e6,  "most steps between evaluations of the pockets' part of the Jacobian") \
+  X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \
+  X(newton_share,   0.1,   1e-6,  1,    "share of the step's tolerance to which Newton's method converges") \
   X(max_step,       1e-3,  1e-12, 1e3,  "largest step, s") \
   X(first_step,     0,     0,     1,    "first step, s; 0: chosen by the integrator") \
   X(smallest_step,  1e-15, 1e-18, 1,    "smallest step, s: below it the run stops with an error")

@@ -71,6 +71,8 @@ static trb_status configure(trb_integrator *it, trb_message *message)
   CHECK(CVodeSetMaxStep(self->memory, it->settings.max_step));
   CHECK(CVodeSetMaxErrTestFails(self->memory, 15));
   CHECK(CVodeSetMaxConvFails(self->memory, 25));
+  CHECK(CVodeSetLSetupFrequency(self->memory, (long)it->settings.setup_every));
+  CHECK(CVodeSetNonlinConvCoef(self->memory, it->settings.newton_share));
   CHECK(CVodeSetJacEvalFrequency(self->memory, (long)it->settings.jacobian_every));
   if (it->settings.first_step > 0.0) CHECK(CVodeSetInitStep(self->memory, it->settings.first_step));
   return TRB_OK;
