@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import trbdyn as trb
-from trbdyn import Effects, Scene, Simulation
+from trbdyn import Bearing, Effects, Scene, Simulation
+from trbdyn.pocket import Pocket
 
 Array = NDArray[np.float64]
 
@@ -154,6 +155,19 @@ def balance(sim: Simulation, vector: Array, time: float = 0.0) -> tuple[Array, A
     return force, moment, found
 
 
+def small_faces(bearing: Bearing) -> Pocket:
+    """Triangles of about a millimetre on the default faces, where sides and corners are met as often as the inside."""
+    pocket = trb.pocket_shapes.default_pocket(bearing)
+    corners = {
+        "leading_bar": ((-4e-3, -2e-4), (3e-3, -1e-4), (1e-3, 3e-4)),
+        "trailing_bar": ((-2e-3, -3e-4), (4e-3, 0.0), (-1e-3, 2e-4)),
+        "large_end_wall": ((-1e-4, -5e-5), (1.2e-3, -2e-4), (6e-4, 1e-3)),
+        "small_end_wall": ((1e-3, -2e-3), (4e-3, 1e-3), (2e-3, 3e-3)),
+    }
+    faces = tuple(face.replace(outline=corners[face.name]) for face in pocket.faces)
+    return Pocket(faces=faces, allow_interference=True)
+
+
 @pytest.fixture(scope="session")
 def kit() -> SimpleNamespace:
     """The functions of this file."""
@@ -170,4 +184,5 @@ def kit() -> SimpleNamespace:
         cage_place=cage_place,
         cage_attitude=cage_attitude,
         balance=balance,
+        small_faces=small_faces,
     )

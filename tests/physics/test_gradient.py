@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 import trbdyn as trb
 from trbdyn import Effects, Simulation
-from trbdyn.pocket import Face, Pocket
+from trbdyn.pocket import Face
 
 Array = NDArray[np.float64]
 FREE = Effects.frictionless().replace(gravity=False)
@@ -143,19 +143,6 @@ def ring_attitude(turn: Array) -> Rotation:
     return Rotation.from_rotvec([*turn, 0.0])
 
 
-def small_faces(bearing: trb.Bearing) -> Pocket:
-    """Triangles of about a millimetre on the default faces, where sides and corners are met as often as the inside."""
-    pocket = trb.pocket_shapes.default_pocket(bearing)
-    corners = {
-        "leading_bar": ((-4e-3, -2e-4), (3e-3, -1e-4), (1e-3, 3e-4)),
-        "trailing_bar": ((-2e-3, -3e-4), (4e-3, 0.0), (-1e-3, 2e-4)),
-        "large_end_wall": ((-1e-4, -5e-5), (1.2e-3, -2e-4), (6e-4, 1e-3)),
-        "small_end_wall": ((1e-3, -2e-3), (4e-3, 1e-3), (2e-3, 3e-3)),
-    }
-    faces = tuple(face.replace(outline=corners[face.name]) for face in pocket.faces)
-    return Pocket(faces=faces, allow_interference=True)
-
-
 def regions(kit: SimpleNamespace, sim: Simulation, vector: Array, face: Face, slices: int) -> dict[str, int]:
     """How many inscribed spheres touch a face inside its outline, at a side and at a corner, by the tests' own geometry."""
     geometry, half = sim.scene.bearing.geometry, 0.5 * sim.scene.bearing.roller.effective_length
@@ -201,7 +188,7 @@ def test_sides_and_corners_of_pocket_faces(kit: SimpleNamespace) -> None:
     """Small triangular faces: forces at their insides, sides and corners are the gradient of one energy."""
     rig = trb.cases.rig_30310()
     bearing = rig.replace(
-        cage=rig.cage.replace(pocket=small_faces(rig)),
+        cage=rig.cage.replace(pocket=kit.small_faces(rig)),
         roller=rig.roller.replace(profile=trb.bearing.Profile.straight()),
     )
     slices = 200
