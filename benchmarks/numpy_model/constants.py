@@ -250,9 +250,9 @@ class Constants:
         # pocket's origin from the cage's centre of mass, along the pocket's axes: (component, roller)
         self.pocket_origin = np.einsum("zbij,zi->jz", self.pocket_axes, origin)
         at, offsets = 0, {}
-        for name, count, _, _ in _core.face_table():
-            offsets[name] = slice(at, at + count)
-            at += count
+        for name, width, _, _ in _core.face_table():
+            offsets[name] = slice(at, at + width)
+            at += width
         column = {name: rows[:, where] for name, where in offsets.items()}
         self.face_origin, self.face_u, self.face_v = (column[name].T.copy() for name in ("origin", "u", "v"))
         self.face_normal = np.cross(self.face_u, self.face_v, axis=0)
@@ -278,8 +278,9 @@ class Constants:
         plane = (self.face_origin * self.face_normal).sum(axis=0)
         far = 1e3  # a face of another pocket is out of reach
 
-        def reach(faces: Array, radius: Array) -> Array:
-            return plane[faces][None, :, None] + radius - np.where(belongs[:, faces], 0.0, far)[:, :, None]
+        def reach(faces: NDArray[np.intp], radius: Array) -> Array:
+            out: Array = plane[faces][None, :, None] + radius - np.where(belongs[:, faces], 0.0, far)[:, :, None]
+            return out
 
         self.flank_reach = reach(self.flank, self.sphere)[:, None]
         self.large_reach = reach(self.large, np.full((1, 1, 1), g.sphere_radius))[:, None]

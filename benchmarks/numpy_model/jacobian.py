@@ -7,8 +7,6 @@ which only the pockets are evaluated.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
@@ -90,10 +88,14 @@ class Jacobian:
         stored = self.dense(time, y).take(self.stored)
         return csc_matrix((stored, self.sparsity.indices, self.sparsity.indptr), shape=self.sparsity.shape)
 
-    def fill_dense(self, time: float, y: Array, rates: Array, out: Array, *_: Any) -> None:
+    def dense_copy(self, time: float, y: Array) -> Array:
+        """As an array that the caller may keep and change."""
+        return self.dense(time, y).copy()
+
+    def fill_dense(self, time: float, y: Array, rates: Array, out: Array) -> None:
         """In place, as scikit-sundae's dense solvers want it."""
         out[:] = self.dense(time, y)
 
-    def fill_sparse(self, time: float, y: Array, rates: Array, out: Array, *_: Any) -> None:
+    def fill_sparse(self, time: float, y: Array, rates: Array, out: Array) -> None:
         """In place, as scikit-sundae's sparse solver wants it."""
         self.dense(time, y).take(self.stored, out=out)

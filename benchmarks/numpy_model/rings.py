@@ -171,7 +171,8 @@ def front_rib(c: Constants, p: Poses, d: Array, across: Array, lean: Array, v: A
     speed = np.sqrt(sum_of(sliding * sliding) + c.guards.flat[0])
     load = 0.5 * c.p["end_stiffness"] * d * np.sqrt(d)
     force = five(-load * normal - load * boundary(c, slip(c, speed)) / speed * sliding)
-    return sum_of(np.concatenate((force[:3], cross(arm, force))), axis=1)
+    out: Array = sum_of(np.concatenate((force[:3], cross(arm, force))), axis=1)
+    return out
 
 
 def ring_wrenches(c: Constants, p: Poses) -> Array:
