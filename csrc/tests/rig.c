@@ -1,0 +1,151 @@
+#include "rig.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "contact/kernels.h"
+#include "motion/equilibrium.h"
+
+trb_params rig_params(void)
+{
+  trb_params p = {0};
+  p.n_rollers = 12;
+  p.cup_half_angle = (12.0 + 57.0 / 60.0 + 10.0 / 3600.0) * TRB_PI / 180.0;
+  p.roller_diameter = 14.0e-3, p.effective_length = 19.8e-3, p.total_length = 20.8e-3, p.pitch_diameter = 82.389e-3;
+  p.roller_density = 7810, p.youngs_modulus = 206e9, p.poisson_ratio = 0.3, p.sphere_ratio = 0.9;
+  p.rib_contact_height = 1.667e-3, p.rib_edge_low = 0.3e-3, p.rib_edge_high = 3.5e-3;
+  p.front_rib_clearance = 0.2e-3, p.front_rib_low = 0.3e-3, p.front_rib_high = 2e-3, p.end_stiffness = 1e10;
+  p.roughness_raceway = 0.16e-6, p.roughness_rib = 0.24e-6;
+  p.profile = 2, p.crown_radius = 100, p.profile_k1 = 1.5, p.profile_k2 = 0.4, p.profile_zm = 10e-6, p.profile_load = 1833;
+  p.quadrature = 0, p.n_slices = RIG_SLICES;
+  p.cage_mass = 0.2, p.cage_inertia_axial = 3.9e-4, p.cage_inertia_transverse = 2.1e-4, p.cage_offset = 0, p.cage_rail_offset = 12e-3;
+  p.viscosity = 0.0346, p.pressure_coefficient = 1.97e-8, p.temperature_coefficient = 0.0392, p.conductivity = 0.134, p.temperature = 60;
+  p.viscosity_law = 0, p.dicke_a = 327.79, p.dicke_b = 2.9862, p.dicke_c = 4.419e-3, p.dicke_d = 3.0115e-4, p.viscosity_exponent_cap = 25;
+  p.eyring_stress = 5e6, p.shear_modulus_floor = 1e7, p.starvation_factor = 1;
+  p.lambda_boundary = 0.01, p.lambda_full = 1.5, p.boundary_limit = 0.1, p.boundary_slope = 22.28, p.boundary_decay = 181.46;
+  p.dry_friction = 0.1, p.coulomb_speed = 0.01, p.cage_entrainment_speed = 0.05, p.speed_floor = 1e-3, p.thermal_floor = 0.05;
+  p.rolling_blend = 0.1, p.damping_race = 0.1, p.damping_cage = 0.5;
+  p.with_cage = 1, p.lubrication = 2, p.traction = 2, p.thermal = 1, p.rolling_resistance = 1, p.back_rib = 1, p.front_rib = 1;
+  p.pocket_bars = 1, p.pocket_ends = 1, p.pocket_edges = 1;
+  return p;
+}
+
+static void put(double *to, trb_vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+static void box(trb_face *f, double u0, double u1, double v0, double v1)
+{
+  const double outline[8] = {u0, v0, u1, v0, u1, v1, u0, v1};
+  f->n_vertices[0] = 4;
+  for (int i = 0; i < 8; i++) f->outline[i] = outline[i];
+}
+
+void rig_faces(const trb_params *p, trb_face faces[RIG_FACES])
+{
+  const double  radial = 0.25e-3, around = 0.12e-3, axial = 0.4e-3, half = 0.5 * p->effective_length;
+  trb_geometry  g;
+  trb_message   message;
+  const trb_face none = {.pocket = {-1}, .stiffness_factor = {1}, .friction_factor = {1}};
+  if (trb_geometry_derive(p, &g, &message) != TRB_OK) {
+    printf("%s\n", message.text);
+    exit(1);
+  }
+  const double sn = sin(g.roller_half_angle), cn = cos(g.roller_half_angle), cm = cos(g.roller_axis_angle), ratio = around / radial;
+  const double lean = atan2(ratio, cm) + asin(sn / cn * sin(g.roller_axis_angle) / hypot(cm, ratio)), gap = around * cn * cos(lean);
+  for (int i = 0; i < 2; i++) {
+    const trb_vec3 m = trb_v(sin(lean), (i == 0 ? 1 : -1) * cos(lean), 0), a = trb_v(0, 0, 1);
+    const trb_vec3 outward = trb_axpy(trb_scale(cn, m), -sn, a), along = trb_axpy(trb_scale(cn, a), sn, m);
+    faces[i] = none;
+    faces[i].slot[0] = i;
+    put(faces[i].origin, trb_axpy(trb_scale(0.5 * p->roller_diameter, m), gap, outward));
+    put(faces[i].u, along);
+    put(faces[i].v, trb_cross(trb_scale(-1, outward), along));
+    box(&faces[i], -half, half, -1.5e-3, 1.5e-3);
+  }
+  faces[2] = none;
+  faces[2].slot[0] = 2, faces[2].part[0] = TRB_PART_LARGE_END;
+  put(faces[2].origin, trb_v(0, 0, g.sphere_centre - g.apex_to_mid + sqrt(g.sphere_radius * g.sphere_radius - 1.5e-3 * 1.5e-3)));
+  put(faces[2].u, trb_v(0, 1, 0));
+  put(faces[2].v, trb_v(1, 0, 0));
+  box(&faces[2], -6e-3, 6e-3, 1.5e-3, 4.5e-3);
+  faces[3] = none;
+  faces[3].slot[0] = 3, faces[3].part[0] = TRB_PART_SMALL_END;
+  put(faces[3].origin, trb_v(0, 0, g.small_end_station - axial));
+  put(faces[3].u, trb_v(1, 0, 0));
+  put(faces[3].v, trb_v(0, 1, 0));
+  box(&faces[3], 1.5e-3, 4.5e-3, -4.9e-3, 4.9e-3);
+}
+
+trb_model *rig_model(const trb_params *params)
+{
+  trb_face    faces[RIG_FACES];
+  double      deviation[200] = {0};
+  trb_model  *model;
+  trb_message message = {TRB_OK, ""};
+  rig_faces(params, faces);
+  if (trb_model_create(params, deviation, (int)params->n_rollers, faces, RIG_FACES, &model, &message) == TRB_OK) return model;
+  printf("%s\n", message.text);
+  exit(1);
+}
+
+trb_motion *rig_motion(double displacement_z, double shaft_speed)
+{
+  double      row[TRB_MOTION_COLUMNS] = {0};
+  trb_motion *motion;
+  row[1 + 2 * TRB_CHANNEL_displacement_z] = displacement_z;
+  row[1 + 2 * TRB_CHANNEL_shaft_speed] = shaft_speed;
+  row[1 + 2 * TRB_CHANNEL_gravity_y] = -9.80665;
+  if (trb_motion_create(row, 1, &motion, NULL) == TRB_OK) return motion;
+  exit(1);
+}
+
+trb_settings rig_settings(void)
+{
+  trb_settings settings;
+  double      *values = (double *)&settings;
+  for (int i = 0; i < TRB_N_SETTINGS; i++) values[i] = trb_setting_table[i].standard;
+  return settings;
+}
+
+double rig_state(const trb_model *m, double axial_load, double shaft_speed, double *state)
+{
+  double          angles[200], rollers[600] = {0}, loads[600];
+  trb_message     message = {TRB_OK, ""};
+  trb_equilibrium e = {.load = {0, 0, -axial_load, 0, 0}, .fixed = {0, 0, 0, 1, 1}, .shaft_speed = shaft_speed, .angles = angles, .rollers = rollers, .loads = loads};
+  for (int j = 0; j < m->n_rollers; j++) angles[j] = trb_nominal_angle(m, j);
+  if (trb_equilibrium_solve(m, &e, &message) != TRB_OK) {
+    printf("%s\n", message.text);
+    exit(1);
+  }
+  for (int i = 0; i < trb_state_size(m); i++) state[i] = 0.0;
+  const double orbit = m->geometry.cage_speed_ratio * shaft_speed, angle = m->geometry.roller_axis_angle;
+  for (int j = 0; j < m->n_rollers; j++) {
+    double      *y = state + trb_state_roller(j);
+    const double tilt = rollers[3 * j + 2];
+    y[TRB_ROLLER_r] = rollers[3 * j], y[TRB_ROLLER_z] = rollers[3 * j + 1], y[TRB_ROLLER_tilt] = tilt;
+    y[TRB_ROLLER_v_t] = orbit * rollers[3 * j];
+    y[TRB_ROLLER_omega_n] = -orbit * (sin(angle + tilt) - sin(angle)), y[TRB_ROLLER_omega_a] = orbit * (cos(angle + tilt) - cos(angle));
+  }
+  return e.displacement[2];
+}
+
+void rig_disturb(const trb_model *m, unsigned long long *seed, double *state)
+{
+  static const double roller[TRB_ROLLER_SIZE] = {5e-7, 2e-4, 1e-6, 2e-4, 2e-5, 1e-3, 2e-2, 1e-3, 2.0, 2.0, 8.0};
+  static const double cage[TRB_CAGE_SIZE] = {2e-5, 2e-5, 2e-5, 3e-4, 3e-4, 3e-4, 1e-2, 1e-2, 1e-2, 1.0, 1.0, 1.0};
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int i = 0; i < TRB_ROLLER_SIZE; i++) state[trb_state_roller(j) + i] += roller[i] * rig_random(seed);
+  for (int i = 0; i < TRB_CAGE_SIZE; i++) state[trb_state_cage(m) + i] += cage[i] * rig_random(seed);
+  /* beyond what rollers at their places allow: 0.108 mm */
+  state[trb_state_cage(m) + TRB_CAGE_x] += 1.2e-4;
+}
+
+/* A linear congruential sequence, its bits mixed. */
+double rig_random(unsigned long long *seed)
+{
+  unsigned long long x = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+  *seed = x;
+  x ^= x >> 33;
+  x *= 0xff51afd7ed558ccdULL;
+  x ^= x >> 33;
+  return (double)(x >> 11) / 4503599627370496.0 - 1.0;
+}

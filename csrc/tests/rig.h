@@ -1,0 +1,27 @@
+/* The 30310 rig for C tests: parameters, its pocket, a model, states; and random numbers that are the same everywhere. */
+#ifndef TRB_TESTS_RIG_H
+#define TRB_TESTS_RIG_H
+
+#include "motion/dynamics.h"
+#include "stepping/simulation.h"
+
+enum { RIG_FACES = 4, RIG_SLICES = 24 };
+
+/* 30310 with its oil at 60 C, effects of the paper, logarithmic profile, 24 uniform slices. */
+trb_params rig_params(void);
+/* Two bars and two end walls, as the plays Cpr 0.25 mm, Cpc 0.12 mm and axial 0.4 mm give them. */
+void rig_faces(const trb_params *params, trb_face faces[RIG_FACES]);
+/* A model of the parameters with the rig's faces and equal rollers; ends the program where that fails. */
+trb_model *rig_model(const trb_params *params);
+/* A ring held at a displacement along z, at a speed, with gravity along -y. */
+trb_motion *rig_motion(double displacement_z, double shaft_speed);
+trb_settings rig_settings(void);
+/* Equilibrium under an axial load; gives the ring's displacement along z and fills a state of pure rolling. */
+double rig_state(const trb_model *m, double axial_load, double shaft_speed, double *state);
+/* Disturb a state: rollers about it, velocities at some slip, the cage against its rollers so that pockets touch. */
+void rig_disturb(const trb_model *m, unsigned long long *seed, double *state);
+
+/* Uniform over -1 to 1. */
+double rig_random(unsigned long long *seed);
+
+#endif

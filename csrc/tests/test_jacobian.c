@@ -1,0 +1,119 @@
+/* The structured Jacobian against differences of the whole right-hand side, an entry of the state at a time: every coupling is there,
+ * and nothing else is. */
+#include "stepping/jacobian.h"
+
+#include <stdlib.h>
+
+#include "check.h"
+#include "rig.h"
+
+enum { MOST = 12 * TRB_NR + TRB_NC };
+
+/* Tolerances of a run, by kind: what makes rows and columns comparable. */
+static const double       unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-5, 1e-3, 1.0};
+static unsigned long long seed = 5;
+static double             dense[MOST][MOST], found[MOST][MOST];
+
+/* d rates / d state by central differences with a share of the unit, in units of the tolerances, row over column. */
+static void differentiate(trb_dynamics *d, double time, const double *y, double share)
+{
+  const trb_model *m = d->model;
+  const int        n = trb_state_main_size(m), size = trb_state_size(m);
+  double          *moved = malloc(3 * (size_t)size * sizeof *moved), *low = moved + size, *high = low + size;
+  if (moved == NULL) exit(1);
+  memcpy(moved, y, (size_t)size * sizeof *y);
+  for (int c = 0; c < n; c++) {
+    const double scale = unit[trb_state_tolerance(m, c)], h = share * scale;
+    moved[c] = y[c] + h;
+    trb_dynamics_derivative(d, time, moved, high);
+    moved[c] = y[c] - h;
+    trb_dynamics_derivative(d, time, moved, low);
+    moved[c] = y[c];
+    for (int i = 0; i < n; i++) dense[i][c] = (high[i] - low[i]) / (2.0 * h) * scale / unit[trb_state_tolerance(m, i)];
+  }
+  free(moved);
+}
+
+static void expand(const trb_model *m, const trb_arrow *a)
+{
+  const int n = trb_state_main_size(m), cage = trb_state_cage(m);
+  memset(found, 0, sizeof found);
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int i = 0; i < TRB_NR; i++) {
+      for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[i][c];
+      for (int c = 0; c < TRB_NC; c++) {
+        found[j * TRB_NR + i][cage + c] = a->rollers[j].to_cage[i][c];
+        found[cage + c][j * TRB_NR + i] = a->rollers[j].from[c][i];
+      }
+    }
+  for (int i = 0; i < TRB_NC; i++)
+    for (int c = 0; c < TRB_NC; c++) found[cage + i][cage + c] = a->cage[i][c];
+  for (int i = 0; i < n; i++)
+    for (int c = 0; c < n; c++) found[i][c] *= unit[trb_state_tolerance(m, c)] / unit[trb_state_tolerance(m, i)];
+}
+
+static int body_of(const trb_model *m, int i) { return i < trb_state_cage(m) ? i / TRB_NR : m->n_rollers; }
+
+/* Entries of two bodies that do not couple are exactly zero in both; the others agree relative to the largest of their row. */
+static void compare(const trb_model *m, double tolerance)
+{
+  const int n = trb_state_main_size(m);
+  for (int i = 0; i < n; i++) {
+    double largest = 0.0, off = 0.0;
+    for (int c = 0; c < n; c++) {
+      largest = fmax(largest, fabs(dense[i][c]));
+      off = fmax(off, fabs(found[i][c] - dense[i][c]));
+      if (body_of(m, i) != body_of(m, c) && body_of(m, i) < m->n_rollers && body_of(m, c) < m->n_rollers) CHECK(dense[i][c] == 0.0);
+    }
+    CHECK_NEAR(off, 0.0, tolerance * largest + 1e-9);
+    if (getenv("SHOW") != NULL) printf("row %d (%d): %.3g of %.3g: %.2g\n", i, i % TRB_NR, off, largest, off / largest);
+  }
+}
+
+static void check_scene(const trb_params *params, double load, int touching)
+{
+  trb_model    *m = rig_model(params);
+  double        y[512];
+  const double  speed = 100 * TRB_PI;
+  trb_motion   *motion = rig_motion(rig_state(m, load, speed, y), speed);
+  trb_dynamics *d;
+  trb_jacobian *jac;
+  trb_arrow    *arrow;
+  int           coupled = 0;
+  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_jacobian_create(m, motion, "scalar", &jac, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(m->n_rollers, m->params.with_cage > 0.0, &arrow, NULL) == TRB_OK)) return;
+  rig_disturb(m, &seed, y);
+  trb_jacobian_fill(jac, 0.01, y, 1, arrow);
+  for (int j = 0; j < m->n_rollers; j++) coupled += arrow->rollers[j].coupled;
+  CHECK(coupled >= touching);
+  expand(m, arrow);
+  differentiate(d, 0.01, y, 0.05);
+  compare(m, 2e-3);
+  /* what the rings do is kept where it need not be fresh: at the same state it is the same */
+  trb_jacobian_fill(jac, 0.01, y, 0, arrow);
+  CHECK(jac->rings_evaluations == 1);
+  expand(m, arrow);
+  compare(m, 2e-3);
+  trb_jacobian_free(jac);
+  trb_arrow_free(arrow);
+  trb_dynamics_free(d);
+  trb_motion_free(motion);
+  trb_model_free(m);
+}
+
+int main(void)
+{
+  trb_params p = rig_params();
+  for (int i = 0; i < 5; i++) check_scene(&p, 4930.0, 2);
+  check_scene(&p, 1230.0, 2);
+  p.damping = 1, p.rolling_pressure_force = 1, p.rib_film = 1;
+  check_scene(&p, 4930.0, 2);
+  p = rig_params(), p.lubrication = 0, p.rolling_resistance = 0, p.thermal = 0;
+  check_scene(&p, 4930.0, 2);
+  p = rig_params(), p.with_cage = 0;
+  check_scene(&p, 4930.0, 0);
+  p = rig_params(), p.planar = 1;
+  check_scene(&p, 4930.0, 2);
+  return check_report();
+}

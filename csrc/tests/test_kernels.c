@@ -1,0 +1,146 @@
+/* Vectorised kernels against the scalar one: the same wrenches, energies and losses, for every set of effects.
+ *
+ * They differ by rounding alone. Interference d is a difference of lengths of L = 0.25 m, so that its relative error is eps L/d, and
+ * that of the load 10/9 of it; functions of the vector libraries (up to 4 ulp) and products that are fused or summed in another order
+ * add some eps, friction some more where slip is a small difference of surface speeds. The bound is ROUNDINGS eps L/d of the load. */
+#include "contact/kernels.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+#include "check.h"
+#include "rig.h"
+
+#define ROUNDINGS 1.0
+#define LENGTH 0.25
+
+static unsigned long long seed = 17;
+static double             worst;
+
+static void near(const char *what, const char *variant, double value, double expected, double scale, double bound)
+{
+  const double off = fabs(value - expected) / scale;
+  worst = fmax(worst, off / bound);
+  if (!CHECK_NEAR(off, 0.0, bound)) printf("  %s of %s: %.17g, scalar %.17g\n", what, variant, value, expected);
+}
+
+static void near_vector(const char *what, const char *variant, trb_vec3 value, trb_vec3 expected, double scale, double bound)
+{
+  near(what, variant, value.x, expected.x, scale, bound);
+  near(what, variant, value.y, expected.y, scale, bound);
+  near(what, variant, value.z, expected.z, scale, bound);
+}
+
+static void compare(const trb_model *m, const char *variant, const trb_dynamics *exact, const trb_dynamics *other, const trb_detail *detail)
+{
+  for (int j = 0; j < m->n_rollers; j++) {
+    const trb_roller_load *a = &exact->loads[j], *b = &other->loads[j];
+    double                 load = 1.0, deepest = 0.0, speed = 1e-3;
+    for (int race = 0; race < TRB_N_RACES; race++) {
+      const double *q = trb_detail_lane(m, detail, TRB_LANE_load, race, j), *d = trb_detail_lane(m, detail, TRB_LANE_interference, race, j);
+      const double *v = trb_detail_lane(m, detail, TRB_LANE_mean_speed, race, j);
+      for (int k = 0; k < m->n_lanes; k++) load += q[k], deepest = fmax(deepest, d[k]), speed = fmax(speed, v[k]);
+    }
+    load += detail->rib[j].load;
+    if (detail->rib[j].interference > 0.0) deepest = fmin(fmax(deepest, 1e-7), detail->rib[j].interference);
+    const double bound = ROUNDINGS * DBL_EPSILON * LENGTH / fmax(deepest, 1e-7), arm = 0.5 * m->params.pitch_diameter;
+    near_vector("force", variant, b->force, a->force, load, bound);
+    near_vector("moment", variant, b->moment, a->moment, load * arm, bound);
+    near_vector("ring_force", variant, b->ring_force, a->ring_force, load, bound);
+    near_vector("ring_moment", variant, b->ring_moment, a->ring_moment, load * arm, bound);
+    near_vector("outer_force", variant, b->outer_force, a->outer_force, load, bound);
+    near_vector("outer_moment", variant, b->outer_moment, a->outer_moment, load * LENGTH, bound);
+    near("elastic", variant, b->elastic, a->elastic, load * fmax(deepest, 1e-7), 3.0 * bound);
+    for (int k = 0; k < TRB_N_TORQUES; k++) near("torque", variant, b->torque[k], a->torque[k], load * arm, bound);
+    for (int k = 0; k < TRB_N_POWERS; k++) near("power", variant, b->power[k], a->power[k], load * speed, bound);
+  }
+}
+
+static void check_scene(const char *name, const trb_params *params, double speed)
+{
+  trb_model    *m = rig_model(params);
+  double        y[512];
+  trb_motion   *motion = rig_motion(rig_state(m, 4930.0, speed, y), speed);
+  trb_detail   *detail;
+  trb_dynamics *exact;
+  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &exact, NULL) == TRB_OK && trb_detail_create(m, &detail, NULL) == TRB_OK)) return;
+  for (int i = 0; i < 20; i++) {
+    double disturbed[512];
+    memcpy(disturbed, y, sizeof y);
+    rig_disturb(m, &seed, disturbed);
+    trb_detail_clear(m, detail);
+    trb_dynamics_pose(exact, 0.01, disturbed);
+    trb_dynamics_loads(exact, detail);
+    for (int v = 0; v < trb_n_kernel_variants; v++) {
+      trb_dynamics *other;
+      if (!trb_kernel_runs(v)) continue;
+      const char *variant = trb_kernel_variants[v].name;
+      if (!CHECK(trb_dynamics_create(m, motion, variant, &other, NULL) == TRB_OK)) continue;
+      trb_dynamics_pose(other, 0.01, disturbed);
+      trb_dynamics_loads(other, NULL);
+      compare(m, variant, exact, other, detail);
+      /* what is evaluated is the same, too */
+      trb_counters a = exact->work->counters, b = other->work->counters;
+      memset(&exact->work->counters, 0, sizeof a);
+      trb_dynamics_loads(exact, NULL);
+      a = exact->work->counters;
+      CHECK(memcmp(&a, &b, sizeof a) == 0);
+      trb_dynamics_free(other);
+    }
+  }
+  printf("%-12s %.2f of the bound\n", name, worst);
+  worst = 0.0;
+  trb_detail_free(detail);
+  trb_dynamics_free(exact);
+  trb_motion_free(motion);
+  trb_model_free(m);
+}
+
+static void test_choice(void)
+{
+  const trb_params p = rig_params();
+  trb_model       *m = rig_model(&p);
+  trb_workspace   *work;
+  trb_message      message;
+  int              fastest = 0;
+  for (int v = 0; v < trb_n_kernel_variants; v++)
+    if (trb_kernel_runs(v)) fastest = v;
+  CHECK(trb_n_kernel_variants >= 2 && trb_n_kernel_variants <= TRB_MAX_KERNEL_VARIANTS);
+  CHECK(strcmp(trb_kernel_variants[0].name, "scalar") == 0 && trb_kernel_runs(0) && trb_kernel_runs(1));
+  CHECK(!trb_kernel_runs(-1) && !trb_kernel_runs(trb_n_kernel_variants));
+  CHECK(trb_workspace_create(m, "", &work, &message) == TRB_OK && work->variant == fastest);
+  trb_workspace_free(work);
+  CHECK(trb_workspace_create(m, "mmx", &work, &message) == TRB_ERR_INPUT && work == NULL);
+  CHECK_SAYS(message.text, "instruction_set = 'mmx'");
+  trb_workspace_free(NULL);
+  trb_model_free(m);
+}
+
+int main(void)
+{
+  const double     speed = 100 * TRB_PI;
+  const trb_params paper = rig_params();
+  trb_params       p = paper;
+  test_choice();
+  check_scene("paper", &p, speed);
+  check_scene("standstill", &p, 0.0);
+  p.damping = 1, p.rolling_pressure_force = 1, p.rib_film = 1, p.quadrature = 1, p.n_slices = 16;
+  check_scene("standard", &p, speed);
+  p = paper, p.n_slices = 5, p.profile = 1, p.crown_radius = 30.0, p.starvation_factor = 0.2;
+  check_scene("starved", &p, speed);
+  p = paper, p.viscosity_law = 1, p.n_slices = 200;
+  check_scene("roelands", &p, speed);
+  p = paper, p.viscosity_law = 2, p.n_slices = 1;
+  check_scene("barus", &p, speed);
+  p = paper, p.lubrication = 3, p.traction = 1, p.thermal = 0;
+  check_scene("coulomb", &p, speed);
+  p = paper, p.lubrication = 1, p.rolling_resistance = 0, p.thermal = 0;
+  check_scene("boundary", &p, speed);
+  p = paper, p.lubrication = 0, p.rolling_resistance = 0, p.thermal = 0;
+  check_scene("dry", &p, speed);
+  p = paper, p.lubrication = 3, p.traction = 0, p.rolling_resistance = 0;
+  check_scene("frictionless", &p, speed);
+  p = paper, p.back_rib = 0, p.front_rib = 0, p.profile = 0;
+  check_scene("no ribs", &p, speed);
+  return check_report();
+}

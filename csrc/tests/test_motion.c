@@ -1,0 +1,191 @@
+/* Prescribed motion: Hermite curves, their rates, the exact turn of the shaft, the ring's pose. */
+#include "motion/ring_motion.h"
+
+#include <stdlib.h>
+
+#include "check.h"
+#include "rig.h"
+
+enum { KNOTS = 5 };
+
+static unsigned long long seed = 3;
+static double             table[KNOTS][TRB_MOTION_COLUMNS];
+static const double       knot_times[KNOTS] = {-0.2, 0.1, 0.15, 0.6, 1.4};
+
+static void fill(void)
+{
+  for (int i = 0; i < KNOTS; i++) {
+    table[i][0] = knot_times[i];
+    for (int c = 0; c < TRB_N_CHANNELS; c++) {
+      const double scale = c < 3 ? 1e-4 : c < 5 ? 0.03 : c == TRB_CHANNEL_shaft_speed ? 300.0 : 10.0;
+      table[i][1 + 2 * c] = scale * rig_random(&seed);
+      table[i][2 + 2 * c] = 5.0 * scale * rig_random(&seed);
+    }
+  }
+}
+
+/* Cubic Hermite polynomial in Newton's form with doubled knots. */
+static double hermite(int channel, double t)
+{
+  int k = 0;
+  while (k < KNOTS - 2 && t > knot_times[k + 1]) k++;
+  const double *a = table[k], *b = table[k + 1], h = b[0] - a[0], d = t - a[0];
+  const int     c = 1 + 2 * channel;
+  const double  rise = (b[c] - a[c]) / h, second = (rise - a[c + 1]) / h, third = (b[c + 1] - 2.0 * rise + a[c + 1]) / (h * h);
+  return a[c] + d * (a[c + 1] + d * (second + (d - h) * third));
+}
+
+static double value_of(const trb_drive *d, int channel)
+{
+  if (channel == TRB_CHANNEL_displacement_x) return d->displacement.x;
+  if (channel == TRB_CHANNEL_displacement_y) return d->displacement.y;
+  if (channel == TRB_CHANNEL_displacement_z) return d->displacement.z;
+  if (channel == TRB_CHANNEL_shaft_speed) return d->shaft_speed;
+  if (channel == TRB_CHANNEL_gravity_x) return d->gravity.x;
+  if (channel == TRB_CHANNEL_gravity_y) return d->gravity.y;
+  return d->gravity.z;
+}
+
+static void test_curves(const trb_model *m, const trb_motion *motion)
+{
+  static const int channels[] = {TRB_CHANNEL_displacement_x, TRB_CHANNEL_displacement_y, TRB_CHANNEL_displacement_z, TRB_CHANNEL_shaft_speed,
+                                 TRB_CHANNEL_gravity_x, TRB_CHANNEL_gravity_y, TRB_CHANNEL_gravity_z};
+  trb_drive        d, before, after;
+  for (int i = 0; i < 500; i++) {
+    const double t = 0.6 + 0.8 * rig_random(&seed), h = 1e-6;
+    trb_motion_at(motion, m, t, &d);
+    for (size_t c = 0; c < sizeof channels / sizeof channels[0]; c++) {
+      const double scale = channels[c] < 3 ? 1e-4 : 300.0;
+      CHECK_NEAR(value_of(&d, channels[c]), hermite(channels[c], t), 1e-13 * scale);
+    }
+    trb_motion_at(motion, m, t - h, &before);
+    trb_motion_at(motion, m, t + h, &after);
+    CHECK_NEAR(d.shaft_rate, (after.shaft_speed - before.shaft_speed) / (2 * h), 1e-3);
+    CHECK_NEAR(d.shaft_speed, (after.shaft_angle - before.shaft_angle) / (2 * h), 1e-5);
+    CHECK_NEAR(d.inner.velocity.y, (after.displacement.y - before.displacement.y) / (2 * h), 1e-9);
+    CHECK_NEAR(d.frame_angle, m->geometry.cage_speed_ratio * d.shaft_angle, 1e-14 * 300);
+    CHECK_NEAR(d.frame_speed, m->geometry.cage_speed_ratio * d.shaft_speed, 1e-12);
+    CHECK_NEAR(d.frame_rate, m->geometry.cage_speed_ratio * d.shaft_rate, 1e-9);
+    CHECK_NEAR(d.cosine * cos(d.frame_angle) + d.sine * sin(d.frame_angle), 1.0, 1e-15);
+  }
+}
+
+/* Turn of the shaft against Simpson's rule between knots, exact for cubics. */
+static void test_angle(const trb_model *m, const trb_motion *motion)
+{
+  trb_drive d, low, high, middle;
+  double    turned = 0.0, from = knot_times[0];
+  trb_motion_at(motion, m, from, &d);
+  CHECK_NEAR(d.shaft_angle, 0.0, 0.0);
+  for (int k = 1; k < KNOTS; k++)
+    for (int i = 1; i <= 64; i++) {
+      const double to = knot_times[k - 1] + (knot_times[k] - knot_times[k - 1]) * i / 64.0;
+      trb_motion_at(motion, m, from, &low);
+      trb_motion_at(motion, m, 0.5 * (from + to), &middle);
+      trb_motion_at(motion, m, to, &high);
+      /* at an inner knot the speed of both pieces is the same */
+      turned += (to - from) / 6.0 * (low.shaft_speed + 4.0 * middle.shaft_speed + high.shaft_speed);
+      CHECK_NEAR(high.shaft_angle, turned, 1e-11);
+      from = to;
+    }
+}
+
+/* Constant outside the knots, where the shaft turns on. */
+static void test_outside(const trb_model *m, const trb_motion *motion)
+{
+  trb_drive end, d;
+  trb_motion_at(motion, m, knot_times[KNOTS - 1], &end);
+  for (int side = 0; side < 2; side++) {
+    const double *row = table[side ? KNOTS - 1 : 0], t = side ? 9.0 : -7.0;
+    trb_motion_at(motion, m, t, &d);
+    CHECK_NEAR(d.displacement.x, row[1 + 2 * TRB_CHANNEL_displacement_x], 0.0);
+    CHECK_NEAR(d.shaft_speed, row[1 + 2 * TRB_CHANNEL_shaft_speed], 0.0);
+    CHECK_NEAR(d.shaft_rate, 0.0, 0.0);
+    CHECK_NEAR(trb_norm(d.inner.velocity), 0.0, 0.0);
+    CHECK_NEAR(trb_norm(d.ring_omega), 0.0, 0.0);
+    CHECK_NEAR(d.shaft_angle, (side ? end.shaft_angle : 0.0) + row[1 + 2 * TRB_CHANNEL_shaft_speed] * (t - row[0]), 1e-11);
+  }
+}
+
+/* Axis and angular velocity of a ring that is turned out of its place. */
+static void test_pose(const trb_model *m, const trb_motion *motion)
+{
+  trb_drive d, before, after;
+  for (int i = 0; i < 300; i++) {
+    const double t = 0.6 + 0.79 * rig_random(&seed), h = 1e-6;
+    trb_motion_at(motion, m, t, &d);
+    trb_motion_at(motion, m, t - h, &before);
+    trb_motion_at(motion, m, t + h, &after);
+    const trb_vec3 axis = d.inner.axis, moved = trb_scale(1.0 / (2 * h), trb_sub(after.inner.axis, before.inner.axis));
+    const trb_vec3 turned = trb_cross(d.ring_omega, axis), spin = trb_sub(d.inner.omega, d.ring_omega);
+    CHECK_NEAR(trb_norm(axis), 1.0, 1e-15);
+    CHECK_NEAR(trb_norm(trb_sub(moved, turned)), 0.0, 1e-9);
+    CHECK_NEAR(trb_dot(d.ring_omega, axis), 0.0, 1e-15);
+    CHECK_NEAR(trb_norm(trb_axpy(spin, -d.shaft_speed, axis)), 0.0, 1e-12);
+    /* the misalignment turns about the roller-centre plane; the apex follows */
+    CHECK_NEAR(trb_norm(trb_sub(trb_axpy(d.inner.apex, m->geometry.centre_plane, axis), d.inner.centre)), 0.0, 1e-15);
+    CHECK_NEAR(trb_norm(trb_sub(trb_sub(d.inner.centre, d.displacement), trb_v(0, 0, m->geometry.centre_plane))), 0.0, 1e-15);
+  }
+}
+
+/* Rotation vectors of any length, also about zero, where a series takes over. */
+static void test_rotation_vectors(const trb_model *m)
+{
+  trb_drive d = {0};
+  for (double size = 1e-12; size < 1.0; size *= 1.7) {
+    const double   rotation[2] = {size * 0.6, -size * 0.8}, rate[2] = {0.3, 0.7}, h = 1e-6 * (1.0 + size);
+    const double   low[2] = {rotation[0] - h * rate[0], rotation[1] - h * rate[1]}, high[2] = {rotation[0] + h * rate[0], rotation[1] + h * rate[1]};
+    const trb_vec3 none = trb_v(0, 0, 0);
+    trb_drive      before = {0}, after = {0};
+    trb_ring_place(m, none, none, rotation, rate, 0.0, &d);
+    trb_ring_place(m, none, none, low, rate, 0.0, &before);
+    trb_ring_place(m, none, none, high, rate, 0.0, &after);
+    /* Rodrigues: the axis of z turned by the vector */
+    CHECK_NEAR(d.inner.axis.x, sin(size) * -0.8, 1e-15);
+    CHECK_NEAR(d.inner.axis.y, -sin(size) * 0.6, 1e-15);
+    CHECK_NEAR(d.inner.axis.z, cos(size), 1e-15);
+    const trb_vec3 moved = trb_scale(0.5 / h, trb_sub(after.inner.axis, before.inner.axis));
+    CHECK_NEAR(trb_norm(trb_sub(moved, trb_cross(d.ring_omega, d.inner.axis))), 0.0, 2e-10);
+  }
+}
+
+static void refused(int n, const char *says)
+{
+  trb_motion *motion = NULL;
+  trb_message message = {TRB_OK, ""};
+  CHECK(trb_motion_create(&table[0][0], n, &motion, &message) == TRB_ERR_INPUT);
+  CHECK(motion == NULL);
+  CHECK_SAYS(message.text, says);
+  trb_motion_free(motion);
+}
+
+static void test_bad_tables(void)
+{
+  refused(0, "no knots");
+  const double keep = table[2][0], value = table[3][4];
+  table[2][0] = table[1][0];
+  refused(KNOTS, "time of knot 2 = 0.1 s: must be above the one before");
+  table[2][0] = NAN;
+  refused(KNOTS, "knot 2, column 0 is not finite");
+  table[2][0] = keep, table[3][4] = INFINITY;
+  refused(KNOTS, "knot 3, column 4 is not finite");
+  table[3][4] = value;
+}
+
+int main(void)
+{
+  const trb_params params = rig_params();
+  trb_model       *m = rig_model(&params);
+  trb_motion      *motion;
+  fill();
+  if (!CHECK(trb_motion_create(&table[0][0], KNOTS, &motion, NULL) == TRB_OK)) return check_report();
+  test_curves(m, motion);
+  test_angle(m, motion);
+  test_outside(m, motion);
+  test_pose(m, motion);
+  test_rotation_vectors(m);
+  test_bad_tables();
+  trb_motion_free(motion);
+  trb_model_free(m);
+  return check_report();
+}
