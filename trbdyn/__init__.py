@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from trbdyn.results import Result, load
     from trbdyn.run_options import RunOptions
     from trbdyn.scene import Scene, Start
-    from trbdyn.simulation import Simulation
+    from trbdyn.simulation import Simulation, resume
     from trbdyn.toml_case import load_case
 
 _MODULES = {
@@ -58,6 +58,7 @@ _NAMES = {
     "TrbError": "trbdyn.errors",
     "load": "trbdyn.results",
     "load_case": "trbdyn.toml_case",
+    "resume": "trbdyn.simulation",
 }
 
 __all__ = [
@@ -86,6 +87,7 @@ __all__ = [
     "observables",
     "plot",
     "pocket_shapes",
+    "resume",
     "study",
 ]
 

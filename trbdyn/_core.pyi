@@ -81,9 +81,10 @@ class Simulation:
         """motion (K, 1 + 18): knot time, then value and slope of each channel. settings: integrator ('bdf', 'erk')
         and those of setting_table()."""
     time: float
-    def run(self, times: Array, records: Array, max_steps: int) -> tuple[int, int]:
-        """Integrate until every time in `times` is passed, filling a row of `records` for each; stop after max_steps. Gives
-        (rows filled, steps taken). Raises CoreStepError; what was filled stays. Releases the GIL."""
+    def run(self, times: Array, records: Array, max_steps: int, stop_after: float = ...) -> tuple[int, int]:
+        """Integrate until every time in `times` is passed, filling a row of `records` for each; stop after max_steps, or at
+        the first step's end at or after `stop_after`, once the records up to there are filled. Gives (rows filled, steps
+        taken). Raises CoreStepError; what was filled stays. Releases the GIL."""
     def step(self) -> float:
         """One step of the integrator; gives the new time."""
     def state(self) -> Array: ...

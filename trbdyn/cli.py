@@ -39,6 +39,7 @@ _SIMULATION_OPTIONS: Final = (
     "max_order",
     "max_step",
     "first_step",
+    "checkpoint_every",
 )
 
 
@@ -96,9 +97,19 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
     run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
     run.add_argument("--save-every", type=float, metavar="S", help="time between saved records (s)")
+    run.add_argument(
+        "--checkpoint-every", type=float, metavar="S", help="bearing time between checkpoints (s), to resume from"
+    )
     run.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
     _add_set(run)
     run.set_defaults(command=_run)
+
+    resume = commands.add_parser("resume", parents=[common], help="go on with a run that was cut off")
+    resume.add_argument("file", metavar="FILE", help="its result file; the checkpoint lies beside it")
+    resume.add_argument("--instruction-set", metavar="NAME", help="kernel variant, in place of the one it began with")
+    resume.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
+    resume.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    resume.set_defaults(command=_resume)
 
     plot = commands.add_parser("plot", parents=[common], help="draw a result's pictures")
     plot.add_argument("file", metavar="FILE", help="a result file")
@@ -176,7 +187,7 @@ def _run(options: argparse.Namespace) -> int:
     scene, run = _load_case(options.case, options.changes)
     changes = {
         name: getattr(options, name)
-        for name in ("revolutions", "duration", "save_every", "accuracy")
+        for name in ("revolutions", "duration", "save_every", "accuracy", "checkpoint_every")
         if getattr(options, name) is not None
     }
     if "revolutions" in changes and "duration" not in changes:
@@ -186,6 +197,21 @@ def _run(options: argparse.Namespace) -> int:
     output = Path(options.output or f"{Path(options.case).stem}.h5")
     result = _simulate(scene, run.replace(**changes), output, quiet=options.quiet)
     return _finish(result, output, options.summary, quiet=options.quiet)
+
+
+def _resume(options: argparse.Namespace) -> int:
+    import warnings
+
+    from trbdyn.simulation import resume
+
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always", UserWarning)
+        try:
+            result = resume(options.file, instruction_set=options.instruction_set, progress=not options.quiet)
+        finally:
+            for note in notes:
+                print(f"trbdyn: {note.message}", file=sys.stderr)
+    return _finish(result, Path(options.file), options.summary, quiet=options.quiet)
 
 
 def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool) -> Result:

@@ -49,7 +49,7 @@ def _make(name: str, arguments: str, text: str) -> Law:
 
 _TABLE = {name: _make(name, arguments, text) for name, arguments, text in _core.law_table()}
 globals().update(_TABLE)
-__all__ = ["names", *_TABLE]  # noqa: PLE0604
+__all__ = ["names", *_TABLE]
 
 
 def names() -> tuple[str, ...]:

@@ -2,17 +2,25 @@
 
 Schema ``trbdyn-result``, version 1:
 
-- attributes of the root: ``schema``, ``schema_version``, ``trbdyn_version``, ``created``, ``segment``, ``finished``, ``success``,
-  ``message``, ``final_time``; as JSON ``stats``, ``counters``, ``geometry`` and ``meta`` (versions of the core and of SUNDIALS,
-  instruction set, settings), whose texts and numbers are attributes too
+- attributes of the root: ``schema``, ``schema_version``, ``trbdyn_version``, ``created``, ``run_id``, ``segment`` (its number),
+  ``first_record`` (place of its first record in the run); as JSON ``geometry`` and ``meta`` (versions of the core and of
+  SUNDIALS, instruction set, settings), whose texts and numbers are attributes too
 - ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
 - ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
   ``kind``, ``dims`` and ``index`` (its place in the record)
-- ``/final_state``: the state vector at ``final_time``, once the run has finished
+- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters`` and ``final_time``; empty until the run
+  has ended
+- ``/final_state``: the state vector at ``final_time``; empty until then
 
-A file is data: nothing in it is executed, and links or storage that lead out of the file are refused. It is written without
-SWMR, whose flags would block reopening after a kill: what was flushed last stays readable. A file is one segment (number
-``segment``) of a run, and readers see records only through `trbdyn.sources.FileSource`, so that several segments can be joined.
+A file is data: nothing in it is executed, and links or storage that lead out of the file are refused.
+
+It is written in HDF5's SWMR mode (single writer, multiple readers): every object is made first, under another name, and the file
+takes its place only then; from there on datasets only grow, in an order that leaves the file consistent at every instant. So
+readers can follow a run live, and a killed run leaves a file that can be read, whenever the kill comes. Such a file keeps the
+mark of a writer, which other programs refuse unless they open it in SWMR mode; `trbdyn.load` reads it as it is, and resuming
+the run takes the mark away (`trbdyn.hdf5_marks`). It is never opened for writing again: a run that is resumed writes a segment of
+its own, ``run.part1.h5``, ``run.part2.h5`` beside ``run.h5``, and `trbdyn.load` joins them by ``run_id`` and ``first_record``:
+where two hold a record, the later segment counts.
 """
 
 from __future__ import annotations
@@ -22,6 +30,7 @@ import json
 import os
 import shutil
 import time
+import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -37,6 +46,7 @@ from numpy.typing import ArrayLike, NDArray
 from trbdyn import fields as field_table
 from trbdyn.errors import FileError
 from trbdyn.fields import Field, Layout
+from trbdyn.hdf5_marks import take_lock
 
 Array = NDArray[np.float64]
 
@@ -55,7 +65,10 @@ FLUSH_BYTES = 8 << 20
 SPARE_BYTES = 1 << 20
 """Room for HDF5's own bookkeeping that is made sure of before a write."""
 
-JSON_ATTRIBUTES = ("stats", "counters", "geometry", "meta")
+JSON_ATTRIBUTES = ("geometry", "meta")
+
+LIBVER = ("v110", "v110")
+"""Format of the file: the oldest that knows SWMR."""
 
 
 @dataclass(slots=True)
@@ -113,6 +126,8 @@ def reason(error: BaseException) -> str:
         return "this is not an HDF5 file"
     if "unable to lock file" in text:
         return "the file is still open in another program"
+    if isinstance(error, OSError) and error.errno == errno.EBUSY:
+        return str(error.strerror)
     if "truncated file" in text:
         return "the file is cut short and cannot be read"
     if isinstance(error, OSError) and error.errno:
@@ -149,6 +164,12 @@ class ResultWriter:
         Derived geometry of the bearing, SI.
     compression : {"gzip", "lzf"}, optional
         Compression of the datasets; none by default.
+    run_id : str, optional
+        Name of the run, the same in all of its segments; a new one by default.
+    segment : int
+        Number of the segment.
+    first_record : int
+        Place of the segment's first record in the run.
 
     Raises
     ------
@@ -175,30 +196,52 @@ class ResultWriter:
         meta: Mapping[str, Any] | None = None,
         geometry: Mapping[str, float] | None = None,
         compression: str | None = None,
+        run_id: str | None = None,
+        segment: int = 0,
+        first_record: int = 0,
     ) -> None:
         self.path = Path(path)
+        self.run_id = run_id or uuid.uuid4().hex
         self.n_written = 0
         self._places = {name: (offset, tuple(shape)) for name, offset, shape in layout}
         self._fields = [f for f in field_table.select(fields, groups) if f.name in self._places]
         self._pending: list[Array] = []
         self._pending_bytes = 0
         self._last_flush = time.monotonic()
+        draft = self.path.with_name(f".{self.path.name}.new")
         with self._guard("cannot be written"):
-            self._file = h5py.File(self.path, "w")
-            self._write_header(scene.to_dict(), dict(meta or {}), dict(geometry or {}), compression)
-            self._file.flush()
+            if self.path.exists():
+                take_lock(self.path).close()
+            self._lock = take_lock(draft)
+            try:
+                self._file = h5py.File(draft, "w", libver=LIBVER)
+                head = {"run_id": self.run_id, "segment": segment, "first_record": first_record}
+                self._write_header(head, scene.to_dict(), dict(meta or {}), dict(geometry or {}), compression)
+                self._file.flush()
+                self._file.swmr_mode = True
+                os.replace(draft, self.path)
+            except BaseException:
+                self._lock.close()
+                draft.unlink(missing_ok=True)
+                raise
 
     def _write_header(
-        self, scene: dict[str, Any], meta: dict[str, Any], geometry: dict[str, float], compression: str | None
+        self,
+        place: dict[str, Any],
+        scene: dict[str, Any],
+        meta: dict[str, Any],
+        geometry: dict[str, float],
+        compression: str | None,
     ) -> None:
         from trbdyn import __version__
 
-        head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__}
-        head |= {"created": datetime.now(UTC).isoformat(), "segment": 0, "finished": False, "success": False}
-        head |= {"message": "", "stats": "{}", "counters": "{}", "geometry": _json(geometry), "meta": _json(meta)}
+        head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__} | place
+        head |= {"created": datetime.now(UTC).isoformat(), "geometry": _json(geometry), "meta": _json(meta)}
         head |= {name: value for name, value in meta.items() if isinstance(value, str | bool | int | float)}
         self._file.attrs.update(head)
         self._file.create_dataset("scene", data=_json(scene), dtype=h5py.string_dtype())
+        self._file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
+        self._file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
         group = self._file.create_group("fields")
         for index, entry in enumerate(self._fields):
             shape = self._places[entry.name][1]
@@ -261,11 +304,22 @@ class ResultWriter:
             self._file.flush()
         self._last_flush = time.monotonic()
 
+    def sync(self) -> None:
+        """Write what waits, and have the system put it on the disk.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        self.flush()
+        with self._guard("cannot be written"):
+            os.fsync(self._lock.fileno())
+
     def _reserve(self, size: int) -> None:
         """Make sure that the disk has room: HDF5 brings the process down when it runs out of it in the middle of a write."""
         if hasattr(os, "posix_fallocate"):
-            with self.path.open("r+b") as stream:
-                os.posix_fallocate(stream.fileno(), self._file.id.get_filesize(), size)
+            os.posix_fallocate(self._lock.fileno(), self._file.id.get_filesize(), size)
         elif shutil.disk_usage(self.path.parent).free < size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
@@ -313,14 +367,17 @@ class ResultWriter:
         self.flush()
         with self._guard("cannot be written"):
             self._reserve(SPARE_BYTES)
-            attributes = self._file.attrs
-            attributes["stats"], attributes["counters"] = _json(dict(stats)), _json(dict(counters))
-            attributes["success"], attributes["message"] = bool(success), str(message)
-            attributes["final_time"] = float(final_time)
             if final_state is not None:
-                self._file["final_state"] = np.asarray(final_state, dtype=float)
-            attributes["finished"] = True
+                self._put("final_state", np.asarray(final_state, dtype=float))
+            ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
+            ending |= {"stats": dict(stats), "counters": dict(counters)}
+            self._put("ending", np.frombuffer(_json(ending).encode(), dtype="u1"))
         self.close()
+
+    def _put(self, name: str, values: NDArray[Any]) -> None:
+        self._file[name].resize(values.size, axis=0)
+        self._file[name][:] = values
+        self._file.flush()
 
     def close(self) -> None:
         """Write what waits and close the file; an unfinished run stays marked as such."""
@@ -332,7 +389,8 @@ class ResultWriter:
             with self._guard("cannot be closed"):
                 used = self._file.id.get_filesize()
                 self._file.close()
-                os.truncate(self.path, used)
+                os.ftruncate(self._lock.fileno(), used)
+                self._lock.close()
 
     def __enter__(self) -> Self:
         return self

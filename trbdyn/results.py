@@ -14,7 +14,7 @@ from trbdyn.derived import Derived
 from trbdyn.errors import FileError, InputError
 from trbdyn.fields import Field, Layout
 from trbdyn.result_file import RunInfo
-from trbdyn.sources import FileSource, MemorySource, Source, WindowSource
+from trbdyn.sources import MemorySource, Source, WindowSource, open_run
 
 if TYPE_CHECKING:
     import xarray
@@ -299,7 +299,7 @@ def load(path: str | os.PathLike[str]) -> Result:
     Parameters
     ----------
     path : path-like
-        A file written by a run.
+        A file written by a run; segments that were added by resuming it are joined to it.
 
     Returns
     -------
@@ -312,5 +312,4 @@ def load(path: str | os.PathLike[str]) -> Result:
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
-    source = FileSource(path)
-    return Result(source, source.info)
+    return Result(*open_run(path))

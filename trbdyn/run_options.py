@@ -78,6 +78,10 @@ class RunOptions(Model):
         Largest order of BDF; above 2, lightly damped contact modes hold its steps down.
     max_step, first_step : float
         Largest and first step (s); 0: chosen by the integrator.
+    checkpoint_every : float, optional
+        Bearing time between checkpoints (s): the integrator starts anew at the first step's end at or after each multiple
+        of it, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
+        from them.
     """
 
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None
@@ -94,6 +98,7 @@ class RunOptions(Model):
     max_order: Annotated[Whole, unit("1", ge=1, le=5)] = 2
     max_step: Annotated[Number, unit("s", ge=0)] = 0.0
     first_step: Annotated[Number, unit("s", ge=0)] = 0.0
+    checkpoint_every: Annotated[Number, unit("s", ge=1e-9)] | None = None
 
     _root: ClassVar[str | None] = "run"
 

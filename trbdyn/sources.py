@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
 from trbdyn.fields import Field
+from trbdyn.hdf5_marks import open_to_read
 from trbdyn.result_file import JSON_ATTRIBUTES, SCHEMA, SCHEMA_VERSION, RunInfo, reason
 
 Array = NDArray[np.float64]
@@ -86,6 +88,12 @@ class FileSource:
         Number of whole records.
     info : RunInfo
         Everything besides the records.
+    run_id : str
+        Name of the run that it is a segment of.
+    first_record : int
+        Place of its first record in the run.
+    finished : bool
+        Whether its writer has ended it.
 
     Raises
     ------
@@ -98,6 +106,13 @@ class FileSource:
         self._cache: dict[str, Array] = {}
         with self._open() as file:
             self._created = _text(file.attrs["created"])
+            self.run_id = _text(file.attrs["run_id"])
+            self.first_record = int(file.attrs["first_record"])
+            if self.first_record < 0:
+                raise FileError(f"{self.path}: the file is damaged (first_record = {self.first_record})")
+            ending = _own(file, "ending", h5py.Dataset)[()]
+            self.finished = ending.size > 0
+            self._ending = json.loads(ending.astype("u1").tobytes()) if self.finished else {}
             self.fields, lengths = self._read_fields(file)
             self.n_records = min(lengths, default=0)
             self.info = self._read_info(file)
@@ -107,7 +122,7 @@ class FileSource:
         if not self.path.is_file():
             raise FileError(f"{self.path}: there is no such file")
         try:
-            with h5py.File(self.path, "r") as file:
+            with open_to_read(self.path) as file:
                 self._check_schema(file)
                 yield file
         except _READ_ERRORS as error:
@@ -139,27 +154,25 @@ class FileSource:
 
     def _read_info(self, file: h5py.File) -> RunInfo:
         attributes = file.attrs
-        stats, counters, geometry, meta = (json.loads(_text(attributes[key])) for key in JSON_ATTRIBUTES)
+        geometry, meta = (_table(json.loads(_text(attributes[key]))) for key in JSON_ATTRIBUTES)
+        stats, counters = (_table(self._ending.get(key, {})) for key in ("stats", "counters"))
         meta |= {key: _text(attributes[key]) for key in ("trbdyn_version", "created")}
         meta |= {key: int(attributes[key]) for key in ("schema_version", "segment")}
-        finished, message = bool(attributes["finished"]), _text(attributes["message"])
-        state = None
-        if "final_state" in file:
-            state = np.asarray(_own(file, "final_state", h5py.Dataset)[()], dtype=float)
-        final_time = float(attributes.get("final_time", np.nan))
-        if not finished:
+        message, final_time = str(self._ending.get("message", "")), float(self._ending.get("final_time", np.nan))
+        state = np.asarray(_own(file, "final_state", h5py.Dataset)[()], dtype=float)
+        if not self.finished:
             message = "the run was cut off before its end; the records up to the last write are here"
             if self.n_records and "time" in file["fields"]:
                 final_time = float(file["fields"]["time"][self.n_records - 1])
                 message = f"the run was cut off before its end; its records reach to t = {final_time:.6g} s"
         return RunInfo(
-            scene=json.loads(_text(_own(file, "scene", h5py.Dataset)[()])),
-            success=bool(attributes["success"]) and finished,
+            scene=_table(json.loads(_text(_own(file, "scene", h5py.Dataset)[()]))),
+            success=self._ending.get("success") is True,
             message=message,
             stats=stats,
             counters=counters,
             final_time=final_time,
-            final_state=state,
+            final_state=state if self.finished and state.size else None,
             geometry=geometry,
             meta=meta,
         )
@@ -180,6 +193,93 @@ class FileSource:
             values.flags.writeable = False
             self._cache[name] = values
         return self._cache[name]
+
+
+class JoinedSource:
+    """The segments of one run as a whole. Where two hold a record, the later segment counts.
+
+    Parameters
+    ----------
+    segments : sequence of FileSource
+        The segments, in order.
+
+    Attributes
+    ----------
+    missing : int
+        Records that no segment holds.
+    """
+
+    def __init__(self, segments: Sequence[FileSource]) -> None:
+        self.fields = segments[-1].fields
+        self.missing = 0
+        self._parts: list[tuple[FileSource, int]] = []
+        limit: int | None = None
+        for segment in reversed(segments):
+            held = segment.n_records
+            if limit is not None:
+                held = min(held, max(limit - segment.first_record, 0))
+                self.missing += max(limit - segment.first_record - held, 0)
+            self._parts.insert(0, (segment, held))
+            limit = segment.first_record if limit is None else min(limit, segment.first_record)
+        if any(segment.fields != self.fields for segment in segments):
+            raise FileError(f"{segments[-1].path}: holds other fields than the segments before it")
+        self.n_records = sum(held for _, held in self._parts)
+
+    def read(self, name: str) -> Array:
+        """All records of one field, time first."""
+        values = np.concatenate([segment.read(name)[:held] for segment, held in self._parts])
+        values.flags.writeable = False
+        return values
+
+
+def segment_paths(path: str | os.PathLike[str]) -> dict[int, Path]:
+    """Files of the later segments of a run that begins in a file: number and path, ascending; whether they belong to the same
+    run is not looked at.
+    """
+    first = Path(path)
+    pattern = re.compile(re.escape(first.stem) + r"\.part([1-9]\d{0,8})" + re.escape(first.suffix))
+    found: dict[int, Path] = {}
+    if first.parent.is_dir():
+        for entry in first.parent.iterdir():
+            if match := pattern.fullmatch(entry.name):
+                found[int(match.group(1))] = entry
+    return dict(sorted(found.items()))
+
+
+def open_run(path: str | os.PathLike[str]) -> tuple[Source, RunInfo]:
+    """Records and all else of a run, its segments joined.
+
+    Parameters
+    ----------
+    path : path-like
+        The run's first file, or one of its later segments, which is then read alone.
+
+    Raises
+    ------
+    FileError
+        If a segment is missing, damaged, of another kind or of a later version.
+    """
+    first = FileSource(path)
+    segments = [first]
+    for place in segment_paths(path).values():
+        try:
+            segment = FileSource(place)
+        except FileError as error:
+            raise FileError(f"{error}; the other segments can be loaded one by one, by their own names") from error
+        if segment.run_id == first.run_id:
+            segments.append(segment)
+    if len(segments) == 1:
+        return first, first.info
+    joined, info = JoinedSource(segments), segments[-1].info
+    if joined.missing:
+        info = replace(info, message=f"{info.message}; {joined.missing} records before the last segment are missing")
+    return joined, info
+
+
+def _table(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise ValueError("a table of named values is missing")
+    return value
 
 
 def _own(group: h5py.Group, name: str, kind: type) -> Any:

@@ -120,10 +120,11 @@ static PyObject *run(PyObject *object, PyObject *args)
   PyObject          *times_object;
   PyArrayObject     *records;
   long               max_steps, steps = 0;
+  double             stop_after = Py_HUGE_VAL;
   int                rows = 0;
   trb_status         status;
   trb_message        message = {TRB_OK, ""};
-  if (!PyArg_ParseTuple(args, "OO!l", &times_object, &PyArray_Type, &records, &max_steps)) return NULL;
+  if (!PyArg_ParseTuple(args, "OO!l|d", &times_object, &PyArray_Type, &records, &max_steps, &stop_after)) return NULL;
   PyArrayObject *times = trb_array(times_object, 1, "times");
   if (times == NULL) return NULL;
   const int length = trb_record_offset(model_of(self), TRB_N_FIELDS);
@@ -139,7 +140,8 @@ static PyObject *run(PyObject *object, PyObject *args)
   }
   Py_INCREF(records);
   Py_BEGIN_ALLOW_THREADS
-  status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), PyArray_DATA(records), max_steps, &rows, &steps, &message);
+  status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), stop_after, PyArray_DATA(records), max_steps,
+                              &rows, &steps, &message);
   Py_END_ALLOW_THREADS
   self->busy = 0;
   Py_DECREF(records);
@@ -364,7 +366,7 @@ static PyObject *get_time(PyObject *object, void *closure)
 }
 
 static PyMethodDef methods[] = {
-    {"run", run, METH_VARARGS, "run(times, records, max_steps): integrate, a record a time; gives (rows, steps)."},
+    {"run", run, METH_VARARGS, "run(times, records, max_steps, stop_after=inf): integrate, a record a time; gives (rows, steps)."},
     {"step", step, METH_NOARGS, "One step of the integrator; gives the new time."},
     {"state", state, METH_NOARGS, "A copy of the state."},
     {"set_state", set_state, METH_VARARGS, "set_state(time, state): restart the integrator there."},

@@ -170,8 +170,8 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
   return TRB_OK;
 }
 
-trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double *records, long max_steps, int *rows, long *steps,
-                              trb_message *message)
+trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
+                              long *steps, trb_message *message)
 {
   const size_t length = (size_t)trb_record_offset(s->model, TRB_N_FIELDS);
   *rows = 0;
@@ -185,7 +185,7 @@ trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, dou
       ++*rows;
       continue;
     }
-    if (*steps >= max_steps) return TRB_OK;
+    if (*steps >= max_steps || s->integrator.time >= stop_after) return TRB_OK;
     const trb_status status = trb_simulation_step(s, message);
     if (status != TRB_OK) return status;
     ++*steps;

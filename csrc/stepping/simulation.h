@@ -27,8 +27,9 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
 /* One step. On an error time and state are those of the last good step. */
 trb_status trb_simulation_step(trb_simulation *s, trb_message *message);
 
-/* Steps until every one of n increasing times is passed, at most max_steps; a record a time. Output times never change the steps. */
-trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double *records, long max_steps, int *rows, long *steps,
-                              trb_message *message);
+/* Steps until every one of n increasing times is passed, at most max_steps, none from the first step's end at or after stop_after on; a
+ * record a time. Output times never change the steps. */
+trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
+                              long *steps, trb_message *message);
 
 #endif

@@ -320,7 +320,7 @@ def damage(name: str) -> Callable[[h5py.File], None]:
         del file["scene"]
 
     def bad_json(file: h5py.File) -> None:
-        file.attrs["stats"] = "{oops"
+        file.attrs["meta"] = "{oops"
 
     def wrong_type(file: h5py.File) -> None:
         del file["fields/time"]

@@ -1,0 +1,300 @@
+"""Checkpoints: where a run can go on from, in a small file of its own.
+
+A run with a schedule (`checkpoint_every`) starts its integrator anew at the first step's end at or after each multiple of that
+time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps as one
+that was never interrupted: to the last bit, on the same build and instruction set.
+
+The file ``run.checkpoint`` beside ``run.h5``, format version 1: a line that names the format and its version; the SHA-256 of
+all that follows; a line of JSON; the state vector as little-endian float64. It is written under another name, synchronised to
+the disk and then renamed; the one before it stays as ``run.checkpoint.previous``. Nothing in it is executed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn import _core
+from trbdyn.errors import FileError, InputError
+
+Array = NDArray[np.float64]
+
+MAGIC = b"trbdyn-checkpoint"
+VERSION = 1
+
+LARGEST = 64 << 20
+"""Size of a file beyond which it is no checkpoint (bytes)."""
+
+
+def build_digest() -> str:
+    """SHA-256 of the compiled core: results are bit-identical only within one build."""
+    return hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest()
+
+
+def digest_of(values: ArrayLike) -> str:
+    """SHA-256 of an array's numbers."""
+    return hashlib.sha256(np.ascontiguousarray(values, dtype="<f8").tobytes()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """What a run needs to go on.
+
+    Attributes
+    ----------
+    run_id : str
+        Name of the run.
+    scene : dict
+        The scene as plain data.
+    model : str
+        Fingerprint of the scene.
+    options : dict
+        `RunOptions` as plain data.
+    instruction_set : str
+        Kernel variant that was in use.
+    build : str
+        Digest of the compiled core that was in use.
+    motion : str
+        Digest of the prescribed motion of the ring.
+    start, end : float
+        Where the run starts and ends (s).
+    time : float
+        Time of the state (s).
+    done : int
+        Records that the run had made by then.
+    statistics : dict of str to float
+        What the integrator had done by then.
+    counters : dict of str to int
+        Evaluations by then.
+    stepping_s : float
+        Wall time of stepping by then (s).
+    state : ndarray, shape (n_state,)
+        The state vector.
+    """
+
+    run_id: str
+    scene: dict[str, Any]
+    model: str
+    options: dict[str, Any]
+    instruction_set: str
+    build: str
+    motion: str
+    start: float
+    end: float
+    time: float
+    done: int
+    statistics: dict[str, float]
+    counters: dict[str, int]
+    stepping_s: float
+    state: Array = field(repr=False)
+
+    def to_bytes(self) -> bytes:
+        """The file's content."""
+        head = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "state"}
+        body = json.dumps(head, allow_nan=False).encode() + b"\n" + self.state.astype("<f8").tobytes()
+        return b"%s %d\n%s\n" % (MAGIC, VERSION, hashlib.sha256(body).hexdigest().encode()) + body
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> Self:
+        """The checkpoint that `to_bytes` wrote.
+
+        Raises
+        ------
+        ValueError
+            If the content is anything else; says why.
+        """
+        first, _, rest = data.partition(b"\n")
+        name, _, version = first.partition(b" ")
+        if name != MAGIC:
+            raise ValueError("this is not a checkpoint of trbdyn" if data else "the file is empty")
+        if version != b"%d" % VERSION:
+            raise ValueError(f"written with format version {version[:20].decode(errors='replace')}, not {VERSION}")
+        digest, _, body = rest.partition(b"\n")
+        if hashlib.sha256(body).hexdigest().encode() != digest:
+            raise ValueError("the file is damaged or cut short: its checksum does not fit")
+        head, newline, numbers = body.partition(b"\n")
+        if not newline or len(numbers) % 8:
+            raise ValueError("the state vector is cut short")
+        values = json.loads(head)
+        if not isinstance(values, dict):
+            raise ValueError("its table of values is missing")
+        values["state"] = np.frombuffer(numbers, dtype="<f8").astype(np.float64)
+        names = {entry.name for entry in fields(cls)}
+        if values.keys() != names:
+            raise ValueError(f"entries missing or unknown: {', '.join(sorted(values.keys() ^ names))}")
+        found = cls(**values)
+        found._check()
+        return found
+
+    def _check(self) -> None:
+        kinds: dict[str, type | tuple[type, ...]] = {
+            **dict.fromkeys(("run_id", "model", "instruction_set", "build", "motion"), str),
+            **dict.fromkeys(("scene", "options", "statistics", "counters"), dict),
+            **dict.fromkeys(("start", "end", "time", "stepping_s"), (int, float)),
+            "done": int,
+        }
+        for name, kind in kinds.items():
+            value = getattr(self, name)
+            if not isinstance(value, kind) or isinstance(value, bool):
+                raise ValueError(f"{name} is not what a checkpoint holds there")
+        for table in (self.statistics, self.counters):
+            if not all(isinstance(value, int | float) and math.isfinite(value) for value in table.values()):
+                raise ValueError("its counts are not numbers")
+        if not (math.isfinite(self.time) and math.isfinite(self.start) and self.start < self.end < math.inf):
+            raise ValueError("its times are not in order")
+        if self.done < 0 or not np.isfinite(self.state).all():
+            raise ValueError("its state is not finite")
+
+
+def next_time(after: float, every: float | None) -> float:
+    """The first multiple of a time that lies after another time (s); infinite without a schedule."""
+    if every is None:
+        return math.inf
+    count = math.floor(after / every)
+    while count * every <= after:
+        count += 1
+    return count * every
+
+
+def checkpoint_path(output: str | os.PathLike[str]) -> Path:
+    """The checkpoint file of a run that writes to a result file."""
+    return Path(output).with_suffix(".checkpoint")
+
+
+def previous_path(path: Path) -> Path:
+    """The checkpoint before it."""
+    return path.with_name(path.name + ".previous")
+
+
+def write(path: Path, checkpoint: Checkpoint) -> None:
+    """Write a checkpoint; the one that was there becomes the previous one. Killed at any instant, one of them stays whole.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written; those that were there stay.
+    """
+    draft = path.with_name(f".{path.name}.new")
+    try:
+        try:
+            with draft.open("wb") as stream:
+                stream.write(checkpoint.to_bytes())
+                stream.flush()
+                os.fsync(stream.fileno())
+        except OSError:
+            draft.unlink(missing_ok=True)
+            raise
+        if path.exists():
+            os.replace(path, previous_path(path))
+        os.replace(draft, path)
+        _sync_folder(path.parent)
+    except OSError as error:
+        raise FileError(f"{path}: the checkpoint cannot be written: {error.strerror or error}") from error
+
+
+def _sync_folder(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def remove(output: str | os.PathLike[str]) -> None:
+    """Remove the checkpoints of a run."""
+    path = checkpoint_path(output)
+    for place in (path, previous_path(path), path.with_name(f".{path.name}.new")):
+        place.unlink(missing_ok=True)
+
+
+def read(path: Path) -> Checkpoint:
+    """One checkpoint file.
+
+    Raises
+    ------
+    FileError
+        If it is missing, damaged or of another kind; says why.
+    """
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(LARGEST + 1)
+        if len(data) > LARGEST:
+            raise ValueError("this is not a checkpoint of trbdyn: the file is too large")
+        return Checkpoint.from_bytes(data)
+    except FileNotFoundError:
+        raise FileError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise FileError(f"{path}: the checkpoint cannot be read: {error.strerror or error}") from error
+    except (ValueError, TypeError, KeyError, RecursionError, OverflowError) as error:
+        raise FileError(f"{path}: the checkpoint cannot be used: {error}") from error
+
+
+def read_last_good(output: str | os.PathLike[str], tell: Callable[[str], None]) -> Checkpoint:
+    """The newest checkpoint of a run that can be used.
+
+    Parameters
+    ----------
+    output : path-like
+        The run's result file.
+    tell : callable
+        Is told, in a sentence, if that is not the newest one.
+
+    Raises
+    ------
+    FileError
+        If there is none; says why of each.
+    """
+    newest = checkpoint_path(output)
+    troubles: list[str] = []
+    for path in (newest, previous_path(newest)):
+        try:
+            found = read(path)
+        except FileError as error:
+            troubles.append(str(error))
+            continue
+        if troubles:
+            tell(f"{troubles[0]}; going on from the one before it, at t = {found.time:.9g} s")
+        return found
+    if not newest.exists() and not previous_path(newest).exists():
+        raise FileError(f"{newest}: there is no such file: the run had no schedule of checkpoints, or is complete")
+    raise FileError("; ".join(troubles))
+
+
+def check_instruction_set(checkpoint: Checkpoint, wanted: str | None, tell: Callable[[str], None]) -> str:
+    """The kernel variant to go on with.
+
+    Parameters
+    ----------
+    checkpoint : Checkpoint
+        Where to go on.
+    wanted : str, optional
+        What the user asks for; by default the one of the checkpoint.
+    tell : callable
+        Is told, in a sentence, if the results will not be bit-identical.
+
+    Raises
+    ------
+    InputError
+        If this machine cannot run it.
+    """
+    here = _core.instruction_sets()
+    was, names = checkpoint.instruction_set, ", ".join(here)
+    if wanted is not None and wanted not in here:
+        raise InputError.of("instruction_set", wanted, f"must be one of those that this machine runs: {names}")
+    if wanted is None and was not in here:
+        allowed = f"this machine runs {names} only; name one of them to go on with results that differ in rounding"
+        raise InputError.of("instruction_set", was, f"was in use when the checkpoint was written; {allowed}")
+    if wanted is not None and wanted != was:
+        tell(
+            f"going on with instruction set {wanted} instead of {was}: results are not bit-identical to the uninterrupted run"
+        )
+    return wanted or was
