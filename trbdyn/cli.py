@@ -130,9 +130,11 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("-o", "--output", metavar="FOLDER", default="demo", help="folder (default: demo)")
     demo.set_defaults(command=_demo)
 
+    from trbdyn.paper.command import add_paper_parser
     from trbdyn.study.command import add_sweep_parser
 
     add_sweep_parser(commands, [common])
+    add_paper_parser(commands, [common])
 
     cases = commands.add_parser("cases", parents=[common], help="list the cases that ship with the package")
     cases.set_defaults(command=_cases)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import time as clock
 import traceback
 from collections.abc import Callable, Mapping
@@ -101,8 +102,7 @@ def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
     try:
         result, report = _run(task, part, stopped)
     except KeyboardInterrupt:
-        if part is not None:
-            part.unlink(missing_ok=True)
+        _clear(part)
         raise
     file = ""
     if path is not None and part is not None and part.is_file():
@@ -136,12 +136,18 @@ def _run(task: Task, part: Path | None, stopped: Callable[[], bool]) -> tuple[Re
     except StepError as error:
         return None, Report("failed", str(error))
     except Exception as error:
-        if part is not None:
-            part.unlink(missing_ok=True)
+        _clear(part)
         return None, Report("failed", said(error))
     if not result.success:
         raise KeyboardInterrupt
     return result, Report("done", result.message)
+
+
+def _clear(part: Path | None) -> None:
+    """Remove an unfinished file, and checkpoints beside it."""
+    if part is not None:
+        for leftover in (part, *part.parent.glob(f"{glob.escape(part.stem)}.checkpoint*")):
+            leftover.unlink(missing_ok=True)
 
 
 def said(error: Exception) -> str:

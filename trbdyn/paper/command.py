@@ -1,0 +1,230 @@
+"""The subcommand ``paper``: run the paper's operating points, draw its figures, judge its statements."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import asdict, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from trbdyn.errors import FileError
+
+if TYPE_CHECKING:
+    from trbdyn.paper.numbers import Runs
+    from trbdyn.paper.points import Point
+    from trbdyn.paper.settle import Plan
+
+DONE, FAILED = 0, 1
+
+SCHEMA: Final = "trbdyn-paper-1"
+POINTS, FIGURES, NUMBERS, TABLE = "points", "figures", "paper.json", "statements.md"
+
+
+def add_paper_parser(commands: Any, parents: list[argparse.ArgumentParser] | None = None) -> argparse.ArgumentParser:
+    """Add the subcommand to a parser's commands."""
+    paper: argparse.ArgumentParser = commands.add_parser(
+        "paper",
+        parents=parents or [],
+        help="reproduce the paper's operating points, figures and statements",
+        description="Run the operating points of Sakaguchi and Harada 2006 until they settle, draw the paper's figures and judge "
+        "its statements. Without further options that is about three dozen points of 3 to 25 s of bearing time each.",
+    )
+    paper.add_argument("-o", "--output", metavar="FOLDER", default="paper", help="folder (default: paper)")
+    paper.add_argument(
+        "--points",
+        nargs="+",
+        default=[],
+        metavar="NAME",
+        help="points or conditions, with * and ?, for instance '3000rpm_*'; 'all': every speed with every load",
+    )
+    paper.add_argument(
+        "--starts", nargs="+", choices=("equal", "unequal", "whirl"), metavar="START", help="equal, unequal, whirl"
+    )
+    paper.add_argument(
+        "--seeds", nargs="+", type=int, default=[0], metavar="N", help="seeds of spacing and scatter (default: 0)"
+    )
+    paper.add_argument("--quick", action="store_true", help="a check of everything in a minute: nothing settles")
+    paper.add_argument("--min-time", type=float, metavar="S", help="shortest bearing time before the statistics")
+    paper.add_argument("--max-time", type=float, metavar="S", help="longest bearing time before the statistics")
+    paper.add_argument(
+        "--resume",
+        action="store_true",
+        help="skip points that are done, go on with those that had not settled or were stopped",
+    )
+    paper.add_argument("--report", action="store_true", help="run nothing: figures and table of what is there")
+    paper.add_argument("--workers", type=int, metavar="N", help="worker processes (default, and at most: the cores)")
+    paper.add_argument("--quiet", action="store_true", help="no progress bar, no table")
+    paper.set_defaults(command=run_paper)
+    return paper
+
+
+def run_paper(options: argparse.Namespace) -> int:
+    """Run the points and report; the exit code is 0 if none failed."""
+    from trbdyn.paper.points import STARTS, points
+
+    folder = Path(options.output)
+    plan = _plan(options)
+    chosen = points(options.points, options.starts or STARTS, options.seeds)
+    failures: dict[str, str] = {}
+    if not options.report:
+        failures = run_points(chosen, folder, plan, options.workers, resume=options.resume, progress=not options.quiet)
+    runs = read_runs(folder)
+    text = report(runs, folder, plan, failures)
+    if not options.quiet:
+        print(text)
+        print(f"points, figures, {NUMBERS} and {TABLE} in {folder}")
+    for name, message in failures.items():
+        print(f"trbdyn: {name}: {message.splitlines()[0]}", file=sys.stderr)
+    return FAILED if failures else DONE
+
+
+def _plan(options: argparse.Namespace) -> Plan:
+    from trbdyn.paper.settle import Plan
+
+    plan = Plan.quick() if options.quick else Plan()
+    if options.max_time is not None:
+        plan = replace(plan, most_time=options.max_time, most_time_combined=options.max_time)
+        plan = replace(
+            plan,
+            least_time=min(plan.least_time, options.max_time),
+            least_time_combined=min(plan.least_time_combined, options.max_time),
+        )
+    if options.min_time is not None:
+        plan = replace(plan, least_time=options.min_time, least_time_combined=options.min_time)
+    return plan
+
+
+def run_points(
+    chosen: Sequence[Point],
+    folder: Path,
+    plan: Plan,
+    workers: int | None = None,
+    *,
+    resume: bool = False,
+    progress: bool = False,
+    executor: Any = "processes",
+) -> dict[str, str]:
+    """Run points side by side, the longest first.
+
+    Parameters
+    ----------
+    chosen : sequence of Point
+        What to run.
+    folder : Path
+        Each point gets a file in its folder ``points``.
+    plan : Plan
+        How long, how fine.
+    workers : int, optional
+        Number of workers.
+    resume : bool
+        Skip points that are done, go on with those that are not; else everything is run anew.
+    progress : bool
+        Show a progress bar.
+    executor : object
+        As in `trbdyn.study.run`.
+
+    Returns
+    -------
+    dict of str to str
+        Points that failed, and why.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be made.
+    """
+    from tqdm import tqdm
+
+    from trbdyn.paper.settle import PointTask, is_done, run_point
+    from trbdyn.study.executors import execute
+    from trbdyn.study.work import said
+
+    place = folder / POINTS
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{place}: the folder cannot be made: {error.strerror}") from error
+    tasks = [PointTask(point, plan, str(place.absolute() / f"{point.name}.h5")) for point in chosen]
+    if resume:
+        tasks = [task for task in tasks if not is_done(task)]
+    else:
+        for task in tasks:
+            path = Path(task.path)
+            for old in (path, path.with_name(f".{path.stem}.progress.h5")):
+                old.unlink(missing_ok=True)
+    tasks.sort(key=lambda task: -plan.limits(task.point)[1] * task.point.condition.speed_rpm)
+    failures: dict[str, str] = {}
+    with (
+        tqdm(total=len(chosen), initial=len(chosen) - len(tasks), disable=not progress, unit="point") as bar,
+        closing(execute(run_point, tasks, executor, workers)) as outcomes,
+    ):
+        for outcome in outcomes:
+            name = outcome.task.point.name
+            message = said(outcome.error) if outcome.error is not None else outcome.value.message
+            if outcome.error is not None or outcome.value.status == "failed":
+                failures[name] = message
+            bar.set_postfix_str(f"{name}: {message.splitlines()[0][:40]}", refresh=False)
+            bar.update()
+    return failures
+
+
+def read_runs(folder: Path) -> Runs:
+    """Every point in a folder.
+
+    Raises
+    ------
+    FileError
+        If a file is damaged.
+    """
+    from trbdyn.paper.numbers import Runs, read_run
+
+    found = [read_run(path) for path in sorted((folder / POINTS).glob("[!.]*.h5"))]
+    return Runs([run for run in found if run is not None])
+
+
+def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str]) -> str:
+    """Write figures, ``paper.json`` and the table of statements; gives the table.
+
+    Raises
+    ------
+    FileError
+        If something cannot be written.
+    """
+    from trbdyn import __version__
+    from trbdyn import plotting as plot
+    from trbdyn.paper.figures import draw_all, movable_limits
+    from trbdyn.paper.statements import judge_all, markdown
+    from trbdyn.study.index import write_json
+    from trbdyn.summary import clean
+
+    pictures = plot.make_folder(folder / FIGURES)
+    limits = movable_limits(runs)
+    judged = judge_all(runs, limits)
+    draw_all(runs, pictures, limits)
+    table = markdown(judged)
+    movable = {
+        name: {"min": float(found.distance.min()), "max": float(found.distance.max())}
+        for name, found in (("equal", limits.equal), ("free", limits.free))
+    }
+    values = {
+        "schema": SCHEMA,
+        "trbdyn_version": __version__,
+        "written": datetime.now(UTC).isoformat(timespec="seconds"),
+        "plan": asdict(plan),
+        "assumptions": "trbdyn.cases.rig_30310, VG100 at 60 C, Effects.paper(), the same for all points",
+        "points": {run.point.name: run.numbers for run in runs.all},
+        "failed": failures,
+        "movable_over_cpr": movable,
+        "statements": [entry.to_dict() for entry in judged],
+    }
+    write_json(folder / NUMBERS, json.loads(json.dumps(clean(values))))
+    try:
+        (folder / TABLE).write_text(table, encoding="utf-8")
+    except OSError as error:
+        raise FileError(f"{folder / TABLE}: cannot be written: {error.strerror}") from error
+    return table
