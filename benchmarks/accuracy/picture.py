@@ -1,0 +1,112 @@
+"""The picture of work_precision.py: fronts of error and wall time, slices, statistics."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import common
+
+COLOURS = {"bdf1": "tab:brown", "bdf2": "tab:blue", "bdf3": "tab:purple", "bdf5": "tab:pink", "erk": "tab:orange"}
+TEXTS = {
+    "bdf1": "BDF 1",
+    "bdf2": "BDF to order 2",
+    "bdf3": "BDF to order 3",
+    "bdf5": "BDF to order 5",
+    "erk": "explicit",
+}
+PRESETS = {"fast": "^", "standard": "*", "reference": "s"}
+TITLES = {"smooth": "smooth rolling", "collision": "colliding cage", "combined": "combined load"}
+LEAST_ERROR = 1e-8
+REAL_TIME_MS = {"smooth": 20.0, "collision": 20.0, "combined": 30.0}
+"""Time of a revolution at real time: the shaft's period (ms)."""
+
+
+def _wall_error(rows: list[dict[str, Any]], key: str) -> tuple[list[float], list[float]]:
+    ordered = sorted(rows, key=lambda row: row["scale"])
+    return [1e3 * row["cpu_s_per_revolution"] for row in ordered], [
+        100.0 * max(row[key], LEAST_ERROR) for row in ordered
+    ]
+
+
+def _front(axes: Any, rows: list[dict[str, Any]], case: str) -> None:
+    here = [row for row in rows if row["case"] == case and row["sweep"] in ("tolerances", "presets")]
+    for method, colour in COLOURS.items():
+        points = [row for row in here if row["method"] == method and not row["preset"]]
+        if not points:
+            continue
+        wall, median = _wall_error(points, "error_cage_over_cpr")
+        axes.loglog(wall, median, "o-", color=colour, ms=4, lw=1.2, label=TEXTS[method])
+        if method == "bdf2":
+            axes.loglog(*_wall_error(points, "error_cage_over_cpr_worst"), ":", color=colour, lw=1, label="worst state")
+    for row in here:
+        if row["preset"]:
+            axes.loglog(
+                1e3 * row["cpu_s_per_revolution"],
+                100.0 * max(row["error_cage_over_cpr"], LEAST_ERROR),
+                PRESETS[row["preset"]],
+                color="black",
+                ms=13 if row["preset"] == "standard" else 8,
+                label=f"preset {row['preset']}",
+                zorder=5,
+            )
+    axes.axvline(REAL_TIME_MS[case], color="0.5", lw=0.8, ls="--")
+    axes.axhline(1.0, color="0.5", lw=0.8, ls="--")
+    axes.text(
+        REAL_TIME_MS[case], 0.98, " real time", transform=axes.get_xaxis_transform(), va="top", color="0.4", fontsize=8
+    )
+    axes.text(0.99, 1.1, "1 % of Cpr", transform=axes.get_yaxis_transform(), ha="right", color="0.4", fontsize=8)
+    axes.set_xlabel("time of a revolution on one core (ms)")
+    axes.set_ylabel("cage centre: error (% of Cpr)")
+    axes.set_title(TITLES[case])
+
+
+def _slices(axes: Any, rows: list[dict[str, Any]]) -> None:
+    for quadrature, mark in (("uniform", "s-"), ("gauss", "o-")):
+        points = sorted(
+            (row for row in rows if row["sweep"] == "slices" and row["quadrature"] == quadrature),
+            key=lambda row: row["n_slices"],
+        )
+        if not points:
+            continue
+        cost = [row["us_per_evaluation"] for row in points]
+        line = axes.loglog(
+            cost, [100.0 * row["error_cage_over_cpr"] for row in points], mark, ms=5, label=f"{quadrature}: cage centre"
+        )
+        axes.loglog(
+            cost,
+            [100.0 * row["error_displacement"] for row in points],
+            mark.replace("-", ":"),
+            ms=3,
+            color=line[0].get_color(),
+            label=f"{quadrature}: ring's place",
+        )
+        for row, x in zip(points, cost, strict=True):
+            axes.annotate(
+                str(row["n_slices"]),
+                (x, 100.0 * row["error_cage_over_cpr"]),
+                textcoords="offset points",
+                xytext=(4, 4),
+                fontsize=8,
+            )
+    axes.set_xlabel("one force evaluation (µs)")
+    axes.set_ylabel("error (% of Cpr, % of displacement)")
+    axes.set_title("nodes along a contact, colliding cage")
+    axes.legend(fontsize=8)
+
+
+def draw_front(report: common.Report) -> Any:
+    """Pareto fronts of each case, and the nodes along a contact."""
+    cases = [name for name in TITLES if any(row["case"] == name for row in report.results)]
+    plt = common.pyplot()
+    width = 1 if len(cases) == 1 else 2
+    figure, grid = plt.subplots(2, width, figsize=(6.0 * width, 9.0), squeeze=False, layout="constrained")
+    flat = grid.ravel()
+    for axes, case in zip(flat, cases, strict=False):
+        _front(axes, report.results, case)
+    flat[len(cases) - 1].legend(fontsize=8, loc="lower left")
+    _slices(flat[-1], report.results)
+    machine = common.processor()["name"]
+    figure.suptitle(
+        f"What accuracy costs: 30310, 12 rollers, complete paper physics, one core ({machine})", fontsize=11
+    )
+    return figure

@@ -1,0 +1,284 @@
+"""What each effect costs and does: every effect of the scene alone off, and alone on.
+
+    python benchmarks/effects.py [--quick] [--json FILE]
+
+Alone off: all effects but one, from states of a whirling cage in the middle of a collision: time, evaluations, and what the
+effect changes in cage speed, whirl and torque. Alone on: that effect alone beside normal contact at the raceways.
+
+``time_ratio_off`` is the time of one force evaluation (``derivative``) of the scene without the effect, in the core as it is,
+over that in a core that was compiled without the effect's code: 1 if an effect that is off costs nothing. Both cores are
+compiled in this run from the same copy of the sources with the same flags, loaded side by side and timed in turns.
+``evaluations_off`` sums the effect's counters over a run without it. Effects whose switch only chooses data or one of two
+loops (pocket faces, the rib's film, planar motion) have no code of their own to leave out, and no ratio.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import common
+import numpy as np
+from accuracy import measure, states
+from effect_cost.build import BuildError, Builds
+from effect_cost.catalogue import EFFECTS, EVERYTHING, NOTHING, Effect
+
+from trbdyn import Scene, Simulation, Start, TrbError
+from trbdyn.effects import Effects
+from trbdyn.flatten import diameter_deviation, face_rows, parameter_block
+from trbdyn.start import ring_motion
+
+COLUMNS = {
+    "effect": "text: name of the effect",
+    "text": "text: what it is",
+    "us_off": "us: one force evaluation with all effects but this",
+    "us_all": "us: one force evaluation with all effects",
+    "us_on": "us: one force evaluation with this effect alone",
+    "us_none": "us: one force evaluation with none (with what the effect needs)",
+    "share": "1: share of the effect in a force evaluation, 1 - us_off/us_all",
+    "time_ratio_off": "1: force evaluation without the effect over that of a core built without its code",
+    "evaluations_off": "1: sum of the effect's counters in the run without it",
+    "evaluations_on": "1: sum of the effect's counters in the run with all effects",
+    "cpu_s_per_revolution_off": "s: processor time a revolution with all effects but this",
+    "cpu_s_per_revolution_on": "s: processor time a revolution with this effect alone, rolling from equal spacing",
+    "steps_per_revolution_off": "1: steps a revolution with all effects but this",
+    "cage_speed_change": "1: what the effect adds to the turn of the cage over that of the shaft, over the value with all",
+    "whirl_radius_change": "1: change of the mean whirl radius over Cpr when the effect is added",
+    "torque_change": "1: what the effect adds to the shaft's mean torque, over the torque with all",
+    "whirl_radius_half_width": "1: half the 95 % confidence interval of the whirl radius without the effect",
+    "effects": "object: time_ratio_off, evaluations_off and share by effect",
+    "all": "object: figures with all effects",
+    "none": "object: figures without any",
+    "worst_time_ratio_off": "1: largest time_ratio_off",
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How much is run: states, turns of a run, rounds of paired timings, and the effects that a core is built without."""
+
+    states: int
+    revolutions: float
+    rounds: int
+    built: tuple[str, ...] | None
+    effects: tuple[str, ...] | None = None
+
+
+FULL = Plan(5, 10.0, 41, None)
+QUICK = Plan(2, 1.0, 15, None)
+SMOKE = Plan(1, 0.1, 3, (), ("thermal", "gravity"))
+
+
+def scene_with(case: states.Case, effects: Effects) -> Scene:
+    """The colliding case with other effects; starts from equal spacing unless a state is given."""
+    return case.scene.replace(effects=effects, start=Start.equal())
+
+
+def evaluation_us(scene: Scene, vector: Any, repeats: int) -> float:
+    """Time of one force evaluation (us)."""
+    sim = Simulation(scene)
+    return 1e6 * measure.least_per_call(lambda: sim.derivative(vector, 0.0), repeats=repeats)
+
+
+def change(before: measure.Mean, after: measure.Mean, *, relative: bool) -> float:
+    """What an effect adds; relative: over the value with it."""
+    added = after.value - before.value
+    return added / after.value if relative else added
+
+
+class Evaluation:
+    """One force evaluation of a scene in a given core."""
+
+    def __init__(self, core: ModuleType, scene: Scene, vector: Any, variant: str) -> None:
+        model = core.Model(parameter_block(scene), diameter_deviation(scene), face_rows(scene), variant)
+        motion, _ = ring_motion(model, scene)
+        self._core = core.Simulation(model, motion, 0.0, vector, {})
+        self._vector = vector
+
+    def __call__(self) -> Any:
+        return self._core.derivative(0.0, self._vector)
+
+
+def ratio_of(with_code: Evaluation, without: Evaluation, rounds: int) -> float:
+    """Ratio of the fastest loops, taken in turns."""
+    if not np.allclose(with_code(), without(), rtol=1e-9, atol=1e-9):
+        raise BuildError("the core without the code gives other forces: more than the effect was taken out")
+    fastest = [float("inf")] * 2
+    for _ in range(rounds):
+        for place, one in enumerate((with_code, without)):
+            fastest[place] = min(fastest[place], measure.least_per_call(one, repeats=3))
+    return fastest[0] / fastest[1]
+
+
+def ratios(case: states.Case, plan: Plan, report: common.Report) -> dict[str, float]:
+    """time_ratio_off of every effect that a core can be built without."""
+    out: dict[str, float] = {}
+    variant = Simulation(case.scene).instruction_set
+    wanted = [effect for effect in EFFECTS if effect.patch is not None]
+    wanted = [effect for effect in wanted if plan.built is None or effect.name in plan.built]
+    if not wanted:
+        return out
+    vector = case.states[0].vector
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            builds = Builds(Path(folder), variant)
+            whole = builds.whole()
+        except BuildError as error:
+            report.notes.append(f"No core was built, so there is no time_ratio_off: {error}.")
+            return out
+        for effect in wanted:
+            assert effect.patch is not None
+            scene = scene_with(case, EVERYTHING.replace(**effect.off))
+            try:
+                core = builds.without(effect.name, effect.patch)
+                with_code, without = (Evaluation(one, scene, vector, variant) for one in (whole, core))
+                out[effect.name] = ratio_of(with_code, without, plan.rounds)
+            except (BuildError, TrbError) as error:
+                report.notes.append(f"{effect.name}: no time_ratio_off: {error}.")
+    return out
+
+
+def one_effect(
+    effect: Effect, case: states.Case, plan: Plan, whole: dict[str, Any], all_counters: dict[str, int]
+) -> dict[str, Any]:
+    """Figures of an effect alone off and alone on."""
+    vector = case.states[0].vector
+    off = scene_with(case, EVERYTHING.replace(**effect.off))
+    row: dict[str, Any] = {"effect": effect.name, "text": effect.text}
+    row["us_off"] = evaluation_us(off, vector, plan.rounds)
+    row["us_all"] = evaluation_us(scene_with(case, EVERYTHING), vector, plan.rounds)
+    row["share"] = 1.0 - row["us_off"] / row["us_all"]
+    row["us_none"] = evaluation_us(scene_with(case, NOTHING.replace(**effect.needs)), vector, plan.rounds)
+    on = scene_with(case, NOTHING.replace(**{**effect.needs, **effect.on}))
+    row["us_on"] = evaluation_us(on, vector, plan.rounds)
+    cost = measure.wall_time(off, case.states, {}, plan.revolutions, repeats=2)
+    row["cpu_s_per_revolution_off"] = cost["cpu_s_per_revolution"]
+    row["steps_per_revolution_off"] = cost["steps_per_revolution"]
+    found = measure.long_run(case, {}, plan.revolutions, off)
+    row["cage_speed_change"] = change(found["cage_speed_ratio"], whole["cage_speed_ratio"], relative=True)
+    row["whirl_radius_change"] = change(found["whirl_radius"], whole["whirl_radius"], relative=False)
+    row["whirl_radius_half_width"] = found["whirl_radius"].half_width
+    row["torque_change"] = change(found["torque"], whole["torque"], relative=True)
+    counters = counters_of(off, case.states[0], plan)
+    row["evaluations_off"] = sum(counters[name] for name in effect.counters) if effect.counters else None
+    row["evaluations_on"] = sum(all_counters[name] for name in effect.counters) if effect.counters else None
+    try:
+        start = [Simulation(on).state]
+        row["cpu_s_per_revolution_on"] = measure.wall_time(on, start, {}, plan.revolutions, repeats=1)[
+            "cpu_s_per_revolution"
+        ]
+    except TrbError:
+        row["cpu_s_per_revolution_on"] = None
+    return row
+
+
+def counters_of(scene: Scene, state: Any, plan: Plan) -> dict[str, int]:
+    """Counters of a run from a state."""
+    sim = Simulation(states.at_state(scene, state))
+    return sim.run(revolutions=min(plan.revolutions, 2.0), save_every=1e-3).counters
+
+
+def run(plan: Plan, options: argparse.Namespace) -> common.Report:
+    """Everything."""
+    report = common.Report("effects", options, COLUMNS)
+    case = states.load_case("collision").first(plan.states)
+    everything = scene_with(case, EVERYTHING)
+    report.inputs = {
+        "scene": "30310 rig, 3000 rpm, 4930 N, 8 Gauss nodes a contact, standard accuracy",
+        "states": plan.states,
+        "revolutions": plan.revolutions,
+        "instruction_set": Simulation(everything).instruction_set,
+    }
+    whole = measure.long_run(case, {}, plan.revolutions, everything)
+    all_counters = counters_of(everything, case.states[0], plan)
+    cost = measure.wall_time(everything, case.states, {}, plan.revolutions, repeats=2)
+    vector = case.states[0].vector
+    report.summary["all"] = {
+        "us": evaluation_us(everything, vector, plan.rounds),
+        "cpu_s_per_revolution": cost["cpu_s_per_revolution"],
+        **{name: mean.value for name, mean in whole.items()},
+        "whirl_radius_half_width": whole["whirl_radius"].half_width,
+    }
+    report.summary["none"] = {"us": evaluation_us(scene_with(case, NOTHING), vector, plan.rounds)}
+    found = ratios(case, plan, report)
+    for effect in EFFECTS:
+        if plan.effects is None or effect.name in plan.effects:
+            row = one_effect(effect, case, plan, whole, all_counters)
+            report.add(**row, time_ratio_off=found.get(effect.name))
+    report.summary["effects"] = {
+        row["effect"]: {name: row[name] for name in ("time_ratio_off", "evaluations_off", "share")}
+        for row in report.results
+    }
+    report.summary["worst_time_ratio_off"] = max(found.values(), default=None)
+    report.notes.append(
+        "Changes are those when the effect is added to all others; a change of the whirl radius smaller than the confidence "
+        "interval is none. Times a revolution depend on the motion: an effect that calms it seems to cost nothing."
+    )
+    return report
+
+
+def show(report: common.Report) -> None:
+    """Print the tables."""
+    print(
+        f"all effects: {report.summary['all']['us']:.1f} us, none: {report.summary['none']['us']:.1f} us an evaluation\n"
+    )
+    cost = ("effect", "us_off", "share", "us_none", "us_on", "time_ratio_off", "evaluations_off", "evaluations_on")
+    print(common.table(report.results, cost))
+    walls = ("cpu_s_per_revolution_off", "cpu_s_per_revolution_on", "steps_per_revolution_off")
+    changes = ("cage_speed_change", "whirl_radius_change", "whirl_radius_half_width", "torque_change")
+    print("\n" + common.table(report.results, ("effect", *walls, *changes)))
+
+
+def draw(report: common.Report) -> Any:
+    """Cost of each effect, and the ratio where it is off."""
+    plt = common.pyplot()
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14.0, 5.5), sharey=True, layout="constrained")
+    names = [row["effect"] for row in report.results]
+    places = np.arange(len(names))
+    left.barh(
+        places + 0.2, [row["us_all"] - row["us_off"] for row in report.results], 0.38, label="of all, when left out"
+    )
+    left.barh(places - 0.2, [row["us_on"] - row["us_none"] for row in report.results], 0.38, label="alone, when added")
+    left.set_yticks(places, names)
+    left.invert_yaxis()
+    left.set_xlabel(f"µs of a force evaluation (all: {report.summary['all']['us']:.1f} µs)")
+    left.set_title("cost of an effect")
+    left.axvline(0.0, color="0.3", lw=0.8)
+    left.legend(fontsize=8)
+    known = [(i, row["time_ratio_off"]) for i, row in enumerate(report.results) if row["time_ratio_off"]]
+    middle.plot([value for _, value in known], [i for i, _ in known], "o")
+    middle.axvline(1.0, color="0.3", lw=0.8)
+    middle.set_xlim(0.9, max([1.1, *(value + 0.02 for _, value in known)]))
+    middle.set_xlabel("time when off / time of a core built without its code")
+    middle.set_title("an effect that is off")
+    values = [100.0 * (row["torque_change"] if row["torque_change"] is not None else np.nan) for row in report.results]
+    right.barh(places, values, 0.6, color="tab:green")
+    right.axvline(0.0, color="0.3", lw=0.8)
+    right.set_xlabel("what it adds to the torque (% of all)")
+    right.set_title("what it does to the shaft's torque")
+    for axes in (left, middle, right):
+        axes.grid(axis="x", alpha=0.3)
+    return figure
+
+
+def main(arguments: Sequence[str] | None = None) -> common.Report:
+    parser = common.parser(__doc__)
+    parser.add_argument(
+        "--smoke", action="store_true", help="the least that goes through everything; seconds, no build"
+    )
+    options = parser.parse_args(arguments)
+    report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
+    show(report)
+    if not options.no_picture:
+        common.save_picture(draw(report), "effects")
+    report.finish()
+    return report
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,77 @@
+"""The benchmark of effects runs and writes what it promises; what is off is not evaluated; code can still be taken out."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCHMARKS = ROOT / "benchmarks"
+
+
+@pytest.fixture(scope="module")
+def effects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    path = tmp_path_factory.mktemp("effects") / "effects.json"
+    command = [sys.executable, str(BENCHMARKS / "effects.py"), "--smoke", "--no-picture", "--json", str(path)]
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def test_every_entry_is_described(effects: dict[str, Any]) -> None:
+    assert effects["schema"] == "trbdyn-benchmark-1"
+    for row in [*effects["results"], effects["summary"]]:
+        assert set(row) <= set(effects["columns"])
+
+
+def test_effects_have_their_figures(effects: dict[str, Any]) -> None:
+    found = effects["summary"]["effects"]
+    assert set(found) == {"thermal", "gravity"}
+    for figures in found.values():
+        assert set(figures) == {"time_ratio_off", "evaluations_off", "share"}
+
+
+def test_what_is_off_is_not_evaluated(effects: dict[str, Any]) -> None:
+    for row in effects["results"]:
+        assert row["evaluations_off"] == 0
+        assert row["evaluations_on"] > 0
+
+
+@pytest.fixture
+def catalogue(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    from effect_cost import build, catalogue
+
+    return build, catalogue
+
+
+def test_counters_of_all_effects_that_are_off_stay_at_zero(catalogue: Any) -> None:
+    from trbdyn import Simulation, cases
+
+    _, effects = catalogue
+    for effect in effects.EFFECTS:
+        scene = cases.scene_30310(effects=effects.EVERYTHING.replace(**effect.off))
+        sim = Simulation(scene)
+        for _ in range(3):
+            sim.step()
+        counters = sim.counters
+        assert [counters[name] for name in effect.counters] == [0] * len(effect.counters), effect.name
+
+
+def test_code_of_each_effect_is_still_where_it_is_taken_out(catalogue: Any, tmp_path: Path) -> None:
+    build, effects = catalogue
+    for place, effect in enumerate(effects.EFFECTS):
+        if effect.patch is None:
+            continue
+        sources = tmp_path / str(place)
+        shutil.copytree(ROOT / "csrc", sources)
+        build.apply(effect.patch, sources)
