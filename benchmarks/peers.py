@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 from numpy_model import Jacobian, NumpyModel, floor, solvers
 
-from trbdyn import RunOptions, Scene, Simulation, Start
+from trbdyn import Effects, RunOptions, Scene, Simulation, Start
 from trbdyn.cases import scene_30310
 from trbdyn.run_options import ACCURACY, Tolerances
 
@@ -132,7 +132,10 @@ class Bench:
     """Scene, windows, and the two models."""
 
     def __init__(self, options: argparse.Namespace) -> None:
-        self.scene: Scene = scene_30310(SPEED_RPM, AXIAL_LOAD, start=Start.whirl(0.9))
+        effects = Effects.paper()
+        if options.gauss is not None:
+            effects = effects.replace(quadrature="gauss", n_slices=options.gauss)
+        self.scene: Scene = scene_30310(SPEED_RPM, AXIAL_LOAD, start=Start.whirl(0.9), effects=effects)
         self.play = self.scene.bearing.cage.play_radial
         self.turns = LENGTH * SPEED_RPM / 60.0
         self.repeats = 1 if options.quick else 3
@@ -458,7 +461,11 @@ def draw(rows: list[dict[str, Any]], summary: dict[str, Any]) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     """Run the benchmark."""
-    options = common.parser(__doc__).parse_args(arguments)
+    parser = common.parser(__doc__)
+    parser.add_argument(
+        "--gauss", type=int, metavar="N", help="N Gauss nodes along a contact in place of uniform slices, for all"
+    )
+    options = parser.parse_args(arguments)
     report = common.Report("peers", options, COLUMNS)
     bench = Bench(options)
     difference = bench.check()
@@ -511,6 +518,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     }
     report.inputs = {
         "scene": f"30310, {SPEED_RPM:g} rpm, {AXIAL_LOAD:g} N, effects of the paper, cage whirling at 0.9 Cpr",
+        "nodes": f"{bench.scene.effects.n_slices} {bench.scene.effects.quadrature}",
         "windows": [float(window.times[0]) for window in bench.windows],
         "window_s": LENGTH,
         "standard_tolerances": ACCURACY["standard"].model_dump(),
