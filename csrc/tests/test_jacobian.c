@@ -66,7 +66,6 @@ static void compare(const trb_model *m, double tolerance)
       if (body_of(m, i) != body_of(m, c) && body_of(m, i) < m->n_rollers && body_of(m, c) < m->n_rollers) CHECK(dense[i][c] == 0.0);
     }
     CHECK_NEAR(off, 0.0, tolerance * largest + 1e-9);
-    if (getenv("SHOW") != NULL) printf("row %d (%d): %.3g of %.3g: %.2g\n", i, i % TRB_NR, off, largest, off / largest);
   }
 }
 

@@ -1,0 +1,134 @@
+/* A simulation: what it refuses, that output times change nothing, that a failed step leaves the last good state. */
+#include "stepping/simulation.h"
+
+#include <stdlib.h>
+
+#include "check.h"
+#include "rig.h"
+
+static trb_model   *m;
+static trb_motion  *motion;
+static double       start[512];
+static trb_message  message;
+
+static trb_status create(const char *kind, const char *variant, const trb_settings *settings, double time, const double *state, trb_simulation **s)
+{
+  message = (trb_message){TRB_OK, ""};
+  const trb_status status = trb_simulation_create(m, motion, kind, variant, settings, time, state, s, &message);
+  CHECK((status == TRB_OK) == (*s != NULL));
+  return status;
+}
+
+static void refused(const char *kind, const char *variant, const trb_settings *settings, double time, const double *state, trb_status expected,
+                    const char *says)
+{
+  trb_simulation *s;
+  CHECK(create(kind, variant, settings, time, state, &s) == expected);
+  CHECK_SAYS(message.text, says);
+}
+
+static void test_bad_input(void)
+{
+  trb_settings settings = rig_settings();
+  double       state[512];
+  for (int i = 0; i < TRB_N_SETTINGS; i++) {
+    const trb_setting_info *info = &trb_setting_table[i];
+    const double            wrong[] = {NAN, info->lower - 1e-20 - fabs(info->lower), 1.01 * info->upper + 1.0};
+    CHECK(info->standard >= info->lower && info->standard <= info->upper);
+    for (int k = 0; k < 3; k++) {
+      settings = rig_settings();
+      ((double *)&settings)[i] = wrong[k];
+      refused("bdf", "", &settings, 0.0, start, TRB_ERR_INPUT, info->name);
+    }
+  }
+  settings = rig_settings();
+  refused("euler", "", &settings, 0.0, start, TRB_ERR_INPUT, "integrator = 'euler': must be 'bdf' or 'erk'");
+  refused("bdf", "sse", &settings, 0.0, start, TRB_ERR_INPUT, "instruction_set = 'sse'");
+  refused("bdf", "", &settings, NAN, start, TRB_ERR_STATE, "time");
+  for (int i = 0; i < trb_state_size(m); i += 13) {
+    memcpy(state, start, sizeof state);
+    state[i] = NAN;
+    refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "must be finite");
+  }
+  memcpy(state, start, sizeof state);
+  state[trb_state_roller(4) + TRB_ROLLER_v_t] = INFINITY;
+  refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "roller 4, v_t (tangential velocity");
+  memcpy(state, start, sizeof state);
+  state[trb_state_cage(m) + TRB_CAGE_z] = NAN;
+  refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "cage, z (axial position");
+  memcpy(state, start, sizeof state);
+  state[trb_state_roller(2) + TRB_ROLLER_r] = -1.0;
+  refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "roller 2: r = -1 m");
+  memcpy(state, start, sizeof state);
+  state[trb_state_cage(m) + TRB_CAGE_skew] = 1.6;
+  refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "cage: skew = 1.6 rad");
+}
+
+/* The same steps whether a record is wanted at every microsecond or at the end alone; two integrators agree. */
+static void test_outputs(const char *kind, double *end)
+{
+  const trb_settings settings = rig_settings();
+  const int          length = trb_record_offset(m, TRB_N_FIELDS), n = trb_state_size(m);
+  enum { TIMES = 101 };
+  double         *records = calloc((size_t)length * TIMES, sizeof *records), times[TIMES], last = 1e-4;
+  trb_simulation *often, *once;
+  int             rows;
+  long            steps, steps_once;
+  if (!CHECK(create(kind, "scalar", &settings, 0.0, start, &often) == TRB_OK && create(kind, "scalar", &settings, 0.0, start, &once) == TRB_OK)) return;
+  for (int i = 0; i < TIMES; i++) times[i] = 1e-6 * i;
+  times[TIMES - 1] = last;
+  CHECK(trb_simulation_run(often, times, TIMES, INFINITY, records, 1000000, &rows, &steps, &message) == TRB_OK && rows == TIMES);
+  for (int i = 0; i < TIMES; i++) CHECK(records[(size_t)i * (size_t)length + (size_t)trb_record_offset(m, TRB_FIELD_AT_time)] == times[i]);
+  CHECK(trb_simulation_run(once, &last, 1, INFINITY, records, 1000000, &rows, &steps_once, &message) == TRB_OK && rows == 1);
+  CHECK(steps == steps_once && often->integrator.time == once->integrator.time);
+  CHECK(memcmp(often->integrator.y, once->integrator.y, (size_t)n * sizeof(double)) == 0);
+  CHECK(trb_simulation_run(once, times, 1, INFINITY, records, 10, &rows, &steps, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "lies before the last step");
+  CHECK(trb_simulation_run(once, (double[]){1.0}, 1, INFINITY, records, 3, &rows, &steps, &message) == TRB_OK && rows == 0 && steps == 3);
+  memcpy(end, often->integrator.y, (size_t)n * sizeof(double));
+  trb_simulation_free(often);
+  trb_simulation_free(once);
+  free(records);
+}
+
+/* A smallest step that cannot be kept: an error that names time and body, and the state before. */
+static void test_failed_step(void)
+{
+  trb_settings    settings = rig_settings();
+  trb_simulation *s;
+  double          state[512], before[512];
+  memcpy(state, start, sizeof state);
+  settings.smallest_step = 1e-6, settings.max_step = 1e-3, settings.rtol = 1e-12, settings.atol_velocity = 1e-14, settings.atol_spin = 1e-12;
+  settings.atol_position = 1e-16, settings.atol_angle = 1e-14;
+  state[trb_state_roller(3) + TRB_ROLLER_v_r] = 5.0;
+  if (!CHECK(create("bdf", "", &settings, 0.25, state, &s) == TRB_OK)) return;
+  memcpy(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(m));
+  CHECK(trb_simulation_step(s, &message) == TRB_ERR_STEP);
+  CHECK_SAYS(message.text, "at t = 0.25 s");
+  CHECK_SAYS(message.text, "largest error:");
+  CHECK(s->integrator.time == 0.25);
+  CHECK(memcmp(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(m)) == 0);
+  /* a state that is refused changes nothing either */
+  state[5] = NAN;
+  CHECK(trb_simulation_set_state(s, 0.5, state, &message) == TRB_ERR_STATE);
+  CHECK(s->integrator.time == 0.25 && memcmp(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(m)) == 0);
+  CHECK(trb_simulation_set_state(s, 0.5, start, &message) == TRB_OK && s->integrator.time == 0.5);
+  trb_simulation_free(s);
+  trb_simulation_free(NULL);
+}
+
+int main(void)
+{
+  const trb_params p = rig_params();
+  const double     speed = 100 * TRB_PI;
+  double           bdf[512], erk[512];
+  m = rig_model(&p);
+  motion = rig_motion(rig_state(m, 4930.0, speed, start), speed);
+  test_bad_input();
+  test_outputs("bdf", bdf);
+  test_outputs("erk", erk);
+  test_failed_step();
+  trb_motion_free(motion);
+  trb_model_free(m);
+  return check_report();
+}
