@@ -162,11 +162,18 @@ def _pocket(window: Result) -> dict[str, Any]:
     }
 
 
+def _loaded_mean(values: Any, load: Any) -> float:
+    """Mean weighted by load: a film that carries nothing is as thick as its law likes."""
+    total = float(load.sum())
+    return float((values * load).sum() / total) if total > 0.0 else 0.0
+
+
 def _contacts(window: Result) -> dict[str, Any]:
     out: dict[str, Any] = {f"{side}_load_mean": window[f"{side}_load"].mean() for side in ("outer", "inner", "rib")}
     out |= {f"{side}_pressure_max": window[f"{side}_pressure"].max() for side in ("outer", "inner", "rib")}
     return out | {
-        f"film_parameter_{side}": window[f"{side}_film_parameter"].mean() for side in ("outer", "inner", "rib")
+        f"film_parameter_{side}": _loaded_mean(window[f"{side}_film_parameter"], window[f"{side}_load"])
+        for side in ("outer", "inner", "rib")
     }
 
 
