@@ -108,7 +108,7 @@ class Simulation:
         settings = {name: value for name, value in self.options.settings().items() if value != 0.0}
         try:
             return _core.Simulation(self._model, self._motion, time, vector, settings)
-        except _core.CoreInputError as error:
+        except ValueError as error:
             raise InputError.of("state", "given", str(error)) from None
 
     def _begin(self, time: float, vector: Array) -> None:

@@ -1,0 +1,313 @@
+"""The schedule, the checkpoint file, and what is made of damaged ones."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import _core, checkpoint
+from trbdyn.cases import scene_30310
+from trbdyn.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
+from trbdyn.errors import FileError, InputError
+
+EVERY = 1.7e-3
+
+
+def scene() -> trb.Scene:
+    return scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+
+
+class Cut(Exception):
+    """Ends a run from within, as a bug in a user's callback would."""
+
+
+def cut_after(time: float) -> Callable[[trb.Simulation], None]:
+    def callback(sim: trb.Simulation) -> None:
+        if sim.time > time:
+            raise Cut
+
+    return callback
+
+
+def run(output: Path | None = None, **options: Any) -> trb.Result:
+    chosen: dict[str, Any] = {"duration": 0.02, "checkpoint_every": EVERY, "save_every": 2e-5} | options
+    return trb.Simulation(scene()).run(output=output, **chosen)
+
+
+@pytest.fixture(scope="module")
+def reference() -> trb.Result:
+    return run()
+
+
+@pytest.fixture
+def broken(tmp_path: Path) -> Path:
+    """A run that an exception has ended half way, with its checkpoints."""
+    path = tmp_path / "run.h5"
+    with pytest.raises(Cut):
+        run(path, callback=cut_after(0.012))
+    return path
+
+
+def same(result: trb.Result, reference: trb.Result) -> None:
+    assert result.success, result.message
+    assert reference.final_state is not None
+    np.testing.assert_array_equal(result.final_state, reference.final_state)
+    for name in ("time", "cage_position", "roller_position", "work_shaft"):
+        np.testing.assert_array_equal(result[name], reference[name])
+
+
+@pytest.mark.parametrize("save_every", [7e-6, 3.3e-5, 1e-3, 1.0])
+def test_output_times_change_no_bit(reference: trb.Result, save_every: float) -> None:
+    other = run(save_every=save_every)
+    np.testing.assert_array_equal(other.final_state, reference.final_state)
+    assert other.stats["steps"] == reference.stats["steps"]
+    assert other.stats["restarts"] == reference.stats["restarts"] == 1 + int(0.02 / EVERY)
+
+
+@pytest.mark.parametrize("integrator", ["bdf", "erk"])
+def test_runs_in_pieces_follow_one_schedule(integrator: str, tmp_path: Path) -> None:
+    """Progress, callbacks, files and the borders between runs change nothing."""
+    whole = trb.Simulation(scene(), integrator=integrator, checkpoint_every=EVERY)
+    whole.run(duration=0.008, save_every=1e-3)
+    pieces = trb.Simulation(scene(), integrator=integrator, checkpoint_every=EVERY)
+    pieces.run(duration=EVERY, save_every=1e-5, output=tmp_path / "run.h5")
+    pieces.run(duration=0.003, callback=lambda sim: None)
+    pieces.run(duration=0.008 - 0.003 - EVERY, progress=True)
+    np.testing.assert_array_equal(pieces.state.vector, whole.state.vector)
+    assert pieces.statistics == whole.statistics
+    assert pieces.counters == whole.counters
+
+
+def test_a_schedule_is_a_part_of_the_run(reference: trb.Result) -> None:
+    """Without it, or with another one, steps differ, and so does what is chaotic; what is not agrees."""
+    other = run(checkpoint_every=None)
+    assert other.stats["restarts"] == 1
+    assert (other.final_state != reference.final_state).any()
+    np.testing.assert_allclose(other.whirl_radius[-1], reference.whirl_radius[-1], rtol=0.02)
+
+
+def test_times_of_the_schedule() -> None:
+    assert next_time(0.0, None) == math.inf
+    assert next_time(0.0, 0.1) == 0.1
+    assert next_time(0.1, 0.1) == 0.2
+    assert next_time(-0.25, 0.1) == pytest.approx(-0.2)
+    for every in (1e-9, 1e-3, 1 / 3, 0.7):
+        at = 0.0
+        for _ in range(1000):
+            later = next_time(at, every)
+            assert at < later <= at + every * (1 + 1e-9)
+            at = later
+
+
+def test_every_run_that_ended_early_goes_on(broken: Path, reference: trb.Result) -> None:
+    assert "Cut" in trb.load(broken).message
+    result = trb.resume(broken)
+    same(result, reference)
+    assert result.stats["steps"] == reference.stats["steps"]
+    assert [path.name for path in sorted(broken.parent.iterdir())] == ["run.h5", "run.part1.h5"]
+    same(trb.resume(broken), reference)
+
+
+def test_a_run_resumed_and_broken_again(broken: Path, reference: trb.Result) -> None:
+    for later in (0.013, 0.016):
+        with pytest.raises(Cut):
+            trb.resume(broken, callback=cut_after(later))
+    same(trb.resume(broken), reference)
+    assert len(list(broken.parent.glob("run.part*.h5"))) == 3
+
+
+def test_a_new_run_takes_the_place_of_an_old_one(broken: Path, reference: trb.Result) -> None:
+    trb.resume(broken)
+    result = run(broken)
+    same(result, reference)
+    assert [path.name for path in sorted(broken.parent.iterdir())] == ["run.h5"]
+
+
+def damage(data: bytes, how: str) -> bytes:
+    match how:
+        case "empty":
+            return b""
+        case "short":
+            return data[: len(data) // 2]
+        case "one byte less":
+            return data[:-1]
+        case "one bit":
+            middle = len(data) // 2
+            return data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
+        case "noise":
+            return np.random.default_rng(1).bytes(len(data))
+        case _:
+            return b"trbdyn-checkpoint 99\n" + data.split(b"\n", 1)[1]
+
+
+HOW = ["empty", "short", "one byte less", "one bit", "noise", "later version"]
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_the_last_good_checkpoint_is_used_and_said(broken: Path, reference: trb.Result, how: str) -> None:
+    newest = checkpoint_path(broken)
+    newest.write_bytes(damage(newest.read_bytes(), how))
+    with pytest.warns(UserWarning, match="going on from the one before it"):
+        result = trb.resume(broken)
+    same(result, reference)
+    assert "going on from the one before it" in result.meta["notes"][0]
+
+
+def test_a_missing_checkpoint_falls_back_too(broken: Path, reference: trb.Result) -> None:
+    checkpoint_path(broken).unlink()
+    with pytest.warns(UserWarning, match="no such file"):
+        same(trb.resume(broken), reference)
+
+
+@pytest.mark.parametrize("how", HOW)
+def test_without_a_good_checkpoint_nothing_is_touched(broken: Path, how: str) -> None:
+    for path in (checkpoint_path(broken), previous_path(checkpoint_path(broken))):
+        path.write_bytes(damage(path.read_bytes(), how))
+    before = trb.load(broken).time
+    with pytest.raises(FileError, match=r"run\.checkpoint: .*; .*run\.checkpoint\.previous: "):
+        trb.resume(broken)
+    np.testing.assert_array_equal(trb.load(broken).time, before)
+
+
+def test_runs_without_a_schedule_cannot_be_resumed(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    with pytest.raises(Cut):
+        run(path, callback=cut_after(0.0), checkpoint_every=None)
+    with pytest.raises(FileError, match="no schedule of checkpoints"):
+        trb.resume(path)
+    with pytest.raises(FileError, match="no such file"):
+        trb.resume(tmp_path / "nothing.h5")
+
+
+def test_a_checkpoint_of_another_run_is_refused(broken: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.h5"
+    with pytest.raises(Cut):
+        run(other, callback=cut_after(0.01))
+    checkpoint_path(other).replace(checkpoint_path(broken))
+    with pytest.raises(FileError, match="belongs to another run"):
+        trb.resume(broken)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.95])
+def test_a_damaged_result_file_costs_its_own_records_alone(broken: Path, reference: trb.Result, share: float) -> None:
+    data = broken.read_bytes()
+    broken.write_bytes(data[: int(share * len(data))])
+    with pytest.warns(UserWarning, match="its records are lost"), pytest.raises(FileError, match="cannot be read"):
+        trb.resume(broken)
+    part = trb.load(broken.with_name("run.part1.h5"))
+    np.testing.assert_array_equal(part.final_state, reference.final_state)
+    np.testing.assert_array_equal(part.cage_position, reference.cage_position[-len(part) :])
+
+
+def test_a_lost_result_file_before_the_first_checkpoint_is_made_anew(tmp_path: Path, reference: trb.Result) -> None:
+    path = tmp_path / "run.h5"
+    with pytest.raises(Cut):
+        trb.Simulation(scene()).run(
+            duration=0.02, save_every=2e-5, checkpoint_every=EVERY, output=path, callback=cut_after(0.0)
+        )
+    start = previous_path(checkpoint_path(path))
+    if start.exists():
+        start.replace(checkpoint_path(path))
+    path.write_bytes(b"")
+    if checkpoint.read(checkpoint_path(path)).done == 0:
+        with pytest.warns(UserWarning, match="its records are lost"):
+            same(trb.resume(path), reference)
+
+
+def change(path: Path, **changes: Any) -> None:
+    """Other values in a checkpoint, under a checksum that fits."""
+    found = checkpoint.read(path)
+    values = {name: getattr(found, name) for name in Checkpoint.__dataclass_fields__}
+    checkpoint.write(path, Checkpoint(**values | changes))
+
+
+def test_another_instruction_set_is_said_and_can_be_forced(broken: Path) -> None:
+    with pytest.warns(UserWarning, match="going on with instruction set scalar instead of"):
+        result = trb.resume(broken, instruction_set="scalar")
+    assert result.success
+    assert result.meta["instruction_set"] == "scalar"
+
+
+def test_an_instruction_set_that_this_machine_lacks(broken: Path) -> None:
+    change(checkpoint_path(broken), instruction_set="avx4096")
+    with pytest.raises(InputError, match=r"avx4096.*this machine runs"):
+        trb.resume(broken)
+    with pytest.raises(InputError, match="must be one of"):
+        trb.resume(broken, instruction_set="mmx")
+    with pytest.warns(UserWarning, match="instead of avx4096"):
+        assert trb.resume(broken, instruction_set=_core.instruction_sets()[-1]).success
+
+
+def test_another_build_is_said(broken: Path, reference: trb.Result) -> None:
+    change(checkpoint_path(broken), build="0" * 64)
+    with pytest.warns(UserWarning, match="another build"):
+        same(trb.resume(broken), reference)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"scene": {}},
+        {"scene": {"bearing": 3}},
+        {"model": "0" * 64},
+        {"options": {"rtol": -1.0}},
+        {"options": {"nonsense": 1}},
+        {"state": np.zeros(3)},
+        {"state": np.full(10_000, 1e300)},
+        {"done": 10**9},
+    ],
+)
+def test_checkpoints_that_say_what_cannot_be_are_refused(broken: Path, changes: dict[str, Any]) -> None:
+    change(checkpoint_path(broken), **changes)
+    with pytest.raises(FileError, match="cannot be used"):
+        trb.resume(broken)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"time": "now"}, {"done": -1}, {"done": True}, {"start": 1.0, "end": 0.0}, {"state": np.array([np.nan])}],
+)
+def test_checkpoints_of_wrong_kinds_fall_back(broken: Path, reference: trb.Result, changes: dict[str, Any]) -> None:
+    path = checkpoint_path(broken)
+    found = checkpoint.read(path)
+    values = {name: getattr(found, name) for name in Checkpoint.__dataclass_fields__}
+    path.write_bytes(Checkpoint(**values | changes).to_bytes())
+    with pytest.warns(UserWarning, match="cannot be used"):
+        same(trb.resume(broken), reference)
+
+
+def test_the_file_is_small_and_readable(broken: Path) -> None:
+    data = checkpoint_path(broken).read_bytes()
+    assert len(data) < 100_000
+    name, _, head = data.split(b"\n")[:3]
+    assert name == b"trbdyn-checkpoint 1"
+    values = json.loads(head)
+    assert values["instruction_set"] in _core.instruction_sets()
+    assert values["model"] == scene().fingerprint
+
+
+def test_a_checkpoint_that_cannot_be_written_leaves_the_old_ones(broken: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = checkpoint_path(broken)
+    before = path.read_bytes()
+
+    def full(handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(checkpoint.os, "fsync", full)
+    with pytest.raises(FileError, match="No space left"):
+        checkpoint.write(path, checkpoint.read(path))
+    assert path.read_bytes() == before
+    assert not list(path.parent.glob(".*"))
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf, 1e-12, "often", True])
+def test_schedules_that_cannot_be(value: Any) -> None:
+    with pytest.raises(InputError, match="checkpoint_every"):
+        trb.Simulation(scene()).run(duration=1e-3, checkpoint_every=value)

@@ -1,0 +1,147 @@
+"""Runs that are killed at random times, and resumed until they end, give the same bits as one that was never interrupted."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import checkpoint
+from trbdyn.errors import FileError
+from trbdyn.sources import segment_paths
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+
+_spec = importlib.util.spec_from_file_location("restart_runs", Path(__file__).parent / "conftest.py")
+assert _spec is not None
+assert _spec.loader is not None
+runs = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(runs)
+
+
+def start(script: str, path: Path) -> subprocess.Popen[bytes]:
+    """A process that has imported the package and begins to step."""
+    process = subprocess.Popen(
+        [sys.executable, "-P", "-W", "ignore", "-c", script, str(path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=runs.environment(),
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"ready\n"
+    return process
+
+
+def same(result: Any, reference: Any) -> None:
+    """Every record and the final state, to the last bit."""
+    assert result.success, result.message
+    assert len(result) == len(reference)
+    assert result.final_time == reference.final_time
+    np.testing.assert_array_equal(result.final_state.view(np.int64), reference.final_state.view(np.int64))
+    for field in reference.fields:
+        np.testing.assert_array_equal(result[field.name], reference[field.name], err_msg=field.name)
+    for name in ("steps", "rhs_evaluations", "jacobian_evaluations", "restarts", "smallest_step"):
+        assert result.stats[name] == reference.stats[name]
+    assert result.counters == reference.counters
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_random_kills_change_no_bit(tmp_path: Path, uninterrupted: trb.Result, seed: int) -> None:
+    """At least two kills a seed, twenty in all, wherever they come: at the start, in a write, in a resumed run."""
+    draw = random.Random(seed)
+    path = tmp_path / "run.h5"
+    wall = float(uninterrupted.stats["wall_s"])
+    kills, script = 0, runs.RUN
+    while kills < 2:
+        process = start(script, path)
+        time.sleep(draw.uniform(0.0, 0.45) * wall)
+        process.send_signal(signal.SIGKILL)
+        _, said = process.communicate()
+        assert process.returncode == -signal.SIGKILL, said.decode()
+        kills += 1
+        if path.exists():
+            partial = trb.load(path)
+            assert not partial.success
+            np.testing.assert_array_equal(partial.time, uninterrupted.time[: len(partial)])
+        if checkpoint.checkpoint_path(path).exists():
+            script = runs.RESUME
+    process = start(script, path)
+    _, said = process.communicate()
+    assert process.returncode == 0, said.decode()
+    same(trb.load(path), uninterrupted)
+    assert not checkpoint.checkpoint_path(path).exists()
+
+
+def test_a_reader_follows_live(tmp_path: Path, uninterrupted: trb.Result) -> None:
+    path = tmp_path / "run.h5"
+    process = start(runs.RUN, path)
+    seen: list[int] = []
+    while process.poll() is None:
+        if path.exists():
+            live = trb.load(path)
+            np.testing.assert_array_equal(live.time, uninterrupted.time[: len(live)])
+            np.testing.assert_array_equal(live.cage_position, uninterrupted.cage_position[: len(live)])
+            seen.append(len(live))
+    assert process.returncode == 0
+    assert seen == sorted(seen)
+    assert len(set(seen)) > 3
+    same(trb.load(path), uninterrupted)
+
+
+def test_one_run_one_writer(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    process = start(runs.RUN, path)
+    while not checkpoint.checkpoint_path(path).exists():
+        time.sleep(0.01)
+    try:
+        with pytest.raises(FileError, match="another run is writing it"):
+            trb.resume(path)
+        with pytest.raises(FileError, match="another run is writing it"):
+            trb.Simulation(runs.whirl()).run(duration=1e-3, output=path)
+    finally:
+        process.kill()
+        process.communicate()
+    trb.resume(path)
+    assert list(segment_paths(path)) == [1]
+
+
+def test_the_command_line_resumes(tmp_path: Path, uninterrupted: trb.Result) -> None:
+    path = tmp_path / "run.h5"
+    process = start(runs.RUN, path)
+    while not checkpoint.previous_path(checkpoint.checkpoint_path(path)).exists():
+        time.sleep(0.005)
+    process.kill()
+    process.communicate()
+    words = [sys.executable, "-P", "-m", "trbdyn", "resume", str(path), "--quiet"]
+    done = subprocess.run(words, capture_output=True, env=runs.environment(), check=False)
+    assert done.returncode == 0, done.stderr.decode()
+    same(trb.load(path), uninterrupted)
+
+
+FULL = """
+import resource, signal
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (MOST, MOST))
+"""
+
+
+@pytest.mark.parametrize("limit", [1_500_000, 2_500_000, 4_000_000])
+def test_a_full_disk_loses_nothing(tmp_path: Path, uninterrupted: trb.Result, limit: int) -> None:
+    path = tmp_path / "run.h5"
+    process = start(FULL.replace("MOST", str(limit)) + runs.RUN, path)
+    _, said = process.communicate()
+    assert process.returncode == 1
+    assert b"FileError" in said
+    partial = trb.load(path)
+    np.testing.assert_array_equal(partial.time, uninterrupted.time[: len(partial)])
+    same(trb.resume(path), uninterrupted)
