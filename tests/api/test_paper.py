@@ -228,8 +228,10 @@ def made_up(values: dict[tuple[Condition, str], dict[str, Any]]) -> Runs:
     return Runs(runs)
 
 
-def radius(mean: float, error: float = 0.01, **more: Any) -> dict[str, Any]:
-    return {"whirl_radius_over_cpr": {"mean": mean}, "whirl_radius_standard_error": error} | more
+def orbit(mean: float, error: float = 0.01, **more: Any) -> dict[str, Any]:
+    """Numbers of a cage that circles the axis."""
+    table = {"whirl_ratio": 1.0, "cage_motion": "circling", "whirl_radius_over_cpr": {"mean": mean, "p95": mean}}
+    return table | {"orbit_over_cpr": mean, "orbit_standard_error": error} | more
 
 
 def judged(key: str, runs: Runs) -> Judged:
@@ -251,14 +253,14 @@ class TestStatements:
         ],
     )
     def test_growth_must_stand_out_of_the_noise(self, radii: Any, error: float, verdict: str) -> None:
-        given = {(c, "whirl"): radius(r, error) for c, r in zip(FIGURES["12b"], radii, strict=True)}
+        given = {(c, "whirl"): orbit(r, error) for c, r in zip(FIGURES["12b"], radii, strict=True)}
         assert self.verdict("8b-load", made_up(given))[0] == verdict
 
     def test_starts_that_differ(self) -> None:
         condition = FIGURES["12b"][-1]
-        runs = made_up({(condition, "whirl"): radius(0.98), (condition, "equal"): radius(0.3)})
+        runs = made_up({(condition, "whirl"): orbit(0.98), (condition, "equal"): orbit(0.3)})
         assert self.verdict("8b-one", runs)[0] == "depends on the start"
-        assert self.verdict("8b-one", made_up({(condition, "equal"): radius(0.3)}))[0] == "disagrees"
+        assert self.verdict("8b-one", made_up({(condition, "equal"): orbit(0.3)}))[0] == "disagrees"
 
     def test_frequency(self) -> None:
         def runs(ratio: float, kind: str) -> Runs:
@@ -289,7 +291,7 @@ class TestStatements:
 
     def test_what_had_not_settled_is_marked(self) -> None:
         condition = FIGURES["12b"][-1]
-        entry = judged("8b-one", made_up({(condition, "whirl"): radius(0.98, settled=False)}))
+        entry = judged("8b-one", made_up({(condition, "whirl"): orbit(0.98, settled=False)}))
         assert entry.to_dict()["unsettled"] == ["3000rpm_4930N_whirl"]
         assert "| **agrees**\\* | whirl\\* |" in markdown([entry])
 

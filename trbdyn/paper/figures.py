@@ -83,7 +83,9 @@ def panels(
                 ax.set_title(conditions[column].title, fontsize=9)
             if row < len(starts) - 1:
                 ax.set_xlabel("")
-            ax.set_ylabel("" if column else f"{START_WORDS[starts[row]]}\n{ax.get_ylabel()}", fontsize=9)
+        words = next((ax.get_ylabel() for ax in axes.flat if ax.get_ylabel()), "")
+        for (row, column), ax in np.ndenumerate(axes):
+            ax.set_ylabel("" if column else f"{START_WORDS[starts[row]]}\n{words}", fontsize=9)
         handles = _handles(axes)
         if handles:
             fig.legend(*handles, loc="outside lower center", ncols=min(len(handles[1]), 6), fontsize=8.5)
@@ -266,7 +268,7 @@ def _slip(ax: Axes, run: Run) -> None:
             marker="os"[index],
             markersize=3,
             linewidth=1.0,
-            label=f"{side} raceway (positive: roller faster)",
+            label=f"{side} raceway",
         )
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     ax.set(xlabel="load of a roller (N)", ylabel=r"slide-roll ratio ($10^{-4}$)")
@@ -298,8 +300,8 @@ def figure_18(runs: Runs) -> dict[str, Figure]:
             "18, why",
             FIGURES["18"],
             _slip,
-            "slip over the load of a roller",
-            (4.6, 2.1),
+            "slip over a roller's load (positive: roller faster)",
+            (5.4, 2.1),
         ),
     }
 

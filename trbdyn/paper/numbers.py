@@ -132,6 +132,7 @@ def numbers_of(result: Result, history: History, about: dict[str, Any]) -> dict[
         "cage_turns": abs(angle[-1] - angle[0]) / (2.0 * math.pi),
         "whirl_radius_standard_error": standard_error(radius, angle),
         "orbit_over_cpr": motion.orbit_over_play,
+        "orbit_standard_error": standard_error(observables.orbit_radius(position) / result.clearances.radial, angle),
         "cage_motion": motion.kind,
         "whirl_coherence": observables.whirl_coherence(position, result["cage_velocity"]),
         "centre_over_cpr": list(position[:, :2].mean(axis=0) / result.clearances.radial),
