@@ -54,6 +54,7 @@ COLUMNS = {
     "effects": "object: time_ratio_off, evaluations_off and share by effect",
     "all": "object: figures with all effects",
     "none": "object: figures without any",
+    "control_ratio": "1: the same ratio of two equal cores: how far timings can be trusted",
     "worst_time_ratio_off": "1: largest time_ratio_off",
 }
 
@@ -131,6 +132,9 @@ def ratios(case: states.Case, plan: Plan, report: common.Report) -> dict[str, fl
         except BuildError as error:
             report.notes.append(f"No core was built, so there is no time_ratio_off: {error}.")
             return out
+        whole_scene = scene_with(case, EVERYTHING)
+        one, other = (Evaluation(core, whole_scene, vector, variant) for core in (whole, builds.without("nothing", {})))
+        report.summary["control_ratio"] = ratio_of(one, other, plan.rounds)
         for effect in wanted:
             assert effect.patch is not None
             scene = scene_with(case, EVERYTHING.replace(**effect.off))
@@ -227,6 +231,8 @@ def show(report: common.Report) -> None:
     print(
         f"all effects: {report.summary['all']['us']:.1f} us, none: {report.summary['none']['us']:.1f} us an evaluation\n"
     )
+    if "control_ratio" in report.summary:
+        print(f"ratio of two equal cores: {report.summary['control_ratio']:.3f}\n")
     cost = ("effect", "us_off", "share", "us_none", "us_on", "time_ratio_off", "evaluations_off", "evaluations_on")
     print(common.table(report.results, cost))
     walls = ("cpu_s_per_revolution_off", "cpu_s_per_revolution_on", "steps_per_revolution_off")

@@ -108,7 +108,8 @@ def errors(found: Trajectory, reference: Trajectory) -> dict[str, float]:
 class References:
     """Reference trajectories of a case: an explicit Runge-Kutta method of order 5 at 1e-4 of the base tolerances.
 
-    `disagreement` repeats some with BDF at the same tolerances: another formula, with Newton's method and Jacobians.
+    `disagreement` repeats some with BDF of order up to 5 at the same tolerances: another formula, with Newton's method and
+    Jacobians.
     """
 
     def __init__(self, case: Case, scene: Scene | None = None) -> None:
@@ -128,7 +129,7 @@ class References:
 
     def disagreement(self, count: int) -> dict[str, float]:
         """Largest deviation of BDF at the reference's tolerances from the first `count` references."""
-        tight = scaled(REFERENCE_SCALE)
+        tight = scaled(REFERENCE_SCALE, max_order=5)
         found = [errors(self._run(i, tight), self.trajectories[i]) for i in range(min(count, len(self.trajectories)))]
         return {name: max(one[name] for one in found) for name in QUANTITIES}
 

@@ -54,7 +54,7 @@ def _front(axes: Any, rows: list[dict[str, Any]], case: str) -> None:
     axes.text(
         REAL_TIME_MS[case], 0.98, " real time", transform=axes.get_xaxis_transform(), va="top", color="0.4", fontsize=8
     )
-    axes.text(0.99, 1.1, "1 % of Cpr", transform=axes.get_yaxis_transform(), ha="right", color="0.4", fontsize=8)
+    axes.text(0.0, 0.7, " 1 % of Cpr", transform=axes.get_yaxis_transform(), ha="left", color="0.4", fontsize=8)
     axes.set_xlabel("time of a revolution on one core (ms)")
     axes.set_ylabel("cage centre: error (% of Cpr)")
     axes.set_title(TITLES[case])
@@ -103,7 +103,7 @@ def draw_front(report: common.Report) -> Any:
     flat = grid.ravel()
     for axes, case in zip(flat, cases, strict=False):
         _front(axes, report.results, case)
-    flat[len(cases) - 1].legend(fontsize=8, loc="lower left")
+    flat[len(cases) - 1].legend(fontsize=8, loc="upper right")
     _slices(flat[-1], report.results)
     machine = common.processor()["name"]
     figure.suptitle(

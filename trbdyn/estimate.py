@@ -1,0 +1,227 @@
+"""What a run will cost and how accurate it will be, before it is run: a short probe, and a table of measured errors."""
+
+from __future__ import annotations
+
+import json
+import math
+import time as clock
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from trbdyn.errors import InputError, StepError
+
+if TYPE_CHECKING:
+    from trbdyn.simulation import Simulation
+
+TABLE: Final = Path(__file__).parent / "data" / "accuracy.json"
+"""Errors over tolerances, written by ``python benchmarks/work_precision.py --make-table``."""
+
+PROBE: Final = 4e-3
+"""Bearing time of the probe (s)."""
+WARM_UP: Final = 5e-4
+"""Bearing time before the probe (s): the integrator starts with tiny steps."""
+SAME: Final = 1e-6
+"""Relative difference up to which tolerances count as those of a preset."""
+CASES: Final = ("collision", "smooth", "combined")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a run is expected to take and give.
+
+    Attributes
+    ----------
+    bearing_time : float
+        Length of the run (s).
+    wall_s : float
+        Expected wall time (s), records included.
+    real_time_factor : float
+        Bearing time over wall time.
+    steps, evaluations : int
+        Expected steps of the integrator, and evaluations of all forces for them.
+    records : int
+        Records that are kept.
+    memory_mb : float
+        Size of the records (MB): in memory, or uncompressed in a file.
+    error_cage_over_cpr : float
+        Expected error of the cage's centre by the integration, over the radial play Cpr: median over collisions that were
+        measured, each followed for `window` seconds. Beyond that a colliding cage is chaotic, and means are what counts.
+        nan where nothing like it was measured.
+    error_cage_over_cpr_worst : float
+        The largest of them.
+    error_load, error_cage_speed, error_power : float
+        Expected relative errors of contact load (rms), cage speed and power loss within the window.
+    window : float
+        Length of trajectories that the errors belong to (s), median.
+    case : str
+        Measured case that the errors are taken from: 'collision', 'smooth' or 'combined'.
+    extrapolated : bool
+        Whether the tolerances lie outside those that were measured: the errors are then those at the end of the table.
+    """
+
+    bearing_time: float
+    wall_s: float
+    real_time_factor: float
+    steps: int
+    evaluations: int
+    records: int
+    memory_mb: float
+    error_cage_over_cpr: float
+    error_cage_over_cpr_worst: float
+    error_load: float
+    error_cage_speed: float
+    error_power: float
+    window: float
+    case: str
+    extrapolated: bool
+
+    def __str__(self) -> str:
+        lines = [
+            f"{self.bearing_time:.4g} s of bearing time in about {self.wall_s:.3g} s "
+            f"(real time x {self.real_time_factor:.3g}), {self.steps:,} steps",
+            f"{self.records:,} records, {self.memory_mb:.3g} MB",
+            f"cage centre within {100.0 * self.error_cage_over_cpr:.2g} % of Cpr over {1e3 * self.window:.2g} ms "
+            f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} %",
+        ]
+        return "\n".join(lines)
+
+
+_ERRORS: Final = ("error_cage_over_cpr", "error_cage_over_cpr_worst", "error_load", "error_cage_speed", "error_power")
+
+
+@cache
+def table() -> dict[str, Any]:
+    """The measured errors."""
+    found: dict[str, Any] = json.loads(TABLE.read_text(encoding="utf-8"))
+    return found
+
+
+def estimate(
+    sim: Simulation,
+    *,
+    revolutions: float | None = None,
+    duration: float | None = None,
+    save_every: float = 1e-4,
+    probe: float = PROBE,
+) -> Estimate:
+    """Expected wall time and error of a run from the present state.
+
+    The wall time is extrapolated from a probe of a copy, so it holds for as long as the bearing moves as it does now. Errors
+    are those measured for the same tolerances on the shipped bearing: on another they are a guide.
+
+    Parameters
+    ----------
+    sim : Simulation
+        What would be run; it is left as it is.
+    revolutions, duration : float, optional
+        How far to go, in turns of the shaft or s; one of both must be given.
+    save_every : float
+        Time between records (s).
+    probe : float
+        Bearing time of the probe (s); not more than the run.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used.
+    StepError
+        If the probe fails.
+    """
+    if not probe > 0.0:
+        raise InputError.of("probe", probe, "must be > 0 (s)")
+    options = sim.options.replace(revolutions=revolutions, duration=duration, save_every=save_every)
+    start = sim.time
+    length = options.end_time(sim.scene.speed_rpm, start) - start
+    rates = _probe(sim, min(probe, length))
+    records = max(math.ceil(length / save_every - 1e-9), 1) + 1
+    wall = length * rates["wall"] + records * rates["record"]
+    found = _errors(sim)
+    return Estimate(
+        bearing_time=length,
+        wall_s=wall,
+        real_time_factor=length / wall,
+        steps=round(length * rates["steps"]),
+        evaluations=round(length * rates["rhs_evaluations"]),
+        records=records,
+        memory_mb=8e-6 * records * sum(value.size for value in sim.record().values()),
+        **found,
+    )
+
+
+def _probe(sim: Simulation, length: float) -> dict[str, float]:
+    """Wall time, steps and evaluations a second of bearing time, and the wall time of a record."""
+    other = sim.copy()
+    try:
+        _advance(other, min(WARM_UP, 0.25 * length))
+        before, began, from_time = other.statistics, clock.perf_counter(), other.time
+        _advance(other, length)
+    except StepError as error:
+        raise StepError(f"the probe of the estimate failed: {error}", time=other.time) from None
+    wall, bearing = clock.perf_counter() - began, other.time - from_time
+    after = other.statistics
+    began = clock.perf_counter()
+    for _ in range(5):
+        other.record()
+    record = (clock.perf_counter() - began) / 5.0
+    counted = {name: (after[name] - before[name]) / bearing for name in ("steps", "rhs_evaluations")}
+    return counted | {"wall": wall / bearing, "record": record}
+
+
+def _advance(sim: Simulation, length: float) -> None:
+    end = sim.time + length
+    while sim.time < end:
+        sim.step()
+
+
+def _errors(sim: Simulation) -> dict[str, Any]:
+    """Errors from the table: those of a preset, else interpolated over the tolerances' scale."""
+    options, measured = sim.options, table()
+    case = _case(sim)
+    window = float(np.median(measured["windows_s"][case]))
+    place = {"window": window, "case": case}
+    known = options.integrator == "bdf" and options.max_order == 2 and sim.scene.effects.bodies == "rollers_and_cage"
+    if not known:
+        return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
+    tolerances = options.tolerances.model_dump()
+    for preset in measured["presets"].values() if case == "collision" else ():
+        if _same(tolerances, preset["tolerances"]):
+            return place | {name: preset[name] for name in _ERRORS} | {"extrapolated": False}
+    scale = _scale(tolerances, measured["base_tolerances"])
+    points = measured["points"][case]
+    scales = [point["scale"] for point in points]
+    errors = {name: _between(scale, scales, [point[name] for point in points]) for name in _ERRORS}
+    return place | errors | {"extrapolated": not scales[0] <= scale <= scales[-1]}
+
+
+def _case(sim: Simulation) -> str:
+    """The measured case that a simulation is most like: loaded on one side, or whether its cage lies still or whirls."""
+    scene = sim.scene
+    radial = scene.radial_load if isinstance(scene.radial_load, float) else max(scene.radial_load.values)
+    if radial > 0.0:
+        return "combined"
+    if scene.effects.bodies == "rollers":
+        return "smooth"
+    speed = sim.record()["cage_velocity"]
+    whirl = float(np.hypot(speed[0], speed[1])) / scene.bearing.cage.play_radial
+    orbit = abs(float(sim.record()["cage_angular_velocity"][2]))
+    return "collision" if whirl > 0.3 * orbit else "smooth"
+
+
+def _same(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    return all(math.isclose(one[name], value, rel_tol=SAME) for name, value in other.items())
+
+
+def _scale(tolerances: Mapping[str, float], base: Mapping[str, float]) -> float:
+    """Geometric mean of tolerances over those of the base."""
+    return math.exp(sum(math.log(tolerances[name] / value) for name, value in base.items()) / len(base))
+
+
+def _between(scale: float, scales: Sequence[float], values: Sequence[float]) -> float:
+    """Straight lines in log-log; constant beyond the ends. Errors are made to grow with the tolerance."""
+    grown = np.maximum.accumulate(np.maximum(values, 1e-12))
+    return float(np.exp(np.interp(math.log(scale), np.log(scales), np.log(grown))))
