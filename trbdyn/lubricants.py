@@ -11,6 +11,8 @@ from trbdyn.errors import InputError
 from trbdyn.validation import Model, Number, as_number, unit
 
 _ROELANDS_VISCOSITY = 6.31e-5
+_HIGHEST_PRESSURE = 1e10
+"""Largest pressure (Pa) at which a viscosity law is asked."""
 
 
 class Dicke(Model):
@@ -92,6 +94,12 @@ class Lubricant(Model):
         stiffness = self.dicke.a + self.dicke.b * self.temperature_c
         if self.pressure_law == "dicke" and stiffness <= 0:
             raise InputError.of("temperature_c", self.temperature_c, "must keep a + b t of the Dicke law > 0 (C)")
+        slope = self.dicke.c + self.dicke.d * self.temperature_c
+        if self.pressure_law == "dicke" and slope < 0 and stiffness * 1e5 <= -slope * _HIGHEST_PRESSURE:
+            limit = f"{_HIGHEST_PRESSURE / 1e9:g} GPa"
+            raise InputError.of(
+                "temperature_c", self.temperature_c, f"must keep the pole of the Dicke law above {limit} (C)"
+            )
         if self.pressure_law == "roelands" and self.viscosity <= _ROELANDS_VISCOSITY:
             raise InputError.of(
                 "viscosity", self.viscosity, f"must be > {_ROELANDS_VISCOSITY:g}, where the Roelands law ends (Pa s)"

@@ -181,6 +181,10 @@ class Scene(Model):
         self._check_motion()
         self._check_load()
         self._check_start()
+        if self.effects.films and self.effects.rolling_resistance and self.lubricant.pressure_coefficient <= 0.0:
+            raise InputError.of(
+                ("lubricant", "pressure_coefficient"), 0.0, "must be > 0 for rolling resistance; or switch that off (1/Pa)"
+            )
         from trbdyn.flatten import parameter_block
 
         parameter_block(self)

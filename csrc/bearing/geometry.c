@@ -75,6 +75,9 @@ static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *
   g->sphere_radius = p->sphere_ratio * pole;
   g->sphere_centre = pole - g->sphere_radius;
   const double sr = g->sphere_centre * sin(g->roller_axis_angle), sz = g->sphere_centre * cos(g->roller_axis_angle);
+  if (!(p->rib_contact_height < g->large_end_diameter))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: must be below the roller's large-end diameter, %g m", p->rib_contact_height,
+                    g->large_end_diameter);
   const double sine = (p->rib_contact_height - (sr * cos(ai) - sz * sin(ai))) / g->sphere_radius;
   if (!(fabs(sine) < 1.0))
     return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the large end's sphere (radius %g m) does not reach it",

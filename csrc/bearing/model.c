@@ -15,11 +15,11 @@ static trb_status check_params(const trb_params *params, trb_message *message)
     const trb_param_info *info = &trb_param_table[i];
     if (!(values[i] >= info->lower && values[i] <= info->upper))
       return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be from %g to %g %s", info->name, values[i], info->lower, info->upper, info->unit);
+    if ((strcmp(info->unit, "count") == 0 || strcmp(info->unit, "choice") == 0) && values[i] != floor(values[i]))
+      return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be a whole number", info->name, values[i]);
   }
-  if (params->n_rollers != floor(params->n_rollers))
-    return trb_fail(message, TRB_ERR_INPUT, "n_rollers = %g: must be a whole number", params->n_rollers);
-  if (params->n_slices != floor(params->n_slices))
-    return trb_fail(message, TRB_ERR_INPUT, "n_slices = %g: must be a whole number", params->n_slices);
+  if (params->rolling_resistance > 0.0 && !(params->pressure_coefficient > 0.0))
+    return trb_fail(message, TRB_ERR_INPUT, "pressure_coefficient = %g 1/Pa: must be > 0 for rolling resistance", params->pressure_coefficient);
   if (!(params->lambda_full > params->lambda_boundary))
     return trb_fail(message, TRB_ERR_INPUT, "lambda_full = %g: must be above lambda_boundary = %g", params->lambda_full, params->lambda_boundary);
   if (!(params->rib_edge_high > params->rib_edge_low))

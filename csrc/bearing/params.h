@@ -1,7 +1,8 @@
 /* The one table of model parameters. It makes the C struct, the flat block that Python fills by name,
  * the range check and the documentation. Every entry is a double so that the block is one contiguous array.
  *
- * TRB_PARAMS(X): X(name, unit, lower, upper, text); lower and upper are inclusive bounds of the check. */
+ * TRB_PARAMS(X): X(name, unit, lower, upper, text); lower and upper are inclusive bounds of the check. Units "count"
+ * and "choice" stand for whole numbers. */
 #ifndef TRB_BEARING_PARAMS_H
 #define TRB_BEARING_PARAMS_H
 
@@ -11,7 +12,7 @@
 
 #define TRB_PARAMS(X) \
   /* bearing geometry */ \
-  X(n_rollers,                "1",      3,      200,    "number of rollers Z") \
+  X(n_rollers,                "count",      3,      200,    "number of rollers Z") \
   X(cup_half_angle,           "rad",    0.01,   0.8,    "half angle of the cup (outer) raceway cone") \
   X(roller_diameter,          "m",      1e-4,   1.0,    "Dwe: roller diameter at mid length, perpendicular to its axis") \
   X(effective_length,         "m",      1e-4,   1.0,    "Lwe: effective length of the roller's contact line") \
@@ -31,14 +32,14 @@
   X(roughness_raceway,        "m",      1e-10,  1e-3,   "composite rms roughness of roller and raceway") \
   X(roughness_rib,            "m",      1e-10,  1e-3,   "composite rms roughness of roller end and rib") \
   /* roller profile and quadrature along the contact */ \
-  X(profile,                  "1",      0,      2,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic") \
+  X(profile,                  "choice",      0,      2,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic") \
   X(crown_radius,             "m",      1e-3,   1e9,    "radius of the crowning arc") \
   X(profile_k1,               "1",      0,      100,    "K1 of the logarithmic profile") \
   X(profile_k2,               "1",      0.001,  1,      "K2 of the logarithmic profile") \
   X(profile_zm,               "m",      0,      1e-3,   "zm of the logarithmic profile: drop at the end") \
   X(profile_load,             "N",      1e-3,   1e9,    "design load Q of the logarithmic profile") \
-  X(quadrature,               "1",      0,      1,      "nodes along the contact: 0 uniform slices, 1 Gauss-Legendre") \
-  X(n_slices,                 "1",      1,      200,    "number of slices or nodes along a contact line") \
+  X(quadrature,               "choice",      0,      1,      "nodes along the contact: 0 uniform slices, 1 Gauss-Legendre") \
+  X(n_slices,                 "count",      1,      200,    "number of slices or nodes along a contact line") \
   /* cage */ \
   X(cage_mass,                "kg",     1e-6,   1e4,    "mass of the cage") \
   X(cage_inertia_axial,       "kg m2",  1e-12,  1e6,    "moment of inertia about the cage's axis") \
@@ -51,7 +52,7 @@
   X(temperature_coefficient,  "1/K",    0,      1,      "beta: -d ln(eta0)/dt") \
   X(conductivity,             "W/mK",   1e-4,   1e3,    "k': thermal conductivity of the oil") \
   X(temperature,              "C",      -80,    400,    "oil temperature") \
-  X(viscosity_law,            "1",      0,      2,      "pressure law of viscosity: 0 Dicke, 1 Roelands, 2 Barus (capped)") \
+  X(viscosity_law,            "choice",      0,      2,      "pressure law of viscosity: 0 Dicke, 1 Roelands, 2 Barus (capped)") \
   X(dicke_a,                  "bar",    1e-3,   1e6,    "Dicke: constant term") \
   X(dicke_b,                  "bar/C",  -1e4,   1e4,    "Dicke: factor of temperature") \
   X(dicke_c,                  "1",      0,      1e3,    "Dicke: factor of pressure") \
@@ -75,20 +76,20 @@
   X(damping_race,             "s/m",    0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
   X(damping_cage,             "s/m",    0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
   /* effects */ \
-  X(with_cage,                "1",      0,      1,      "0 rollers only, 1 rollers and cage") \
-  X(planar,                   "1",      0,      1,      "1: axial positions and tilts are frozen") \
-  X(lubrication,              "1",      0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
-  X(traction,                 "1",      0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
-  X(thermal,                  "1",      0,      1,      "thermal reduction of films") \
-  X(rolling_resistance,       "1",      0,      1,      "EHL rolling resistance") \
-  X(rolling_pressure_force,   "1",      0,      1,      "pressure force of the rolling film on the roller") \
-  X(back_rib,                 "1",      0,      1,      "large end against the back-face rib") \
-  X(front_rib,                "1",      0,      1,      "small end against the front rib") \
-  X(rib_film,                 "1",      0,      1,      "film at the rib: 0 the thicker of PE and IR, 1 PE") \
-  X(pocket_bars,              "1",      0,      1,      "flank against the pocket's faces") \
-  X(pocket_ends,              "1",      0,      1,      "roller ends against the pocket's faces") \
-  X(pocket_edges,             "1",      0,      1,      "faces end at their outline (0: faces are unbounded planes)") \
-  X(damping,                  "1",      0,      1,      "Hunt-Crossley normal damping")
+  X(with_cage,                "choice",      0,      1,      "0 rollers only, 1 rollers and cage") \
+  X(planar,                   "choice",      0,      1,      "1: axial positions and tilts are frozen") \
+  X(lubrication,              "choice",      0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
+  X(traction,                 "choice",      0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
+  X(thermal,                  "choice",      0,      1,      "thermal reduction of films") \
+  X(rolling_resistance,       "choice",      0,      1,      "EHL rolling resistance") \
+  X(rolling_pressure_force,   "choice",      0,      1,      "pressure force of the rolling film on the roller") \
+  X(back_rib,                 "choice",      0,      1,      "large end against the back-face rib") \
+  X(front_rib,                "choice",      0,      1,      "small end against the front rib") \
+  X(rib_film,                 "choice",      0,      1,      "film at the rib: 0 the thicker of PE and IR, 1 PE") \
+  X(pocket_bars,              "choice",      0,      1,      "flank against the pocket's faces") \
+  X(pocket_ends,              "choice",      0,      1,      "roller ends against the pocket's faces") \
+  X(pocket_edges,             "choice",      0,      1,      "faces end at their outline (0: faces are unbounded planes)") \
+  X(damping,                  "choice",      0,      1,      "Hunt-Crossley normal damping")
 
 typedef struct trb_params {
 #define TRB_PARAM_MEMBER(name, unit, lower, upper, text) double name;

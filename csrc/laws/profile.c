@@ -11,7 +11,9 @@ double trb_profile_logarithmic(double y, double length, double k1, double k2, do
   const double a = 0.5 * length, from = a - k2 * a, amplitude = 2.0 * k1 * load / (TRB_PI * length * effective_modulus);
   if (fabs(y) <= from || zm <= 0.0 || amplitude <= 0.0) return 0.0;
   const double x = trb_min((fabs(y) - a) / (k2 * a) + 1.0, 1.0);
-  return -amplitude * log1p(expm1(-zm / amplitude) * x * x);
+  /* 1 - (1 - e) x^2 = (1 - x^2) + e x^2 as a sum of two exponentials: no cancellation at the end (x = 1), none where x is small */
+  const double one = x < 0.5 ? log1p(-x * x) : log((1.0 - x) * (1.0 + x)), other = 2.0 * log(x) - zm / amplitude;
+  return -amplitude * (trb_max(one, other) + log1p(exp(trb_min(one, other) - trb_max(one, other))));
 }
 
 /* Legendre polynomial of degree n and its derivative. */

@@ -296,7 +296,7 @@ static int put_detail(const trb_model *m, const trb_detail *detail, PyObject *ou
   return 0;
 }
 
-/* Wrenches of every roller's contacts, in the frames that trb_roller_load documents, shape (roller, 3) or (roller,). */
+/* Wrenches of every roller's contacts, in the frames that trb_roller_load documents, shape (roller, width). */
 static int put_loads(const trb_model *m, const trb_roller_load *loads, PyObject *out)
 {
   const struct { const char *key; size_t offset; int width; } parts[] = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
@@ -103,7 +104,9 @@ def logarithmic_drop(y: float, length: float, k1: float, k2: float, zm: float, l
     if abs(y) <= half - k2 * half:
         return 0.0
     t = (abs(y) - half) / (k2 * half) + 1.0
-    return amplitude * math.log(1.0 / (1.0 - (1.0 - math.exp(-zm / amplitude)) * t * t))
+    with mpmath.workdps(60):
+        exact = mpmath.mpf(amplitude)
+        return float(exact * mpmath.log(1 / (1 - (1 - mpmath.exp(-mpmath.mpf(zm) / exact)) * mpmath.mpf(t) ** 2)))
 
 
 class TestProfiles:
