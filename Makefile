@@ -36,7 +36,7 @@ demo: install
 
 test: install
 	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
-	$(PY) -m pytest tests $(if $(SLOW),-m "slow or not slow") $(PYTEST)
+	$(PY) -m pytest tests notebooks --nbmake $(if $(SLOW),-m "slow or not slow") $(PYTEST)
 
 lint: $(VENV)/.lint build/.package
 	$(PY) -m ruff check .
