@@ -319,6 +319,8 @@ class TestCommand:
         }
         ran: list[str] = []
         monkeypatch.setattr("trbdyn.paper.settle.run_point", lambda task, _: ran.append(task.point.name))
+        assert main(words) == 2
+        assert "--resume" in capsys.readouterr().err
         assert main([*words, "--resume"]) == 0
         assert ran == []
         assert main([*words, "--report"]) == 0

@@ -12,7 +12,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from trbdyn.errors import FileError
+from trbdyn.errors import FileError, InputError
 
 if TYPE_CHECKING:
     from trbdyn.paper.numbers import Runs
@@ -122,7 +122,7 @@ def run_points(
     workers : int, optional
         Number of workers.
     resume : bool
-        Skip points that are done, go on with those that are not; else everything is run anew.
+        Skip points that are done, go on with those that are not.
     progress : bool
         Show a progress bar.
     executor : object
@@ -135,12 +135,14 @@ def run_points(
 
     Raises
     ------
+    InputError
+        If there are such points already, and `resume` is not set.
     FileError
         If the folder cannot be made.
     """
     from tqdm import tqdm
 
-    from trbdyn.paper.settle import PointTask, is_done, run_point
+    from trbdyn.paper.settle import PointTask, is_done, is_there, run_point
     from trbdyn.study.executors import execute
     from trbdyn.study.work import said
 
@@ -152,11 +154,10 @@ def run_points(
     tasks = [PointTask(point, plan, str(place.absolute() / f"{point.name}.h5")) for point in chosen]
     if resume:
         tasks = [task for task in tasks if not is_done(task)]
-    else:
-        for task in tasks:
-            path = Path(task.path)
-            for old in (path, path.with_name(f".{path.stem}.progress.h5")):
-                old.unlink(missing_ok=True)
+    elif any(is_there(Path(task.path)) for task in tasks):
+        raise InputError.of(
+            "output", str(folder), "holds some of these points; give --resume to go on, or another folder"
+        )
     tasks.sort(key=lambda task: -plan.limits(task.point)[1] * task.point.condition.speed_rpm)
     failures: dict[str, str] = {}
     with (

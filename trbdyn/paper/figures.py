@@ -94,7 +94,7 @@ def panels(
 
 def _mark(ax: Axes, text: str) -> None:
     box = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0}
-    ax.text(0.99, 0.98, text, ha="right", va="top", transform=ax.transAxes, color="#D55E00", fontsize=8, bbox=box)
+    ax.text(0.99, 0.02, text, ha="right", va="bottom", transform=ax.transAxes, color="#D55E00", fontsize=8, bbox=box)
 
 
 def _handles(axes: NDArray[Any]) -> tuple[list[Any], list[str]] | None:
@@ -114,14 +114,13 @@ def _locus(ax: Axes, run: Run) -> None:
         ax.add_patch(Circle((0, 0), radius, fill=False, linestyle=LINES[index], linewidth=0.9))
         ax.plot([], [], color="black", linestyle=LINES[index], linewidth=0.9, label=label)
     reach = 1.15 * max(1.0, float(np.abs(path).max()))
-    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=(-1, 0, 1), yticks=(-1, 0, 1))
+    ax.set(xlim=(-reach, reach), ylim=(-reach, 1.35 * reach), aspect="equal", xticks=(-1, 0, 1), yticks=(-1, 0, 1))
     ax.set_ylabel("$y/C_{pr}$")
     numbers = run.numbers
-    radius = numbers["whirl_radius_over_cpr"]["mean"]
-    text = f"radius {radius:.2f}"
+    text = f"from the axis {numbers['whirl_radius_over_cpr']['mean']:.2f}, orbit {numbers['orbit_over_cpr']:.2f}"
     if numbers["cage_motion"] == "circling":
-        text += f", whirl/cage {numbers['whirl_ratio']:.2f}"
-    ax.text(0.02, 0.02, text, transform=ax.transAxes, fontsize=8)
+        text += f"\nwhirl / cage frequency {numbers['whirl_ratio']:.2f}"
+    ax.text(0.02, 0.99, text, transform=ax.transAxes, fontsize=7.5, va="top")
 
 
 def figure_8_12(runs: Runs) -> dict[str, Figure]:
@@ -153,7 +152,8 @@ def _axial(ax: Axes, run: Run) -> None:
     line(ax, turned[shown], 100.0 * run.result.axial_motion[shown], linewidth=0.9)
     ax.axhline(0.0, color=GREY, linewidth=0.8)
     ax.axhline(15.0, color=GREY, linewidth=0.8, linestyle="--")
-    ax.set_ylim(-3.0, max(20.0, 1.1 * 100.0 * float(run.result.axial_motion[shown].max())))
+    low, high = 110.0 * float(run.result.axial_motion[shown].min()), 110.0 * float(run.result.axial_motion[shown].max())
+    ax.set_ylim(min(-3.0, low), max(20.0, high))
     ax.set(xlabel="turns of the cage", ylabel="axial motion (% of play)")
 
 

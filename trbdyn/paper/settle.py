@@ -179,6 +179,16 @@ class PointTask:
         return self.plan.fingerprint(self.point)
 
 
+def progress_path(path: Path) -> Path:
+    """Where a point that is under way, or was stopped, keeps what it has reached."""
+    return path.with_name(f".{path.stem}.progress.h5")
+
+
+def is_there(path: Path) -> bool:
+    """Whether a point has been run, if only in part."""
+    return path.exists() or progress_path(path).exists()
+
+
 def is_done(task: PointTask) -> bool:
     """Whether the point's file is there, and settled or as long as the plan wants."""
     found = is_finished(Path(task.path), task.fingerprint)
@@ -209,7 +219,7 @@ class _Run:
         self.task, self.stopped = task, stopped
         self.least, self.most = task.plan.limits(task.point)
         self.path = Path(task.path)
-        self.progress = self.path.with_name(f".{self.path.stem}.progress.h5")
+        self.progress = progress_path(self.path)
         self.sim: Simulation = Simulation(task.point.scene(), accuracy=task.plan.accuracy)
         self.history = self._earlier() or History({}, float("nan"), np.empty(0), 0.0)
         self.saved = clock.perf_counter()
