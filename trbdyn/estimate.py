@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 TABLE: Final = Path(__file__).parent / "data" / "accuracy.json"
 """Errors over tolerances, written by ``python benchmarks/work_precision.py --make-table``."""
 
-PROBE: Final = 4e-3
+PROBE: Final = 10e-3
 """Bearing time of the probe (s)."""
 WARM_UP: Final = 5e-4
 """Bearing time before the probe (s): the integrator starts with tiny steps."""

@@ -154,13 +154,13 @@ def wall_time(
 ) -> dict[str, float]:
     """Wall time and work a revolution of the shaft: from each state the fastest of some repeats, then medians over states.
 
-    What slows a repeat down is other work of the machine: the runs are the same to the bit. Up to three times as many are
+    What slows a repeat down is other work of the machine: the runs are the same to the bit. Up to twice as many are
     made while the fastest waits for more than a tenth of its time.
     """
     rows = []
     for state in states:
         runs = []
-        for done in range(3 * repeats):
+        for done in range(2 * repeats):
             runs.append(_timed_run(Simulation(at_state(scene, state), **settings), revolutions, save_every))
             quietest = {name: min(one[name] for one in runs) for name in ("wall", "cpu")}
             if done + 1 >= repeats and quietest["wall"] < 1.1 * quietest["cpu"]:
