@@ -86,8 +86,8 @@ def test_first_step_is_taken(kit: SimpleNamespace) -> None:
 @pytest.mark.parametrize("seed", [1, 2, 3])
 @pytest.mark.parametrize("integrator", ["bdf", "erk"])
 def test_tight_tolerances_start(kit: SimpleNamespace, integrator: str, seed: int) -> None:
-    """SUNDIALS bounds its guess of the first step by a tenth of tolerance over rate: where a cage at its tolerance from zero moves
-    at a metre a second that is 1e-16 s. It is no failure, and the steps grow from there."""
+    """SUNDIALS bounds its guess of the first step by a tenth of tolerance over rate: 1e-16 s where a coordinate near zero moves
+    at a metre a second. It is no failure, and the steps grow from there."""
     sim = kit.simulate(Effects.frictionless(), integrator=integrator, **kit.tolerances(1e-10))
     random, vector = np.random.default_rng(seed), sim.state.vector
     state = sim.view(vector)

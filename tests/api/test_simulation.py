@@ -1,0 +1,297 @@
+"""What users meet of a simulation: runs and how they end, files, states, looks inside."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time as clock
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import FileError, History, InputError, Result, Simulation, StepError
+from trbdyn import fields as field_table
+from trbdyn.cases import scene_30310
+
+
+def simulate(**options: Any) -> Simulation:
+    return Simulation(scene_30310(3000.0, 4930.0), **options)
+
+
+@pytest.fixture(scope="module")
+def short() -> Result:
+    """2 ms in memory."""
+    return simulate().run(duration=2e-3, save_every=1e-4)
+
+
+def assert_same_fields(one: Result, other: Result) -> None:
+    assert [field.name for field in one.fields] == [field.name for field in other.fields]
+    for field in one.fields:
+        np.testing.assert_array_equal(one[field.name], other[field.name], err_msg=field.name)
+
+
+def test_run_returns_everything(short: Result) -> None:
+    assert short.success
+    assert "reached 0.002" in short.message
+    np.testing.assert_allclose(short.time, 1e-4 * np.arange(21), atol=1e-18)
+    assert short.final_time >= 2e-3
+    assert short.final_state is not None
+    assert short.final_state.shape == (12 * 11 + 12 + 12 + 11,)
+    assert [field.name for field in short.fields] == [field.name for field in field_table.table()]
+    for name in ("steps", "rhs_evaluations", "jacobian_evaluations", "wall_s", "wall_s_per_revolution"):
+        assert short.stats[name] > 0, name
+    assert short.stats["bearing_time_s"] == pytest.approx(2e-3)
+    assert short.stats["revolutions"] == pytest.approx(0.1)
+    assert short.meta["settings"]["integrator"] == "bdf"
+    assert short.meta["sundials_version"]
+    assert short.counters["force_evaluations"] > 0
+    assert short.geometry["cage_speed_ratio"] == pytest.approx(0.41662, abs=1e-5)
+    for field in short.fields:
+        assert np.isfinite(short[field.name]).all(), field.name
+
+
+def test_revolutions_and_last_record() -> None:
+    """A run ends at its end, even where that is no multiple of the time between records; the next goes on there."""
+    sim = simulate()
+    first = sim.run(revolutions=0.07, save_every=3e-4)
+    assert first.time[-1] == pytest.approx(1.4e-3, rel=1e-12)
+    assert first.revolutions == pytest.approx(0.07, rel=1e-12)
+    second = sim.run(duration=3e-4, save_every=1e-4)
+    np.testing.assert_allclose(second.time, 1.4e-3 + 1e-4 * np.arange(4), rtol=1e-12)
+    for name in ("cage_position", "roller_position", "work_shaft"):
+        np.testing.assert_array_equal(second[name][0], first[name][-1])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        ({}, "revolutions"),
+        ({"revolutions": 1.0, "duration": 1.0}, "duration"),
+        ({"duration": -1.0}, "duration"),
+        ({"duration": float("nan")}, "duration"),
+        ({"revolutions": 0}, "revolutions"),
+        ({"duration": 1e-3, "save_every": 0.0}, "save_every"),
+        ({"duration": 1e-3, "save_every": "often"}, "save_every"),
+        ({"duration": 1e-3, "save_groups": ["cages"]}, "save_groups"),
+        ({"duration": 1e-3, "save_groups": []}, "save_groups"),
+    ],
+)
+def test_bad_arguments_of_run(arguments: dict[str, Any], field: str) -> None:
+    sim = simulate()
+    with pytest.raises(InputError, match=field):
+        sim.run(**arguments)
+    assert sim.time == 0.0
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"accuracy": "best"}, "accuracy"),
+        ({"integrator": "euler"}, "integrator"),
+        ({"rtol": 0.0}, "rtol"),
+        ({"rtol": float("nan")}, "rtol"),
+        ({"atol_position": -1e-9}, "atol_position"),
+        ({"max_order": 6}, "max_order"),
+        ({"max_step": -1.0}, "max_step"),
+        ({"tolerance": 1e-3}, "tolerance"),
+    ],
+)
+def test_bad_options(options: dict[str, Any], field: str) -> None:
+    with pytest.raises(InputError, match=field):
+        simulate(**options)
+
+
+def test_a_shaft_at_rest_turns_no_revolutions() -> None:
+    sim = Simulation(scene_30310(0.0, 4930.0))
+    with pytest.raises(InputError, match="stands still"):
+        sim.run(revolutions=1.0)
+
+
+def test_groups_of_quantities(short: Result) -> None:
+    result = simulate().run(duration=2e-3, save_groups=["cage", "torque"])
+    assert set(result.groups) == {"time", "cage", "torque"}
+    np.testing.assert_array_equal(result.cage_position, short.cage_position)
+    with pytest.raises(AttributeError):
+        _ = result.outer_load
+    with pytest.raises(InputError, match="outer_load"):
+        result["outer_load"]
+
+
+def test_file_holds_what_memory_does(short: Result, tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    written = simulate().run(duration=2e-3, save_every=1e-4, output=path)
+    loaded = trb.load(path)
+    for result in (written, loaded):
+        assert_same_fields(result, short)
+        assert result.success
+        assert result.message == short.message
+        assert result.final_state is not None
+        np.testing.assert_array_equal(result.final_state, short.final_state)
+        assert result.counters == short.counters
+        assert result.stats["steps"] == short.stats["steps"]
+        assert result.scene == scene_30310(3000.0, 4930.0)
+
+
+def test_file_that_cannot_be_written(tmp_path: Path) -> None:
+    with pytest.raises(FileError):
+        simulate().run(duration=1e-3, output=tmp_path / "missing" / "run.h5")
+
+
+def test_callback_ends_the_run(tmp_path: Path) -> None:
+    seen: list[float] = []
+
+    def callback(sim: Simulation) -> bool:
+        seen.append(sim.time)
+        return len(seen) == 2
+
+    path = tmp_path / "run.h5"
+    result = simulate().run(duration=10.0, save_every=1e-5, output=path, callback=callback)
+    assert not result.success
+    assert "callback" in result.message
+    assert len(seen) == 2
+    assert seen[0] < seen[1] < 10.0
+    assert 256 < len(trb.load(path)) < 2000
+
+
+def test_what_a_callback_raises_comes_out(tmp_path: Path) -> None:
+    def callback(_: Simulation) -> None:
+        raise RuntimeError("enough")
+
+    path = tmp_path / "run.h5"
+    with pytest.raises(RuntimeError, match="enough"):
+        simulate().run(duration=10.0, save_every=1e-5, output=path, callback=callback)
+    result = trb.load(path)
+    assert not result.success
+    assert "RuntimeError" in result.message
+    assert len(result) >= 256
+
+
+def interrupt_from_callback(_: Simulation) -> None:
+    signal.raise_signal(signal.SIGINT)
+
+
+@pytest.mark.parametrize("in_file", [False, True])
+def test_ctrl_c_in_python(tmp_path: Path, in_file: bool) -> None:
+    path = tmp_path / "run.h5" if in_file else None
+    sim = simulate()
+    result = sim.run(duration=10.0, save_every=1e-5, output=path, callback=interrupt_from_callback)
+    assert not result.success
+    assert "stopped by the user" in result.message
+    assert len(result) >= 256
+    assert np.isfinite(result.cage_position).all()
+    # the simulation can go on
+    assert sim.run(duration=1e-4).success
+
+
+def test_ctrl_c_while_stepping(tmp_path: Path) -> None:
+    """The signal comes while the core steps, without a callback to meet it."""
+    path = tmp_path / "run.h5"
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    began = clock.perf_counter()
+    timer.start()
+    try:
+        result = simulate().run(duration=1000.0, save_every=1e-3, output=path)
+    finally:
+        timer.cancel()
+    assert clock.perf_counter() - began < 20.0
+    assert not result.success
+    assert "stopped by the user" in trb.load(path).message
+    assert len(trb.load(path)) > 3
+
+
+def test_progress_bar(capsys: pytest.CaptureFixture[str]) -> None:
+    simulate().run(duration=1e-3, progress=True)
+    assert "bearing time" in capsys.readouterr().err
+    simulate().run(duration=1e-3)
+    assert not capsys.readouterr().err
+
+
+def failing(**options: Any) -> Simulation:
+    """Gravity that nothing can stand comes on after 1 ms."""
+    weight = History.ramp(1e-3, 1.1e-3, 0.0, 1e30)
+    return Simulation(scene_30310(3000.0, 4930.0, gravity=(0.0, -9.81, weight)), **options)
+
+
+@pytest.mark.parametrize("integrator", ["bdf", "erk"])
+@pytest.mark.parametrize("in_file", [False, True])
+def test_failed_step_keeps_what_was_good(tmp_path: Path, integrator: str, in_file: bool) -> None:
+    path = tmp_path / "run.h5"
+    sim = failing(integrator=integrator)
+    with pytest.raises(StepError) as caught:
+        sim.run(duration=3e-3, save_every=1e-5, output=path if in_file else None)
+    error = caught.value
+    assert 0.9e-3 < error.time < 1.1e-3
+    assert error.body is not None
+    assert error.body.split()[0] in ("roller", "cage")
+    assert error.quantity
+    assert error.body in str(error)
+    assert f"{error.time:.9g}" in str(error)
+    kept = trb.load(path) if in_file else error.result
+    for result in (error.result, kept):
+        assert not result.success
+        assert result.message == str(error)
+        assert 90 <= len(result) <= 112
+        assert result.time[-1] <= error.time
+        for field in result.fields:
+            assert np.isfinite(result[field.name]).all(), field.name
+    # the state is the last good one
+    assert sim.time == error.time
+    assert np.isfinite(sim.state.vector).all()
+    assert np.isfinite(sim.record()["cage_position"]).all()
+
+
+def test_failed_single_step() -> None:
+    sim = simulate()
+    vector = sim.state.vector
+    sim.view(vector)["roller_omega_a"][4] = 1e200
+    sim.set_state(vector)
+    with pytest.raises(StepError) as caught:
+        sim.step()
+    assert caught.value.time == 0.0
+    np.testing.assert_array_equal(sim.state.vector, vector)
+    sim.set_state(simulate().state)
+    assert sim.step() > 0.0
+
+
+def run_into_each_other(**arguments: Any) -> StepError:
+    """Rollers without a cage, one faster than the others."""
+    effects = trb.Effects.frictionless().replace(bodies="rollers", gravity=False)
+    sim = Simulation(scene_30310(3000.0, 4930.0, effects=effects))
+    vector = sim.state.vector
+    sim.view(vector)["roller_v_t"][3] += 4.0
+    sim.set_state(vector)
+    with pytest.raises(StepError, match="touch") as caught:
+        sim.run(duration=0.02, save_every=1e-4, **arguments)
+    return caught.value
+
+
+def test_rollers_that_touch_end_the_run(tmp_path: Path) -> None:
+    """Without a cage nothing keeps rollers apart: a run in which they meet is no result."""
+    error = run_into_each_other(output=tmp_path / "run.h5")
+    assert error.body == "rollers"
+    kept = trb.load(tmp_path / "run.h5")
+    assert not kept.success
+    assert len(kept) > 10
+
+
+def test_rollers_that_touch_leave_what_was_good() -> None:
+    error = run_into_each_other()
+    assert error.result is not None
+    assert len(error.result) > 10
+    assert "touch" in error.result.message
+
+
+def test_run_after_single_steps() -> None:
+    """A run goes on where single steps have led."""
+    sim = simulate()
+    for _ in range(30):
+        sim.step()
+    reached = sim.time
+    result = sim.run(duration=1e-4, save_every=1e-5)
+    assert result.success
+    assert result.time[0] <= reached
+    assert result.time[-1] > reached
