@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 RESTING_AXIAL_SHARE = 0.1
-"""Axial place of a cage at the start, in units of its axial play, from where the large ends touch."""
+"""Axial place of a cage at the start, in units of its axial play, from where the large ends of the rollers touch."""
 
 
 @dataclass(frozen=True)
@@ -186,7 +186,9 @@ def _place_cage(
     model: _core.Model, scene: Scene, motion: Array, state: StateView, vector: Array, orbit: float
 ) -> None:
     start, cage = scene.start, scene.bearing.cage
-    state["cage_z"] = RESTING_AXIAL_SHARE * cage.play_axial
+    # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with them
+    rest, rollers = RESTING_AXIAL_SHARE * cage.play_axial, float(np.mean(state["roller_z"]))
+    state["cage_z"] = min(max(rest, rollers + rest), rollers + cage.play_axial - rest)
     if start.kind == "whirl":
         direction = math.radians(start.direction_deg)
         x, y = (start.eccentricity * cage.play_radial * part for part in (math.cos(direction), math.sin(direction)))
