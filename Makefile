@@ -4,7 +4,8 @@
 #   make test       C unit tests and the Python tests (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones)
 #   make lint       style, types, rules of the C sources (make format rewrites the style)
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
-#   make stability  the hard cases, minutes long
+#   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
+#   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the quick Python tests under address and undefined-behaviour sanitizers
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
@@ -28,7 +29,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 export PYTHONSAFEPATH := 1
 export MPLBACKEND := Agg
 
-.PHONY: demo test lint format bench stability sanitize install clean distclean
+.PHONY: demo test lint format bench stability fuzz sanitize install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -54,7 +55,11 @@ bench: install
 	  PYTHONSAFEPATH= $(PY) benchmarks/$$name.py $(if $(QUICK),--quick) --json build/bench/$$name.json; done
 
 stability: install
-	$(PY) -m pytest tests/stability -m "slow or not slow" $(PYTEST)
+	@mkdir -p build
+	$(PY) tests/stability/stability.py --json build/stability.json $(SCENES)
+
+fuzz: $(VENV)/.tools
+	SECONDS_EACH=$(or $(SECONDS),60) .ci/fuzz
 
 install: build/.package
 
