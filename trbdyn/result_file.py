@@ -4,7 +4,7 @@ Schema ``trbdyn-result``, version 1:
 
 - attributes of the root: ``schema``, ``schema_version``, ``trbdyn_version``, ``created``, ``run_id``, ``segment`` (its number),
   ``first_record`` (place of its first record in the run); as JSON ``geometry`` and ``meta`` (versions of the core and of
-  SUNDIALS, instruction set, settings), whose texts and numbers are attributes too
+  SUNDIALS, instruction set, settings), whose texts and numbers are attributes too; all texts are UTF-8 bytes of fixed length
 - ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
 - ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
   ``kind``, ``dims`` and ``index`` (its place in the record)
@@ -139,6 +139,14 @@ def _json(value: Any) -> str:
     return json.dumps(value, default=_plain)
 
 
+def _stored(value: Any) -> Any:
+    """Text as text of fixed length: HDF5 keeps what varies in length in a heap without a checksum, where damage makes it hang."""
+    if not isinstance(value, str):
+        return value
+    data = value.encode()
+    return np.array(data, dtype=f"S{max(len(data), 1)}")
+
+
 def _chunk_rows(shape: tuple[int, ...]) -> int:
     return max(1, CHUNK_BYTES // (8 * max(1, int(np.prod(shape)))))
 
@@ -238,8 +246,8 @@ class ResultWriter:
         head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__} | place
         head |= {"created": datetime.now(UTC).isoformat(), "geometry": _json(geometry), "meta": _json(meta)}
         head |= {name: value for name, value in meta.items() if isinstance(value, str | bool | int | float)}
-        self._file.attrs.update(head)
-        self._file.create_dataset("scene", data=_json(scene), dtype=h5py.string_dtype())
+        self._file.attrs.update({name: _stored(value) for name, value in head.items()})
+        self._file.create_dataset("scene", data=_stored(_json(scene)))
         self._file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
         self._file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
         group = self._file.create_group("fields")
@@ -255,7 +263,8 @@ class ResultWriter:
                 shuffle=compression is not None,
             )
             attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
-            dataset.attrs.update(attributes | {"dims": " ".join(("time", *entry.dims)), "index": index})
+            attributes["dims"] = " ".join(("time", *entry.dims))
+            dataset.attrs.update({name: _stored(value) for name, value in attributes.items()} | {"index": index})
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:

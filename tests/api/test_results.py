@@ -169,14 +169,14 @@ def test_a_file_gives_back_every_number(
 def test_a_file_describes_itself(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
     path = write(tmp_path / "run.h5", synthetic, stub_scene, meta={"instruction_set": "avx2"}, groups=["cage"])
     with h5py.File(path) as file:
-        assert file.attrs["schema"] == "trbdyn-result"
-        assert file.attrs["instruction_set"] == "avx2"
+        assert file.attrs["schema"] == b"trbdyn-result"
+        assert file.attrs["instruction_set"] == b"avx2"
         assert json.loads(file["scene"][()]) == {"stub": True}
         assert set(file["fields"]) == {f.name for f in synthetic.fields if f.group in ("time", "cage")}
         attributes = file["fields/cage_position"].attrs
-        assert attributes["unit"] == "m"
-        assert attributes["dims"] == "time xyz"
-        assert "cage centre" in attributes["description"]
+        assert attributes["unit"] == b"m"
+        assert attributes["dims"] == b"time xyz"
+        assert b"cage centre" in attributes["description"]
 
 
 def test_a_real_scene_survives_the_file(tmp_path: Path, synthetic: Any) -> None:
