@@ -31,13 +31,18 @@ def _make(name: str, arguments: str, text: str) -> Law:
             given = signature.bind(*args, **keywords).arguments
         except TypeError as error:
             raise TypeError(f"{name}: {error}; takes ({', '.join(signature.parameters)})") from None
+        missing = [part for part, value in given.items() if value is None]
+        if missing:
+            raise InputError.of(("laws", name, missing[0]), None, "must be a number or an array of numbers")
         try:
             arrays = np.broadcast_arrays(*(np.asarray(given[part], dtype=np.float64) for part in signature.parameters))
         except (TypeError, ValueError) as error:
             raise InputError.of(("laws", name), "arguments", f"must be numbers that broadcast: {error}") from None
         shape = arrays[0].shape
         rows: NDArray[np.float64] = np.ascontiguousarray([array.ravel() for array in arrays], dtype=np.float64)
-        out = _core.law(name, rows).reshape(shape)
+        out = _core.law(name, rows)
+        out[np.isnan(rows).any(axis=0)] = np.nan
+        out = out.reshape(shape)
         return out if shape else float(out)
 
     law.__name__ = law.__qualname__ = name

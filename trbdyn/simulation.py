@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +27,9 @@ from trbdyn.run_options import Group, RunOptions
 from trbdyn.scene import Scene
 from trbdyn.sources import FileSource, open_run, segment_paths
 from trbdyn.start import Equilibrium, StateView, ring_motion, start_state
+
+if TYPE_CHECKING:
+    from trbdyn.estimate import Estimate
 
 Array = NDArray[np.float64]
 Callback = Callable[["Simulation"], bool | None]
@@ -193,9 +196,18 @@ class Simulation:
             If the integrator cannot go on; the state stays the last good one.
         """
         try:
-            return self._core.step()
+            self._reached = self._core.step()
         except _core.CoreStepError as error:
             raise StepError(str(error), time=self._core.time) from None
+        return self._reached
+
+    def estimate(
+        self, *, revolutions: float | None = None, duration: float | None = None, save_every: float = 1e-4
+    ) -> Estimate:
+        """Expected wall time and error of a run from here, by a short probe of a copy; see `trbdyn.estimate.estimate`."""
+        from trbdyn.estimate import estimate
+
+        return estimate(self, revolutions=revolutions, duration=duration, save_every=save_every)
 
     def derivative(self, vector: ArrayLike | None = None, time: float | None = None) -> Array:
         """Rates of the state, shape (n_state,); at the present state by default."""
@@ -222,7 +234,12 @@ class Simulation:
 
     def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
         when = self._core.time if time is None else float(time)
-        return when, self._core.state() if vector is None else _numbers(vector)
+        if vector is None:
+            return when, self._core.state()
+        given = _numbers(vector)
+        if given.shape != (self._model.n_state,):
+            raise InputError.of("state", f"an array of shape {given.shape}", f"must have the shape ({self._model.n_state},)")
+        return when, given
 
     @property
     def counters(self) -> dict[str, int]:
@@ -307,6 +324,7 @@ class _Run:
         self.done = done
         self.notes: list[str] = []
         self.kept: list[Array] = []
+        self.filling: Array | None = None
         self.writer: ResultWriter | None = None
         self.output: Path | None = None
         self.began = clock.perf_counter()
@@ -352,7 +370,12 @@ class _Run:
                 result = self._finish(False, str(error))
                 time, body, quantity = sim.time, *_culprit(str(error))
                 raise StepError(str(error), time=time, body=body, quantity=quantity, result=result) from None
+            except StepError as error:
+                error.result = self._finish(False, str(error))
+                raise
             except KeyboardInterrupt:
+                if self.filling is not None:
+                    self._keep(self.filling[: int(np.count_nonzero(np.isfinite(self.filling[:, 0])))])
                 return self._finish(False, f"stopped by the user at {sim.time:.6g} s")
             except FileError:
                 self._abandon()
@@ -368,7 +391,8 @@ class _Run:
         due = checkpoint.next_time(sim._begun, every)
         while self.done < self.times.size:
             chunk = self.times[self.done : self.done + CHUNK_RECORDS]
-            records = np.empty((chunk.size, sim._model.record_length))
+            # a signal may come before the core's answer does: what is filled is seen by its finite times
+            self.filling = records = np.full((chunk.size, sim._model.record_length), np.nan)
             before = clock.perf_counter()
             try:
                 rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due)
@@ -377,6 +401,7 @@ class _Run:
                 raise
             finally:
                 self.spent += clock.perf_counter() - before
+            self.filling = None
             self._keep(records[:rows])
             # the records up to here are made with the past that the integrator is about to forget
             if sim.time >= due and self.done < self.times.size and self.times[self.done] > sim.time:
@@ -463,6 +488,9 @@ class _Run:
 
     def _finish(self, success: bool, message: str) -> Result:
         sim, ended = self.sim, self.sim.state
+        if not success:
+            # what stopped between two records goes on from where it stands
+            sim._reached = ended.time
         how: dict[str, Any] = {
             "success": success,
             "message": message,

@@ -51,7 +51,6 @@ static inline void pass_speeds(const trb_model *m, int n, trb_lanes *l)
     l->slide_roll[i] = slide / mean;
     l->log_u[i] = log(mean);
     l->friction_coefficient[i] = 0.0;
-    l->rolling[i] = 0.0;
   }
 }
 

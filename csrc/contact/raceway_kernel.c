@@ -122,39 +122,53 @@ static double sum_elastic(int first, int n, const trb_lanes *l)
   return TRB_PALMGREN_ENERGY * sum;
 }
 
-/* Wrenches of normal load, friction and rolling resistance on both surfaces. */
+/* Wrenches of normal load and friction on both surfaces. */
 static void sum_contact(const trb_race_input *in, int first, int n, const trb_lanes *l, trb_race_output *out)
 {
   const trb_vec3 x = in->roller->x, b = in->ring->centre, k = in->ring->axis;
-  const double   orbit = in->roller->orbit_speed;
-  double         fx = 0, fy = 0, fz = 0, mx = 0, my = 0, mz = 0, gx = 0, gy = 0, gz = 0, hx = 0, hy = 0, hz = 0, lost = 0, rolled = 0;
-  double         ex = 0, ey = 0, ez = 0, jx = 0, jy = 0, jz = 0;
+  double         fx = 0, fy = 0, fz = 0, mx = 0, my = 0, mz = 0, hx = 0, hy = 0, hz = 0, lost = 0;
   TRB_PADDED(n);
   for (int i = first; i < first + n; i++) {
-    const double q = l->load[i], drag = q * l->friction_coefficient[i] / l->sliding_speed[i], roll = l->rolling[i] / l->mean_speed[i];
+    const double q = l->load[i], drag = q * l->friction_coefficient[i] / l->sliding_speed[i];
     const double px = l->px[i], py = l->py[i], pz = l->pz[i];
-    /* rolling resistance drags both surfaces alike */
-    const double rx = -roll * l->mx[i], ry = -roll * l->my[i], rz = -roll * l->mz[i];
     const double tx = -q * l->nx[i] - drag * l->sx[i], ty = -q * l->ny[i] - drag * l->sy[i], tz = -q * l->nz[i] - drag * l->sz[i];
-    const double ax = tx + rx, ay = ty + ry, az = tz + rz;
     const double qx = px - x.x, qy = py - x.y, qz = pz - x.z, cx = px - b.x, cy = py - b.y, cz = pz - b.z;
-    fx += ax, fy += ay, fz += az;
-    mx += qy * az - qz * ay, my += qz * ax - qx * az, mz += qx * ay - qy * ax;
-    gx -= tx, gy -= ty, gz -= tz;
+    fx += tx, fy += ty, fz += tz;
+    mx += qy * tz - qz * ty, my += qz * tx - qx * tz, mz += qx * ty - qy * tx;
     hx -= cy * tz - cz * ty, hy -= cz * tx - cx * tz, hz -= cx * ty - cy * tx;
-    ex += rx, ey += ry, ez += rz;
-    jx += cy * rz - cz * ry, jy += cz * rx - cx * rz, jz += cx * ry - cy * rx;
     lost += drag * (l->sx[i] * l->sx[i] + l->sy[i] * l->sy[i] + l->sz[i] * l->sz[i]);
-    /* both surfaces' inertial velocities: twice the mean, relative to the contact, plus the contact's own */
-    rolled -= 2.0 * (rx * (l->mx[i] - orbit * py) + ry * (l->my[i] + orbit * px) + rz * l->mz[i]);
   }
   out->force = trb_v(fx, fy, fz);
   out->moment = trb_v(mx, my, mz);
-  out->ring_force = trb_v(gx + ex, gy + ey, gz + ez);
-  out->ring_moment = trb_v(hx + jx, hy + jy, hz + jz);
+  out->ring_force = trb_v(-fx, -fy, -fz);
+  out->ring_moment = trb_v(hx, hy, hz);
   out->torque_traction = hx * k.x + hy * k.y + hz * k.z;
-  out->torque_rolling = jx * k.x + jy * k.y + jz * k.z;
   out->power_traction = lost;
+}
+
+/* Rolling resistance drags both surfaces alike. */
+static void sum_rolling(const trb_race_input *in, int first, int n, const trb_lanes *l, trb_race_output *out)
+{
+  const trb_vec3 x = in->roller->x, b = in->ring->centre;
+  const double   orbit = in->roller->orbit_speed;
+  double         ex = 0, ey = 0, ez = 0, mx = 0, my = 0, mz = 0, jx = 0, jy = 0, jz = 0, rolled = 0;
+  TRB_PADDED(n);
+  for (int i = first; i < first + n; i++) {
+    const double roll = l->rolling[i] / l->mean_speed[i], px = l->px[i], py = l->py[i], pz = l->pz[i];
+    const double rx = -roll * l->mx[i], ry = -roll * l->my[i], rz = -roll * l->mz[i];
+    const double qx = px - x.x, qy = py - x.y, qz = pz - x.z, cx = px - b.x, cy = py - b.y, cz = pz - b.z;
+    ex += rx, ey += ry, ez += rz;
+    mx += qy * rz - qz * ry, my += qz * rx - qx * rz, mz += qx * ry - qy * rx;
+    jx += cy * rz - cz * ry, jy += cz * rx - cx * rz, jz += cx * ry - cy * rx;
+    /* both surfaces' inertial velocities: twice the mean, relative to the contact, plus the contact's own */
+    rolled -= 2.0 * (rx * (l->mx[i] - orbit * py) + ry * (l->my[i] + orbit * px) + rz * l->mz[i]);
+  }
+  const trb_vec3 force = trb_v(ex, ey, ez), on_ring = trb_v(jx, jy, jz);
+  out->force = trb_add(out->force, force);
+  out->moment = trb_add(out->moment, trb_v(mx, my, mz));
+  out->ring_force = trb_add(out->ring_force, force);
+  out->ring_moment = trb_add(out->ring_moment, on_ring);
+  out->torque_rolling = trb_dot(on_ring, in->ring->axis);
   out->power_rolling = rolled;
 }
 
@@ -181,7 +195,7 @@ static void sum_pressure_force(const trb_race_input *in, int first, int n, const
   out->power_pressure = power;
 }
 
-static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const int *loaded, int n_loaded, trb_lanes *l, trb_counters *counters,
+static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const int *loaded, int n_loaded, int rolling, trb_lanes *l, trb_counters *counters,
                         trb_race_output *outputs)
 {
   const int n = m->n_lanes;
@@ -190,7 +204,9 @@ static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const 
     trb_race_output      *out = &outputs[loaded[c]];
     out->loaded = 1;
     sum_contact(in, c * n, n, l, out);
-    if (m->params.rolling_resistance > 0.0 && m->params.rolling_pressure_force > 0.0) {
+    if (!rolling) continue;
+    sum_rolling(in, c * n, n, l, out);
+    if (m->params.rolling_pressure_force > 0.0) {
       sum_pressure_force(in, c * n, n, l, out);
       counters->pressure_force_nodes += n;
     }
@@ -200,7 +216,7 @@ static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const 
 void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inputs, trb_lanes *l, trb_counters *counters, trb_race_output *outputs)
 {
   int       loaded[TRB_TILE_LANES / TRB_LANE_PAD], n_loaded = 0;
-  const int n = m->n_lanes, rolling = m->params.rolling_resistance > 0.0;
+  const int n = m->n_lanes, rolling = m->params.rolling_resistance > 0.0 && m->film;
   for (int c = 0; c < n_inputs; c++) {
     outputs[c] = (trb_race_output){0};
     /* a contact without interference leaves its lanes to the next */
@@ -231,9 +247,9 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
     pass_film_parameter(m, &kind, all, l);
   }
   if (m->friction) pass_friction(m, &kind, all, l, counters);
-  if (rolling && m->film) {
+  if (rolling) {
     pass_rolling(m, all, l);
     counters->rolling_nodes += all;
   }
-  sum_outputs(m, inputs, loaded, n_loaded, l, counters, outputs);
+  sum_outputs(m, inputs, loaded, n_loaded, rolling, l, counters, outputs);
 }

@@ -19,7 +19,7 @@
   X(newton_share,   0.1,   1e-6,  1,    "share of the step's tolerance to which Newton's method converges") \
   X(max_step,       1e-3,  1e-12, 1e3,  "largest step, s") \
   X(first_step,     0,     0,     1,    "first step, s; 0: chosen by the integrator") \
-  X(smallest_step,  1e-15, 1e-18, 1,    "smallest step, s: below it the run stops with an error")
+  X(smallest_step,  1e-17, 0,     1,    "smallest step, s: below it the run stops with an error")
 
 typedef struct trb_settings {
 #define TRB_SETTING_MEMBER(name, standard, lower, upper, text) double name;
