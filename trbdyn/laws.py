@@ -33,7 +33,7 @@ def _make(name: str, arguments: str, text: str) -> Law:
             raise TypeError(f"{name}: {error}; takes ({', '.join(signature.parameters)})") from None
         missing = [part for part, value in given.items() if value is None]
         if missing:
-            raise InputError.of(("laws", name, missing[0]), None, "must be a number or an array of numbers")
+            raise InputError.of(("laws", name, missing[0]), None, "must be numbers, one or an array")
         try:
             arrays = np.broadcast_arrays(*(np.asarray(given[part], dtype=np.float64) for part in signature.parameters))
         except (TypeError, ValueError) as error:
