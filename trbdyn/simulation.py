@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import math
+import signal
+import threading
 import time as clock
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -238,7 +241,9 @@ class Simulation:
             return when, self._core.state()
         given = _numbers(vector)
         if given.shape != (self._model.n_state,):
-            raise InputError.of("state", f"an array of shape {given.shape}", f"must have the shape ({self._model.n_state},)")
+            raise InputError.of(
+                "state", f"an array of shape {given.shape}", f"must have the shape ({self._model.n_state},)"
+            )
         return when, given
 
     @property
@@ -327,6 +332,7 @@ class _Run:
         self.filling: Array | None = None
         self.writer: ResultWriter | None = None
         self.output: Path | None = None
+        self.interrupted: list[int] = []
         self.began = clock.perf_counter()
         self.spent = 0.0
 
@@ -365,7 +371,8 @@ class _Run:
         span = float(self.times[-1] - self.times[0])
         with tqdm(total=span, disable=not progress, unit="s", bar_format=_BAR) as bar:
             try:
-                message = self._loop(bar)
+                with _interrupts() as self.interrupted:
+                    message = self._loop(bar)
             except _core.CoreStepError as error:
                 result = self._finish(False, str(error))
                 time, body, quantity = sim.time, *_culprit(str(error))
@@ -411,7 +418,10 @@ class _Run:
             bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
             if sim.scene.effects.bodies == "rollers" and rows:
                 _check_apart(sim, records[:rows])
-            if self.callback is not None and self.callback(sim):
+            ended = self.callback is not None and self.callback(sim)
+            if self.interrupted:
+                raise KeyboardInterrupt
+            if ended:
                 return f"ended by the callback at {sim.time:.6g} s"
         return None
 
@@ -676,6 +686,26 @@ def _merged(before: dict[str, float], now: dict[str, float]) -> dict[str, float]
     merged["smallest_step"] = min(before.get("smallest_step", math.inf), now["smallest_step"])
     stepped = now["steps"] > 0
     return merged | {name: now[name] if stepped else before.get(name, now[name]) for name in _COUNTED_ONCE}
+
+
+@contextlib.contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """A list that Ctrl-C adds to, so that it comes between steps and records and never gets lost; a second one comes at once."""
+    caught: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+
+    def catch(number: int, frame: FrameType | None) -> None:
+        caught.append(number)
+        signal.signal(signal.SIGINT, before)
+
+    if threading.current_thread() is not threading.main_thread() or before is not signal.default_int_handler:
+        yield caught
+        return
+    signal.signal(signal.SIGINT, catch)
+    try:
+        yield caught
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 _BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"

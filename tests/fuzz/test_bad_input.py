@@ -1,0 +1,232 @@
+"""Whatever comes in, it is used or refused with one of the package's own errors, which says why: never anything else."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pydantic import BaseModel
+
+import trbdyn as trb
+from trbdyn import checkpoint
+from trbdyn.cases import scene_30310
+from trbdyn.errors import FileError, InputError, LoadError, StepError
+from trbdyn.toml_case import case_from_dict
+
+COMMON = settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture],
+)
+
+NUMBERS = st.one_of(
+    st.floats(),
+    st.sampled_from([0.0, -0.0, 1.0, -1.0, 1e-300, 1e300, math.nan, math.inf, -math.inf]),
+    st.integers(-(10**20), 10**20),
+)
+ANYTHING = st.one_of(
+    NUMBERS,
+    st.none(),
+    st.booleans(),
+    st.text(max_size=8),
+    st.binary(max_size=4),
+    st.lists(NUMBERS, max_size=4),
+    st.dictionaries(st.text(max_size=4), NUMBERS, max_size=2),
+)
+
+
+def say(error: Exception) -> None:
+    """A refusal gives its reason."""
+    assert str(error)
+
+
+def leaves(values: Any, path: tuple[str | int, ...] = ()) -> list[tuple[str | int, ...]]:
+    """Places of every value in nested tables, and of the tables themselves."""
+    inner: Any = values.items() if isinstance(values, dict) else enumerate(values) if isinstance(values, list) else ()
+    return [path, *(place for key, value in inner for place in leaves(value, (*path, key)))]
+
+
+def put(values: Any, path: tuple[str | int, ...], value: Any) -> Any:
+    """The same with one value changed."""
+    if not path:
+        return value
+    copy = dict(values) if isinstance(values, dict) else list(values)
+    copy[path[0]] = put(copy[path[0]], path[1:], value)
+    return copy
+
+
+SCENE = scene_30310(bearing=trb.cases.rig_30310()).to_dict()
+PLACES = leaves(SCENE)[1:]
+
+
+def choices(model: type[BaseModel], path: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...], Any]]:
+    """Every field of a model and of the models in it that takes one of a few words, with each word."""
+    found: list[tuple[tuple[str, ...], Any]] = []
+    for name, info in model.model_fields.items():
+        kind = info.annotation
+        if get_origin(kind) is Literal:
+            found += [((*path, name), word) for word in get_args(kind)]
+        elif isinstance(kind, type) and issubclass(kind, BaseModel):
+            found += choices(kind, (*path, name))
+    return found
+
+
+@COMMON
+@given(st.sampled_from(PLACES), ANYTHING)
+def test_any_value_in_any_field_of_a_scene(place: tuple[str | int, ...], value: Any) -> None:
+    try:
+        scene = trb.Scene.from_dict(put(SCENE, place, value))
+    except InputError as error:
+        say(error)
+    else:
+        assert trb.Scene.from_json(scene.to_json()) == scene
+
+
+@settings(parent=COMMON, max_examples=60)
+@given(st.sampled_from(PLACES), st.floats(0.2, 5.0), st.sampled_from([1.0, -1.0]))
+def test_what_is_accepted_can_be_stepped(place: tuple[str | int, ...], factor: float, sign: float) -> None:
+    """A scene with one number changed either steps, with finite states, or ends with a promised error."""
+    value: Any = SCENE
+    for key in place:
+        value = value[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        value = not value if isinstance(value, bool) else value
+    else:
+        value = int(value * factor * sign) if isinstance(value, int) else value * factor * sign
+    try:
+        sim = trb.Simulation(trb.Scene.from_dict(put(SCENE, place, value)))
+        for _ in range(20):
+            sim.step()
+    except (InputError, LoadError, StepError) as error:
+        say(error)
+    else:
+        assert np.isfinite(sim.state.vector).all()
+
+
+@COMMON
+@given(
+    st.sampled_from(["bearing", "lubricant", "effects", "scene", "start", "run", "other"]),
+    st.one_of(st.text(max_size=12), st.sampled_from([str(place[-1]) for place in PLACES])),
+    ANYTHING,
+)
+def test_any_key_of_a_case(table: str, key: str, value: Any) -> None:
+    case: dict[str, Any] = {"bearing": {"case": "30310"}, "scene": {"speed_rpm": 3000.0, "axial_load": 4930.0}}
+    case[table] = {**case.get(table, {}), key: value} if key else value
+    try:
+        case_from_dict(case)
+    except InputError as error:
+        say(error)
+
+
+@pytest.mark.parametrize(("path", "word"), choices(trb.Effects), ids=str)
+def test_every_choice_of_effects_steps(path: tuple[str, ...], word: str) -> None:
+    effects = trb.Effects.paper().replace(**{path[0]: word})
+    sim = trb.Simulation(scene_30310(effects=effects))
+    for _ in range(5):
+        sim.step()
+    assert np.isfinite(sim.state.vector).all()
+
+
+@pytest.fixture(scope="module")
+def sim() -> trb.Simulation:
+    return trb.Simulation(scene_30310())
+
+
+@COMMON
+@given(data=st.data())
+def test_any_state_vector(sim: trb.Simulation, data: st.DataObject) -> None:
+    good = sim.scene and trb.Simulation(sim.scene).state.vector
+    kind = data.draw(st.sampled_from(["one entry", "many entries", "wrong length", "not numbers"]))
+    vector: Any = good.copy()
+    if kind == "one entry":
+        vector[data.draw(st.integers(0, vector.size - 1))] = data.draw(st.floats())
+    elif kind == "many entries":
+        vector += data.draw(st.floats(1e-9, 1e3)) * np.random.default_rng(data.draw(st.integers(0, 99))).normal(
+            size=vector.size
+        )
+    elif kind == "wrong length":
+        vector = data.draw(st.lists(st.floats(), max_size=300))
+    else:
+        vector = data.draw(ANYTHING)
+    before = sim.state
+    try:
+        sim.set_state(vector, data.draw(st.one_of(st.none(), st.floats())))
+    except InputError:
+        after = sim.state
+        assert after.time == before.time
+        np.testing.assert_array_equal(after.vector, before.vector)
+        return
+    try:
+        for _ in range(3):
+            sim.step()
+    except StepError as error:
+        say(error)
+    assert np.isfinite(sim.state.vector).all()
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes, Path]:
+    """A result, a checkpoint, and a place for damaged ones."""
+    folder = tmp_path_factory.mktemp("files")
+
+    def stop(now: trb.Simulation) -> bool:
+        return now.time > 3e-3
+
+    trb.Simulation(scene_30310()).run(duration=0.01, checkpoint_every=1e-3, output=folder / "run.h5", callback=stop)
+    return (folder / "run.h5").read_bytes(), checkpoint.checkpoint_path(folder / "run.h5").read_bytes(), folder
+
+
+def damaged(data: bytes, draw: Any) -> bytes:
+    kind = draw(st.sampled_from(["cut", "flip", "zeros", "noise", "insert"]))
+    at = draw(st.integers(0, len(data) - 1))
+    length = draw(st.integers(1, 64))
+    match kind:
+        case "cut":
+            return data[:at]
+        case "flip":
+            return data[:at] + bytes([data[at] ^ (1 << draw(st.integers(0, 7)))]) + data[at + 1 :]
+        case "zeros":
+            return data[:at] + bytes(min(length, len(data) - at)) + data[at + length :]
+        case "noise":
+            return data[:at] + draw(st.binary(min_size=length, max_size=length)) + data[at + length :]
+        case _:
+            return data[:at] + draw(st.binary(min_size=1, max_size=64)) + data[at:]
+
+
+@settings(parent=COMMON, max_examples=300)
+@given(data=st.data())
+def test_damaged_checkpoints(files: tuple[bytes, bytes, Path], data: st.DataObject) -> None:
+    """The checksum finds every damage."""
+    _, good, folder = files
+    path = folder / "bad.checkpoint"
+    path.write_bytes(damaged(good, data.draw))
+    if path.read_bytes() == good:
+        return
+    with pytest.raises(FileError):
+        checkpoint.read(path)
+
+
+@settings(parent=COMMON, max_examples=300)
+@given(data=st.data())
+def test_damaged_results(files: tuple[bytes, bytes, Path], data: st.DataObject) -> None:
+    """A damaged result is refused, or read with the damage in its numbers; nothing else is raised."""
+    good, _, folder = files
+    path = folder / "bad.h5"
+    bad = (
+        damaged(good[: 1 << 16], data.draw) + good[1 << 16 :] if data.draw(st.booleans()) else damaged(good, data.draw)
+    )
+    path.write_bytes(bad)
+    try:
+        result = trb.load(path)
+        assert isinstance(result.message, str)
+        for field in result.fields:
+            assert result[field.name].shape[0] == len(result)
+        result.scene  # noqa: B018
+    except (FileError, InputError) as error:
+        say(error)

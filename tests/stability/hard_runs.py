@@ -1,0 +1,194 @@
+"""Runs a hard scene and says what held and what did not."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+import numpy as np
+from hard_scenes import Hard, smooth
+from numpy.typing import NDArray
+
+import trbdyn as trb
+from trbdyn import simulation
+
+Array = NDArray[np.float64]
+
+WATCH_RECORDS = 16
+"""Records between looks at the count of steps."""
+
+TIGHT = {"rtol": 1e-7, "atol_position": 1e-12, "atol_angle": 1e-10, "atol_velocity": 1e-8, "atol_spin": 1e-6}
+"""Tolerances of the runs that the others are compared with, and of comparisons between methods."""
+
+LATE = 10.0
+"""Bound of the steps a second after an event, in those of the smooth scene."""
+
+PATIENCE = 60.0
+"""Wall time beyond which a run of a scene that is not slow is given up (s)."""
+
+
+@dataclass
+class Verdict:
+    """What a hard scene did.
+
+    Attributes
+    ----------
+    status : str
+        'ok', 'error' (the promised one) or 'failed'.
+    broken : list of str
+        What did not hold.
+    steps, smallest_step, wall_s_per_revolution, closure, tolerances, path, twin, ratio
+        Measured: see `Hard`; `ratio` is steps a second over those of the smooth scene.
+    """
+
+    name: str
+    status: str = "ok"
+    message: str = ""
+    broken: list[str] = field(default_factory=list)
+    steps: int = 0
+    smallest_step: float = math.nan
+    wall_s_per_revolution: float = math.nan
+    closure: float = math.nan
+    twin: float = math.nan
+    tolerances: float = math.nan
+    path: float = math.nan
+    ratio: float = math.nan
+
+    def demand(self, holds: bool, what: str) -> None:
+        if not holds:
+            self.broken.append(what)
+
+
+def judge(hard: Hard, *, quick: bool = False) -> Verdict:
+    """Run a scene in every way; `quick` leaves out the comparisons."""
+    verdict = Verdict(hard.name)
+    try:
+        scene = hard.make()
+        sim = trb.Simulation(scene)
+        result, watched = _run(sim, hard.duration, hard.slow)
+    except Exception as error:
+        if hard.error is not None and isinstance(error, hard.error) and hard.words in str(error):
+            verdict.status, verdict.message = "error", f"{type(error).__name__}: {str(error).splitlines()[0]}"
+        else:
+            verdict.status = "failed"
+            verdict.broken.append(f"{type(error).__name__}: {error}")
+        return verdict
+    verdict.demand(hard.error is None, f"ends without the promised {getattr(hard.error, '__name__', '')}")
+    _look_at(hard, result, watched, verdict)
+    if not quick and not verdict.broken:
+        _compare(hard, scene, result, verdict)
+    if verdict.broken:
+        verdict.status = "failed"
+    return verdict
+
+
+def _run(sim: trb.Simulation, duration: float, slow: bool = False) -> tuple[trb.Result, Array]:
+    watched: list[tuple[float, float]] = [(sim.time, 0.0)]
+
+    def watch(now: trb.Simulation) -> bool:
+        watched.append((now.time, now.statistics["steps"]))
+        return not slow and clock.perf_counter() - began > PATIENCE
+
+    began = clock.perf_counter()
+    before = simulation.CHUNK_RECORDS
+    simulation.CHUNK_RECORDS = WATCH_RECORDS
+    try:
+        result = sim.run(duration=duration, save_every=max(duration / 2000, 1e-5), callback=watch)
+    finally:
+        simulation.CHUNK_RECORDS = before
+    return result, np.array(watched)
+
+
+@cache
+def _smooth_rate() -> float:
+    """Steps a second of bearing time of the smooth scene."""
+    sim = trb.Simulation(smooth())
+    sim.run(duration=0.04)
+    return float(sim.statistics["steps"]) / sim.time
+
+
+def _look_at(hard: Hard, result: trb.Result, watched: Array, verdict: Verdict) -> None:
+    verdict.steps = int(result.stats["steps"])
+    verdict.smallest_step = float(result.stats["smallest_step"])
+    verdict.wall_s_per_revolution = float(result.stats["wall_s_per_revolution"])
+    verdict.message = result.message
+    verdict.demand(result.success, f"did not finish: {result.message}")
+    for entry in result.fields:
+        values = result[entry.name]
+        verdict.demand(bool(np.isfinite(values).all()), f"{entry.name} is not finite")
+        if entry.kind in ("quaternion", "roller_quat"):
+            norm = np.linalg.norm(values, axis=-1)
+            verdict.demand(bool(np.allclose(norm, 1.0, rtol=0.0, atol=1e-12)), f"{entry.name} is not of unit length")
+    verdict.closure = closure(result)
+    verdict.demand(
+        verdict.closure <= hard.closure, f"energy closes to {verdict.closure:.2g} only, not {hard.closure:g}"
+    )
+    verdict.ratio = verdict.steps / hard.duration / _smooth_rate()
+    verdict.demand(
+        verdict.ratio <= hard.steps, f"{verdict.ratio:.3g} times the steps of the smooth scene, not {hard.steps:g}"
+    )
+    if hard.calm is not None:
+        after = watched[watched[:, 0] >= hard.calm]
+        late = (after[-1, 1] - after[0, 1]) / (after[-1, 0] - after[0, 0]) / _smooth_rate()
+        verdict.demand(
+            late <= LATE, f"steps do not recover: {late:.3g} times those of the smooth scene after the event"
+        )
+
+
+def closure(result: trb.Result) -> float:
+    """Residual of the energy audit over what was dissipated, or a thousandth of the largest energy, or 1 uJ."""
+    audit = result.energy_audit
+    energy = float(np.max(np.abs(result.kinetic_energy) + np.abs(result.elastic_energy)))
+    return abs(audit.residual) / max(abs(audit.dissipated), 1e-3 * energy, 1e-6)
+
+
+def _compare(hard: Hard, scene: trb.Scene, result: trb.Result, verdict: Verdict) -> None:
+    short = min(hard.duration, 1.0)
+    tight, _ = _run(trb.Simulation(scene, **TIGHT), short, hard.slow)
+    verdict.demand(tight.success, f"the reference did not finish: {tight.message}")
+    verdict.tolerances = _difference_of_losses(result, tight)
+    verdict.demand(verdict.tolerances <= hard.tolerances, f"two tolerances differ by {verdict.tolerances:.2g}")
+    verdict.twin = _made_by_twin(scene, min(hard.duration, 0.02))
+    verdict.demand(verdict.twin <= hard.twin, f"without friction {verdict.twin:.2g} of the energy is made or lost")
+    verdict.path = _difference_of_methods(hard, scene)
+    verdict.demand(verdict.path <= hard.path, f"two methods differ by {verdict.path:.2g} in their speeds")
+
+
+def _difference_of_losses(result: trb.Result, other: trb.Result) -> float:
+    """Relative difference of the mean loss, over the same time."""
+    end = other.time[-1]
+    here = int(np.argmin(np.abs(result.time - end)))
+    losses = [name for name in (entry.name for entry in result.fields) if name.startswith("loss_")]
+    ours = sum(float(result[name][here]) for name in losses)
+    theirs = sum(float(other[name][-1]) for name in losses)
+    energy = float(np.max(other.kinetic_energy + other.elastic_energy))
+    return abs(ours - theirs) / max(abs(ours), abs(theirs), 1e-3 * energy, 1e-6)
+
+
+def _made_by_twin(scene: trb.Scene, duration: float) -> float:
+    none: dict[str, Any] = {
+        "lubrication": "full_film",
+        "traction": "none",
+        "thermal": False,
+        "rolling_resistance": False,
+    }
+    twin = scene.replace(effects=scene.effects.replace(**none, rolling_pressure_force=False, damping="off"))
+    result, _ = _run(trb.Simulation(twin, **TIGHT), duration)
+    residual = np.abs(result.energy_balance["residual"]).max()
+    return float(residual / np.max(result.kinetic_energy + result.elastic_energy))
+
+
+def _difference_of_methods(hard: Hard, scene: trb.Scene) -> float:
+    second: dict[str, Any] = {"integrator": "erk"} if hard.second == "erk" else {"max_order": 5}
+    speeds = []
+    for options in ({"max_order": 2}, second):
+        sim = trb.Simulation(scene, **TIGHT, **options)
+        result, _ = _run(sim, min(hard.window, hard.duration))
+        if not result.success:
+            return math.inf
+        speeds.append(np.concatenate([result.roller_velocity.reshape(-1), result.cage_velocity.reshape(-1)]))
+    scale = max(float(np.abs(speeds[0]).max()), 1e-3)
+    return float(np.abs(speeds[0] - speeds[1]).max()) / scale

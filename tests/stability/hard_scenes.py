@@ -1,0 +1,567 @@
+"""The catalogue of hard scenes: what each is, why it is hard, how long it runs, and what must hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import trbdyn as trb
+from trbdyn.cases import rig_30310, scene_30310
+from trbdyn.errors import InputError, LoadError, StepError
+from trbdyn.pocket import OtherPocket, Pocket
+from trbdyn.pocket_shapes import chamfered_pocket, default_pocket, one_sided_pocket, stepped_pocket
+from trbdyn.start import StateView
+
+Make = Callable[[], trb.Scene]
+
+
+@dataclass(frozen=True)
+class Hard:
+    """One hard scene.
+
+    Attributes
+    ----------
+    name, why : str
+        What it is called, and why it is hard.
+    make : callable
+        Makes the scene; may raise the promised error.
+    duration : float
+        Bearing time (s).
+    error : type, optional
+        The promised error, where the scene is impossible.
+    words : str
+        What the error's message must say.
+    closure : float
+        Bound of the energy audit's closure: residual over dissipated work, or over the largest energy where nothing is lost.
+    twin : float
+        Bound of the energy that the scene without friction makes or loses, over the largest energy in it.
+    steps : float
+        Bound of the steps a second of bearing time, in those of the smooth scene.
+    calm : float or None
+        When the event is over (s): from there on steps must be large again.
+    tolerances : float
+        Bound of what two tolerances differ by: mean loss, relative, over the whole run.
+    path : float
+        Bound of what two methods differ by over `window`: speeds of rollers and cage, over the largest speed.
+    window : float
+        Bearing time over which two methods are compared (s).
+    second : {'erk', 'bdf5'}
+        The second method: explicit Runge-Kutta, or BDF of order up to 5 where explicit steps would be too many.
+    slow : bool
+        Takes more than a few seconds.
+    """
+
+    name: str
+    why: str
+    make: Make
+    duration: float = 0.02
+    error: type[Exception] | None = None
+    words: str = ""
+    closure: float = 0.05
+    twin: float = 2e-4
+    steps: float = 40.0
+    calm: float | None = None
+    tolerances: float = 0.05
+    path: float = 2e-3
+    window: float = 5e-4
+    second: str = "erk"
+    slow: bool = False
+
+
+def smooth() -> trb.Scene:
+    """What the others are measured against."""
+    return scene_30310(3000.0, 4930.0)
+
+
+def cage(**changes: Any) -> trb.Bearing:
+    bearing = rig_30310()
+    return bearing.replace(cage=bearing.cage.replace(**changes))
+
+
+def roller(**changes: Any) -> trb.Bearing:
+    bearing = rig_30310()
+    return bearing.replace(roller=bearing.roller.replace(**changes))
+
+
+def with_pocket(pocket: Pocket, index: int | None = None) -> trb.Bearing:
+    if index is None:
+        return cage(pocket=pocket)
+    return cage(other_pockets=(OtherPocket(index=index, pocket=pocket),))
+
+
+def effects(**changes: Any) -> trb.Effects:
+    return trb.Effects.paper().replace(**changes)
+
+
+def history(*points: tuple[float, float]) -> trb.History:
+    times, values = zip(*points, strict=True)
+    return trb.History(times=times, values=values)
+
+
+@cache
+def loaded_place(axial_load: float = 4930.0) -> float:
+    """Axial place of the ring under a load (m)."""
+    return float(trb.Simulation(scene_30310(3000.0, axial_load)).equilibrium.displacement[2])
+
+
+def from_state(change: Callable[[StateView, trb.Scene], None], **fields: Any) -> trb.Scene:
+    """A scene that starts from a changed start."""
+    scene = scene_30310(**fields)
+    sim = trb.Simulation(scene)
+    vector = sim.state.vector
+    change(sim.view(vector), scene)
+    return scene.replace(start=trb.Start.state(vector))
+
+
+def smaller_rollers(count: int) -> trb.Bearing:
+    """As many rollers as fit round the pitch circle, if they are small enough."""
+    bearing = rig_30310()
+    diameter = 0.8 * bearing.pitch_diameter * math.sin(math.pi / count)
+    scale = diameter / bearing.roller.diameter
+    ribs, own = bearing.ribs, bearing.cage
+    return bearing.replace(
+        n_rollers=count,
+        roller=bearing.roller.replace(diameter=diameter),
+        ribs=ribs.replace(contact_height=scale * ribs.contact_height, edge_low=0.0, edge_high=scale * ribs.edge_high),
+        cage=own.replace(
+            bar_width=scale * own.bar_width,
+            wall_inner=scale * own.wall_inner,
+            wall_outer=scale * own.wall_outer,
+            wall_half_width=scale * own.wall_half_width,
+        ),
+    )
+
+
+def tight_pocket(interference: float) -> Pocket:
+    """The default pocket with bars that press on the roller (m)."""
+    pocket = default_pocket(rig_30310())
+    faces = []
+    for face in pocket.faces:
+        if face.part == "flank":
+            normal = np.cross(face.u, face.v)
+            gap = rig_30310().cage.play_circumferential * math.cos(math.radians(1.87)) * math.cos(math.radians(26.39))
+            face = face.replace(origin=tuple(np.array(face.origin) + (gap + interference) * normal))
+        faces.append(face)
+    return Pocket(faces=tuple(faces), allow_interference=True)
+
+
+def skewed(state: StateView, scene: trb.Scene) -> None:
+    limit = scene.bearing.cage.play_circumferential / (0.5 * scene.bearing.roller.effective_length)
+    state["cage_x"] = state["cage_y"] = 0.0
+    state["roller_skew"] = 0.9 * limit * np.where(np.arange(scene.bearing.n_rollers) % 2, 1.0, -1.0)
+
+
+def in_corner(state: StateView, scene: trb.Scene) -> None:
+    skewed(state, scene)
+    state["cage_z"] += 0.35e-3
+    state["cage_x"] = 0.02e-3
+
+
+def slipping(share: float) -> Callable[[StateView, trb.Scene], None]:
+    def change(state: StateView, scene: trb.Scene) -> None:
+        state["roller_v_t"] *= 1.0 - share
+
+    return change
+
+
+def deep(state: StateView, scene: trb.Scene) -> None:
+    state["roller_r"] += 50e-6
+
+
+SHOCK = history((0.0, -9.80665), (5e-3, -9.80665), (5.05e-3, 4903.0), (5.95e-3, 4903.0), (6e-3, -9.80665))
+S = scene_30310
+
+
+def slow_films() -> trb.Effects:
+    """For scenes that stand still: friction turns over slip of 0.5 mm/s and not 10 um/s, which is stick-slip of nanoseconds."""
+    return effects(friction=trb.Effects.paper().friction.replace(speed_floor=0.05))
+
+
+def _vg(**changes: Any) -> trb.Lubricant:
+    return trb.lubricants.vg100(temperature_c=60.0).replace(**changes)
+
+
+HARD: tuple[Hard, ...] = (
+    Hard(
+        "no_load",
+        "nothing holds rollers and rings together",
+        lambda: S(axial_load=0.0),
+        error=InputError,
+        words="must be > 0",
+    ),
+    Hard(
+        "more_radial_than_carried",
+        "no equilibrium: the rings come apart",
+        lambda: S(3000.0, 4930.0, 30000.0),
+        error=InputError,
+        words="all it can carry",
+    ),
+    Hard(
+        "zero_pocket_play",
+        "no room for a roller in its pocket",
+        lambda: S(bearing=cage(play_circumferential=0.0)),
+        error=InputError,
+        words="must be > 0",
+    ),
+    Hard(
+        "rollers_overlap",
+        "more rollers than fit",
+        lambda: S(bearing=rig_30310().replace(n_rollers=60)),
+        error=InputError,
+        words="overlap",
+    ),
+    Hard(
+        "state_not_finite",
+        "a start that is no state",
+        lambda: from_state(lambda state, scene: state.__setitem__("cage_x", math.nan)),
+        error=InputError,
+        words="finite",
+    ),
+    Hard(
+        "moment_beyond_capacity",
+        "the moment tips the ring out of its rollers",
+        lambda: S(3000.0, 500.0, moment_x=500.0),
+        error=LoadError,
+        words="equilibrium",
+    ),
+    Hard(
+        "rollers_without_cage_touch",
+        "nothing keeps rollers apart",
+        lambda: S(
+            1000.0,
+            bearing=cage(play_circumferential=8e-3, play_radial=16e-3),
+            effects=effects(bodies="rollers"),
+            start=trb.Start.unequal(3, spread=1.0),
+        ),
+        error=StepError,
+        words="touch",
+    ),
+    Hard(
+        "unloaded_ring",
+        "no contact carries: rollers float in a clearance of 30 um",
+        lambda: S(3000.0, 0.0, displacement=(0.0, 0.0, 30e-6)),
+        tolerances=0.5,
+    ),
+    Hard(
+        "zero_clearance",
+        "every contact at the point of touching",
+        lambda: S(3000.0, 0.0, displacement=(0.0, 0.0, 0.0)),
+        tolerances=0.8,
+        steps=60.0,
+    ),
+    Hard("negative_clearance", "preloaded by 60 um", lambda: S(3000.0, 0.0, displacement=(0.0, 0.0, -60e-6))),
+    Hard(
+        "load_removed_and_back",
+        "the ring lets go within 0.1 ms, and comes back within 0.1 ms",
+        lambda: S(
+            3000.0,
+            0.0,
+            displacement=(
+                0.0,
+                0.0,
+                history(
+                    (0.0, loaded_place()),
+                    (5e-3, loaded_place()),
+                    (5.1e-3, 30e-6),
+                    (8e-3, 30e-6),
+                    (8.1e-3, loaded_place()),
+                ),
+            ),
+        ),
+        duration=0.04,
+        calm=0.02,
+        steps=30.0,
+        tolerances=0.3,
+    ),
+    Hard(
+        "load_step",
+        "1 % of the load and back within 0.1 ms",
+        lambda: S(
+            3000.0,
+            axial_load=history((0.0, 4930.0), (5e-3, 4930.0), (5.1e-3, 49.3), (8e-3, 49.3), (8.1e-3, 4930.0)),
+            ring="follows",
+        ),
+        duration=0.04,
+        calm=0.02,
+        steps=30.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "rollers_leave_contact",
+        "half of the rollers unloaded at each turn",
+        lambda: S(2000.0, 4930.0, 14000.0),
+        duration=0.06,
+    ),
+    Hard(
+        "start_from_rest",
+        "films and slip ratios begin at zero speed",
+        lambda: S(history((0.0, 0.0), (2e-3, 0.0), (0.03, 3000.0))),
+        duration=0.05,
+        tolerances=0.2,
+        second="bdf5",
+        path=0.05,
+    ),
+    Hard(
+        "speed_reversal",
+        "everything passes through zero speed",
+        lambda: S(history((0.0, 1000.0), (0.005, 1000.0), (0.035, -1000.0))),
+        duration=0.05,
+        steps=40.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "stop",
+        "rollers come to rest and stay",
+        lambda: S(history((0.0, 3000.0), (0.005, 3000.0), (0.03, 0.0)), effects=slow_films()),
+        duration=0.06,
+        tolerances=0.2,
+    ),
+    Hard(
+        "30000_rpm",
+        "centrifugal force beyond the load, thermal reduction at its floor",
+        lambda: S(30000.0),
+        duration=0.01,
+        steps=60.0,
+        tolerances=0.3,
+        path=1e-2,
+    ),
+    Hard(
+        "10_rpm",
+        "traction damping rises as speed falls",
+        lambda: S(10.0),
+        duration=0.2,
+        second="bdf5",
+        tolerances=0.3,
+        path=1e-2,
+        closure=0.15,
+    ),
+    Hard(
+        "pocket_play_2_mm",
+        "long free flights",
+        lambda: S(bearing=cage(play_radial=2e-3, play_circumferential=1e-3), start=trb.Start.whirl(0.3)),
+        tolerances=0.5,
+        steps=300.0,
+    ),
+    Hard(
+        "negative_pocket_play",
+        "bars press on every roller",
+        lambda: S(bearing=with_pocket(tight_pocket(3e-6))),
+        steps=300.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "pmax_4_GPa",
+        "stiffest contacts, negative numerator of the thermal factor",
+        lambda: S(3000.0, 140e3),
+        duration=0.01,
+        steps=40.0,
+    ),
+    Hard(
+        "pmax_4_GPa_30000_rpm",
+        "load and speed at once",
+        lambda: S(30000.0, 140e3),
+        duration=4e-3,
+        steps=80.0,
+        tolerances=0.3,
+        path=1e-2,
+    ),
+    Hard(
+        "load_1_N_3000_rpm",
+        "centrifugal force of the rollers lifts the ring: no equilibrium",
+        lambda: S(3000.0, 1.0),
+        error=LoadError,
+        words="cannot carry this load",
+    ),
+    Hard(
+        "load_1_N",
+        "hardly any contact",
+        lambda: S(100.0, 1.0),
+        duration=0.1,
+        tolerances=0.5,
+        second="bdf5",
+        path=1e-2,
+        steps=60.0,
+    ),
+    Hard("misaligned", "all load on the edge slices of some rollers", lambda: S(3000.0, 4930.0, misalignment_x=3e-3)),
+    Hard(
+        "skew_at_the_limit",
+        "alternate rollers skewed until the bars stop them",
+        lambda: from_state(skewed),
+        steps=300.0,
+        tolerances=0.3,
+    ),
+    Hard(
+        "one_roller_20_um_larger",
+        "one roller carries nearly all",
+        lambda: S(bearing=roller(diameter_deviation=(20e-6,) + 11 * (0.0,))),
+    ),
+    Hard(
+        "one_roller_20_um_smaller",
+        "one roller never carries",
+        lambda: S(bearing=roller(diameter_deviation=(-20e-6,) + 11 * (0.0,))),
+        tolerances=0.2,
+    ),
+    Hard(
+        "step_in_diameter",
+        "half of the rollers 10 um larger",
+        lambda: S(bearing=roller(diameter_deviation=6 * (10e-6,) + 6 * (0.0,))),
+        tolerances=0.2,
+    ),
+    Hard(
+        "missing_bar",
+        "one roller without a bar before it",
+        lambda: S(bearing=with_pocket(one_sided_pocket(rig_30310()), 3)),
+    ),
+    Hard(
+        "cage_1_g",
+        "a cage lighter than a roller: fast impacts",
+        lambda: S(bearing=cage(mass=1e-3, inertia_axial=1.95e-6, inertia_transverse=1.05e-6)),
+        steps=60.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "cage_5_kg",
+        "a cage that rollers can hardly move",
+        lambda: S(bearing=cage(mass=5.0, inertia_axial=9.75e-3, inertia_transverse=5.25e-3)),
+        tolerances=0.3,
+    ),
+    Hard(
+        "dry_through_zero",
+        "Coulomb friction, sliding reversed ten times",
+        lambda: S(
+            history(*((2e-3 * k, 200.0 * (-1) ** k) for k in range(11))),
+            effects=effects(lubrication="dry", traction="coulomb", thermal=False, rolling_resistance=False),
+        ),
+        duration=0.022,
+        steps=60.0,
+        tolerances=0.2,
+        second="bdf5",
+    ),
+    Hard(
+        "boundary_falling_branch",
+        "friction that falls as slip rises: negative damping",
+        lambda: from_state(
+            slipping(0.02), effects=effects(lubrication="boundary", thermal=False, rolling_resistance=False)
+        ),
+        steps=60.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "standstill",
+        "no speed at all: films, slip ratios and traction at zero",
+        lambda: S(0.0, effects=slow_films()),
+        duration=0.02,
+        second="bdf5",
+        tolerances=2.0,
+    ),
+    Hard(
+        "standstill_1_N",
+        "no speed and no load",
+        lambda: S(0.0, 1.0, effects=slow_films()),
+        second="bdf5",
+        tolerances=2.0,
+        steps=60.0,
+        closure=0.15,
+    ),
+    Hard(
+        "huge_viscosity",
+        "10 Pa s: films of a tenth of a millimetre",
+        lambda: S(lubricant=_vg(viscosity=10.0)),
+        tolerances=0.2,
+    ),
+    Hard(
+        "barus_overflow",
+        "exp(alpha p) beyond any number without its cap",
+        lambda: S(3000.0, 140e3, lubricant=_vg(pressure_law="barus", viscosity_exponent_cap=60.0)),
+        duration=0.01,
+        second="bdf5",
+    ),
+    Hard("3_rollers", "each holds a third of the ring", lambda: S(bearing=rig_30310().replace(n_rollers=3))),
+    Hard(
+        "60_rollers",
+        "thin rollers, large system",
+        lambda: S(bearing=smaller_rollers(60)),
+        duration=0.01,
+        tolerances=0.2,
+        path=1e-2,
+    ),
+    Hard("1_slice", "a contact that cannot feel tilt", lambda: S(effects=effects(n_slices=1)), tolerances=0.3),
+    Hard("200_slices", "many small forces", lambda: S(effects=effects(n_slices=200)), duration=0.01),
+    Hard(
+        "faces_meet_at_edges",
+        "flank across the border of two lands",
+        lambda: S(bearing=with_pocket(stepped_pocket(rig_30310(), step=20e-6)), start=trb.Start.whirl(0.9)),
+        tolerances=0.2,
+    ),
+    Hard(
+        "chamfered_bars",
+        "outlines with eight corners",
+        lambda: S(bearing=with_pocket(chamfered_pocket(rig_30310())), start=trb.Start.whirl(0.9)),
+        tolerances=0.2,
+    ),
+    Hard(
+        "rollers_in_corners", "ends and flanks touch at once", lambda: from_state(in_corner), steps=80.0, tolerances=0.3
+    ),
+    Hard(
+        "cage_held_by_ends",
+        "nothing guides the cage in its plane",
+        lambda: S(effects=effects(pocket_bars=False)),
+        tolerances=0.2,
+    ),
+    Hard("no_gravity", "nothing settles the cage", lambda: S(effects=effects(gravity=False))),
+    Hard(
+        "gravity_times_100",
+        "rollers and cage pressed down hard",
+        lambda: S(gravity=(0.0, -980.665, 0.0)),
+        steps=60.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "soft_traction_modes",
+        "modes of 2 to 30 kHz at 1 % damping, over a long run",
+        lambda: S(3000.0, 1230.0, start=trb.Start.unequal(1)),
+        duration=1.0,
+        slow=True,
+    ),
+    Hard(
+        "traction_damping_4e6", "1000 rpm: the stiffest traction", lambda: S(1000.0, 4930.0), duration=0.06, window=2e-4
+    ),
+    Hard(
+        "shock_500_g",
+        "500 g for 1 ms",
+        lambda: S(gravity=(0.0, SHOCK, 0.0)),
+        duration=0.04,
+        calm=0.03,
+        steps=40.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "deep_interference",
+        "starts with 50 um in the outer race: 100 kN a roller",
+        lambda: from_state(deep),
+        steps=200.0,
+        tolerances=1.0,
+        path=1e-2,
+        window=2e-4,
+    ),
+    Hard(
+        "whirl_standard_damping",
+        "impacts with Hunt-Crossley damping",
+        lambda: S(effects=trb.Effects.standard(), start=trb.Start.whirl(1.0)),
+        duration=0.06,
+    ),
+    Hard(
+        "thousand_revolutions",
+        "errors that add up",
+        lambda: S(start=trb.Start.whirl(0.9)),
+        duration=20.0,
+        slow=True,
+        tolerances=0.2,
+    ),
+)
+"""Every hard scene."""

@@ -1,0 +1,75 @@
+"""The table of all hard scenes: `python tests/stability/stability.py [--json FILE] [NAME...]`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from hard_runs import Verdict, judge
+from hard_scenes import HARD
+
+HEAD = (
+    f"{'scene':<28} {'status':<7} {'steps':>8} {'smallest':>9} {'s/rev':>8} {'steps x':>8} {'energy':>8} {'twin':>8} "
+    f"{'2 tol.':>8} {'2 meth.':>8}"
+)
+
+
+def line(verdict: Verdict) -> str:
+    numbers = (verdict.closure, verdict.twin, verdict.tolerances, verdict.path)
+    if verdict.status == "error":
+        return f"{verdict.name:<28} {verdict.status:<7} {verdict.message}"
+    text = f"{verdict.name:<28} {verdict.status:<7} {verdict.steps:>8} {verdict.smallest_step:>9.1e} "
+    text += f"{verdict.wall_s_per_revolution:>8.2g} {verdict.ratio:>8.2f} "
+    return text + " ".join(f"{number:>8.1e}" for number in numbers)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="these scenes only")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the table as JSON")
+    parser.add_argument("--quick", action="store_true", help="leave out the slow scenes")
+    options = parser.parse_args()
+    unknown = set(options.names) - {hard.name for hard in HARD}
+    if unknown:
+        parser.error(f"no such scene: {', '.join(sorted(unknown))}")
+    chosen = [hard for hard in HARD if (not options.names or hard.name in options.names)]
+    chosen = [hard for hard in chosen if not (options.quick and hard.slow)]
+    print(HEAD)
+    verdicts = []
+    for hard in chosen:
+        began = time.perf_counter()
+        verdict = judge(hard)
+        verdicts.append((hard, verdict, time.perf_counter() - began))
+        print(line(verdict), flush=True)
+        for trouble in verdict.broken:
+            print(f"    {trouble}", flush=True)
+    if options.json:
+        rows = [
+            {"why": hard.why, "duration_s": hard.duration, **asdict(verdict), "wall_s": wall}
+            for hard, verdict, wall in verdicts
+        ]
+        clean = [
+            {
+                key: None if isinstance(value, float) and not math.isfinite(value) else value
+                for key, value in row.items()
+            }
+            for row in rows
+        ]
+        options.json.parent.mkdir(parents=True, exist_ok=True)
+        options.json.write_text(json.dumps(clean, indent=2) + "\n", encoding="utf-8")
+    failed = sum(verdict.status == "failed" for _, verdict, _ in verdicts)
+    promised = sum(verdict.status == "error" for _, verdict, _ in verdicts)
+    print(f"status error: {promised} scenes that are impossible, and end with the error that is promised")
+    print(f"{len(verdicts) - failed} passed, {failed} failed")
+    return int(failed > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,53 @@
+"""A seeded part of the hard scenes in short; all of them, in every way, are in the table that `make stability` prints."""
+
+from __future__ import annotations
+
+import random
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from hard_runs import judge
+from hard_scenes import HARD, Hard
+
+QUICK = 14
+"""Scenes that every test run looks at, besides the impossible ones."""
+
+
+def chosen() -> list[Hard]:
+    """Others with every change of the catalogue, the same ones for everybody."""
+    return random.Random(5).sample([hard for hard in HARD if not hard.slow and hard.error is None], QUICK)
+
+
+def test_the_catalogue_is_whole() -> None:
+    assert len(HARD) >= 30
+    assert len({hard.name for hard in HARD}) == len(HARD)
+    assert all(hard.why for hard in HARD)
+
+
+@pytest.mark.parametrize("hard", [hard for hard in HARD if hard.error and not hard.slow], ids=lambda hard: hard.name)
+def test_impossible_scenes_end_with_the_promised_error(hard: Hard) -> None:
+    verdict = judge(hard)
+    assert verdict.status == "error", verdict.broken
+    assert verdict.message
+
+
+@pytest.mark.parametrize("hard", chosen(), ids=lambda hard: hard.name)
+def test_hard_scenes_in_short(hard: Hard) -> None:
+    """A quarter of its length, without the comparisons; what follows an event is left to the table. Bounds of rates are four
+    times as wide, as what happens at the start counts for more.
+    """
+    bounds = {"steps": 4.0 * hard.steps, "closure": 4.0 * hard.closure}
+    verdict = judge(replace(hard, duration=0.25 * hard.duration, calm=None, **bounds), quick=True)
+    assert verdict.status == "ok", verdict.broken
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("hard", HARD, ids=lambda hard: hard.name)
+def test_hard_scenes(hard: Hard) -> None:
+    verdict = judge(hard)
+    assert verdict.status != "failed", verdict.broken
