@@ -127,8 +127,8 @@ EFFECTS: Final = (
         counters=("rolling_nodes", "pressure_force_nodes"),
         patch={
             KERNEL: (
-                (r"\n  if \(rolling && m->film\) \{.*?\n  \}", "\n  (void)rolling;"),
-                (r"roll = l->rolling\[i\] / l->mean_speed\[i\];", "roll = 0.0;"),
+                (r"\n  if \(rolling\) \{.*?\n  \}", "\n  (void)rolling;"),
+                (r"    sum_rolling\(in, c \* n, n, l, out\);", "    (void)sum_rolling;"),
                 (r"\n    if \(m->params\.rolling_resistance > 0\.0 && .*?\n    \}", "\n    (void)counters;"),
             )
         },
