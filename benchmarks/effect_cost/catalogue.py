@@ -129,7 +129,7 @@ EFFECTS: Final = (
             KERNEL: (
                 (r"\n  if \(rolling\) \{.*?\n  \}", "\n  (void)rolling;"),
                 (r"    sum_rolling\(in, c \* n, n, l, out\);", "    (void)sum_rolling;"),
-                (r"\n    if \(m->params\.rolling_resistance > 0\.0 && .*?\n    \}", "\n    (void)counters;"),
+                (r"\n    if \(m->params\.rolling_pressure_force > 0\.0.*?\n    \}", "\n    (void)counters;"),
             )
         },
     ),
@@ -140,7 +140,7 @@ EFFECTS: Final = (
         {"rolling_resistance": True, "rolling_pressure_force": True},
         {"rolling_resistance": True},
         ("pressure_force_nodes",),
-        {KERNEL: ((r"\n    if \(m->params\.rolling_resistance > 0\.0 && .*?\n    \}", "\n    (void)counters;"),)},
+        {KERNEL: ((r"\n    if \(m->params\.rolling_pressure_force > 0\.0.*?\n    \}", "\n    (void)counters;"),)},
     ),
     Effect(
         "damping",
