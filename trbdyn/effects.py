@@ -128,6 +128,8 @@ class Effects(Model):
     def _check(self) -> Self:
         if self.rolling_pressure_force and not self.rolling_resistance:
             raise InputError.of("rolling_pressure_force", True, "needs rolling_resistance = True")
+        if self.n_slices == 1 and not self.back_rib:
+            raise InputError.of("n_slices", 1, "must be >= 2 without back_rib: one slice lets rollers tilt freely")
         return self
 
     @property

@@ -21,6 +21,9 @@ from trbdyn.validation import Model, Number, as_number, unit
 
 FloatArray = NDArray[np.float64]
 
+MAX_TIME = 1e6
+"""Latest time of anything (s): up to there times are told apart to a tenth of a nanosecond, the first steps of a run."""
+
 
 class History(Model):
     """A quantity given at times; constant before the first and after the last.
@@ -28,7 +31,7 @@ class History(Model):
     Parameters
     ----------
     times : sequence of float
-        Times (s), ascending, at least two.
+        Times (s), ascending, at least two, from -1e6 to 1e6.
     values : sequence of float
         The quantity at each time.
     """
@@ -46,7 +49,25 @@ class History(Model):
         if not np.all(steps > 0):
             place = int(np.argmin(steps > 0)) + 1
             raise InputError.of(("times", place), self.times[place], "must be later than the time before it (s)")
+        farthest = int(np.argmax(np.abs(self.times)))
+        if abs(self.times[farthest]) > MAX_TIME:
+            raise InputError.of(
+                ("times", farthest), self.times[farthest], f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)"
+            )
+        self._check_curve(steps)
         return self
+
+    def _check_curve(self, steps: FloatArray) -> None:
+        with np.errstate(all="ignore"):
+            try:
+                finite = bool(np.isfinite(self._curve.c).all())
+            except ValueError:  # SciPy refuses slopes that are not finite
+                finite = False
+            steepest = int(np.argmax(np.abs(np.diff(self.values) / steps))) + 1
+        if not finite:
+            raise InputError.of(
+                ("values", steepest), self.values[steepest], "must be closer to the value before it: the curve overflows"
+            )
 
     @classmethod
     def table(cls, times: Sequence[float] | FloatArray, values: Sequence[float] | FloatArray) -> Self:

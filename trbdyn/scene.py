@@ -13,10 +13,12 @@ from trbdyn.bearing import Bearing
 from trbdyn.effects import Effects
 from trbdyn.errors import MISSING, InputError, Path
 from trbdyn.lubricants import Lubricant, vg100
-from trbdyn.motion import History, Quantity, is_constant, knot_times, value_at, values_of
+from trbdyn.motion import MAX_TIME, History, Quantity, is_constant, knot_times, value_at, values_of
 from trbdyn.validation import Model, Number, Whole, unit
 
 MAX_SPEED_RPM = 1e6
+MAX_GRAVITY = 1e7
+"""Largest part of gravity (m/s2), a million times the usual: no machine shakes harder, and nothing overflows."""
 
 
 class Start(Model):
@@ -46,7 +48,7 @@ class Start(Model):
     spread: Annotated[Number, unit("1", ge=0, le=1)] = 0.8
     eccentricity: Annotated[Number, unit("1", ge=0, le=1)] = 0.9
     direction_deg: Annotated[Number, unit("deg")] = -90.0
-    time: Annotated[Number, unit("s")] = 0.0
+    time: Annotated[Number, unit("s", ge=-MAX_TIME, le=MAX_TIME)] = 0.0
     state_vector: tuple[Number, ...] = ()
 
     @model_validator(mode="after")
@@ -131,7 +133,7 @@ class Scene(Model):
         Held: the ring stays at its equilibrium at the start, as in the paper. Follows: it moves through the equilibria
         of its load history.
     gravity : tuple of float or History, shape (3,)
-        Acceleration of gravity (m/s2); acts if `effects.gravity`.
+        Acceleration of gravity (m/s2), each part from -1e7 to 1e7; acts if `effects.gravity`.
 
     Raises
     ------
@@ -194,6 +196,10 @@ class Scene(Model):
         speed = max(values_of(self.speed_rpm), key=abs)
         if abs(speed) > MAX_SPEED_RPM:
             raise InputError.of("speed_rpm", speed, f"must be from {-MAX_SPEED_RPM:g} to {MAX_SPEED_RPM:g} (rpm)")
+        for place, quantity in enumerate(self.gravity):
+            pull = max(values_of(quantity), key=abs)
+            if abs(pull) > MAX_GRAVITY:
+                raise InputError.of(("gravity", place), pull, f"must be from {-MAX_GRAVITY:g} to {MAX_GRAVITY:g} (m/s2)")
         largest = math.radians(5.0)
         for axis, moment, turn in (
             ("x", self.moment_x, self.misalignment_x),

@@ -23,7 +23,7 @@ from trbdyn.checkpoint import Checkpoint
 from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
 from trbdyn.hdf5_marks import mend, take_lock
-from trbdyn.motion import History
+from trbdyn.motion import MAX_TIME, History
 from trbdyn.result_file import ResultWriter, reason
 from trbdyn.results import Result, load
 from trbdyn.run_options import Group, RunOptions
@@ -112,6 +112,8 @@ class Simulation:
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         settings = {name: value for name, value in self.options.settings().items() if value != 0.0}
+        if abs(time) > MAX_TIME:
+            raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
         try:
             return _core.Simulation(self._model, self._motion, time, vector, settings)
         except ValueError as error:

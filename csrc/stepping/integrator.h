@@ -94,7 +94,8 @@ extern const trb_integrator_kind trb_integrator_bdf, trb_integrator_erk;
 extern const trb_integrator_kind *const trb_integrator_kinds[];
 extern const int                        trb_n_integrator_kinds;
 
-/* Right-hand side with a finite check: 0, or 1 if a rate is not finite (the integrator then tries a smaller step). */
+/* Right-hand side with a finite check: 0, or 1 if a rate is not finite: BDF then tries a smaller step, the explicit method stops with
+ * an error. */
 int trb_integrator_rates(trb_integrator *it, double time, const double *y, double *rates);
 
 /* Error weights 1/(relative |y| + scale): positions and angles have no relative part, so that a roller's drift loosens nothing. */

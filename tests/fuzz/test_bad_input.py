@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
@@ -16,7 +18,7 @@ import trbdyn as trb
 from trbdyn import checkpoint
 from trbdyn.cases import scene_30310
 from trbdyn.errors import FileError, InputError, LoadError, StepError
-from trbdyn.toml_case import case_from_dict
+from trbdyn.toml_case import case_from_dict, find_case, load_case, shipped_cases
 
 COMMON = settings(
     max_examples=150,
@@ -61,8 +63,29 @@ def put(values: Any, path: tuple[str | int, ...], value: Any) -> Any:
     return copy
 
 
-SCENE = scene_30310(bearing=trb.cases.rig_30310()).to_dict()
+RIG = trb.cases.rig_30310()
+
+
+def full_scene() -> trb.Scene:
+    """A scene with pockets, deviations, a history, a displacement and a state of its own."""
+    pocket = trb.pocket_shapes.one_sided_pocket(RIG)
+    bearing = RIG.replace(
+        roller=RIG.roller.replace(diameter_deviation=tuple(1e-6 * (j % 3) for j in range(RIG.n_rollers))),
+        cage=RIG.cage.replace(pocket=pocket, other_pockets=(trb.pocket.OtherPocket(index=3, pocket=pocket),)),
+    )
+    shift = trb.History(times=(0.0, 1e-3), values=(-40e-6, -42e-6))
+    scene = scene_30310(3000.0, 0.0, bearing=bearing, displacement=(0.0, 1e-6, shift), misalignment_x=1e-4)
+    return scene.replace(start=trb.Start.state(trb.Simulation(scene).state.vector))
+
+
+SCENE = scene_30310(
+    bearing=RIG.replace(roller=RIG.roller.replace(diameter_scatter=trb.bearing.Scatter(range=1e-6, seed=1)))
+).to_dict()
+FULL = full_scene().to_dict()
 PLACES = leaves(SCENE)[1:]
+FULL_PLACES = leaves(FULL)[1:]
+CASES = {name: tomllib.loads(find_case(name).read_text(encoding="utf-8")) for name in shipped_cases()}
+CASE_PLACES = [(name, place) for name, case in CASES.items() for place in leaves(case)[1:]]
 
 
 def choices(model: type[BaseModel], path: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...], Any]]:
@@ -77,22 +100,81 @@ def choices(model: type[BaseModel], path: tuple[str, ...] = ()) -> list[tuple[tu
     return found
 
 
+def ramp(*values: float, end: float = 1.0) -> trb.History:
+    return trb.History(times=tuple(np.linspace(0.0, end, len(values)).tolist()), values=values)
+
+
+@pytest.mark.parametrize(
+    ("make", "field"),
+    [
+        (lambda: scene_30310(gravity=(0.0, ramp(-9.8, 1e300), 0.0)), "gravity[1]"),
+        (lambda: scene_30310(gravity=(0.0, 0.0, -1e300)), "gravity[2]"),
+        (lambda: ramp(1e308, -1e308, 1e308), "history.values[1]"),
+        (lambda: ramp(0.0, 1e10, end=1e-300), "history.values[1]"),
+        (lambda: ramp(3000.0, 1000.0, end=1e300), "history.times[1]"),
+        (lambda: trb.Start(time=1e300), "start.time"),
+        (lambda: trb.Simulation(scene_30310()).set_state(good_state(), 1e300), "time"),
+        (lambda: trb.Effects(n_slices=1, back_rib=False), "effects.n_slices"),
+    ],
+)
+def test_what_would_overflow_or_float_freely_is_refused_by_name(make: Callable[[], object], field: str) -> None:
+    with pytest.raises(InputError) as found:
+        make()
+    assert found.value.field == field
+
+
+def good_state() -> Any:
+    return trb.Simulation(scene_30310()).state.vector
+
+
+def fields_of(kind: Any, path: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
+    """Names of every field of a model and of the models in it, also in its sequences and choices."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        inside = [fields_of(info.annotation, (*path, name)) for name, info in kind.model_fields.items()]
+        return [(*path, name) for name in kind.model_fields] + [field for found in inside for field in found]
+    if get_origin(kind) is Literal:
+        return []
+    return [field for part in get_args(kind) if part is not trb.History for field in fields_of(part, path)]
+
+
+def test_no_field_is_left_out() -> None:
+    """What the properties below change is every field of every model."""
+    full = {tuple(key for key in place if isinstance(key, str)) for place in FULL_PLACES}
+    plain = {tuple(key for key in place if isinstance(key, str)) for place in PLACES}
+    assert set(fields_of(trb.Scene)) <= full | plain
+
+
+def full_places() -> st.SearchStrategy[tuple[str, tuple[str | int, ...]]]:
+    """Places in the full scene; of a list's entries, those of the state vector are not the most likely ones."""
+    short = [place for place in FULL_PLACES if place[:2] != ("start", "state_vector") or len(place) == 2]
+    return st.tuples(st.just("full"), st.one_of(st.sampled_from(short), st.sampled_from(FULL_PLACES)))
+
+
 @COMMON
-@given(st.sampled_from(PLACES), ANYTHING)
-def test_any_value_in_any_field_of_a_scene(place: tuple[str | int, ...], value: Any) -> None:
+@given(st.one_of(st.tuples(st.just("plain"), st.sampled_from(PLACES)), full_places()), ANYTHING)
+def test_any_value_in_any_field_of_a_scene(where: tuple[str, tuple[str | int, ...]], value: Any) -> None:
+    kind, place = where
     try:
-        scene = trb.Scene.from_dict(put(SCENE, place, value))
+        scene = trb.Scene.from_dict(put(FULL if kind == "full" else SCENE, place, value))
     except InputError as error:
         say(error)
     else:
         assert trb.Scene.from_json(scene.to_json()) == scene
 
 
-@settings(parent=COMMON, max_examples=60)
-@given(st.sampled_from(PLACES), st.floats(0.2, 5.0), st.sampled_from([1.0, -1.0]))
-def test_what_is_accepted_can_be_stepped(place: tuple[str | int, ...], factor: float, sign: float) -> None:
+@settings(parent=COMMON, max_examples=120)
+@given(
+    st.one_of(st.tuples(st.just("plain"), st.sampled_from(PLACES)), full_places()),
+    st.floats(0.2, 5.0),
+    st.sampled_from([1.0, -1.0]),
+)
+def test_what_is_accepted_can_be_stepped(
+    where: tuple[str, tuple[str | int, ...]], factor: float, sign: float
+) -> None:
     """A scene with one number changed either steps, with finite states, or ends with a promised error."""
-    value: Any = SCENE
+    kind, place = where
+    scene = FULL if kind == "full" else SCENE
+    value: Any = scene
     for key in place:
         value = value[key]
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -100,7 +182,7 @@ def test_what_is_accepted_can_be_stepped(place: tuple[str | int, ...], factor: f
     else:
         value = int(value * factor * sign) if isinstance(value, int) else value * factor * sign
     try:
-        sim = trb.Simulation(trb.Scene.from_dict(put(SCENE, place, value)))
+        sim = trb.Simulation(trb.Scene.from_dict(put(scene, place, value)))
         for _ in range(20):
             sim.step()
     except (InputError, LoadError, StepError) as error:
@@ -121,6 +203,41 @@ def test_any_key_of_a_case(table: str, key: str, value: Any) -> None:
     try:
         case_from_dict(case)
     except InputError as error:
+        say(error)
+
+
+@COMMON
+@given(st.sampled_from(CASE_PLACES), ANYTHING)
+def test_any_value_at_any_key_of_a_shipped_case(where: tuple[str, tuple[str | int, ...]], value: Any) -> None:
+    name, place = where
+    try:
+        case_from_dict(put(CASES[name], place, value))
+    except InputError as error:
+        say(error)
+
+
+RUN_KEYS = sorted(trb.RunOptions.model_fields)
+
+
+@COMMON
+@given(st.dictionaries(st.sampled_from(RUN_KEYS), ANYTHING, min_size=1, max_size=3))
+def test_any_options_of_a_run(options: dict[str, Any]) -> None:
+    """Refused by name, or good for a short run."""
+    try:
+        trb.RunOptions(**options)
+    except InputError as error:
+        named = error.field.removeprefix("run.").split("[")[0]
+        say(error) if named in options else pytest.fail(f"{error} names another field")
+
+
+@COMMON
+@given(st.text(max_size=200))
+def test_any_text_as_a_case_file(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    try:
+        load_case(path)
+    except (InputError, FileError) as error:
         say(error)
 
 

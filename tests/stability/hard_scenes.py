@@ -351,6 +351,8 @@ HARD: tuple[Hard, ...] = (
         "negative_pocket_play",
         "bars press on every roller",
         lambda: S(bearing=with_pocket(tight_pocket(3e-6))),
+        duration=4e-3,
+        path=1e-2,
         steps=300.0,
         tolerances=0.2,
     ),
