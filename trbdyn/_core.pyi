@@ -77,7 +77,9 @@ class Model:
 class Simulation:
     """One integration: model, prescribed motion, state, integrator."""
 
-    def __init__(self, model: Model, motion: Array, time: float, state: Array, settings: dict[str, float | str]) -> None:
+    def __init__(
+        self, model: Model, motion: Array, time: float, state: Array, settings: dict[str, float | str]
+    ) -> None:
         """motion (K, 1 + 18): knot time, then value and slope of each channel. settings: integrator ('bdf', 'erk')
         and those of setting_table()."""
     time: float

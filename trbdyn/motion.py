@@ -66,7 +66,9 @@ class History(Model):
             steepest = int(np.argmax(np.abs(np.diff(self.values) / steps))) + 1
         if not finite:
             raise InputError.of(
-                ("values", steepest), self.values[steepest], "must be closer to the value before it: the curve overflows"
+                ("values", steepest),
+                self.values[steepest],
+                "must be closer to the value before it: the curve overflows",
             )
 
     @classmethod

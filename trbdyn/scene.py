@@ -185,7 +185,9 @@ class Scene(Model):
         self._check_start()
         if self.effects.films and self.effects.rolling_resistance and self.lubricant.pressure_coefficient <= 0.0:
             raise InputError.of(
-                ("lubricant", "pressure_coefficient"), 0.0, "must be > 0 for rolling resistance; or switch that off (1/Pa)"
+                ("lubricant", "pressure_coefficient"),
+                0.0,
+                "must be > 0 for rolling resistance; or switch that off (1/Pa)",
             )
         from trbdyn.flatten import parameter_block
 
@@ -199,7 +201,9 @@ class Scene(Model):
         for place, quantity in enumerate(self.gravity):
             pull = max(values_of(quantity), key=abs)
             if abs(pull) > MAX_GRAVITY:
-                raise InputError.of(("gravity", place), pull, f"must be from {-MAX_GRAVITY:g} to {MAX_GRAVITY:g} (m/s2)")
+                raise InputError.of(
+                    ("gravity", place), pull, f"must be from {-MAX_GRAVITY:g} to {MAX_GRAVITY:g} (m/s2)"
+                )
         largest = math.radians(5.0)
         for axis, moment, turn in (
             ("x", self.moment_x, self.misalignment_x),

@@ -182,9 +182,7 @@ def start_state(model: _core.Model, scene: Scene, motion: Array, equilibrium: Eq
     return vector
 
 
-def _place_cage(
-    model: _core.Model, scene: Scene, motion: Array, state: StateView, vector: Array, orbit: float
-) -> None:
+def _place_cage(model: _core.Model, scene: Scene, motion: Array, state: StateView, vector: Array, orbit: float) -> None:
     start, cage = scene.start, scene.bearing.cage
     # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with them
     rest, rollers = RESTING_AXIAL_SHARE * cage.play_axial, float(np.mean(state["roller_z"]))

@@ -168,9 +168,7 @@ def test_any_value_in_any_field_of_a_scene(where: tuple[str, tuple[str | int, ..
     st.floats(0.2, 5.0),
     st.sampled_from([1.0, -1.0]),
 )
-def test_what_is_accepted_can_be_stepped(
-    where: tuple[str, tuple[str | int, ...]], factor: float, sign: float
-) -> None:
+def test_what_is_accepted_can_be_stepped(where: tuple[str, tuple[str | int, ...]], factor: float, sign: float) -> None:
     """A scene with one number changed either steps, with finite states, or ends with a promised error."""
     kind, place = where
     scene = FULL if kind == "full" else SCENE
