@@ -1,0 +1,65 @@
+"""Creep of rollers: creep number against independent values and the core's own forces; the planar model against its law."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn.paper.creep import creep, growth_per_turn
+
+GAUSS = trb.Effects.paper().replace(quadrature="gauss", n_slices=8)
+RIG = {"n_rollers": 12, "lean": math.radians(26.39), "play_ratio": 0.48, "inertia": 1.149}
+
+
+@pytest.mark.parametrize(
+    ("load", "stated", "within"), [(1230.0, 43.0, 0.15), (3080.0, 2.7, 0.06), (4930.0, 0.46, 0.06)]
+)
+def test_creep_number_of_an_independent_study(load: float, stated: float, within: float) -> None:
+    found = creep(trb.cases.scene_30310(3000.0, load, effects=GAUSS))
+    assert found.chi == pytest.approx(stated, rel=within)
+    assert found.froude == pytest.approx(0.437, abs=1e-3)
+
+
+def test_starved_films_creep_less() -> None:
+    full, starved = (
+        creep(trb.cases.scene_30310(3000.0, 4930.0, effects=GAUSS.replace(starvation_factor=factor)))
+        for factor in (1.0, 0.5)
+    )
+    assert starved.chi == pytest.approx(0.5 * full.chi, rel=0.01)
+
+
+def test_creep_number_scales_with_gravity_and_froude_against_it() -> None:
+    one, two = (
+        creep(trb.cases.scene_30310(3000.0, 4930.0, effects=GAUSS, gravity=(0.0, -g, 0.0))) for g in (9.80665, 19.6133)
+    )
+    assert two.chi == pytest.approx(2.0 * one.chi, rel=1e-6)
+    assert two.froude == pytest.approx(0.5 * one.froude, rel=1e-9)
+
+
+@pytest.fixture
+def planar(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[2] / "benchmarks"))
+    from creep import planar
+
+    return planar
+
+
+@pytest.mark.parametrize("froude", [0.1, 0.2, 0.437])
+def test_planar_model_follows_the_growth_law(planar: Any, froude: float) -> None:
+    cage = planar.Cage(friction=0.0, roller_mass=0.0)
+    rate, _ = planar.growth(planar.simulate(np.array([0.1]), froude, 8, 0.2, cage))
+    # 0.003: scatter of the planar model over eccentricities 0.1 to 0.6
+    assert rate[0] / 0.1 == pytest.approx(growth_per_turn(1.0, froude, **RIG), abs=0.003)
+
+
+def test_planar_cage_above_the_yield_limit_rests(planar: Any) -> None:
+    motion = planar.simulate(np.array([2.7, 36.0]), 0.437, 16, 0.9)
+    turning = motion.position * np.exp(-2j * np.pi * np.arange(motion.position.shape[0]) / motion.samples)[:, None]
+    whirl = np.abs(turning[-8 * motion.samples - 1 : -1].mean(axis=0))
+    assert whirl[0] > 0.6
+    assert whirl[1] < 0.1
