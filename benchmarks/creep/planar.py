@@ -161,7 +161,10 @@ def _rollers(
 
     The place solves s = free - rate (lead [closed - c (u - s)] - trail [closed + c (u - s)]), [.] the positive part:
     its left minus its right side grows with s and is made of straight pieces, so that Newton's method ends after a
-    few of them. """ s = free for _ in range(4):
+    few of them.
+    """
+    s = free
+    for _ in range(4):
         on_lead, on_trail = closed - c * (u - s), closed + c * (u - s)
         wrong = s - free + rate * (lead * np.maximum(on_lead, 0.0) - trail * np.maximum(on_trail, 0.0))
         slope = 1.0 + rate * c * (lead * (on_lead > 0.0) + trail * (on_trail > 0.0))
