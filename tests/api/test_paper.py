@@ -53,7 +53,7 @@ class TestPoints:
 
     def test_scenes(self) -> None:
         scene = Point(Condition(3000.0, 1230.0, scatter=True), "unequal", 3).scene()
-        assert scene.effects == trb.Effects.paper()
+        assert scene.effects == trb.Effects.paper().replace(quadrature="gauss", n_slices=8)
         assert (scene.speed_rpm, scene.axial_load, scene.start.kind, scene.start.seed) == (3000.0, 1230.0, "unequal", 3)
         assert 0.3e-6 < np.ptp(scene.bearing.diameter_deviation) <= 1e-6
         combined = Point(Condition(2000.0, 4930.0, 5530.0), "equal").scene()

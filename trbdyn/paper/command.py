@@ -32,7 +32,7 @@ def add_paper_parser(commands: Any, parents: list[argparse.ArgumentParser] | Non
         parents=parents or [],
         help="reproduce the paper's operating points, figures and statements",
         description="Run the operating points of Sakaguchi and Harada 2006 until they settle, draw the paper's figures and judge "
-        "its statements. Without further options that is about three dozen points of 3 to 25 s of bearing time each.",
+        "its statements. Without further options that is about three dozen points of 3 to 60 s of bearing time each.",
     )
     paper.add_argument("-o", "--output", metavar="FOLDER", default="paper", help="folder (default: paper)")
     paper.add_argument(
@@ -217,7 +217,7 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str]) -> st
         "trbdyn_version": __version__,
         "written": datetime.now(UTC).isoformat(timespec="seconds"),
         "plan": asdict(plan),
-        "assumptions": "trbdyn.cases.rig_30310, VG100 at 60 C, Effects.paper(), the same for all points",
+        "assumptions": "cases.rig_30310, VG100 at 60 C, Effects.paper() with 8 Gauss nodes a contact, the same for all points",
         "points": {run.point.name: run.numbers for run in runs.all},
         "failed": failures,
         "movable_over_cpr": movable,

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from trbdyn import observables
 from trbdyn.errors import FileError
 from trbdyn.paper.files import History, read_about, read_history
+from trbdyn.paper.growth import growth_of_history
 from trbdyn.paper.points import Condition, Point, StartKind
 from trbdyn.results import Result, load
 from trbdyn.summary import clean
@@ -116,6 +117,7 @@ def numbers_of(result: Result, history: History, about: dict[str, Any]) -> dict[
     gaps = np.degrees(result.spacing_angles())
     started = observables.spacing_std(history["roller_orbit_angle"][:1])[0]
     lean = observables.lean(position, tilt)
+    growth = growth_of_history(history, result.clearances.radial)
     out: dict[str, Any] = {
         "whirl_radius_over_cpr": {"mean": radius.mean(), "p5": low, "p95": high},
         "whirl_ratio": result.whirl_ratio,
@@ -132,6 +134,12 @@ def numbers_of(result: Result, history: History, about: dict[str, Any]) -> dict[
         "cage_turns": abs(angle[-1] - angle[0]) / (2.0 * math.pi),
         "whirl_radius_standard_error": standard_error(radius, angle),
         "orbit_over_cpr": motion.orbit_over_play,
+        "speed_deviation_ratio": motion.speed_deviation_ratio,
+        "whirl_amplitude_over_cpr": growth.amplitude,
+        "growth_rate": growth.rate,
+        "growth_rate_error": growth.rate_error,
+        "whirl_grows": growth.growing,
+        "time_to_full_whirl": growth.time_to_full,
         "orbit_standard_error": standard_error(observables.orbit_radius(position) / result.clearances.radial, angle),
         "cage_motion": motion.kind,
         "whirl_coherence": observables.whirl_coherence(position, result["cage_velocity"]),

@@ -20,6 +20,16 @@ WHIRL_ECCENTRICITY: Final = 0.9
 SCATTER: Final = 1e-6
 """Width of the range of roller diameters (m) where the paper has scatter."""
 
+GAUSS_NODES: Final = 8
+
+
+def effects() -> Effects:
+    """The paper's assumptions, with 8 Gauss nodes along a contact in place of its uniform slices.
+
+    At a fixed interference the load is 0.19 % from that of very many slices, with 20 uniform slices 0.46 %, at half the cost.
+    """
+    return Effects.paper().replace(quadrature="gauss", n_slices=GAUSS_NODES)
+
 
 @dataclass(frozen=True, order=True)
 class Condition:
@@ -115,7 +125,7 @@ class Point:
         return f"{self.condition.name}_{self.start}{self.seed if self.seeded else ''}"
 
     def scene(self) -> Scene:
-        """The scene: the 30310 rig with the paper's assumptions, the same for all points."""
+        """The scene: the 30310 rig with `effects`, the same assumptions for all points."""
         condition = self.condition
         starts = {
             "equal": Start.equal(),
@@ -132,7 +142,7 @@ class Point:
             condition.radial_load,
             bearing=bearing,
             radial_direction_deg=condition.direction_deg,
-            effects=Effects.paper(),
+            effects=effects(),
             start=starts[self.start],
         )
 

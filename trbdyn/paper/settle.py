@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import time as clock
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from trbdyn import observables
 from trbdyn.errors import StepError, TrbError
 from trbdyn.paper.files import History, is_finished, read_history, write_point, write_progress
+from trbdyn.paper.growth import growth_of_history
 from trbdyn.paper.points import Point
 from trbdyn.study.work import Report, said
 
@@ -49,7 +50,7 @@ class Plan:
     segment : float
         Time between looks at whether it has settled.
     least_time, most_time : float
-        Shortest and longest time before the statistics under axial load: slow growth from rest looks settled at first.
+        Shortest and longest time before the statistics under axial load, where whirls take tens of seconds to grow.
     least_time_combined, most_time_combined : float
         The same under combined load, where everything is faster.
     save_every : float
@@ -63,9 +64,9 @@ class Plan:
     window: float = 0.5
     segment: float = 0.5
     least_time: float = 10.0
-    most_time: float = 25.0
+    most_time: float = 60.0
     least_time_combined: float = 3.0
-    most_time_combined: float = 10.0
+    most_time_combined: float = 30.0
     save_every: float = 1e-3
     window_save_every: float = 1e-4
     accuracy: str = "standard"
@@ -146,13 +147,16 @@ def _drift(time: Array, values: Array) -> float:
 
 
 def judge_history(history: History, point: Point) -> Verdict:
-    """`judge` for a point's history."""
+    """`judge` for a point's history; a whirl that grows from almost nothing has not settled, however little it moves."""
     bearing = point.scene().bearing
     unit = np.degrees(bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter))
     radius = observables.whirl_radius(history["cage_position"]) / bearing.cage.play_radial
     spacing = observables.spacing_std(history["roller_orbit_angle"]) / unit
     turned = np.mean(history["roller_orbit_angle"][-1] - history["roller_orbit_angle"][0])
-    return judge(history["time"], radius, spacing, float(abs(turned)) / (2.0 * np.pi))
+    verdict = judge(history["time"], radius, spacing, float(abs(turned)) / (2.0 * np.pi))
+    if verdict.settled and growth_of_history(history, bearing.cage.play_radial).growing:
+        return replace(verdict, settled=False, reason="the whirl grows")
+    return verdict
 
 
 @dataclass(frozen=True)
