@@ -184,6 +184,9 @@ static void fill_constants(trb_model *m)
   m->rib_cosine = cos(g->rib_normal_angle);
   m->log_modulus = log(g->effective_modulus);
   m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->effective_length);
+  m->palmgren = exp(m->log_palmgren);
+  m->roller_tangent = tan(g->roller_half_angle);
+  m->roller_cosine = cos(g->roller_half_angle);
   m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
   m->log_viscosity = log(p->viscosity);
   m->log_thermal = log(p->viscosity * trb_max(p->temperature_coefficient, 1e-30) / p->conductivity);

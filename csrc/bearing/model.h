@@ -48,7 +48,8 @@ typedef struct trb_model {
   int            *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
   /* constants of the laws */
   double          log_modulus;     /* ln E' */
-  double          log_palmgren;    /* ln of load per length at d = 1 m */
+  double          log_palmgren, palmgren; /* load per length at d = 1 m, its ln and itself */
+  double          roller_tangent, roller_cosine; /* of nu */
   double          log_g;           /* ln G */
   double          log_viscosity;   /* ln eta0 */
   double          log_thermal;     /* ln(eta0 beta/k') */

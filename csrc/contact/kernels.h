@@ -5,8 +5,9 @@
 
 #include "contact/contact.h"
 
-/* Lanes of scratch; at least the largest number of nodes. */
-enum { TRB_TILE_LANES = 256 };
+/* Lanes of scratch, at least the largest number of nodes; lanes that a tile is filled to, so that all fields of a tile stay in the first
+ * cache; distance of the fields, no power of two, so that they share no cache set. */
+enum { TRB_TILE_LANES = 256, TRB_TILE_FILL = 64, TRB_LANE_STRIDE = TRB_TILE_LANES + 8 };
 
 /* Per lane. X(name, unit, text) */
 #define TRB_LANE_FIELDS(X) \
@@ -49,7 +50,7 @@ enum { TRB_TILE_LANES = 256 };
   X(mz,             "m/s", "mean velocity, axial")
 
 typedef struct trb_lanes {
-#define TRB_LANE_MEMBER(name, unit, text) double name[TRB_TILE_LANES];
+#define TRB_LANE_MEMBER(name, unit, text) double name[TRB_LANE_STRIDE];
   TRB_LANE_FIELDS(TRB_LANE_MEMBER)
 #undef TRB_LANE_MEMBER
 } trb_lanes;

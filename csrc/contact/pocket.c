@@ -69,12 +69,13 @@ static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, t
 
 static trb_vec3 array_vector(const double *v) { return trb_v(v[0], v[1], v[2]); }
 
-/* Interference of a sphere with a bounded face; the normal points from the sphere's centre to the nearest point. */
-static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_vec3 centre, double radius, trb_vec3 *normal)
+/* Interference of a sphere with a bounded face; the normal points from the sphere's centre to the nearest point. Without contact it is
+ * the plane's, which is no less, unless it is wanted exactly. */
+static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_vec3 centre, double radius, int exact, trb_vec3 *normal)
 {
   const trb_vec3 u = array_vector(f->face.u), v = array_vector(f->face.v), from = trb_sub(centre, array_vector(f->face.origin));
   const double   h = trb_dot(from, f->normal);
-  if (m->params.pocket_edges <= 0.0) {
+  if (m->params.pocket_edges <= 0.0 || (h >= radius && !exact)) {
     *normal = trb_scale(-1.0, f->normal);
     return radius - h;
   }
@@ -87,15 +88,15 @@ static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_v
   return radius - distance;
 }
 
-static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, trb_counters *counters, trb_roller_load *load,
-                          pocket_sums *sums)
+static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
+                          trb_roller_load *load, pocket_sums *sums)
 {
   const double  *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double   stiffness = exp(m->log_palmgren) * f->face.stiffness_factor[0], *weight = m->race[TRB_RACE_OUTER].weight;
+  const double   stiffness = m->palmgren * f->face.stiffness_factor[0], *weight = m->race[TRB_RACE_OUTER].weight;
   for (int k = 0; k < m->n_nodes; k++) {
     trb_vec3       normal;
     const trb_vec3 c = trb_axpy(p->x, centre[k], p->a);
-    const double   d = sphere_on_face(m, f, c, sphere[k], &normal);
+    const double   d = sphere_on_face(m, f, c, sphere[k], exact, &normal);
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > 0.0)) continue;
     const double q = stiffness * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
@@ -104,12 +105,13 @@ static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_v
   }
 }
 
-static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_counters *counters, trb_roller_load *load, pocket_sums *sums)
+static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int exact, trb_counters *counters, trb_roller_load *load,
+                              pocket_sums *sums)
 {
   const trb_geometry *g = &m->geometry;
   const trb_vec3      c = trb_axpy(p->x, g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, p->a);
   trb_vec3            normal;
-  const double        d = sphere_on_face(m, f, c, g->sphere_radius, &normal);
+  const double        d = sphere_on_face(m, f, c, g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
   const double q = m->params.end_stiffness * f->face.stiffness_factor[0] * d * sqrt(d);
@@ -137,12 +139,12 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
  * along an undropped cone, so that its least value is at an end; a profile only takes material away. */
 static int flank_out_of_reach(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
 {
-  const double   nu = m->geometry.roller_half_angle, deviation = 0.5 * m->diameter_deviation[roller];
+  const double   tangent = m->roller_tangent, cosine = m->roller_cosine, deviation = 0.5 * m->diameter_deviation[roller];
   const trb_vec3 origin = array_vector(f->face.origin);
   for (int end = -1; end <= 1; end += 2) {
-    const double   station = 0.5 * end * m->params.effective_length, radius = (m->geometry.apex_to_mid + station) * tan(nu) + deviation;
-    const trb_vec3 c = trb_axpy(p->x, station + radius * tan(nu) - m->geometry.roller_mass_offset, p->a);
-    if (trb_dot(trb_sub(c, origin), f->normal) < radius / cos(nu)) return 0;
+    const double   station = 0.5 * end * m->params.effective_length, radius = (m->geometry.apex_to_mid + station) * tangent + deviation;
+    const trb_vec3 c = trb_axpy(p->x, station + radius * tangent - m->geometry.roller_mass_offset, p->a);
+    if (trb_dot(trb_sub(c, origin), f->normal) < radius / cosine) return 0;
   }
   return 1;
 }
@@ -150,19 +152,20 @@ static int flank_out_of_reach(const trb_model *m, const trb_pocket_face *f, cons
 void trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
+  const int              exact = detail != NULL;
   pocket_view            p = view_pocket(m, r, at->cage, roller);
   for (int i = m->first_face[roller]; i < m->first_face[roller + 1]; i++) {
     const trb_pocket_face *f = &m->faces[i];
     pocket_sums            sums = {0.0, 0.0, -INFINITY};
     counters->pocket_tests++;
     if (f->part == TRB_PART_FLANK) {
-      if (detail == NULL && flank_out_of_reach(m, f, &p, roller)) {
+      if (!exact && flank_out_of_reach(m, f, &p, roller)) {
         counters->pocket_culled++;
         continue;
       }
-      flank_on_face(m, f, &p, roller, counters, load, &sums);
+      flank_on_face(m, f, &p, roller, exact, counters, load, &sums);
     } else if (f->part == TRB_PART_LARGE_END) {
-      large_end_on_face(m, f, &p, counters, load, &sums);
+      large_end_on_face(m, f, &p, exact, counters, load, &sums);
     } else {
       small_end_on_face(m, f, &p, counters, load, &sums);
     }

@@ -50,7 +50,7 @@ static void copy_detail(const trb_model *m, const trb_lanes *lanes, const trb_ra
     const int    roller = (first + c) / TRB_N_RACES, race = (first + c) % TRB_N_RACES;
     const size_t to = ((size_t)race * (size_t)m->n_rollers + (size_t)roller) * lane_count;
     for (int f = 0; f < TRB_N_LANE_FIELDS; f++)
-      memcpy(detail->lanes + (size_t)f * field_size + to, from + (size_t)f * TRB_TILE_LANES + (size_t)packed * lane_count, lane_count * sizeof(double));
+      memcpy(detail->lanes + (size_t)f * field_size + to, from + (size_t)f * TRB_LANE_STRIDE + (size_t)packed * lane_count, lane_count * sizeof(double));
     packed++;
   }
 }
@@ -58,7 +58,7 @@ static void copy_detail(const trb_model *m, const trb_lanes *lanes, const trb_ra
 void trb_contact_raceway(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
   enum { MOST = TRB_TILE_LANES / TRB_LANE_PAD };
-  const int       total = m->n_rollers * TRB_N_RACES, per_tile = TRB_TILE_LANES / m->n_lanes;
+  const int       total = m->n_rollers * TRB_N_RACES, per_tile = m->n_lanes < TRB_TILE_FILL ? TRB_TILE_FILL / m->n_lanes : 1;
   trb_race_input  inputs[MOST];
   trb_race_output outputs[MOST];
   for (int first = 0; first < total; first += per_tile) {

@@ -77,10 +77,10 @@ typedef struct turn_rates {
 
 /* Euler's equations in a frame that follows the axis but does not spin; parent: angular velocity of the frame that skew and tilt are
  * measured in, along its own z. */
-static turn_rates euler(const trb_frame *f, double skew, trb_vec3 omega, double parent, double transverse, double axial, trb_vec3 moment)
+static turn_rates euler(const trb_frame *f, trb_vec3 omega, double parent, double transverse, double axial, trb_vec3 moment)
 {
   turn_rates   out;
-  const double cosine = cos(skew), sine = sin(skew);
+  const double cosine = f->t.y, sine = f->a.y; /* of the skew */
   out.skew = -(omega.x - parent * f->n.z);
   out.tilt = (omega.y - parent * f->t.z) / cosine;
   out.frame_a = parent * f->a.z + out.tilt * sine;
@@ -111,7 +111,7 @@ static void freeze_roller(const trb_dynamics *d, const trb_roller_pose *r, const
   rates[TRB_ROLLER_omega_n] = rates[TRB_ROLLER_omega_t] = 0.0;
 }
 
-void trb_dynamics_roller_rates(const trb_dynamics *d, int roller, const double *y, const trb_roller_load *load, double *rates)
+void trb_dynamics_roller_rates(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates)
 {
   const trb_model       *m = d->model;
   const trb_drive       *drive = &d->drive;
@@ -119,7 +119,7 @@ void trb_dynamics_roller_rates(const trb_dynamics *d, int roller, const double *
   const trb_rolling      rolling_rate = trb_pure_rolling(m, drive->shaft_rate);
   const double           per_mass = 1.0 / m->geometry.roller_mass;
   const trb_vec3         g = has_gravity(drive) ? gravity_in(drive, r->cosine, r->sine) : trb_v(0, 0, 0);
-  const turn_rates       turn = euler(&r->frame, y[TRB_ROLLER_skew], r->omega_frame, r->orbit_speed, m->geometry.roller_inertia_transverse,
+  const turn_rates       turn = euler(&r->frame, r->omega_frame, r->orbit_speed, m->geometry.roller_inertia_transverse,
                                       m->geometry.roller_inertia_axial, trb_to_frame(&r->frame, load->moment));
   rates[TRB_ROLLER_r] = r->v.x;
   rates[TRB_ROLLER_psi] = r->orbit_speed - drive->frame_speed;
@@ -144,7 +144,7 @@ void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 fo
   if (m->params.with_cage <= 0.0) return;
   const double     w = drive->frame_speed, per_mass = 1.0 / m->params.cage_mass;
   const trb_vec3   g = has_gravity(drive) ? gravity_in(drive, 1.0, 0.0) : trb_v(0, 0, 0);
-  const turn_rates turn = euler(&c->frame, y[TRB_CAGE_skew], c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial,
+  const turn_rates turn = euler(&c->frame, c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial,
                                 trb_to_frame(&c->frame, moment));
   rates[TRB_CAGE_x] = c->v.x + w * y[TRB_CAGE_y];
   rates[TRB_CAGE_y] = c->v.y - w * y[TRB_CAGE_x];
@@ -194,12 +194,11 @@ void trb_dynamics_derivative(trb_dynamics *d, double time, const double *y, doub
   trb_dynamics_loads(d, NULL);
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_roller_pose *r = &d->rollers[j];
-    const double          *yj = y + trb_state_roller(j);
     double                *rj = rates + trb_state_roller(j);
-    trb_dynamics_roller_rates(d, j, yj, &d->loads[j], rj);
+    trb_dynamics_roller_rates(d, j, &d->loads[j], rj);
     force = trb_add(force, d->loads[j].cage_force);
     moment = trb_add(moment, d->loads[j].cage_moment);
-    const double frame_a = r->orbit_speed * r->frame.a.z + rj[TRB_ROLLER_tilt] * sin(yj[TRB_ROLLER_skew]);
+    const double frame_a = r->orbit_speed * r->frame.a.z + rj[TRB_ROLLER_tilt] * r->frame.a.y;
     spin[j] = r->omega_frame.z - frame_a + m->geometry.roller_spin_ratio * d->drive.shaft_speed;
   }
   trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));

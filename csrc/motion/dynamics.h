@@ -30,7 +30,7 @@ void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 /* Right-hand side of one roller, of the cage under the sum of what the rollers put on it, and of everything. */
-void trb_dynamics_roller_rates(const trb_dynamics *d, int roller, const double *y_roller, const trb_roller_load *load, double *rates);
+void trb_dynamics_roller_rates(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates);
 void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y_cage, trb_vec3 force, trb_vec3 moment, double *rates);
 void trb_dynamics_derivative(trb_dynamics *d, double time, const double *y, double *rates);
 

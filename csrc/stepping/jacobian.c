@@ -43,7 +43,7 @@ static trb_status fill_rings(trb_jacobian *jac, const double *y)
   double          *base = malloc((size_t)m->n_rollers * TRB_NR * sizeof *base);
   if (base == NULL) return TRB_ERR_MEMORY;
   trb_contact_rings_only(m, &at, d->work, d->loads);
-  for (int j = 0; j < m->n_rollers; j++) trb_dynamics_roller_rates(d, j, y + trb_state_roller(j), &d->loads[j], base + j * TRB_NR);
+  for (int j = 0; j < m->n_rollers; j++) trb_dynamics_roller_rates(d, j, &d->loads[j], base + j * TRB_NR);
   for (int c = 0; c < TRB_NR; c++) {
     const double h = difference[trb_state_tolerance(m, c)], per = 1.0 / h;
     for (int j = 0; j < m->n_rollers; j++) {
@@ -53,7 +53,7 @@ static trb_status fill_rings(trb_jacobian *jac, const double *y)
     trb_contact_rings_only(m, &at, d->work, d->loads);
     for (int j = 0; j < m->n_rollers; j++) {
       double rates[TRB_NR];
-      trb_dynamics_roller_rates(d, j, jac->moved + trb_state_roller(j), &d->loads[j], rates);
+      trb_dynamics_roller_rates(d, j, &d->loads[j], rates);
       for (int i = 0; i < TRB_NR; i++) jac->rings[j][i][c] = per * (rates[i] - base[j * TRB_NR + i]);
       jac->moved[trb_state_roller(j) + c] = y[trb_state_roller(j) + c];
     }
@@ -77,13 +77,13 @@ static trb_roller_load pocket_load(trb_dynamics *d, int roller)
 }
 
 /* Rates are affine in the loads: what a load adds to those of a roller, and of the cage. */
-static void roller_response(const trb_dynamics *d, int roller, const double *y, const trb_roller_load *load, double *rates)
+static void roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates)
 {
   trb_roller_load none;
   double          still[TRB_NR];
   memset(&none, 0, sizeof none);
-  trb_dynamics_roller_rates(d, roller, y, load, rates);
-  trb_dynamics_roller_rates(d, roller, y, &none, still);
+  trb_dynamics_roller_rates(d, roller, load, rates);
+  trb_dynamics_roller_rates(d, roller, &none, still);
   for (int i = 0; i < TRB_NR; i++) rates[i] -= still[i];
 }
 
@@ -102,14 +102,14 @@ static void pocket_columns(trb_jacobian *jac, int j, const double *y, const trb_
   const trb_model *m = d->model;
   const double    *y_cage = y + trb_state_cage(m), *yj = y + trb_state_roller(j);
   double          *moved = jac->moved + trb_state_roller(j), was[TRB_NR];
-  roller_response(d, j, yj, base, was);
+  roller_response(d, j, base, was);
   for (int c = 0; c < TRB_NR; c++) {
     const double h = difference[trb_state_tolerance(m, c)], per = 1.0 / h;
     double       now[TRB_NR], response[TRB_NC];
     moved[c] = yj[c] + h;
     trb_dynamics_pose_roller(d, j, moved);
     const trb_roller_load load = pocket_load(d, j);
-    roller_response(d, j, moved, &load, now);
+    roller_response(d, j, &load, now);
     cage_response(d, y_cage, trb_sub(load.cage_force, base->cage_force), trb_sub(load.cage_moment, base->cage_moment), response);
     for (int i = 0; i < TRB_NR; i++) block->own[i][c] += per * (now[i] - was[i]);
     for (int i = 0; i < TRB_NC; i++) block->from[i][c] = per * response[i];
@@ -137,7 +137,7 @@ static void cage_column(trb_jacobian *jac, int c, const double *y, const trb_rol
     memset(&change, 0, sizeof change);
     change.force = trb_sub(now.force, base[j].force);
     change.moment = trb_sub(now.moment, base[j].moment);
-    roller_response(d, j, y + trb_state_roller(j), &change, response);
+    roller_response(d, j, &change, response);
     for (int i = 0; i < TRB_NR; i++) arrow->rollers[j].to_cage[i][c] = per * response[i];
     force = trb_add(force, trb_sub(now.cage_force, base[j].cage_force));
     moment = trb_add(moment, trb_sub(now.cage_moment, base[j].cage_moment));
