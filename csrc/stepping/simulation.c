@@ -68,7 +68,7 @@ static void fill_tolerances(trb_integrator *it)
   }
 }
 
-static trb_status open(trb_simulation *s, const char *variant, trb_message *message)
+static trb_status open_parts(trb_simulation *s, const char *variant, trb_message *message)
 {
   trb_integrator *it = &s->integrator;
   trb_status      status;
@@ -104,7 +104,7 @@ trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, c
   s->integrator.time = time;
   s->integrator.kind = find_kind(kind);
   if (s->integrator.kind == NULL) status = trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'bdf' or 'erk'", kind);
-  if (status == TRB_OK) status = open(s, variant, message);
+  if (status == TRB_OK) status = open_parts(s, variant, message);
   if (status == TRB_OK) {
     memcpy(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
     status = s->integrator.kind->create(&s->integrator, message);
