@@ -12,8 +12,8 @@ from trbdyn.bearing import Scatter
 from trbdyn.cases import rig_30310, scene_30310
 from trbdyn.effects import Effects
 from trbdyn.errors import InputError
-from trbdyn.paper.sensitivity.inputs import Input, Level, inputs
 from trbdyn.paper.points import Condition
+from trbdyn.paper.sensitivity.inputs import Input, Level, inputs
 from trbdyn.run_options import Group, RunOptions
 from trbdyn.scene import Scene, Start
 from trbdyn.study.definition import Base, Case, Study
@@ -127,7 +127,9 @@ def scene(place: Place, start: StartName, seed: int) -> Scene:
     )
 
 
-def case(place: Place, start: StartName, seed: int, entry: Input | None, level: Level | None, save_every: float) -> Case:
+def case(
+    place: Place, start: StartName, seed: int, entry: Input | None, level: Level | None, save_every: float
+) -> Case:
     """One run: nominal inputs, or one of them at another level."""
     overrides: dict[str, Any] = dict(level.overrides) if level else {}
     duration = place.start(start)[1]
