@@ -319,6 +319,7 @@ def methods(bench: Bench, quick: bool) -> list[Method]:
         print("scikit-sundae is not installed (pip install scikit-sundae): its CVODE is left out")
     else:
         peers.append(("scikit-sundae CVODE", solvers.sundae, [10.0, 3.0, 1.0, 0.3]))
+        peers.append(("scikit-sundae CVODE, its differences", solvers.sundae_pattern, [10.0, 3.0, 1.0]))
         if not quick:
             peers.append(("scikit-sundae CVODE, dense", solvers.sundae_dense, [10.0, 3.0, 1.0, 0.3]))
     for name, run_peer, factors in peers:

@@ -196,7 +196,9 @@ def sundae(problem: Problem, tolerances: Tolerances, linear: str = "sparse") -> 
         "max_num_steps": 10_000_000,
         "max_conv_fails": 25,
     }
-    if linear == "sparse":
+    if linear == "pattern":
+        options |= {"linsolver": "sparse", "sparsity": problem.jacobian.sparsity}
+    elif linear == "sparse":
         options |= {"sparsity": problem.jacobian.sparsity, "jacfn": problem.jacobian.fill_sparse}
     else:
         options |= {"jacfn": problem.jacobian.fill_dense}
@@ -219,3 +221,8 @@ def sundae(problem: Problem, tolerances: Tolerances, linear: str = "sparse") -> 
 def sundae_dense(problem: Problem, tolerances: Tolerances) -> Run:
     """The same with a dense matrix."""
     return sundae(problem, tolerances, "dense")
+
+
+def sundae_pattern(problem: Problem, tolerances: Tolerances) -> Run:
+    """The same with the package's own differences over the Jacobian's pattern, as it is used without a Jacobian of one's own."""
+    return sundae(problem, tolerances, "pattern")
