@@ -111,12 +111,17 @@ class TestEffects:
         assert effect.noise == pytest.approx(2.3646 * 0.2 * math.sqrt(8 / 7) * math.sqrt(2 / 2), rel=1e-3)
         assert effect.beyond is beyond
 
-    @pytest.mark.parametrize(("change", "outcome"), [(0.0, "holds"), (-0.9, "open"), (-3.0, "fails")])
+    @pytest.mark.parametrize(("change", "outcome"), [(0.5, "holds"), (-0.9, "open"), (-3.0, "fails")])
     def test_statements(self, change: float, outcome: str) -> None:
         nominal, first, second = effects.judge(*made_runs(change))
         assert (nominal.statement, nominal.outcome) == ("grows at 4930 N", "holds")
         assert first.outcome == outcome
         assert (second.level, second.outcome) == (ENTRIES[0].levels[1].label, "-")
+
+    def test_an_input_without_any_effect_is_judged_as_the_nominal_one(self) -> None:
+        nominal, first, _ = effects.judge(*made_runs(0.0))
+        assert (first.margin, first.noise, first.outcome) == (nominal.margin, nominal.noise, nominal.outcome)
+        assert effects.judge(*made_runs(1e-9))[1].noise == pytest.approx(2.0 * nominal.noise)
 
     def test_one_nominal_seed_tells_no_noise(self) -> None:
         runs, chosen = made_runs(5.0)

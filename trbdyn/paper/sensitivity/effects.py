@@ -209,16 +209,18 @@ class Judged:
 
 
 def judge(runs: Runs, plan: Plan) -> list[Judged]:
-    """Every statement with nominal inputs and at every level."""
+    """Every statement with nominal inputs and at every level; a level whose runs equal the nominal ones is judged as they are."""
     found = []
     levels = [(NOMINAL, NOMINAL)] + [(entry.name, level.label) for entry in plan.inputs for level in entry.levels]
     for statement in STATEMENTS:
-        reference = list(_margins(runs, statement, NOMINAL, NOMINAL).values())
+        reference = _margins(runs, statement, NOMINAL, NOMINAL)
         if not reference:
             continue
-        nominal = _nominal(reference)
+        nominal = _nominal(list(reference.values()))
         for name, level in levels:
-            margins = list(_margins(runs, statement, name, level).values())
+            here = _margins(runs, statement, name, level)
+            unchanged = bool(here) and all(reference.get(seed) == margin for seed, margin in here.items())
+            margins = list((reference if unchanged else here).values())
             margin = float(np.mean(margins)) if margins else math.nan
             noise = nominal.noise(len(margins), of_change=False)
             found.append(Judged(statement.name, name, level, margin, noise, _outcome(margin, noise)))

@@ -148,7 +148,7 @@ def _effects(
         lines.append(_row([entry.name, entry.nominal, *([*labels, "-"][:2]), *cells]))
     largest = {name: [e.noise for e in effects if e.indicator == name] for name in names}
     noise = [f"± {max(v):.{COLUMNS[n]}f}" if v else "-" for n, v in largest.items()]
-    lines.append(_row(["*noise of a change (95 %)*", "", "", "", *noise]))
+    lines.append(_row(["*largest noise of a change (95 %)*", "", "", "", *noise]))
     return lines
 
 
