@@ -22,8 +22,8 @@ def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = argparse.ArgumentParser(
         prog="python -m trbdyn.paper.sensitivity",
-        description="Sensitivity of the cage's motion to the inputs that the paper does not give. A seed is about 460 runs, "
-        "a quarter of an hour on one core and 1.8 GB; runs that are in the folder already are not run again.",
+        description="Sensitivity of the cage's motion to the inputs that the paper does not give. A seed is about 400 runs, "
+        "ten minutes of one core's time and 1.7 GB; runs that are in the folder already are not run again.",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     made.add_argument("-o", "--output", metavar="FOLDER", default="sensitivity", help="folder")
