@@ -15,7 +15,7 @@ from typing import Any
 
 import common
 import numpy as np
-from mechanism import motions, pictures, slip, torque
+from mechanism import motions, pictures, reach, slip, torque
 
 import trbdyn as trb
 from trbdyn.paper.files import read_about
@@ -23,7 +23,7 @@ from trbdyn.paper.points import Condition, Point
 from trbdyn.results import Result
 
 COLUMNS = {
-    "part": "1: motion, slip or torque",
+    "part": "1: motion, slip, torque or reach",
     "point": "1: speed, axial load, radial load, start",
     "settled": "1: whether the campaign found the point settled",
     "kind": "1: class of the cage's motion",
@@ -56,6 +56,13 @@ COLUMNS = {
     "drift": "N m: second less first half of the time that counts",
     "shares": "N m: inner torque by source",
     "measured": "N m: measured torque",
+    "eccentricity": "1: place of the cage (Cpr) around which the rollers stand in the middle of their pockets; 0: equal spacing",
+    "direction_deg": "deg: direction of the push",
+    "reach": "1: distance of the cage's centre from the axis along the push in a run, over Cpr",
+    "shake": "1: its standard deviation",
+    "geometry": "1: the same by geometry with the rollers as they started",
+    "free": "1: the same by geometry with rollers that give way",
+    "roller_drift": "1: largest change of a roller's place against the mean in the run, over Cpr",
     "cpu": "s: processor time",
     "kinds": "1: number of points by class",
     "torque_error": "1: inner torque over the measured one, less one, without and with the pressure force, by speed",
@@ -64,6 +71,10 @@ MOTION = ("point", "settled", "kind", "cage_hz", "whirl_ratio", "peak_hz", "orbi
 MORE = ("speed_deviation", "synchronous_share", "lean_deg", "lean_coherence", "skew_rms_mrad", "tilt_rms_mrad")
 SLIP = ("side", "quantity", "exponent", "light", "heavy")
 TORQUE = ("speed_rpm", "pressure_force", "inner_torque", "outer_torque", "drift", "measured", "cpu")
+
+REACH = ("eccentricity", "direction_deg", "reach", "shake", "geometry", "free", "roller_drift", "cpu")
+PUSHES = ((0.0, 0.0), (0.0, 15.0), (0.0, -90.0), *((e, way) for e in (0.15, 0.3, 0.45, 0.6, 0.75, 0.9) for way in (-90.0, 15.0)))
+"""Eccentricity and direction of each push."""
 
 AXIAL = Condition(3000.0, 4930.0)
 COMBINED = Condition(2000.0, 4930.0, 5530.0)
@@ -182,6 +193,8 @@ def main() -> dict[str, Any]:
     print(common.table([row for row in report.results if row["part"] == "slip"], SLIP))
     torques = torque_rows(report, options.quick)
     print(common.table(torques, TORQUE))
+    pushed = [report.add(part="reach", **reach.run(*push)) for push in PUSHES[: 1 if options.quick else None]]
+    print(common.table(pushed, REACH))
     report.summary["cpu"] = clock.process_time() - began
     print(json.dumps(common.plain(report.summary)))
 
@@ -193,6 +206,7 @@ def main() -> dict[str, Any]:
             "attitude": pictures.attitudes(chosen(results, ATTITUDES)),
             "slip": pictures.slips(budget, exponents, pictures.short(name)),
             "torque": pictures.torques(torques, trb.cases.MEASURED_TORQUE_32216, torque.AXIAL_LOAD),
+            "reach": pictures.reaches(pushed),
         }
         options.folder.mkdir(parents=True, exist_ok=True)
         for title, figure in figures.items():

@@ -205,3 +205,20 @@ def torques(rows: Rows, measured: Mapping[float, float], axial_load: float) -> A
         ax.set_title(f"32216, $F_a$ {axial_load:g} N, oil 50 °C", fontsize=10)
         ax.legend(loc="lower right", fontsize=8.5)
     return fig
+
+
+def reaches(rows: Rows) -> Any:
+    """Movable distance over the spacing of the rollers, in runs and by geometry."""
+    with plt.rc_context(STYLE):
+        fig, ax = plt.subplots(figsize=(6.0, 3.8))
+        x = [row["eccentricity"] for row in rows]
+        names = ("reach", "geometry", "free")
+        words = ("run", "geometry, rollers held as at the start", "geometry, rollers that give way")
+        for index, (name, label) in enumerate(zip(names, words, strict=True)):
+            values = [row[name] for row in rows]
+            ax.plot(x, values, linestyle="none", marker=("o", "x", "_")[index], color=COLOURS[2 * index], label=label)
+        ax.set(ylim=(0.0, 1.1), xlabel="unevenness of the spacing: cage's place that it is centred for, over $C_{pr}$")
+        ax.set_ylabel("movable distance over $C_{pr}$")
+        ax.legend(loc="lower right")
+        ax.set_title("Fig. 17 by simulation: cage pushed by its weight; 0: equal spacing", fontsize=10)
+    return fig

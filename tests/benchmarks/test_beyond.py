@@ -30,7 +30,7 @@ def output(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], Pa
 
 def test_pictures_are_drawn(output: tuple[dict[str, Any], Path]) -> None:
     names = {path.stem for path in output[1].glob("beyond_*.png")}
-    assert {f"beyond_{name}" for name in ("frequencies", "spectra", "lean", "attitude", "slip", "torque")} <= names
+    assert {f"beyond_{name}" for name in ("frequencies", "spectra", "lean", "attitude", "slip", "torque", "reach")} <= names
 
 
 def test_every_entry_is_described(output: tuple[dict[str, Any], Path]) -> None:
@@ -49,6 +49,17 @@ def test_sliding_friction_balances_rolling_resistance(output: tuple[dict[str, An
 def test_torque_is_near_the_measured_one(output: tuple[dict[str, Any], Path]) -> None:
     for row in (row for row in output[0]["results"] if row["part"] == "torque"):
         assert math.isclose(row["inner_torque"], row["measured"], rel_tol=0.25)
+
+
+def test_uneven_rollers_let_the_cage_move_farther_as_geometry_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    from mechanism import reach
+
+    equal, uneven = reach.run(0.0, 15.0), reach.run(0.6, 15.0)
+    for found in (equal, uneven):
+        assert found["reach"] == pytest.approx(found["geometry"], abs=0.04)
+        assert found["roller_drift"] < 0.05
+    assert uneven["reach"] > 1.5 * equal["reach"]
 
 
 def test_phasor_of_a_known_lean(monkeypatch: pytest.MonkeyPatch) -> None:
