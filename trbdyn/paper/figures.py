@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from trbdyn import observables
 from trbdyn import plotting as plot
+from trbdyn.paper.growth import whirl_amplitude
 from trbdyn.paper.movable import Movable, Pockets
 from trbdyn.paper.numbers import Run, Runs
 from trbdyn.paper.points import FIGURES, Condition, Point, StartKind
@@ -34,6 +35,8 @@ START_WORDS: Final[dict[StartKind, str]] = {
 }
 NEIGHBOURS: Final = 5
 """Gaps that Fig. 14 and 18 show."""
+SEED_MARKS: Final = ("", "o", "^", "s")
+"""Marks of seeds 0, 1, 2, 3."""
 TURNS_SHOWN: Final = 6.0
 """Turns of the cage that curves over time show."""
 
@@ -409,28 +412,34 @@ def _outline(ax: Axes, movable: Movable, colour: str, label: str, dashes: Any, c
 def _history(ax: Axes, runs: Runs, condition: Condition) -> None:
     for index, start in enumerate(runs.starts):
         for run in runs.of(condition, start):
-            radius = observables.whirl_radius(run.history["cage_position"]) / run.result.clearances.radial
-            line(ax, run.history["time"], radius, index, START_WORDS[start], linestyle="-", linewidth=0.7)
+            history = run.history
+            time, amplitude = whirl_amplitude(history["time"], history["cage_position"], history["cage_angle"])
+            label = START_WORDS[start] + (f", seed {run.point.seed}" if run.point.start == "unequal" else "")
+            size = np.abs(amplitude) / run.result.clearances.radial
+            dashes, marker = LINES[run.point.seed % len(LINES)], SEED_MARKS[run.point.seed % len(SEED_MARKS)]
+            options: dict[str, Any] = {"linestyle": dashes, "marker": marker, "markevery": 0.2, "markersize": 3.5}
+            ax.semilogy(time, size, color=COLOURS[index], linewidth=0.8, label=label, **options)
     ax.set_title(condition.title, fontsize=9)
-    ax.set(ylim=(0.0, 1.2), xlabel="bearing time (s)")
+    ax.set(ylim=(1e-3, 1.5), xlim=(0.0, None), xlabel="bearing time (s)")
 
 
 def figure_settling(runs: Runs) -> dict[str, Figure]:
-    """Whirl radius of every condition from the start on: what the starts do to it."""
+    """Amplitude of the whirl by turns of the cage, every condition and seed: what the starts do to it."""
     conditions = sorted({run.point.condition for run in runs.all})
     columns = min(3, len(conditions)) or 1
     rows = -(-len(conditions) // columns) or 1
     with plt.rc_context(STYLE):
         fig, axes = plt.subplots(
-            rows, columns, figsize=(0.5 + 3.0 * columns, 0.9 + 1.8 * rows), squeeze=False, sharey=True
+            rows, columns, figsize=(0.5 + 3.4 * columns, 1.1 + 1.9 * rows), squeeze=False, sharey=True
         )
-        fig.suptitle("Whirl radius over $C_{pr}$ from the start on", fontsize=10)
+        words = "Amplitude at the cage's own frequency, a value a turn of the cage; dashes and marks: seeds"
+        fig.suptitle(words, fontsize=10)
         for ax, condition in zip(axes.flat, conditions, strict=False):
             _history(ax, runs, condition)
         for ax in axes.flat[len(conditions) :]:
             ax.set_visible(False)
         for row in axes:
-            row[0].set_ylabel("radius / $C_{pr}$")
+            row[0].set_ylabel("amplitude / $C_{pr}$")
         labels: dict[str, Any] = {}
         for ax in axes.flat:
             labels |= {text: handle for handle, text in zip(*ax.get_legend_handles_labels(), strict=True)}
