@@ -7,17 +7,28 @@ Creep numbers come from the core's laws at static equilibrium; growth, yielding 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import common
 import numpy as np
-from creep import planar, whirl
+from creep import outcome, planar, whirl
 
 import trbdyn as trb
+import trbdyn.paper.points as paper
 from trbdyn.paper.creep import creep, growth_per_turn
 
 COLUMNS = {
-    "part": "1: chi, growth, yielding, direction or map",
+    "part": "1: chi, growth, yielding, direction, map, point or statement",
+    "model": "1: complete or planar",
+    "statement": "1: figure of the paper and what it states",
+    "scatter": "1: whether roller diameters scatter over 1 um",
+    "drift": "1: change of whirl in the last turns, over Cpr",
+    "reach": "1: 95th percentile of the distance from the axis over the last turns, over Cpr",
+    "lasting": "1: mean of the rollers' pattern over the last turns, over Cpr",
+    "varying": "1: rms of what varies of the pattern over the last turns, over Cpr",
+    "small": "1: verdict from the small orbit; * not settled",
+    "large": "1: verdict from the large orbit; * not settled",
     "bearing": "1: bearing",
     "rheology": "1: viscosity law, temperature, starvation factor",
     "accuracy": "1: preset of tolerances",
@@ -38,7 +49,7 @@ COLUMNS = {
     "theory": "1: growth a turn by (2 cos^4(gamma)/Z) (Cpc/Cpr) chi Fn",
     "fit": "1: growth a turn by 0.070 chi (Fn - 0.20), for the 30310 only",
     "stated": "1: rate without radial load by law, times 1 - l sin(gamma)/2",
-    "whirl": "1: synchronous whirl radius over the last 10 turns, over Cpr",
+    "whirl": "1: synchronous whirl radius over the last turns, over Cpr",
     "rest": "1: distance of the mean place over the last 10 turns, over Cpr",
     "cpu": "s: processor time",
     "law_rms": "1: rms of (law - rate)/chi over the growth points",
@@ -138,7 +149,20 @@ DIRECTION: list[dict[str, Any]] = [
     {"speed": speed, "load": 4930.0, "radial": radial, "direction": direction}
     for speed, radial in ((3000.0, 700.0), (3000.0, 1400.0), (2000.0, 1400.0))
     for direction in (90.0, -90.0, 0.0)
+] + [
+    {"speed": 3000.0, "load": 4930.0, "radial": 1400.0, "direction": direction, **other}
+    for other in ({"gravity": 4.9}, {"gravity": 20.0}, {"load": 6000.0, "name": "32216"})
+    for direction in (90.0, -90.0)
 ]
+YIELD_SMALL: list[dict[str, Any]] = [
+    {"speed": 3000.0, "load": 3080.0},
+    {"speed": 3000.0, "load": 1800.0},
+    {"speed": 3000.0, "load": 1500.0},
+    {"speed": 3000.0, "load": 1230.0},
+]
+STARTS = {"small": 0.2, "large": 0.9}
+TURNS = 20
+"""Turns of the runs from which statements are judged."""
 
 
 def measure(
@@ -181,98 +205,210 @@ def measure(
     report.add(**row)
 
 
-def behaviour(report: common.Report, quick: bool) -> tuple[Any, Any, Any]:
-    """Whirl radius of the planar model after 40 turns from 0.5 Cpr."""
-    chi = np.geomspace(0.3, 60.0, 9 if quick else 16)
-    froude = (
-        np.array([0.1, 0.2, 0.437, 0.8]) if quick else np.array([0.05, 0.1, 0.15, 0.194, 0.25, 0.32, 0.437, 0.6, 0.8])
-    )
+def behaviour(report: common.Report, quick: bool) -> tuple[Any, Any, Any, int]:
+    """Whirl radius of the planar model from 0.5 Cpr, and the number of turns after which it is taken."""
+    chi = np.geomspace(0.03, 110.0, 9 if quick else 24)
+    froude = np.array([0.1, 0.2, 0.437, 0.8]) if quick else np.array([0.045, 0.1, 0.194, 0.3, 0.437, 0.8])
     radius = np.empty((froude.size, chi.size))
-    turns = 20 if quick else 40
+    turns = 20
     for i, value in enumerate(froude):
         motion = planar.simulate(chi, value, turns, 0.5)
-        turn = np.exp(-2j * np.pi * np.arange(motion.position.shape[0]) / motion.samples)[:, None]
-        last = slice(-10 * motion.samples - 1, -1)
-        radius[i] = np.abs((motion.position * turn)[last].mean(axis=0))
+        radius[i] = [outcome.outcome(motion, case).whirl for case in range(chi.size)]
         for x, y in zip(chi, radius[i], strict=True):
-            report.add(part="map", chi=x, froude=value, eccentricity=0.5, whirl=y)
-    return chi, froude, radius
+            report.add(part="map", model="planar", chi=x, froude=value, eccentricity=0.5, whirl=y)
+    return chi, froude, radius, turns
 
 
-def draw(report: common.Report, chi: Any, froude: Any, radius: Any) -> None:
-    """The map, with the paper's axial points."""
+def draw(report: common.Report, path: Path, chi: Any, froude: Any, radius: Any, turns: int) -> None:
+    """The map, with the paper's axial points: a mark for each rheology, a colour for each load."""
     plt = common.pyplot()
-    figure, axes = plt.subplots(figsize=(8.5, 5.5), layout="constrained")
+    figure, axes = plt.subplots(figsize=(9.0, 6.8), layout="constrained")
     filled = axes.contourf(chi, froude, radius, levels=np.linspace(0.0, 1.1, 12), cmap="viridis")
     figure.colorbar(filled, label="synchronous whirl radius of the cage / Cpr")
     rows = [row for row in report.results if row["part"] == "chi"]
     names = list(dict.fromkeys(row["rheology"] for row in rows))
-    plain = [name for name in names if "oil 60 C" in name and ("contact 60 C" in name or "contact 80 C" in name)]
-    for name, mark in zip(plain, "osD^v<>PX*hd", strict=False):
-        part = [row for row in rows if row["rheology"] == name]
-        x, y = [row["chi"] for row in part], [row["froude"] for row in part]
-        axes.plot(x, y, mark, mfc="white", mec="black", ms=6, alpha=0.85, label=name.replace(", oil 60 C", ""))
-    axes.set(
-        xscale="log", xlim=(0.05, 300.0), ylim=(0.04, 0.8), xlabel="creep number χ (1)", ylabel="Froude number Fn (1)"
+    marks = dict(
+        zip([name for name in names if "contact 70" not in name and "0.5" not in name], "osD^v<>PX*hd", strict=False)
     )
-    axes.axvline(2.0 * 12 / math.cos(math.radians(26.39)), color="red", ls="--")
+    for name, mark in marks.items():
+        axes.plot([], [], mark, mfc="white", mec="black", ls="", label=name)
+        for load, colour in ((1230.0, "white"), (3080.0, "orange"), (4930.0, "red")):
+            part = [row for row in rows if row["rheology"] == name and row["axial_load"] == load]
+            x, y = [row["chi"] for row in part], [row["froude"] for row in part]
+            axes.plot(x, y, mark, mfc=colour, mec="black", ms=6, ls="")
+    for load, colour in ((1230.0, "white"), (3080.0, "orange"), (4930.0, "red")):
+        axes.plot([], [], "o", mfc=colour, mec="black", ls="", label=f"{load:g} N (colour)")
+    axes.set(xscale="log", yscale="log", xlim=(0.03, 110.0), ylim=(0.045, 0.8))
+    axes.set(xlabel="creep number χ (1)", ylabel="Froude number Fn (1)")
+    axes.set_yticks([0.0485, 0.1, 0.194, 0.437, 0.8], ["0.049", "0.1", "0.194", "0.437", "0.8"])
+    axes.minorticks_on()
+    axes.yaxis.set_minor_formatter(plt.NullFormatter())
+    limit = 2.0 * 12 / math.cos(math.radians(26.39))
+    axes.axvline(limit, color="white", ls="--", label=f"stated yield limit {limit:.1f}")
     axes.set_title(
-        "Planar model after turns from 0.5 Cpr; red: stated yield limit; marks: 1230-4930 N, 1000-3000 rpm", fontsize=9
+        f"Planar model, {turns} turns of the cage after a start at 0.5 Cpr.\n"
+        "Marks: the paper's axial points, Fn 0.049, 0.194, 0.437 at 1000, 2000, 3000 rpm",
+        fontsize=10,
     )
-    axes.legend(fontsize=7, loc="upper right")
-    (common.HERE / "paper").mkdir(exist_ok=True)
-    figure.savefig(common.HERE / "paper" / "creep_map.png", dpi=120)
+    figure.legend(
+        *axes.get_legend_handles_labels(), fontsize=8, loc="outside lower center", ncols=3, facecolor="lightgrey"
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=120)
+    print(f"wrote {path.name}", flush=True)
+
+
+def warm_contact(temperature_c: float) -> trb.Lubricant:
+    """VG100 (Dicke) as it is at a temperature in the contacts, with the films of 60 C.
+
+    The film alone takes the pressure coefficient, so that it is raised until the thinnest film at 3000 rpm, 4930 N is that of
+    60 C; rolling resistance takes it as well.
+    """
+
+    def thinnest(oil: trb.Lubricant) -> float:
+        return float(creep(trb.cases.scene_30310(3000.0, 4930.0, lubricant=oil, effects=GAUSS)).film_parameter.min())
+
+    wanted, oil = thinnest(trb.lubricants.vg100(60.0)), trb.lubricants.vg100(temperature_c)
+    for _ in range(4):
+        # the film grows with about the 0.5th power of the coefficient
+        oil = oil.replace(pressure_coefficient=oil.pressure_coefficient * (wanted / thinnest(oil)) ** 2)
+    return oil
+
+
+def statements(report: common.Report, quick: bool) -> None:
+    """The paper's statements with each rheology: complete model for four, planar model for the axial points of all."""
+    oils = {
+        "dicke, 60 C": (trb.lubricants.vg100(60.0), 1.0),
+        "dicke, contact 80 C": (warm_contact(80.0), 1.0),
+        "dicke, film x 0.3": (trb.lubricants.vg100(60.0), 0.3),
+        "barus, 60 C": (trb.lubricants.vg100(60.0, pressure_law="barus"), 1.0),
+    }
+    for name, (oil, thin) in list(oils.items())[: 1 if quick else None]:
+        for start, e in STARTS.items():
+            found = {}
+            for key in outcome.LOADS if quick else outcome.POINTS:
+                speed, load, radial, scatter = key
+                what = paper.Condition(speed, load, radial, scatter=scatter)
+                built = paper.Point(what, "whirl").scene()
+                built = built.replace(
+                    lubricant=oil, effects=GAUSS.replace(starvation_factor=thin), start=trb.Start.whirl(e)
+                )
+                run = whirl.run(built, TURNS)
+                found[key] = outcome.outcome(run.motion)
+                numbers_of = creep(built)
+                _point(report, "complete", name, key, e, numbers_of.chi, numbers_of.froude, found[key], cpu=run.cpu_s)
+            _judged(report, "complete", name, start, found)
+        show(report, "point")
+    rows = [row for row in report.results if row["part"] == "chi"]
+    names = list(dict.fromkeys(row["rheology"] for row in rows))
+    for start, e in STARTS.items():
+        ends: dict[str, dict[outcome.Key, outcome.Outcome]] = {name: {} for name in names}
+        for speed in (1000.0, 2000.0, 3000.0):
+            part = [
+                row for row in rows if row["speed_rpm"] == speed and (row["axial_load"] == 3080.0 or speed == 3000.0)
+            ]
+            motion = planar.simulate(np.array([row["chi"] for row in part]), part[0]["froude"], TURNS, e)
+            for case, row in enumerate(part):
+                key, end = outcome.point(speed, row["axial_load"]), outcome.outcome(motion, case)
+                ends[row["rheology"]][key] = end
+                _point(report, "planar", row["rheology"], key, e, row["chi"], row["froude"], end)
+        for name in names:
+            _judged(report, "planar", name, start, ends[name])
+
+
+def _point(
+    report: common.Report,
+    model: str,
+    name: str,
+    key: outcome.Key,
+    e: float,
+    chi: float,
+    froude: float,
+    end: outcome.Outcome,
+    **more: Any,
+) -> None:
+    speed, load, radial, scatter = key
+    place = {"speed_rpm": speed, "axial_load": load, "radial_load": radial, "scatter": scatter, "eccentricity": e}
+    report.add(part="point", model=model, rheology=name, chi=chi, froude=froude, **place, **vars(end), **more)
+
+
+def _judged(
+    report: common.Report, model: str, name: str, start: str, found: dict[outcome.Key, outcome.Outcome]
+) -> None:
+    """Verdicts from one start, beside those from the other."""
+    ratio = numbers(trb.cases.rig_30310())["play_ratio"]
+    for statement, (holds, settled) in outcome.judge(found, ratio).items():
+        verdict = ("yes" if holds else "no") + ("" if settled else "*")
+        same = {"part": "statement", "model": model, "rheology": name, "statement": statement}
+        rows = [row for row in report.results if all(row.get(k) == v for k, v in same.items())]
+        (rows[0] if rows else report.add(**same))[start] = verdict
+
+
+def matrix(report: common.Report, model: str) -> str:
+    """Rheology against statement: verdicts from the small and the large orbit."""
+    rows = [row for row in report.results if row["part"] == "statement" and row["model"] == model]
+    lines: dict[str, dict[str, str]] = {}
+    for row in rows:
+        lines.setdefault(row["rheology"], {"rheology": row["rheology"]})[row["statement"]] = (
+            f"{row['small']} / {row['large']}"
+        )
+    return common.table(list(lines.values()), list(dict.fromkeys(key for line in lines.values() for key in line)))
+
+
+PARTS = {
+    "chi": "rheology speed_rpm axial_load chi froude film_parameter",
+    "growth": "bearing accuracy speed_rpm axial_load gravity eccentricity chi froude rate error law theory fit",
+    "yielding": "speed_rpm axial_load gravity eccentricity chi froude chi_yield whirl rest",
+    "direction": "bearing speed_rpm axial_load gravity radial_load direction_deg unevenness chi froude rate error law stated",
+    "point": "model rheology speed_rpm axial_load radial_load scatter eccentricity chi whirl drift reach lasting varying rate",
+}
+
+
+def show(report: common.Report, part: str) -> None:
+    """Print a part's table."""
+    rows = [row for row in report.results if row["part"] == part]
+    print(f"\n{part}\n{common.table(rows, PARTS[part].split())}", flush=True)
 
 
 def main() -> None:
     """Run the benchmark."""
-    options = common.parser(__doc__).parse_args()
+    parser = common.parser(__doc__)
+    parser.add_argument(
+        "--picture", type=Path, default=None, help="draw the map here; paper/creep_map.png, with --quick nowhere"
+    )
+    options = parser.parse_args()
     report, quick = common.Report("creep_map", options, COLUMNS), options.quick
     rheologies(report, quick)
+    show(report, "chi")
+    picture = options.picture or (None if quick else common.HERE / "paper" / "creep_map.png")
+    found = behaviour(report, quick)
+    if picture is not None and not options.no_picture:
+        draw(report, picture, *found)
     for case in GROWTH[:3] if quick else GROWTH:
         for e in (0.4,) if quick else (0.2, 0.4):
             measure(report, "growth", case, 20, e)
     for case in [] if quick else [GROWTH[0], GROWTH[3]]:
         measure(report, "growth", case, 20, 0.4, "standard")
-    for case in YIELD[::4] if quick else YIELD:
-        measure(report, "yielding", case, 30, 0.9)
-    for case in DIRECTION[:2] if quick else DIRECTION:
-        measure(report, "direction", case, 12, 0.3)
     rows = [row for row in report.results if row["part"] == "growth"]
     for name in ("law", "theory", "fit"):
         wrong = [(row[name] - row["rate"]) / row["chi"] for row in rows if name in row]
         report.summary[f"{name}_rms"] = float(np.sqrt(np.mean(np.square(wrong))))
-    for part, names in (
-        ("chi", ("rheology", "speed_rpm", "axial_load", "chi", "froude", "film_parameter")),
-        (
-            "growth",
-            (
-                "bearing",
-                "accuracy",
-                "speed_rpm",
-                "axial_load",
-                "gravity",
-                "eccentricity",
-                "chi",
-                "froude",
-                "rate",
-                "error",
-                "law",
-                "theory",
-                "fit",
-            ),
-        ),
-        ("yielding", ("speed_rpm", "axial_load", "gravity", "chi", "froude", "chi_yield", "whirl", "rest")),
-        (
-            "direction",
-            ("speed_rpm", "radial_load", "direction_deg", "unevenness", "chi", "rate", "error", "law", "stated"),
-        ),
-    ):
-        print(f"\n{part}\n{common.table([row for row in report.results if row['part'] == part], names)}", flush=True)
-    print(report.summary)
-    found = behaviour(report, quick)
-    if not options.no_picture:
-        draw(report, *found)
+    show(report, "growth")
+    print(report.summary, flush=True)
+    for case in DIRECTION[:2] if quick else DIRECTION:
+        measure(report, "direction", case, 12, 0.3)
+    show(report, "direction")
+    for case in YIELD[::4] if quick else YIELD:
+        measure(report, "yielding", case, 30, 0.9)
+    for case in [] if quick else YIELD_SMALL:
+        measure(report, "yielding", case, 30, 0.2)
+    show(report, "yielding")
+    statements(report, quick)
+    show(report, "point")
+    for model in ("complete", "planar"):
+        print(
+            f"\nstatements, {model} model: from {STARTS['small']} / from {STARTS['large']} Cpr\n{matrix(report, model)}"
+        )
     report.finish()
 
 

@@ -63,3 +63,71 @@ def test_planar_cage_above_the_yield_limit_rests(planar: Any) -> None:
     whirl = np.abs(turning[-8 * motion.samples - 1 : -1].mean(axis=0))
     assert whirl[0] > 0.6
     assert whirl[1] < 0.1
+
+
+def test_planar_growth_is_converged_in_stiffness_and_steps(planar: Any) -> None:
+    cage = planar.Cage(friction=0.0, roller_mass=0.0)
+    rates = [
+        planar.growth(planar.simulate(np.array([0.5]), 0.437, 6, 0.3, cage, stiffness=stiff, steps_per_period=steps))[
+            0
+        ][0]
+        for stiff, steps in ((100.0, 16.0), (400.0, 16.0), (100.0, 48.0))
+    ]
+    assert rates[0] > 0.0
+    # per creep number, within the scatter over eccentricities
+    assert np.array(rates[1:]) / 0.5 == pytest.approx(rates[0] / 0.5, abs=0.003)
+
+
+def _grown(planar: Any, what: trb.Scene, turns: float) -> tuple[Any, float]:
+    from creep import whirl
+
+    run = whirl.run(what, turns)
+    return run, run.rate
+
+
+@pytest.mark.slow
+# measured: from 0.2 and 0.4 Cpr, "fast" and "standard"; +- the spread and the scatter of the derived law, 0.003 chi
+@pytest.mark.parametrize(
+    ("speed", "gravity", "low", "high"),
+    [
+        (3000.0, 9.80665, 0.0058, 0.0099),
+        (3000.0, 4.9, 0.0100, 0.0125),
+        (2000.0, 20.0, -0.0137, -0.0066),
+        (1000.0, 9.80665, -0.0111, -0.0058),
+    ],
+)
+def test_growth_of_a_whirl(planar: Any, speed: float, gravity: float, low: float, high: float) -> None:
+    """In all four 5 s."""
+    what = trb.cases.scene_30310(speed, 4930.0, effects=GAUSS, gravity=(0.0, -gravity, 0.0), start=trb.Start.whirl(0.4))
+    _, rate = _grown(planar, what, 20)
+    assert low < rate < high
+
+
+@pytest.mark.slow
+def test_rollers_that_creep_fast_end_a_whirl(planar: Any) -> None:
+    """4 s: 1230 N (chi 49) against 3080 N (chi 2.8), from 0.9 Cpr."""
+    ends = []
+    for load in (1230.0, 3080.0):
+        what = trb.cases.scene_30310(3000.0, load, effects=GAUSS, start=trb.Start.whirl(0.9))
+        motion = _grown(planar, what, 20)[0].motion
+        turned = motion.position[:, 0] * np.exp(-2j * np.pi * np.arange(motion.position.shape[0]) / motion.samples)
+        ends.append(abs(turned[-8 * motion.samples - 1 : -1].mean()))
+    assert ends[0] < 0.1
+    assert ends[1] > 0.5
+
+
+@pytest.mark.slow
+def test_loaded_zone_on_top_slows_growth_and_at_the_bottom_hastens_it(planar: Any) -> None:
+    """2 s; 0.002: spread of the rate over eccentricities and tolerances."""
+    top, axial, bottom = (
+        _grown(
+            planar,
+            trb.cases.scene_30310(
+                3000.0, 4930.0, radial, effects=GAUSS, radial_direction_deg=direction, start=trb.Start.whirl(0.3)
+            ),
+            12,
+        )[1]
+        for radial, direction in ((1400.0, 90.0), (0.0, 90.0), (1400.0, -90.0))
+    )
+    assert top < axial - 0.002
+    assert bottom > axial + 0.002
