@@ -23,6 +23,8 @@ SCATTER = 1.5
 """Factor by which scatter must enlarge the whirl."""
 DRIFT = 0.03
 """Change of the radius, over Cpr, in the last turns from which a run has not settled."""
+FLUTTER = 1.3
+"""Distance from the axis, over Cpr, that no cage with stiff bars reaches."""
 LAST = 6
 """Turns of the cage that are averaged."""
 
