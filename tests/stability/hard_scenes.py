@@ -447,7 +447,7 @@ HARD: tuple[Hard, ...] = (
         steps=200.0,
         tolerances=0.05,
         compared=5e-3,
-        # impacts 40 times as dense as elsewhere: against ERK at 1e-9, BDF of order 2 is off by 6.8e-3, 2.4e-3 and 3.2e-4 at
+        # many impacts: against ERK at 1e-9, BDF of order 2 is off by 6.8e-3, 2.4e-3 and 3.2e-4 at
         # tolerances of 1e-6, 1e-7 and 1e-8, so the two methods converge to one path
         path=1e-2,
     ),
