@@ -354,7 +354,7 @@ def matrix(report: common.Report, model: str) -> str:
     lines: dict[str, dict[str, str]] = {}
     for row in rows:
         lines.setdefault(row["rheology"], {"rheology": row["rheology"]})[row["statement"]] = (
-            f"{row['small']} / {row['large']}"
+            f"{row.get('small', 'open')} / {row.get('large', 'open')}"
         )
     return common.table(list(lines.values()), list(dict.fromkeys(key for line in lines.values() for key in line)))
 
