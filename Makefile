@@ -23,6 +23,7 @@ VENV    := .venv
 PY      := $(VENV)/bin/python
 PIP     := $(PY) -m pip --disable-pip-version-check
 SOURCES := $(shell find csrc trbdyn -type f -not -path '*/__pycache__/*')
+TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws bearing contact motion stepping))
 DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=ON
 
 # -P and PYTHONSAFEPATH: import the installed package, not the source folder of the same name, which has no compiled core
@@ -43,6 +44,7 @@ lint: $(VENV)/.lint build/.package
 	$(PY) -m ruff check .
 	$(PY) -m mypy
 	$(PY) .ci/lint_c.py --objects build/package
+	$(VENV)/bin/clang-tidy -p build/package --quiet $(TIDY) >build/tidy.log 2>&1 || { cat build/tidy.log; exit 1; }
 
 format: $(VENV)/.lint
 	$(PY) -m ruff check --fix .

@@ -4,6 +4,9 @@
 
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
+#ifdef Py_GIL_DISABLED
+#error "trbdyn needs the global interpreter lock: free-threaded builds of Python are not supported"
+#endif
 #ifndef TRB_PYTHON_MAIN
 #define NO_IMPORT_ARRAY
 #endif

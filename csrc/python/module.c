@@ -194,13 +194,11 @@ static PyMethodDef functions[] = {
     {NULL, NULL, 0, NULL},
 };
 
-static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "_core", "The C core of trbdyn.", -1, functions, NULL, NULL, NULL, NULL};
-
 static int add_exception(PyObject *module, const char *name, const char *text, PyObject *bases, PyObject **to)
 {
   char full[64];
   (void)PyOS_snprintf(full, sizeof full, "trbdyn._core.%s", name);
-  *to = PyErr_NewExceptionWithDoc(full, text, bases, NULL);
+  if (*to == NULL) *to = PyErr_NewExceptionWithDoc(full, text, bases, NULL); /* one, however often the module is loaded */
   return *to == NULL ? -1 : PyModule_AddObjectRef(module, name, *to);
 }
 
@@ -216,16 +214,27 @@ static int add_exceptions(PyObject *module)
   return add_exception(module, "CoreStepError", "The integrator could not go on.", trb_error, &trb_step_error);
 }
 
-PyMODINIT_FUNC PyInit__core(void)
+static int execute(PyObject *module)
 {
-  import_array();
-  if (PyType_Ready(&trb_model_type) < 0 || PyType_Ready(&trb_simulation_type) < 0) return NULL;
-  PyObject *module = PyModule_Create(&definition);
-  if (module == NULL) return NULL;
-  if (add_exceptions(module) != 0 || PyModule_AddObjectRef(module, "Model", (PyObject *)&trb_model_type) != 0 ||
-      PyModule_AddObjectRef(module, "Simulation", (PyObject *)&trb_simulation_type) != 0) {
-    Py_DECREF(module);
-    return NULL;
+  /* types and exceptions are static: another interpreter would share them, and NumPy's */
+  if (PyInterpreterState_Get() != PyInterpreterState_Main()) {
+    PyErr_SetString(PyExc_ImportError, "trbdyn works in the main interpreter alone, not in sub-interpreters; use threads or processes");
+    return -1;
   }
-  return module;
+  import_array1(-1);
+  if (PyType_Ready(&trb_model_type) < 0 || PyType_Ready(&trb_simulation_type) < 0) return -1;
+  if (add_exceptions(module) != 0 || PyModule_AddObjectRef(module, "Model", (PyObject *)&trb_model_type) != 0) return -1;
+  return PyModule_AddObjectRef(module, "Simulation", (PyObject *)&trb_simulation_type);
 }
+
+static PyModuleDef_Slot slots[] = {
+    {Py_mod_exec, execute},
+#if PY_VERSION_HEX >= 0x030C0000
+    {Py_mod_multiple_interpreters, Py_MOD_MULTIPLE_INTERPRETERS_NOT_SUPPORTED},
+#endif
+    {0, NULL},
+};
+
+static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "_core", "The C core of trbdyn.", 0, functions, slots, NULL, NULL, NULL};
+
+PyMODINIT_FUNC PyInit__core(void) { return PyModuleDef_Init(&definition); }

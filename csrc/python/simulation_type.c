@@ -181,9 +181,13 @@ static PyObject *step(PyObject *object, PyObject *none)
 
 static PyObject *state(PyObject *object, PyObject *none)
 {
-  const trb_integrator *it = &((simulation_object *)object)->simulation->integrator;
+  simulation_object    *self = (simulation_object *)object;
+  const trb_integrator *it = &self->simulation->integrator;
   (void)none;
-  return trb_vector(it->y, it->n);
+  if (enter(self) != 0) return NULL; /* it would be half of one step and half of another */
+  PyObject *out = trb_vector(it->y, it->n);
+  self->busy = 0;
+  return out;
 }
 
 static PyObject *set_state(PyObject *object, PyObject *args)

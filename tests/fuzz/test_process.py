@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
+import importlib.util
 import os
+import re
+import shutil
 import signal
+import subprocess
+import sys
+import sysconfig
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -14,6 +22,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.cases import scene_30310
+from trbdyn.checkpoint import checkpoint_path
 
 
 def scene(number: int) -> trb.Scene:
@@ -32,29 +41,98 @@ def test_threads_equal_serial() -> None:
             np.testing.assert_array_equal(one.cage_position, other.cage_position)
 
 
-def test_one_simulation_in_two_threads_is_refused() -> None:
+@pytest.mark.parametrize("what", ["record", "contacts", "derivative", "restart", "state", "copy", "set_state"])
+def test_one_simulation_in_two_threads_is_refused(what: str) -> None:
+    """Whatever a thread asks of a simulation that another thread steps."""
     sim = trb.Simulation(scene(0))
-    inside, go_on = threading.Event(), threading.Event()
-    troubles: list[BaseException] = []
+    state, records = sim.state, np.empty((1, sim._model.record_length))
+    enough = threading.Event()
+    asks = {"set_state": lambda: sim.set_state(state), "state": lambda: sim.state}
+    ask = asks.get(what) or getattr(sim, what)
 
     def step_on() -> None:
-        inside.set()
-        try:
-            sim.run(duration=0.2, callback=lambda now: go_on.is_set())
-        except RuntimeError as error:
-            troubles.append(error)
+        while not enough.is_set():
+            # refused itself where the other thread was the first
+            with contextlib.suppress(RuntimeError):
+                sim._core.run(np.array([1e6]), records, 1000)
 
     thread = threading.Thread(target=step_on)
     thread.start()
-    inside.wait()
-    try:
-        for _ in range(20000):
-            sim.step()
-    except RuntimeError as error:
-        troubles.append(error)
-    go_on.set()
+    until = time.monotonic() + 60.0
+    refusal = ""
+    while not refusal and time.monotonic() < until:
+        with contextlib.suppress(RuntimeError):
+            # answered, with the interpreter's lock held: the other thread is not in the core now
+            sim.record()
+            continue
+        try:
+            ask()
+        except RuntimeError as error:
+            refusal = str(error)
+    enough.set()
     thread.join()
-    assert all("another thread" in str(error) for error in troubles)
+    assert "another thread" in refusal
+    assert sim.step() > 0.0
+
+
+INNER = """
+import sys
+sys.path[:] = {path!r}
+try:
+    import trbdyn._core
+    print("imported", flush=True)
+except ImportError as error:
+    print("refused:", error, flush=True)
+"""
+
+OUTER = """
+import sys
+try:
+    import _interpreters as interpreters
+except ImportError:
+    import _xxsubinterpreters as interpreters
+if sys.argv[1] == "after the main one":
+    import trbdyn._core
+interpreters.run_string(interpreters.create(), sys.argv[2])
+import trbdyn as trb
+print(trb.Simulation(trb.cases.scene_30310()).step() > 0.0)
+"""
+
+
+@pytest.mark.skipif(
+    not any(importlib.util.find_spec(name) for name in ("_interpreters", "_xxsubinterpreters")),
+    reason="this Python cannot make sub-interpreters",
+)
+@pytest.mark.parametrize("when", ["first", "after the main one"])
+def test_sub_interpreters_are_refused(when: str) -> None:
+    """The one that asks is told; the main one works on."""
+    path = [entry for entry in sys.path if entry]
+    words = [sys.executable, "-P", "-c", OUTER, when, INNER.format(path=path)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path)}
+    done = subprocess.run(words, capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode == 0, done.stderr
+    refusal, works = done.stdout.splitlines()
+    assert refusal.startswith("refused:")
+    assert re.search("sub-?interpreters", refusal)
+    assert works == "True"
+
+
+CORE_HEADER = Path(__file__).parents[2] / "csrc" / "python" / "core.h"
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+@pytest.mark.parametrize("free_threaded", [False, True])
+def test_free_threaded_builds_are_refused(tmp_path: Path, free_threaded: bool) -> None:
+    """The extension does not compile for a Python without the global interpreter lock, and says why."""
+    if sysconfig.get_config_var("Py_GIL_DISABLED") and not free_threaded:
+        pytest.skip("this Python is free-threaded")
+    source = tmp_path / "module.c"
+    source.write_text(f'#include "{CORE_HEADER}"\n')
+    folders = [sysconfig.get_path("include"), np.get_include(), str(CORE_HEADER.parents[1])]
+    words = ["cc", "-std=c11", "-fsyntax-only", *(f"-I{folder}" for folder in folders), str(source)]
+    done = subprocess.run(words + ["-DPy_GIL_DISABLED"] * free_threaded, capture_output=True, text=True, check=False)
+    assert (done.returncode != 0) is free_threaded, done.stderr
+    assert ("free-threaded builds of Python are not supported" in done.stderr) is free_threaded
 
 
 def resident() -> int:
@@ -87,8 +165,8 @@ def test_no_leaks_over_ten_thousand_cycles() -> None:
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
 def test_models_and_equilibria_do_not_leak() -> None:
     base = scene(0)
-    for _ in range(50):
-        trb.Simulation(base).step()
+    for _ in range(300):
+        trb.Simulation(base).run(duration=1e-4)
     gc.collect()
     before = resident()
     for _ in range(500):
@@ -117,13 +195,27 @@ def test_what_a_callback_raises_comes_out_and_the_simulation_goes_on(tmp_path: P
 
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
 def test_ctrl_c_while_stepping_ends_the_run_and_resume_goes_on(tmp_path: Path) -> None:
+    """The signal comes when the file holds records, a moment into a run that would take minutes."""
     path = tmp_path / "run.h5"
-    timer = threading.Timer(0.4, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
-    result = trb.Simulation(scene(0)).run(duration=0.8, save_every=1e-3, checkpoint_every=0.05, output=path)
-    timer.join()
-    if result.success:
-        pytest.skip("this machine is faster than the signal")
+    schedule = {"save_every": 1e-3, "checkpoint_every": 0.05}
+
+    def press() -> None:
+        while not checkpoint_path(path).exists():
+            time.sleep(0.01)
+        time.sleep(0.2)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=press, daemon=True).start()
+    began = time.perf_counter()
+    result = trb.Simulation(scene(0)).run(duration=1000.0, output=path, **schedule)
+    assert time.perf_counter() - began < 60.0
     assert "stopped by the user" in result.message
-    whole = trb.Simulation(scene(0)).run(duration=0.8, save_every=1e-3, checkpoint_every=0.05)
-    np.testing.assert_array_equal(trb.resume(path).final_state, whole.final_state)
+    assert result.final_time < 500.0
+    # a twin of the run, to a time a little after the signal
+    end = result.final_time + 0.1
+    whole = trb.Simulation(scene(0)).run(duration=end, **schedule)
+    resumed = trb.resume(path, callback=lambda now: now.time >= end)
+    n = len(whole) - 1  # its last record is its end
+    assert len(result) < n <= len(resumed)
+    for name in ("time", "cage_position", "roller_position"):
+        np.testing.assert_array_equal(resumed[name][:n], whole[name][:n])
