@@ -23,7 +23,7 @@ VENV    := .venv
 PY      := $(VENV)/bin/python
 PIP     := $(PY) -m pip --disable-pip-version-check
 SOURCES := $(shell find csrc trbdyn -type f -not -path '*/__pycache__/*')
-TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws bearing contact motion stepping))
+TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws bearing contact motion stepping python))
 DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=ON
 
 # -P and PYTHONSAFEPATH: import the installed package, not the source folder of the same name, which has no compiled core

@@ -131,9 +131,10 @@ class Simulation:
 
     def _count(self) -> None:
         """Keep what was counted before a new integrator takes the place of the present one."""
-        self._counted = self.counters
+        counted, totals = self.counters, self.statistics
+        self._counted = counted
         if self._core.statistics()["steps"] > 0:
-            self._totals = self.statistics
+            self._totals = totals
 
     @property
     def time(self) -> float:

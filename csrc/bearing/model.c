@@ -40,13 +40,17 @@ static double profile_drop(const trb_model *m, double station)
   return 0.0;
 }
 
+/* Upper bound of n_slices in params.h. */
+#define TRB_MAX_NODES 200
+
 /* Nodes along the contact and, per roller, the chain of inscribed spheres (physics: section 3). */
 static trb_status fill_nodes(trb_model *m, trb_message *message)
 {
   const trb_params   *p = &m->params;
   const trb_geometry *g = &m->geometry;
   const double        nu = g->roller_half_angle, half = 0.5 * p->effective_length;
-  double              node[200], weight[200];
+  double              node[TRB_MAX_NODES], weight[TRB_MAX_NODES];
+  if (m->n_nodes < 1 || m->n_nodes > TRB_MAX_NODES) return trb_fail(message, TRB_ERR_INPUT, "n_slices = %d: must be 1 to %d", m->n_nodes, TRB_MAX_NODES);
   trb_quadrature((int)p->quadrature, m->n_nodes, node, weight);
   for (int k = 0; k < m->n_lanes; k++) {
     const int    used = k < m->n_nodes ? k : m->n_nodes - 1;

@@ -43,7 +43,7 @@ static void pad(int n, int padded, trb_lanes *l)
 {
   double *const fields[] = {l->interference, l->approach, l->sx, l->sy, l->sz, l->mx, l->my, l->mz};
   for (int f = 0; f < (int)(sizeof fields / sizeof fields[0]); f++)
-    for (int i = n; i < padded; i++) fields[f][i] = fields[f][n - 1];
+    for (int i = n; n > 0 && i < padded; i++) fields[f][i] = fields[f][n - 1];
 }
 
 /* Hertz: Q = K d^1.5, semi-axis along rolling and largest pressure with Q^(1/3). */

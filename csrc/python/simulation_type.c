@@ -11,7 +11,8 @@ typedef struct simulation_object {
   PyObject       *model;      /* keeps the model alive */
   trb_motion     *motion;
   trb_simulation *simulation;
-  int             busy;       /* another thread is inside */
+  PyThread_type_lock inside;  /* held by the one thread that uses it */
+  int             stepping;   /* that thread is in the integrator, or is about to be */
 } simulation_object;
 
 /* Settings by name out of a dict; integrator is the one that is not a number. */
@@ -73,7 +74,8 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
   if (self != NULL) {
     Py_INCREF(model);
     self->model = model;
-    state = state_array(self, state_object);
+    self->inside = PyThread_allocate_lock();
+    state = self->inside != NULL ? state_array(self, state_object) : (PyArrayObject *)PyErr_NoMemory();
   }
   if (state != NULL) {
     trb_status status = TRB_OK;
@@ -100,18 +102,44 @@ static void simulation_dealloc(PyObject *object)
   simulation_object *self = (simulation_object *)object;
   trb_simulation_free(self->simulation);
   trb_motion_free(self->motion);
+  if (self->inside != NULL) PyThread_free_lock(self->inside);
   Py_XDECREF(self->model);
   Py_TYPE(object)->tp_free(object);
 }
 
-static int enter(simulation_object *self)
+/* Longest wait for another thread's look, ms. */
+#define TRB_LOOK_WAIT 1000
+
+static int try_lock(simulation_object *self, PY_TIMEOUT_T microseconds)
 {
-  if (self->busy) {
+  return PyThread_acquire_lock_timed(self->inside, microseconds, 0) == PY_LOCK_ACQUIRED;
+}
+
+/* The calling thread is alone in here. One that steps is not waited for; a look lets others in where NumPy allocates, and is over soon. */
+static int enter(simulation_object *self, int stepping)
+{
+  int got = try_lock(self, 0);
+  if (!got && !self->stepping) {
+    self->stepping = stepping; /* from now on others are refused, so that they cannot keep this one waiting */
+    for (int i = 0; i < TRB_LOOK_WAIT && !got && self->stepping == stepping; i++) {
+      Py_BEGIN_ALLOW_THREADS
+      got = try_lock(self, 1000);
+      Py_END_ALLOW_THREADS
+    }
+    if (!got && stepping) self->stepping = 0;
+  }
+  if (!got) {
     PyErr_SetString(PyExc_RuntimeError, "this simulation is stepping in another thread; give each thread its own");
     return -1;
   }
-  self->busy = 1;
+  if (stepping) self->stepping = 1;
   return 0;
+}
+
+static void leave(simulation_object *self, int stepping)
+{
+  if (stepping) self->stepping = 0;
+  PyThread_release_lock(self->inside);
 }
 
 static PyObject *run(PyObject *object, PyObject *args)
@@ -134,7 +162,7 @@ static PyObject *run(PyObject *object, PyObject *args)
     Py_DECREF(times);
     return NULL;
   }
-  if (enter(self) != 0) {
+  if (enter(self, 1) != 0) {
     Py_DECREF(times);
     return NULL;
   }
@@ -143,7 +171,7 @@ static PyObject *run(PyObject *object, PyObject *args)
   status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), stop_after, PyArray_DATA(records), max_steps,
                               &rows, &steps, &message);
   Py_END_ALLOW_THREADS
-  self->busy = 0;
+  leave(self, 1);
   Py_DECREF(records);
   Py_DECREF(times);
   if (status == TRB_OK) return Py_BuildValue("(il)", rows, steps);
@@ -171,11 +199,11 @@ static PyObject *step(PyObject *object, PyObject *none)
   trb_message        message = {TRB_OK, ""};
   trb_status         status;
   (void)none;
-  if (enter(self) != 0) return NULL;
+  if (enter(self, 1) != 0) return NULL;
   Py_BEGIN_ALLOW_THREADS
   status = trb_simulation_step(self->simulation, &message);
   Py_END_ALLOW_THREADS
-  self->busy = 0;
+  leave(self, 1);
   return status == TRB_OK ? PyFloat_FromDouble(self->simulation->integrator.time) : trb_raise(status, &message);
 }
 
@@ -184,9 +212,9 @@ static PyObject *state(PyObject *object, PyObject *none)
   simulation_object    *self = (simulation_object *)object;
   const trb_integrator *it = &self->simulation->integrator;
   (void)none;
-  if (enter(self) != 0) return NULL; /* it would be half of one step and half of another */
+  if (enter(self, 0) != 0) return NULL; /* it would be half of one step and half of another */
   PyObject *out = trb_vector(it->y, it->n);
-  self->busy = 0;
+  leave(self, 0);
   return out;
 }
 
@@ -199,12 +227,12 @@ static PyObject *set_state(PyObject *object, PyObject *args)
   if (!PyArg_ParseTuple(args, "dO", &time, &values)) return NULL;
   PyArrayObject *array = state_array(self, values);
   if (array == NULL) return NULL;
-  if (enter(self) != 0) {
+  if (enter(self, 0) != 0) {
     Py_DECREF(array);
     return NULL;
   }
   const trb_status status = trb_simulation_set_state(self->simulation, time, PyArray_DATA(array), &message);
-  self->busy = 0;
+  leave(self, 0);
   Py_DECREF(array);
   if (status != TRB_OK) return trb_raise(status, &message);
   Py_RETURN_NONE;
@@ -216,9 +244,9 @@ static PyObject *restart(PyObject *object, PyObject *none)
   trb_integrator    *it = &self->simulation->integrator;
   trb_message        message = {TRB_OK, ""};
   (void)none;
-  if (enter(self) != 0) return NULL;
+  if (enter(self, 0) != 0) return NULL;
   const trb_status status = trb_simulation_set_state(self->simulation, it->time, it->y, &message);
-  self->busy = 0;
+  leave(self, 0);
   if (status != TRB_OK) return trb_raise(status, &message);
   Py_RETURN_NONE;
 }
@@ -229,7 +257,7 @@ static PyArrayObject *look(simulation_object *self, PyObject *args, double *time
   PyObject *values;
   if (!PyArg_ParseTuple(args, "dO", time, &values)) return NULL;
   PyArrayObject *array = state_array(self, values);
-  if (array != NULL && enter(self) != 0) Py_CLEAR(array);
+  if (array != NULL && enter(self, 0) != 0) Py_CLEAR(array);
   return array;
 }
 
@@ -242,7 +270,7 @@ static PyObject *observe(PyObject *object, PyObject *args)
   if (array == NULL) return NULL;
   PyObject *out = trb_vector(NULL, trb_record_offset(s->model, TRB_N_FIELDS));
   if (out != NULL) trb_record_fill(s->onlooker, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
-  self->busy = 0;
+  leave(self, 0);
   Py_DECREF(array);
   return out;
 }
@@ -256,7 +284,7 @@ static PyObject *derivative(PyObject *object, PyObject *args)
   if (array == NULL) return NULL;
   PyObject *out = trb_vector(NULL, s->integrator.n);
   if (out != NULL) trb_dynamics_derivative(s->onlooker, time, PyArray_DATA(array), PyArray_DATA((PyArrayObject *)out));
-  self->busy = 0;
+  leave(self, 0);
   Py_DECREF(array);
   return out;
 }
@@ -332,34 +360,40 @@ static PyObject *contacts(PyObject *object, PyObject *args)
   trb_dynamics_loads(s->onlooker, s->detail);
   PyObject *out = PyDict_New();
   if (out != NULL && (put_detail(s->model, s->detail, out) != 0 || put_loads(s->model, s->onlooker->loads, out) != 0)) Py_CLEAR(out);
-  self->busy = 0;
+  leave(self, 0);
   Py_DECREF(array);
   return out;
 }
 
 static PyObject *counters(PyObject *object, PyObject *none)
 {
-  const trb_counters *c = &((simulation_object *)object)->simulation->dynamics->work->counters;
-  PyObject           *out = PyDict_New();
+  simulation_object  *self = (simulation_object *)object;
+  const trb_counters *c = &self->simulation->dynamics->work->counters;
   (void)none;
+  if (enter(self, 0) != 0) return NULL;
+  PyObject *out = PyDict_New();
 #define PUT(name, text) \
   if (out != NULL && trb_put(out, #name, PyLong_FromLongLong(c->name)) != 0) Py_CLEAR(out);
   TRB_COUNTERS(PUT)
 #undef PUT
+  leave(self, 0);
   return out;
 }
 
 static PyObject *statistics(PyObject *object, PyObject *none)
 {
-  const trb_integrator *it = &((simulation_object *)object)->simulation->integrator;
+  simulation_object    *self = (simulation_object *)object;
+  const trb_integrator *it = &self->simulation->integrator;
   trb_statistics        s = {0};
-  PyObject             *out = PyDict_New();
   (void)none;
+  if (enter(self, 0) != 0) return NULL;
+  PyObject *out = PyDict_New();
   it->kind->statistics(it, &s);
 #define PUT(name, text) \
   if (out != NULL && trb_put(out, #name, PyFloat_FromDouble(s.name)) != 0) Py_CLEAR(out);
   TRB_STATISTICS(PUT)
 #undef PUT
+  leave(self, 0);
   return out;
 }
 

@@ -41,14 +41,20 @@ def test_threads_equal_serial() -> None:
             np.testing.assert_array_equal(one.cage_position, other.cage_position)
 
 
-@pytest.mark.parametrize("what", ["record", "contacts", "derivative", "restart", "state", "copy", "set_state"])
+ASKED = ("record", "contacts", "derivative", "restart", "state", "copy", "set_state", "step", "counters", "statistics")
+
+
+@pytest.mark.parametrize("what", ASKED)
 def test_one_simulation_in_two_threads_is_refused(what: str) -> None:
     """Whatever a thread asks of a simulation that another thread steps."""
     sim = trb.Simulation(scene(0))
     state, records = sim.state, np.empty((1, sim._model.record_length))
     enough = threading.Event()
-    asks = {"set_state": lambda: sim.set_state(state), "state": lambda: sim.state}
-    ask = asks.get(what) or getattr(sim, what)
+
+    def ask() -> None:
+        asked = sim.set_state(state) if what == "set_state" else getattr(sim, what)
+        if callable(asked):
+            asked()
 
     def step_on() -> None:
         while not enough.is_set():
@@ -164,15 +170,22 @@ def test_no_leaks_over_ten_thousand_cycles() -> None:
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
 def test_models_and_equilibria_do_not_leak() -> None:
+    """What 500 leave behind is less than 2 kB each; the least of several looks, as freed memory goes back late."""
     base = scene(0)
-    for _ in range(300):
+
+    def least_of_three() -> int:
+        looks = []
+        for _ in range(3):
+            for _ in range(100):
+                trb.Simulation(base).run(duration=1e-4)
+            gc.collect()
+            looks.append(resident())
+        return min(looks)
+
+    before = least_of_three()
+    for _ in range(200):
         trb.Simulation(base).run(duration=1e-4)
-    gc.collect()
-    before = resident()
-    for _ in range(500):
-        trb.Simulation(base).run(duration=1e-4)
-    gc.collect()
-    assert resident() - before < 1_000_000
+    assert least_of_three() - before < 1_000_000
 
 
 class Broken(Exception):

@@ -180,7 +180,7 @@ def test_a_state_beyond_the_coordinates(kit: SimpleNamespace) -> None:
 
 
 def test_one_simulation_belongs_to_one_thread(kit: SimpleNamespace) -> None:
-    """A second thread that touches a running simulation is told so, and the run goes on."""
+    """A second thread that touches a running simulation is told so or answered between two chunks; the run goes on."""
     sim, stop, running = kit.simulate(Effects.paper()), threading.Event(), threading.Event()
 
     def callback(_: object) -> bool:
