@@ -294,7 +294,7 @@ HARD: tuple[Hard, ...] = (
         ),
         duration=0.04,
         calm=0.02,
-        steps=45.0,
+        steps=30.0,
         tolerances=0.2,
     ),
     Hard(
@@ -576,7 +576,6 @@ HARD: tuple[Hard, ...] = (
         # more; Jacobians and factorisations as often as every fifth step leave the count the same
         steps=200.0,
         compared=5e-3,
-        path=1e-2,
     ),
     Hard(
         "cage_held_by_ends",
