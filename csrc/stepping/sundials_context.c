@@ -45,6 +45,7 @@ void trb_sundials_close(trb_sundials *sundials)
 
 void trb_sundials_quiet_cvode(trb_sundials *sundials, void *memory)
 {
+  (void)CVodeSetMaxHnilWarns(memory, -1); /* steps too small to move the time: not an error, and its warning would be printed */
 #if TRB_SUNDIALS_AT_LEAST(7, 0)
   (void)sundials;
   (void)memory;

@@ -17,6 +17,7 @@ import trbdyn as trb
 from trbdyn import FileError, History, InputError, Result, Simulation, StepError
 from trbdyn import fields as field_table
 from trbdyn.cases import scene_30310
+from trbdyn.run_options import RunOptions
 
 
 def simulate(**options: Any) -> Simulation:
@@ -303,3 +304,26 @@ def test_run_after_single_steps() -> None:
     assert result.success
     assert result.time[0] <= reached
     assert result.time[-1] > reached
+
+
+def test_a_setting_of_zero_is_not_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Age 0: the rings' part of the Jacobian is evaluated with every other part, as at an age below every step."""
+    usual = RunOptions.settings
+
+    def state(**changes: float) -> np.ndarray:
+        monkeypatch.setattr(RunOptions, "settings", lambda self: usual(self) | changes)
+        sim = Simulation(scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9)))
+        sim.run(duration=5e-3)
+        return sim.state.vector
+
+    zero = state(rings_age=0.0)
+    np.testing.assert_array_equal(zero, state(rings_age=1e-12))
+    assert (zero != state()).any()
+
+
+def test_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
+    """Not even where a step is too small to move the time, which CVODE would warn of."""
+    sim = simulate(first_step=1e-16)
+    sim.set_state(sim.state.vector, time=1e3)
+    assert sim.step() == 1e3
+    assert capfd.readouterr() == ("", "")
