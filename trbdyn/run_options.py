@@ -117,12 +117,13 @@ class RunOptions(Model):
 
     def settings(self) -> dict[str, float | str]:
         """Settings of the core's integrator."""
+        chosen = {} if self.max_step == 0.0 else {"max_step": self.max_step}
         return {
             "integrator": self.integrator,
             **self.tolerances.model_dump(),
             "max_order": float(self.max_order),
-            "max_step": self.max_step,
             "first_step": self.first_step,
+            **chosen,
         }
 
     def end_time(self, speed_rpm: float | History, start: float = 0.0) -> float:

@@ -111,11 +111,10 @@ class Simulation:
     equilibrium: Equilibrium
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
-        settings = {name: value for name, value in self.options.settings().items() if value != 0.0}
         if abs(time) > MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
         try:
-            return _core.Simulation(self._model, self._motion, time, vector, settings)
+            return _core.Simulation(self._model, self._motion, time, vector, self.options.settings())
         except ValueError as error:
             raise InputError.of("state", "given", str(error)) from None
 
