@@ -176,3 +176,29 @@ def test_without_friction_nothing_is_lost(kit: SimpleNamespace) -> None:
     # normal forces of a round ring have no moment about its axis
     assert np.abs(result.inner_torque).max() < 1e-9
     assert np.abs(result.work_shaft).max() < 1e-9
+
+
+def unloaded_within(kit: SimpleNamespace, within: float, effects: Effects) -> Result:
+    """The load falls to 1 % and comes back, each within a time (s)."""
+    load = History.table([0.0, 2e-3, 2e-3 + within, 4e-3, 4e-3 + within], [4930.0, 4930.0, 49.3, 49.3, 4930.0])
+    return kit.simulate(effects, scenery={"ring": "follows", "axial_load": load}).run(duration=6e-3)
+
+
+@pytest.mark.parametrize("within", [1e-5, 1e-6])
+@pytest.mark.parametrize("effects", [PAPER, STANDARD], ids=["paper", "standard"])
+def test_the_work_of_a_sudden_load_is_in_the_balance(kit: SimpleNamespace, within: float, effects: Effects) -> None:
+    result = unloaded_within(kit, within, effects)
+    assert result.energy_audit.work["ring"] > 1.0
+    assert closure(result) < 1e-2
+
+
+def test_a_load_that_changes_between_two_evaluations_leaves_the_audit_open(kit: SimpleNamespace) -> None:
+    """Within 1 ns no evaluation may see the ring move. Then its work is missing in the audit, and in nothing else: bodies move
+    as under a change of 1 us.
+    """
+    seen, unseen = unloaded_within(kit, 1e-6, PAPER), unloaded_within(kit, 1e-9, PAPER)
+    work, residual = unseen.energy_audit.work["ring"], unseen.energy_audit.residual
+    assert work - residual == pytest.approx(seen.energy_audit.work["ring"], rel=0.1)
+    np.testing.assert_allclose(unseen.kinetic_energy[-1], seen.kinetic_energy[-1], rtol=1e-2)
+    losses = [sum(float(result[f"loss_{name}"][-1]) for name in LOSSES) for result in (seen, unseen)]
+    np.testing.assert_allclose(losses[1], losses[0], rtol=0.05)
