@@ -6,7 +6,7 @@
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
-#   make sanitize   the C tests and the quick Python tests under address and undefined-behaviour sanitizers
+#   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -24,6 +24,10 @@ PY      := $(VENV)/bin/python
 PIP     := $(PY) -m pip --disable-pip-version-check
 SOURCES := $(shell find csrc trbdyn -type f -not -path '*/__pycache__/*')
 TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws bearing contact motion stepping python))
+# Python tests that together run nearly every line of the C sources; the leak tests count a memory that sanitizers keep
+SANITIZED := $(addprefix tests/,laws/test_in_contacts.py laws/test_extremes.py laws/test_oracles.py api/test_laws_api.py geometry \
+  api/test_simulation.py api/test_pockets.py physics/test_looking.py physics/test_contacts.py physics/test_effects.py \
+  fuzz/test_bad_input.py restart/test_checkpoints.py convergence/test_determinism.py)
 DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=ON
 
 # -P and PYTHONSAFEPATH: import the installed package, not the source folder of the same name, which has no compiled core
@@ -72,7 +76,7 @@ sanitize: $(VENV)/.tools
 	$(VENV)/bin/ctest --test-dir build/sanitize/package --output-on-failure --no-tests=ignore
 	LD_PRELOAD="$$($${CC:-cc} -print-file-name=libasan.so) $$($${CC:-cc} -print-file-name=libubsan.so)" \
 	  ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=build/sanitize/site \
-	  $(PY) -m pytest -p no:cacheprovider $(wildcard tests/laws tests/geometry tests/api) $(PYTEST)
+	  $(PY) -m pytest -p no:cacheprovider $(SANITIZED) $(PYTEST)
 
 clean:
 	rm -rf build demo .pytest_cache .mypy_cache .ruff_cache
