@@ -200,6 +200,54 @@ def test_models_and_equilibria_do_not_leak() -> None:
     assert float(done.stdout) < 1_000_000
 
 
+OUT_OF_MEMORY = """
+import resource
+from pathlib import Path
+import trbdyn as trb
+
+scene = trb.cases.scene_30310(3000.0, 4930.0)
+first = trb.Simulation(scene)
+first.run(duration=1e-3)
+size = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (size + 30_000_000, resource.RLIM_INFINITY))
+kept = []
+try:
+    while len(kept) < 10_000:
+        kept.append(trb.Simulation(scene))
+except MemoryError:
+    print("MemoryError")
+del kept
+print(first.run(duration=1e-3).success, trb.Simulation(scene).step() > 0.0)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
+def test_out_of_memory_is_a_memory_error_and_the_process_goes_on() -> None:
+    words = [sys.executable, "-P", "-c", OUT_OF_MEMORY]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["MemoryError", "True", "True"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_signals_while_stepping_change_no_bit(tmp_path: Path) -> None:
+    """Another handler than that of Ctrl-C, called a thousand times a second: in steps, in writes, between them."""
+    schedule = {"duration": 0.1, "save_every": 2e-5, "checkpoint_every": 0.02}
+    undisturbed = trb.Simulation(scene(0)).run(output=tmp_path / "undisturbed.h5", **schedule)
+    caught: list[int] = []
+    before = signal.signal(signal.SIGALRM, lambda number, frame: caught.append(number))
+    signal.setitimer(signal.ITIMER_REAL, 1e-3, 1e-3)
+    try:
+        disturbed = trb.Simulation(scene(0)).run(output=tmp_path / "disturbed.h5", **schedule)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert len(caught) > 5
+    assert disturbed.success
+    np.testing.assert_array_equal(disturbed.final_state, undisturbed.final_state)
+    np.testing.assert_array_equal(disturbed.cage_position, undisturbed.cage_position)
+
+
 class Broken(Exception):
     pass
 
