@@ -67,13 +67,28 @@ COLUMNS = {
     "kinds": "1: number of points by class",
     "torque_error": "1: inner torque over the measured one, less one, without and with the pressure force, by speed",
 }
-MOTION = ("point", "settled", "kind", "cage_hz", "whirl_ratio", "peak_hz", "orbit_over_cpr", "centre_over_cpr", "coherence")
+MOTION = (
+    "point",
+    "settled",
+    "kind",
+    "cage_hz",
+    "whirl_ratio",
+    "peak_hz",
+    "orbit_over_cpr",
+    "centre_over_cpr",
+    "coherence",
+)
 MORE = ("speed_deviation", "synchronous_share", "lean_deg", "lean_coherence", "skew_rms_mrad", "tilt_rms_mrad")
 SLIP = ("side", "quantity", "exponent", "light", "heavy")
 TORQUE = ("speed_rpm", "pressure_force", "inner_torque", "outer_torque", "drift", "measured", "cpu")
 
 REACH = ("eccentricity", "direction_deg", "reach", "shake", "geometry", "free", "roller_drift", "cpu")
-PUSHES = ((0.0, 0.0), (0.0, 15.0), (0.0, -90.0), *((e, way) for e in (0.15, 0.3, 0.45, 0.6, 0.75, 0.9) for way in (-90.0, 15.0)))
+PUSHES = (
+    (0.0, 0.0),
+    (0.0, 15.0),
+    (0.0, -90.0),
+    *((e, way) for e in (0.15, 0.3, 0.45, 0.6, 0.75, 0.9) for way in (-90.0, 15.0)),
+)
 """Eccentricity and direction of each push."""
 
 AXIAL = Condition(3000.0, 4930.0)

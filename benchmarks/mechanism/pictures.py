@@ -112,9 +112,7 @@ def leans(results: Mapping[str, Result]) -> Any:
             ax.bar(middle, share, width=edges[1] - edges[0], color=COLOURS[5], edgecolor="white", linewidth=0.3)
             arrow = found.coherence * share.max()
             ax.plot([0.0, np.radians(found.phase_deg)], [0.0, arrow], color=COLOURS[6], linewidth=2.0)
-            ax.set_title(
-                f"{short(name)}\nphase {found.phase_deg:+.0f}°, coherence {found.coherence:.2f}", fontsize=8.5
-            )
+            ax.set_title(f"{short(name)}\nphase {found.phase_deg:+.0f}°, coherence {found.coherence:.2f}", fontsize=8.5)
             ax.tick_params(labelsize=7)
             ax.set_yticks([5.0, 10.0], ["5 %", "10 %"])
             ax.set_rlabel_position(225)

@@ -23,7 +23,7 @@ typedef enum trb_status {
 #define TRB_STATUS_ENUM(name, text) TRB_##name,
   TRB_STATUSES(TRB_STATUS_ENUM)
 #undef TRB_STATUS_ENUM
-  TRB_N_STATUSES
+      TRB_N_STATUSES
 } trb_status;
 
 enum { TRB_MESSAGE_LENGTH = 512 };

@@ -22,10 +22,7 @@ static inline double   trb_dot(trb_vec3 u, trb_vec3 v) { return u.x * v.x + u.y 
 static inline double   trb_norm(trb_vec3 v) { return sqrt(trb_dot(v, v)); }
 
 /* u + s v */
-static inline trb_vec3 trb_axpy(trb_vec3 u, double s, trb_vec3 v)
-{
-  return trb_v(u.x + s * v.x, u.y + s * v.y, u.z + s * v.z);
-}
+static inline trb_vec3 trb_axpy(trb_vec3 u, double s, trb_vec3 v) { return trb_v(u.x + s * v.x, u.y + s * v.y, u.z + s * v.z); }
 
 static inline trb_vec3 trb_cross(trb_vec3 u, trb_vec3 v)
 {
@@ -46,10 +43,7 @@ static inline trb_vec3 trb_from_frame(const trb_frame *f, trb_vec3 v)
 }
 
 /* Coordinates in the parent -> coordinates in a frame. */
-static inline trb_vec3 trb_to_frame(const trb_frame *f, trb_vec3 v)
-{
-  return trb_v(trb_dot(f->n, v), trb_dot(f->t, v), trb_dot(f->a, v));
-}
+static inline trb_vec3 trb_to_frame(const trb_frame *f, trb_vec3 v) { return trb_v(trb_dot(f->n, v), trb_dot(f->t, v), trb_dot(f->a, v)); }
 
 /* Frame R_y(tilt) R_x(-skew): a = (sin tilt cos skew, sin skew, cos tilt cos skew). It does not spin with its body. */
 static inline trb_frame trb_tilted_frame(double skew, double tilt)

@@ -25,7 +25,7 @@ typedef struct model_object {
 extern PyTypeObject trb_model_type, trb_simulation_type;
 
 /* Raise the exception of a status; NULL, so that callers can write: return raise_status(...). */
-PyObject *trb_raise(trb_status status, const trb_message *message);
+PyObject        *trb_raise(trb_status status, const trb_message *message);
 extern PyObject *trb_step_error;
 
 /* A C-contiguous float64 array with ndim dimensions (new reference); NULL with an error that names it. */

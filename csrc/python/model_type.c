@@ -102,7 +102,8 @@ static PyObject *state_layout(PyObject *self, PyObject *none)
   const int total = TRB_ROLLER_SIZE + TRB_CAGE_SIZE + 2;
   for (int i = 0; list != NULL && i < total; i++) {
     PyObject *row;
-    if (i < TRB_ROLLER_SIZE) row = Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), i, m->n_rollers, TRB_ROLLER_SIZE);
+    if (i < TRB_ROLLER_SIZE)
+      row = Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), i, m->n_rollers, TRB_ROLLER_SIZE);
     else if (i < TRB_ROLLER_SIZE + TRB_CAGE_SIZE)
       row = Py_BuildValue("(Ni())", PyUnicode_FromFormat("cage_%s", cage[i - TRB_ROLLER_SIZE]), trb_state_cage(m) + i - TRB_ROLLER_SIZE);
     else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(m), m->n_rollers);
@@ -161,9 +162,10 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
     status = trb_equilibrium_solve(m, &e, &message);
     Py_END_ALLOW_THREADS
     if (status != TRB_OK) (void)trb_raise(status, &message);
-    else out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
-                             columns(e.rollers, m->n_rollers, 3), "loads", columns(e.loads, m->n_rollers, 3), "residual", e.residual, "iterations",
-                             e.iterations);
+    else
+      out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
+                          columns(e.rollers, m->n_rollers, 3), "loads", columns(e.loads, m->n_rollers, 3), "residual", e.residual,
+                          "iterations", e.iterations);
   }
   PyMem_Free(block);
   return out;

@@ -69,12 +69,18 @@ static int append(PyObject *list, PyObject *item)
     return list; \
   }
 
-static const struct { const char *name; int count; const char *unit, *text; } face_columns[] = {
+static const struct {
+  const char *name;
+  int         count;
+  const char *unit, *text;
+} face_columns[] = {
 #define ROW(name, count, unit, text) {#name, count, unit, text},
     TRB_FACE_COLUMNS(ROW)
 #undef ROW
 };
-static const struct { const char *name, *unit, *text; } channels[] = {
+static const struct {
+  const char *name, *unit, *text;
+} channels[] = {
 #define ROW(name, unit, text) {#name, unit, text},
     TRB_MOTION_CHANNELS(ROW)
 #undef ROW
@@ -84,15 +90,17 @@ static const char *const quadratures[] = {
     TRB_QUADRATURES(ROW)
 #undef ROW
 };
-static const struct { const char *name, *text; } counters[] = {
+static const struct {
+  const char *name, *text;
+} counters[] = {
 #define ROW(name, text) {#name, text},
     TRB_COUNTERS(ROW)
 #undef ROW
 };
 #define LENGTH(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
-TABLE(parameter_table, TRB_N_PARAMS, "(ssdds)", trb_param_table[i].name, trb_param_table[i].unit, trb_param_table[i].lower, trb_param_table[i].upper,
-      trb_param_table[i].text)
+TABLE(parameter_table, TRB_N_PARAMS, "(ssdds)", trb_param_table[i].name, trb_param_table[i].unit, trb_param_table[i].lower,
+      trb_param_table[i].upper, trb_param_table[i].text)
 TABLE(face_table, LENGTH(face_columns), "(siss)", face_columns[i].name, face_columns[i].count, face_columns[i].unit, face_columns[i].text)
 TABLE(motion_table, LENGTH(channels), "(sss)", channels[i].name, channels[i].unit, channels[i].text)
 TABLE(field_table, TRB_N_FIELDS, "(sssss)", trb_field_table[i].name, trb_field_table[i].group, trb_field_kind_name(trb_field_table[i].kind),

@@ -8,11 +8,11 @@
 
 typedef struct simulation_object {
   PyObject_HEAD
-  PyObject       *model;      /* keeps the model alive */
-  trb_motion     *motion;
-  trb_simulation *simulation;
-  PyThread_type_lock inside;  /* held by the one thread that uses it */
-  int             stepping;   /* that thread is in the integrator, or is about to be */
+  PyObject          *model; /* keeps the model alive */
+  trb_motion        *motion;
+  trb_simulation    *simulation;
+  PyThread_type_lock inside;   /* held by the one thread that uses it */
+  int                stepping; /* that thread is in the integrator, or is about to be */
 } simulation_object;
 
 /* Settings by name out of a dict; integrator is the one that is not a number. */
@@ -63,8 +63,8 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
   trb_settings settings;
   const char  *kind;
   trb_message  message = {TRB_OK, ""};
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!", names, &trb_model_type, &model, &motion_object, &time, &state_object, &PyDict_Type,
-                                   &settings_object))
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!", names, &trb_model_type, &model, &motion_object, &time, &state_object,
+                                   &PyDict_Type, &settings_object))
     return NULL;
   if (read_settings(settings_object, &settings, &kind) != 0) return NULL;
   PyArrayObject *motion = trb_array(motion_object, 2, "motion");
@@ -83,8 +83,8 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
       status = trb_fail(&message, TRB_ERR_INPUT, "motion: %d columns needed, %d given", TRB_MOTION_COLUMNS, (int)PyArray_DIM(motion, 1));
     else status = trb_motion_create(PyArray_DATA(motion), (int)PyArray_DIM(motion, 0), &self->motion, &message);
     if (status == TRB_OK)
-      status = trb_simulation_create(model_of(self), self->motion, kind, ((model_object *)model)->variant, &settings, time, PyArray_DATA(state),
-                                     &self->simulation, &message);
+      status = trb_simulation_create(model_of(self), self->motion, kind, ((model_object *)model)->variant, &settings, time,
+                                     PyArray_DATA(state), &self->simulation, &message);
     if (status != TRB_OK) {
       (void)trb_raise(status, &message);
       Py_CLEAR(self);
@@ -156,8 +156,8 @@ static PyObject *run(PyObject *object, PyObject *args)
   PyArrayObject *times = trb_array(times_object, 1, "times");
   if (times == NULL) return NULL;
   const int length = trb_record_offset(model_of(self), TRB_N_FIELDS);
-  if (PyArray_TYPE(records) != NPY_DOUBLE || PyArray_NDIM(records) != 2 || !PyArray_IS_C_CONTIGUOUS(records) || !PyArray_ISWRITEABLE(records) ||
-      PyArray_DIM(records, 0) < PyArray_DIM(times, 0) || PyArray_DIM(records, 1) != length) {
+  if (PyArray_TYPE(records) != NPY_DOUBLE || PyArray_NDIM(records) != 2 || !PyArray_IS_C_CONTIGUOUS(records) ||
+      !PyArray_ISWRITEABLE(records) || PyArray_DIM(records, 0) < PyArray_DIM(times, 0) || PyArray_DIM(records, 1) != length) {
     PyErr_Format(PyExc_ValueError, "records: must be a writable C-contiguous float64 array with a row of %d a time", length);
     Py_DECREF(times);
     return NULL;
@@ -168,8 +168,8 @@ static PyObject *run(PyObject *object, PyObject *args)
   }
   Py_INCREF(records);
   Py_BEGIN_ALLOW_THREADS
-  status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), stop_after, PyArray_DATA(records), max_steps,
-                              &rows, &steps, &message);
+  status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), stop_after, PyArray_DATA(records),
+                              max_steps, &rows, &steps, &message);
   Py_END_ALLOW_THREADS
   leave(self, 1);
   Py_DECREF(records);
@@ -301,7 +301,8 @@ static int put_detail(const trb_model *m, const trb_detail *detail, PyObject *ou
     if (array == NULL) return -1;
     double *to = PyArray_DATA((PyArrayObject *)array);
     for (int race = 0; race < TRB_N_RACES; race++)
-      for (int j = 0; j < m->n_rollers; j++, to += m->n_nodes) memcpy(to, trb_detail_lane(m, detail, f, race, j), (size_t)m->n_nodes * sizeof(double));
+      for (int j = 0; j < m->n_rollers; j++, to += m->n_nodes)
+        memcpy(to, trb_detail_lane(m, detail, f, race, j), (size_t)m->n_nodes * sizeof(double));
     char key[64];
     (void)PyOS_snprintf(key, sizeof key, "raceway_%s", lanes[f]);
     if (trb_put(out, key, array) != 0) return -1;
@@ -331,18 +332,27 @@ static int put_detail(const trb_model *m, const trb_detail *detail, PyObject *ou
 /* Wrenches of every roller's contacts, in the frames that trb_roller_load documents, shape (roller, width). */
 static int put_loads(const trb_model *m, const trb_roller_load *loads, PyObject *out)
 {
-  const struct { const char *key; size_t offset; int width; } parts[] = {
-      {"force", offsetof(trb_roller_load, force), 3},           {"moment", offsetof(trb_roller_load, moment), 3},
-      {"ring_force", offsetof(trb_roller_load, ring_force), 3}, {"ring_moment", offsetof(trb_roller_load, ring_moment), 3},
-      {"outer_force", offsetof(trb_roller_load, outer_force), 3}, {"outer_moment", offsetof(trb_roller_load, outer_moment), 3},
-      {"cage_force", offsetof(trb_roller_load, cage_force), 3}, {"cage_moment", offsetof(trb_roller_load, cage_moment), 3},
-      {"elastic_energy", offsetof(trb_roller_load, elastic), 1}, {"power", offsetof(trb_roller_load, power), TRB_N_POWERS}};
+  const struct {
+    const char *key;
+    size_t      offset;
+    int         width;
+  } parts[] = {{"force", offsetof(trb_roller_load, force), 3},
+               {"moment", offsetof(trb_roller_load, moment), 3},
+               {"ring_force", offsetof(trb_roller_load, ring_force), 3},
+               {"ring_moment", offsetof(trb_roller_load, ring_moment), 3},
+               {"outer_force", offsetof(trb_roller_load, outer_force), 3},
+               {"outer_moment", offsetof(trb_roller_load, outer_moment), 3},
+               {"cage_force", offsetof(trb_roller_load, cage_force), 3},
+               {"cage_moment", offsetof(trb_roller_load, cage_moment), 3},
+               {"elastic_energy", offsetof(trb_roller_load, elastic), 1},
+               {"power", offsetof(trb_roller_load, power), TRB_N_POWERS}};
   for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++) {
     npy_intp  shape[2] = {m->n_rollers, parts[p].width};
     PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
     if (array == NULL) return -1;
     for (int j = 0; j < m->n_rollers; j++)
-      memcpy((double *)PyArray_DATA((PyArrayObject *)array) + j * parts[p].width, (const char *)&loads[j] + parts[p].offset, (size_t)parts[p].width * sizeof(double));
+      memcpy((double *)PyArray_DATA((PyArrayObject *)array) + j * parts[p].width, (const char *)&loads[j] + parts[p].offset,
+             (size_t)parts[p].width * sizeof(double));
     if (trb_put(out, parts[p].key, array) != 0) return -1;
   }
   return 0;

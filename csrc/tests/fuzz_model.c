@@ -31,18 +31,12 @@ static double changed(double was, int kind, double number)
   static const double special[] = {0.0, -0.0, 1.0,  -1.0,  1e-300, 1e300, INFINITY,     -INFINITY,
                                    NAN, 3.0,  12.0, 200.0, 201.0,  1e-9,  2147483648.0, 0.5};
   switch (kind % 6) {
-  case 0:
-    return number;
-  case 1:
-    return was * (1.0 + remainder(number, 1.0));
-  case 2:
-    return special[(unsigned)kind / 6 % 16];
-  case 3:
-    return was * exp(remainder(number, 5.0));
-  case 4:
-    return -was;
-  default:
-    return floor(fabs(remainder(number, 500.0)));
+  case 0: return number;
+  case 1: return was * (1.0 + remainder(number, 1.0));
+  case 2: return special[(unsigned)kind / 6 % 16];
+  case 3: return was * exp(remainder(number, 5.0));
+  case 4: return -was;
+  default: return floor(fabs(remainder(number, 500.0)));
   }
 }
 

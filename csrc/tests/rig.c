@@ -41,9 +41,9 @@ static void box(trb_face *f, double u0, double u1, double v0, double v1)
 
 void rig_faces(const trb_params *p, trb_face faces[RIG_FACES])
 {
-  const double  radial = 0.25e-3, around = 0.12e-3, axial = 0.4e-3, half = 0.5 * p->effective_length;
-  trb_geometry  g;
-  trb_message   message;
+  const double   radial = 0.25e-3, around = 0.12e-3, axial = 0.4e-3, half = 0.5 * p->effective_length;
+  trb_geometry   g;
+  trb_message    message;
   const trb_face none = {.pocket = {-1}, .stiffness_factor = {1}, .friction_factor = {1}};
   if (trb_geometry_derive(p, &g, &message) != TRB_OK) {
     printf("%s\n", message.text);
@@ -110,7 +110,12 @@ double rig_state(const trb_model *m, double axial_load, double shaft_speed, doub
 {
   double          angles[200], rollers[600] = {0}, loads[600];
   trb_message     message = {TRB_OK, ""};
-  trb_equilibrium e = {.load = {0, 0, -axial_load, 0, 0}, .fixed = {0, 0, 0, 1, 1}, .shaft_speed = shaft_speed, .angles = angles, .rollers = rollers, .loads = loads};
+  trb_equilibrium e = {.load = {0, 0, -axial_load, 0, 0},
+                       .fixed = {0, 0, 0, 1, 1},
+                       .shaft_speed = shaft_speed,
+                       .angles = angles,
+                       .rollers = rollers,
+                       .loads = loads};
   for (int j = 0; j < m->n_rollers; j++) angles[j] = trb_nominal_angle(m, j);
   if (trb_equilibrium_solve(m, &e, &message) != TRB_OK) {
     printf("%s\n", message.text);

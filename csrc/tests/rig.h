@@ -14,7 +14,7 @@ void rig_faces(const trb_params *params, trb_face faces[RIG_FACES]);
 /* A model of the parameters with the rig's faces and equal rollers; ends the program where that fails. */
 trb_model *rig_model(const trb_params *params);
 /* A ring held at a displacement along z, at a speed, with gravity along -y. */
-trb_motion *rig_motion(double displacement_z, double shaft_speed);
+trb_motion  *rig_motion(double displacement_z, double shaft_speed);
 trb_settings rig_settings(void);
 /* Equilibrium under an axial load; gives the ring's displacement along z and fills a state of pure rolling. */
 double rig_state(const trb_model *m, double axial_load, double shaft_speed, double *state);

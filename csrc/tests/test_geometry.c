@@ -24,7 +24,8 @@ static void test_rig(void)
   CHECK_NEAR(g.cage_speed_ratio, 0.41662, 0.5e-5);
   CHECK_NEAR(g.roller_spin_ratio, 2.8606, 0.5e-4);
   /* the frustum: exact formulas */
-  const double a = 0.5 * p.total_length, r1 = tan(g.roller_half_angle) * (g.apex_to_mid - a), r2 = tan(g.roller_half_angle) * (g.apex_to_mid + a);
+  const double a = 0.5 * p.total_length, r1 = tan(g.roller_half_angle) * (g.apex_to_mid - a),
+               r2 = tan(g.roller_half_angle) * (g.apex_to_mid + a);
   CHECK_RELATIVE(g.roller_mass, p.roller_density * TRB_PI / 3.0 * p.total_length * (r1 * r1 + r1 * r2 + r2 * r2), 1e-13);
   CHECK_RELATIVE(g.roller_inertia_axial, 0.3 * g.roller_mass * (pow(r2, 5) - pow(r1, 5)) / (pow(r2, 3) - pow(r1, 3)), 1e-12);
   CHECK_RELATIVE(g.small_end_radius, r1, 1e-14);

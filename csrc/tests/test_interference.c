@@ -14,7 +14,8 @@ static double brute(const double *v, int n, double u, double w)
   for (int i = 1; i + 1 < n; i++) {
     const double *a = v, *b = v + 2 * i, *c = v + 2 * (i + 1);
     const double  area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    const double  s = ((u - a[0]) * (c[1] - a[1]) - (w - a[1]) * (c[0] - a[0])) / area, t = ((b[0] - a[0]) * (w - a[1]) - (b[1] - a[1]) * (u - a[0])) / area;
+    const double  s = ((u - a[0]) * (c[1] - a[1]) - (w - a[1]) * (c[0] - a[0])) / area,
+                  t = ((b[0] - a[0]) * (w - a[1]) - (b[1] - a[1]) * (u - a[0])) / area;
     inside |= s >= 0.0 && t >= 0.0 && s + t <= 1.0;
   }
   if (inside) return 0.0;

@@ -118,7 +118,8 @@ static void fail_each(const char *name, attempt *make)
       printf("%-12s %ld allocations\n", name, n);
       return;
     }
-    if (!CHECK(status == TRB_ERR_MEMORY && message.status == status)) printf("  %s: allocation %ld fails, status %d\n", name, n, (int)status);
+    if (!CHECK(status == TRB_ERR_MEMORY && message.status == status))
+      printf("  %s: allocation %ld fails, status %d\n", name, n, (int)status);
     CHECK_SAYS(message.text, "out of memory");
   }
   CHECK(!"more allocations than expected");

@@ -10,7 +10,7 @@ static trb_message message;
 
 static trb_status create(const trb_params *p, const double *deviation, int n, const trb_face *faces, int n_faces)
 {
-  trb_model       *m = NULL;
+  trb_model *m = NULL;
   message = (trb_message){TRB_OK, ""};
   const trb_status status = trb_model_create(p, deviation, n, faces, n_faces, &m, &message);
   CHECK((status == TRB_OK) == (m != NULL));
@@ -21,8 +21,8 @@ static trb_status create(const trb_params *p, const double *deviation, int n, co
 
 static trb_status with(const trb_params *p)
 {
-  const double deviation[200] = {0};
-  trb_face     faces[RIG_FACES];
+  const double     deviation[200] = {0};
+  trb_face         faces[RIG_FACES];
   const trb_params nominal = rig_params();
   rig_faces(&nominal, faces);
   return create(p, deviation, 12, faces, RIG_FACES);
@@ -179,7 +179,8 @@ static void outline_fails(int n, const double *outline, const char *says)
 
 static void test_outlines(void)
 {
-  const double clockwise[8] = {0, 0, 0, 1, 1, 1, 1, 0}, dent[10] = {0, 0, 2, 0, 1, 0.5, 2, 2, 0, 2}, idle[10] = {0, 0, 1, 0, 2, 0, 2, 2, 0, 2};
+  const double clockwise[8] = {0, 0, 0, 1, 1, 1, 1, 0}, dent[10] = {0, 0, 2, 0, 1, 0.5, 2, 2, 0, 2},
+               idle[10] = {0, 0, 1, 0, 2, 0, 2, 2, 0, 2};
   const double twice[10] = {0, 0, 1, 0, 1, 0, 1, 1, 0, 1}, flat[6] = {0, 0, 1, 0, 2, 0};
   double       star[10];
   outline_fails(4, clockwise, "convex and counter-clockwise");

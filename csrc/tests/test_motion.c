@@ -48,8 +48,9 @@ static double value_of(const trb_drive *d, int channel)
 
 static void test_curves(const trb_model *m, const trb_motion *motion)
 {
-  static const int channels[] = {TRB_CHANNEL_displacement_x, TRB_CHANNEL_displacement_y, TRB_CHANNEL_displacement_z, TRB_CHANNEL_shaft_speed,
-                                 TRB_CHANNEL_gravity_x, TRB_CHANNEL_gravity_y, TRB_CHANNEL_gravity_z};
+  static const int channels[] = {TRB_CHANNEL_displacement_x, TRB_CHANNEL_displacement_y, TRB_CHANNEL_displacement_z,
+                                 TRB_CHANNEL_shaft_speed,    TRB_CHANNEL_gravity_x,      TRB_CHANNEL_gravity_y,
+                                 TRB_CHANNEL_gravity_z};
   trb_drive        d, before, after;
   for (int i = 0; i < 500; i++) {
     const double t = 0.6 + 0.8 * rig_random(&seed), h = 1e-6;
@@ -134,7 +135,8 @@ static void test_rotation_vectors(const trb_model *m)
   trb_drive d = {0};
   for (double size = 1e-12; size < 1.0; size *= 1.7) {
     const double   rotation[2] = {size * 0.6, -size * 0.8}, rate[2] = {0.3, 0.7}, h = 1e-6 * (1.0 + size);
-    const double   low[2] = {rotation[0] - h * rate[0], rotation[1] - h * rate[1]}, high[2] = {rotation[0] + h * rate[0], rotation[1] + h * rate[1]};
+    const double   low[2] = {rotation[0] - h * rate[0], rotation[1] - h * rate[1]},
+                   high[2] = {rotation[0] + h * rate[0], rotation[1] + h * rate[1]};
     const trb_vec3 none = trb_v(0, 0, 0);
     trb_drive      before = {0}, after = {0};
     trb_ring_place(m, none, none, rotation, rate, 0.0, &d);

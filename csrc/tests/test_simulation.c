@@ -6,12 +6,13 @@
 #include "check.h"
 #include "rig.h"
 
-static trb_model   *m;
-static trb_motion  *motion;
-static double       start[512];
-static trb_message  message;
+static trb_model  *m;
+static trb_motion *motion;
+static double      start[512];
+static trb_message message;
 
-static trb_status create(const char *kind, const char *variant, const trb_settings *settings, double time, const double *state, trb_simulation **s)
+static trb_status create(const char *kind, const char *variant, const trb_settings *settings, double time, const double *state,
+                         trb_simulation **s)
 {
   message = (trb_message){TRB_OK, ""};
   const trb_status status = trb_simulation_create(m, motion, kind, variant, settings, time, state, s, &message);
@@ -19,8 +20,8 @@ static trb_status create(const char *kind, const char *variant, const trb_settin
   return status;
 }
 
-static void refused(const char *kind, const char *variant, const trb_settings *settings, double time, const double *state, trb_status expected,
-                    const char *says)
+static void refused(const char *kind, const char *variant, const trb_settings *settings, double time, const double *state,
+                    trb_status expected, const char *says)
 {
   trb_simulation *s;
   CHECK(create(kind, variant, settings, time, state, &s) == expected);
@@ -74,7 +75,9 @@ static void test_outputs(const char *kind, double *end)
   trb_simulation *often, *once;
   int             rows;
   long            steps, steps_once;
-  if (!CHECK(create(kind, "scalar", &settings, 0.0, start, &often) == TRB_OK && create(kind, "scalar", &settings, 0.0, start, &once) == TRB_OK)) return;
+  if (!CHECK(create(kind, "scalar", &settings, 0.0, start, &often) == TRB_OK &&
+             create(kind, "scalar", &settings, 0.0, start, &once) == TRB_OK))
+    return;
   for (int i = 0; i < TIMES; i++) times[i] = 1e-6 * i;
   times[TIMES - 1] = last;
   CHECK(trb_simulation_run(often, times, TIMES, INFINITY, records, 1000000, &rows, &steps, &message) == TRB_OK && rows == TIMES);
@@ -98,7 +101,8 @@ static void test_failed_step(void)
   trb_simulation *s;
   double          state[512], before[512];
   memcpy(state, start, sizeof state);
-  settings.smallest_step = 1e-6, settings.max_step = 1e-3, settings.rtol = 1e-12, settings.atol_velocity = 1e-14, settings.atol_spin = 1e-12;
+  settings.smallest_step = 1e-6, settings.max_step = 1e-3, settings.rtol = 1e-12, settings.atol_velocity = 1e-14,
+  settings.atol_spin = 1e-12;
   settings.atol_position = 1e-16, settings.atol_angle = 1e-14;
   state[trb_state_roller(3) + TRB_ROLLER_v_r] = 5.0;
   if (!CHECK(create("bdf", "", &settings, 0.25, state, &s) == TRB_OK)) return;

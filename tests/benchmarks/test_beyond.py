@@ -30,7 +30,9 @@ def output(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], Pa
 
 def test_pictures_are_drawn(output: tuple[dict[str, Any], Path]) -> None:
     names = {path.stem for path in output[1].glob("beyond_*.png")}
-    assert {f"beyond_{name}" for name in ("frequencies", "spectra", "lean", "attitude", "slip", "torque", "reach")} <= names
+    assert {
+        f"beyond_{name}" for name in ("frequencies", "spectra", "lean", "attitude", "slip", "torque", "reach")
+    } <= names
 
 
 def test_every_entry_is_described(output: tuple[dict[str, Any], Path]) -> None:
