@@ -39,6 +39,7 @@ _SIMULATION_OPTIONS: Final = (
     "max_order",
     "max_step",
     "first_step",
+    "rings_share",
     "checkpoint_every",
 )
 

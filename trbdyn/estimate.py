@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
+from trbdyn.run_options import RunOptions
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -188,7 +189,8 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     case = _case(sim)
     window = float(np.median(measured["windows_s"][case]))
     place = {"window": window, "case": case}
-    known = options.integrator == "bdf" and options.max_order == 2 and sim.scene.effects.bodies == "rollers_and_cage"
+    standard = options.max_order == 2 and options.rings_share == RunOptions.model_fields["rings_share"].default
+    known = options.integrator == "bdf" and standard and sim.scene.effects.bodies == "rollers_and_cage"
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
     tolerances = options.tolerances.model_dump()

@@ -14,16 +14,20 @@ static trb_status check_params(const trb_params *params, trb_message *message)
   for (int i = 0; i < TRB_N_PARAMS; i++) {
     const trb_param_info *info = &trb_param_table[i];
     if (!(values[i] >= info->lower && values[i] <= info->upper))
-      return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be from %g to %g %s", info->name, values[i], info->lower, info->upper, info->unit);
+      return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be from %g to %g %s", info->name, values[i], info->lower, info->upper,
+                      info->unit);
     if ((strcmp(info->unit, "count") == 0 || strcmp(info->unit, "choice") == 0) && values[i] != floor(values[i]))
       return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be a whole number", info->name, values[i]);
   }
   if (params->rolling_resistance > 0.0 && !(params->pressure_coefficient > 0.0))
-    return trb_fail(message, TRB_ERR_INPUT, "pressure_coefficient = %g 1/Pa: must be > 0 for rolling resistance", params->pressure_coefficient);
+    return trb_fail(message, TRB_ERR_INPUT, "pressure_coefficient = %g 1/Pa: must be > 0 for rolling resistance",
+                    params->pressure_coefficient);
   if (!(params->lambda_full > params->lambda_boundary))
-    return trb_fail(message, TRB_ERR_INPUT, "lambda_full = %g: must be above lambda_boundary = %g", params->lambda_full, params->lambda_boundary);
+    return trb_fail(message, TRB_ERR_INPUT, "lambda_full = %g: must be above lambda_boundary = %g", params->lambda_full,
+                    params->lambda_boundary);
   if (!(params->rib_edge_high > params->rib_edge_low))
-    return trb_fail(message, TRB_ERR_INPUT, "rib_edge_high = %g m: must be above rib_edge_low = %g m", params->rib_edge_high, params->rib_edge_low);
+    return trb_fail(message, TRB_ERR_INPUT, "rib_edge_high = %g m: must be above rib_edge_low = %g m", params->rib_edge_high,
+                    params->rib_edge_low);
   if (!(params->front_rib_high > params->front_rib_low))
     return trb_fail(message, TRB_ERR_INPUT, "front_rib_high = %g m: must be above front_rib_low = %g m", params->front_rib_high,
                     params->front_rib_low);
@@ -104,7 +108,8 @@ static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_me
   if (f->pocket[0] != floor(f->pocket[0]) || f->pocket[0] < -1 || f->pocket[0] >= n_rollers)
     return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: pocket = %g: must be -1 (all) or 0 to %d", index, f->pocket[0], n_rollers - 1);
   if (f->part[0] != 0.0 && f->part[0] != 1.0 && f->part[0] != 2.0)
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: part = %g: must be 0 (flank), 1 (large end) or 2 (small end)", index, f->part[0]);
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: part = %g: must be 0 (flank), 1 (large end) or 2 (small end)", index,
+                    f->part[0]);
   if (f->slot[0] != floor(f->slot[0]) || f->slot[0] < 0 || f->slot[0] > 63)
     return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: slot = %g: must be a whole number from 0 to 63", index, f->slot[0]);
   if (!(f->stiffness_factor[0] > 0.0) || !(f->friction_factor[0] >= 0.0))
@@ -118,7 +123,9 @@ static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_me
   for (int i = 0; i < n; i++) {
     const double *p = f->outline + 2 * i, *q = f->outline + 2 * ((i + 1) % n), *r = f->outline + 2 * ((i + 2) % n);
     const double  ax = q[0] - p[0], ay = q[1] - p[1], bx = r[0] - q[0], by = r[1] - q[1], cross = ax * by - ay * bx;
-    if (!(cross > 0.0)) return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: the outline must be convex and counter-clockwise (vertex %d)", index, (i + 1) % n);
+    if (!(cross > 0.0))
+      return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: the outline must be convex and counter-clockwise (vertex %d)", index,
+                      (i + 1) % n);
     turned += atan2(cross, ax * bx + ay * by);
   }
   if (fabs(turned - 2.0 * TRB_PI) > 1e-6) return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: the outline crosses itself", index);
@@ -191,6 +198,8 @@ static void fill_constants(trb_model *m)
   m->palmgren = exp(m->log_palmgren);
   m->roller_tangent = tan(g->roller_half_angle);
   m->roller_cosine = cos(g->roller_half_angle);
+  m->axis_sine = sin(g->roller_axis_angle);
+  m->axis_cosine = cos(g->roller_axis_angle);
   m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
   m->log_viscosity = log(p->viscosity);
   m->log_thermal = log(p->viscosity * trb_max(p->temperature_coefficient, 1e-30) / p->conductivity);
@@ -240,7 +249,8 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   if (!allocate(m)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d rollers of %d nodes", m->n_rollers, m->n_nodes);
   for (int j = 0; j < m->n_rollers; j++) {
     if (!(fabs(deviation[j]) < 0.1 * m->params.roller_diameter))
-      return trb_fail(message, TRB_ERR_INPUT, "diameter deviation of roller %d = %g m: must be within a tenth of the diameter", j, deviation[j]);
+      return trb_fail(message, TRB_ERR_INPUT, "diameter deviation of roller %d = %g m: must be within a tenth of the diameter", j,
+                      deviation[j]);
     m->diameter_deviation[j] = deviation[j];
   }
   if ((status = fill_nodes(m, message)) != TRB_OK) return status;

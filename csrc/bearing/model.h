@@ -17,52 +17,53 @@ enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMU
 
 /* Per node of a contact line, the same for all rollers but for the sphere's radius. Arrays of n_lanes. */
 typedef struct trb_race_nodes {
-  double *weight;     /* quadrature weight along the contact, m; 0 in padding */
-  double *log_radius; /* ln Re */
-  double *radius;     /* Re, m */
+  double *weight;       /* quadrature weight along the contact, m; 0 in padding */
+  double *log_radius;   /* ln Re */
+  double *radius;       /* Re, m */
   double *roller_share; /* Re/R1: share of the roller in the pair's curvature */
   double  sine, cosine; /* of the race's half angle */
 } trb_race_nodes;
 
 typedef struct trb_pocket_face {
-  trb_face face;     /* as given */
-  trb_vec3 normal;   /* u x v, towards the roller */
-  int      part;     /* TRB_PART_* */
-  int      slot;     /* column in results */
-  int      n;        /* number of vertices */
+  trb_face face;   /* as given */
+  trb_vec3 normal; /* u x v, towards the roller */
+  int      part;   /* TRB_PART_* */
+  int      slot;   /* column in results */
+  int      n;      /* number of vertices */
 } trb_pocket_face;
 
 typedef struct trb_model {
-  trb_params      params;     /* as given, checked */
-  trb_geometry    geometry;   /* derived */
-  int             n_rollers;  /* Z */
-  int             n_nodes;    /* nodes along a contact line */
-  int             n_lanes;    /* the same, padded */
-  int             n_slots;    /* most faces in a pocket, at least 1 */
-  double         *diameter_deviation; /* per roller, m */
-  double         *station;    /* per lane: node's station from mid length, m */
-  double         *centre;     /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
-  double         *sphere;     /* per roller and lane: sphere's radius, m */
-  trb_race_nodes  race[TRB_N_RACES];
-  trb_pocket_face *faces;     /* all faces, grouped by pocket */
-  int            *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
+  trb_params       params;             /* as given, checked */
+  trb_geometry     geometry;           /* derived */
+  int              n_rollers;          /* Z */
+  int              n_nodes;            /* nodes along a contact line */
+  int              n_lanes;            /* the same, padded */
+  int              n_slots;            /* most faces in a pocket, at least 1 */
+  double          *diameter_deviation; /* per roller, m */
+  double          *station;            /* per lane: node's station from mid length, m */
+  double          *centre;             /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
+  double          *sphere;             /* per roller and lane: sphere's radius, m */
+  trb_race_nodes   race[TRB_N_RACES];
+  trb_pocket_face *faces;      /* all faces, grouped by pocket */
+  int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
   /* constants of the laws */
-  double          log_modulus;     /* ln E' */
-  double          log_palmgren, palmgren; /* load per length at d = 1 m, its ln and itself */
-  double          roller_tangent, roller_cosine; /* of nu */
-  double          log_g;           /* ln G */
-  double          log_viscosity;   /* ln eta0 */
-  double          log_thermal;     /* ln(eta0 beta/k') */
-  double          rib_film_shape;  /* factor of eq. 12 */
-  double          rib_film_rigid;  /* factor of eq. 13 */
-  double          rib_sine, rib_cosine; /* of the rib's normal */
-  trb_frame      *pocket_axes;     /* per pocket: n, t, a of the nominal roller, in the cage's body */
-  trb_vec3       *pocket_origin;   /* per pocket: nominal mid length, from the cage's centre of mass, m */
-  double          front_rib_radius[2]; /* radii of the front rib's edges, m */
-  double          front_rib_z[2];      /* their axial positions from the apex, m */
-  int             friction;        /* any friction at raceways and ribs at all */
-  int             pocket_friction; /* any friction in the pockets */
-  int             film;            /* films are needed */
+  double     log_modulus;                   /* ln E' */
+  double     log_palmgren, palmgren;        /* load per length at d = 1 m, its ln and itself */
+  double     roller_tangent, roller_cosine; /* of nu */
+  double     axis_sine, axis_cosine;        /* of the roller axis' angle */
+  double     log_g;                         /* ln G */
+  double     log_viscosity;                 /* ln eta0 */
+  double     log_thermal;                   /* ln(eta0 beta/k') */
+  double     rib_film_shape;                /* factor of eq. 12 */
+  double     rib_film_rigid;                /* factor of eq. 13 */
+  double     rib_sine, rib_cosine;          /* of the rib's normal */
+  trb_frame *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
+  trb_vec3  *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
+  double     front_rib_radius[2];           /* radii of the front rib's edges, m */
+  double     front_rib_z[2];                /* their axial positions from the apex, m */
+  int        friction;                      /* any friction at raceways and ribs at all */
+  int        pocket_friction;               /* any friction in the pockets */
+  int        film;                          /* films are needed */
 } trb_model;
 
 /* A checked, immutable copy of everything given. deviation: a roller's diameter over nominal, n_rollers values; faces: n_faces rows. */

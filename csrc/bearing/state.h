@@ -43,27 +43,34 @@
   X(work_shaft) X(work_ring) X(work_gravity) X(loss_traction_outer) X(loss_traction_inner) X(loss_rolling) \
   X(loss_rolling_pressure) X(loss_rib) X(loss_front_rib) X(loss_pocket) X(loss_damping)
 
-typedef enum trb_tolerance { TRB_TOL_POSITION, TRB_TOL_ANGLE, TRB_TOL_VELOCITY, TRB_TOL_SPIN, TRB_TOL_QUADRATURE, TRB_N_TOLERANCES } trb_tolerance;
+typedef enum trb_tolerance {
+  TRB_TOL_POSITION,
+  TRB_TOL_ANGLE,
+  TRB_TOL_VELOCITY,
+  TRB_TOL_SPIN,
+  TRB_TOL_QUADRATURE,
+  TRB_N_TOLERANCES
+} trb_tolerance;
 
 enum {
 #define TRB_STATE_ENUM(name, kind, text) TRB_ROLLER_##name,
   TRB_ROLLER_STATE(TRB_STATE_ENUM)
 #undef TRB_STATE_ENUM
-  TRB_ROLLER_SIZE
+      TRB_ROLLER_SIZE
 };
 
 enum {
 #define TRB_STATE_ENUM(name, kind, text) TRB_CAGE_##name,
   TRB_CAGE_STATE(TRB_STATE_ENUM)
 #undef TRB_STATE_ENUM
-  TRB_CAGE_SIZE
+      TRB_CAGE_SIZE
 };
 
 enum {
 #define TRB_QUADRATURE_ENUM(name) TRB_Q_##name,
   TRB_QUADRATURES(TRB_QUADRATURE_ENUM)
 #undef TRB_QUADRATURE_ENUM
-  TRB_N_QUADRATURES
+      TRB_N_QUADRATURES
 };
 
 /* State vector: rollers, cage, then the tail: a spin angle per roller, the quadratures. */
@@ -88,18 +95,18 @@ typedef struct trb_ring_pose {
 
 /* What is prescribed at an instant; inertial coordinates. */
 typedef struct trb_drive {
-  double        time;           /* s */
-  double        shaft_angle;    /* rad */
-  double        shaft_speed;    /* rad/s */
-  double        shaft_rate;     /* rad/s2 */
-  double        frame_angle;    /* angle of R: kinematic cage angle, rad */
-  double        frame_speed;    /* rad/s */
-  double        frame_rate;     /* rad/s2 */
-  double        cosine, sine;   /* of frame_angle */
-  trb_ring_pose inner;          /* inner ring */
-  trb_vec3      displacement;   /* of the inner ring, m */
-  trb_vec3      ring_omega;     /* its angular velocity without the shaft's turn, rad/s */
-  trb_vec3      gravity;        /* m/s2 */
+  double        time;         /* s */
+  double        shaft_angle;  /* rad */
+  double        shaft_speed;  /* rad/s */
+  double        shaft_rate;   /* rad/s2 */
+  double        frame_angle;  /* angle of R: kinematic cage angle, rad */
+  double        frame_speed;  /* rad/s */
+  double        frame_rate;   /* rad/s2 */
+  double        cosine, sine; /* of frame_angle */
+  trb_ring_pose inner;        /* inner ring */
+  trb_vec3      displacement; /* of the inner ring, m */
+  trb_vec3      ring_omega;   /* its angular velocity without the shaft's turn, rad/s */
+  trb_vec3      gravity;      /* m/s2 */
 } trb_drive;
 
 /* A roller, in its own cylindrical frame (e_r, e_t, e_z) at its orbit angle; origin: the apex. */
@@ -136,8 +143,7 @@ static inline trb_rolling trb_pure_rolling(const trb_model *m, double shaft_spee
 {
   const trb_geometry *g = &m->geometry;
   const double        orbit = g->cage_speed_ratio * shaft_speed;
-  return (trb_rolling){orbit * g->roller_centre_radius, -orbit * sin(g->roller_axis_angle),
-                       orbit * cos(g->roller_axis_angle) - g->roller_spin_ratio * shaft_speed};
+  return (trb_rolling){orbit * g->roller_centre_radius, -orbit * m->axis_sine, orbit * m->axis_cosine - g->roller_spin_ratio * shaft_speed};
 }
 
 static inline double trb_nominal_angle(const trb_model *m, int roller) { return 2.0 * TRB_PI * roller / m->n_rollers; }

@@ -88,9 +88,14 @@ static const contact_pair trb_contact_pairs[] = {
 
 enum { N_PAIRS = (int)(sizeof trb_contact_pairs / sizeof trb_contact_pairs[0]) };
 
+static void clear(const trb_instant *at, trb_roller_load *loads)
+{
+  for (int k = 0; k < at->n; k++) memset(&loads[at->chosen[k]], 0, sizeof *loads);
+}
+
 void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
-  memset(loads, 0, (size_t)m->n_rollers * sizeof *loads);
+  clear(at, loads);
   work->counters.force_evaluations++;
   for (int i = 0; i < N_PAIRS; i++)
     if (trb_contact_pairs[i].is_on(m) && (at->cage != NULL || !trb_contact_pairs[i].with_cage))
@@ -99,7 +104,7 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
 
 void trb_contact_rings_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads)
 {
-  memset(loads, 0, (size_t)m->n_rollers * sizeof *loads);
+  clear(at, loads);
   for (int i = 0; i < N_PAIRS; i++)
     if (!trb_contact_pairs[i].with_cage && trb_contact_pairs[i].is_on(m)) trb_contact_pairs[i].function(m, at, work, loads, NULL);
 }

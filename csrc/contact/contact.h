@@ -27,6 +27,7 @@ typedef enum trb_torque { TRB_TORQUE_TRACTION, TRB_TORQUE_ROLLING, TRB_TORQUE_RI
 /* What was evaluated, counted; an effect that is off stays at zero. X(name, text) */
 #define TRB_COUNTERS(X) \
   X(force_evaluations,    "evaluations of all forces") \
+  X(tangent_rollers,      "rollers whose forces of raceways and ribs were taken from their tangents") \
   X(raceway_nodes,        "nodes of loaded raceway contacts") \
   X(raceway_culled,       "raceway contacts without interference, left out") \
   X(film_nodes,           "nodes whose film was evaluated") \
@@ -53,15 +54,15 @@ typedef struct trb_counters {
 } trb_counters;
 
 typedef struct trb_roller_load {
-  trb_vec3 force;        /* on the roller, in its cylindrical frame, N */
-  trb_vec3 moment;       /* on the roller about its centre of mass, N m */
-  trb_vec3 ring_force;   /* on the inner ring, in the same frame, N */
-  trb_vec3 ring_moment;  /* on the inner ring about its centre, N m */
-  trb_vec3 outer_force;  /* on the outer ring, in the same frame, N */
-  trb_vec3 outer_moment; /* on the outer ring about the apex, N m */
-  trb_vec3 cage_force;   /* on the cage, in R, N */
-  trb_vec3 cage_moment;  /* on the cage about its centre of mass, N m */
-  double   elastic;      /* J */
+  trb_vec3 force;                 /* on the roller, in its cylindrical frame, N */
+  trb_vec3 moment;                /* on the roller about its centre of mass, N m */
+  trb_vec3 ring_force;            /* on the inner ring, in the same frame, N */
+  trb_vec3 ring_moment;           /* on the inner ring about its centre, N m */
+  trb_vec3 outer_force;           /* on the outer ring, in the same frame, N */
+  trb_vec3 outer_moment;          /* on the outer ring about the apex, N m */
+  trb_vec3 cage_force;            /* on the cage, in R, N */
+  trb_vec3 cage_moment;           /* on the cage about its centre of mass, N m */
+  double   elastic;               /* J */
   double   torque[TRB_N_TORQUES]; /* on the inner ring about its axis, N m */
   double   power[TRB_N_POWERS];   /* lost, W */
 } trb_roller_load;
@@ -72,6 +73,8 @@ typedef struct trb_instant {
   const trb_roller_pose *rollers; /* n_rollers */
   const trb_ring_pose   *inner;   /* n_rollers: the inner ring in each roller's frame */
   const trb_cage_pose   *cage;    /* NULL without a cage */
+  const int             *chosen;  /* rollers to evaluate, ascending */
+  int                    n;       /* how many */
 } trb_instant;
 
 /* A point contact, as users look into it. X(name, unit, text) */
@@ -102,9 +105,9 @@ struct trb_lanes;
 
 /* Intermediate quantities, kept where a caller wants to look; NULL in the inner loop. */
 typedef struct trb_detail {
-  double           *lanes;       /* [lane field][race][roller][node of n_lanes] */
-  trb_point_detail *rib;         /* n_rollers */
-  trb_point_detail *front_rib;   /* n_rollers */
+  double           *lanes;               /* [lane field][race][roller][node of n_lanes] */
+  trb_point_detail *rib;                 /* n_rollers */
+  trb_point_detail *front_rib;           /* n_rollers */
   double           *pocket_force;        /* [roller][slot], N */
   double           *pocket_friction;     /* [roller][slot], N */
   double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m */
@@ -117,7 +120,8 @@ typedef struct trb_workspace {
   trb_counters      counters; /* of this workspace */
 } trb_workspace;
 
-typedef void trb_contact_function(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail);
+typedef void trb_contact_function(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads,
+                                  trb_detail *detail);
 
 trb_contact_function trb_contact_raceway, trb_contact_rib, trb_contact_front_rib, trb_contact_pocket;
 
@@ -125,13 +129,14 @@ trb_contact_function trb_contact_raceway, trb_contact_rib, trb_contact_front_rib
 trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_workspace **work, trb_message *message);
 void       trb_workspace_free(trb_workspace *work);
 
-/* Zero the loads and sum every pair that the scene has. */
+/* Zero the chosen rollers' loads and sum every pair that the scene has. */
 void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail);
 
-/* Zero the loads and sum the pairs of rollers and rings only. */
+/* Zero the chosen rollers' loads and sum the pairs of rollers and rings only. */
 void trb_contact_rings_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads);
-/* Add what one roller and its pocket do to each other. */
-void trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load, trb_detail *detail);
+/* Add what one roller and its pocket do to each other; gives a lower bound of the gap, not above 0 where they touch. */
+double trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
+                             trb_detail *detail);
 
 /* Buffers of every intermediate quantity; freed by trb_detail_free. */
 trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message);

@@ -21,12 +21,14 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
   if (!(d > 0.0)) return;
   counters->front_rib_contacts++;
-  const trb_vec3  point = trb_axpy(centre, m->front_rib_radius[edge] / lean, across), arm = trb_sub(point, r->x), ring_arm = trb_sub(point, ring->centre);
+  const trb_vec3  point = trb_axpy(centre, m->front_rib_radius[edge] / lean, across), arm = trb_sub(point, r->x),
+                  ring_arm = trb_sub(point, ring->centre);
   const trb_vec3  normal = trb_scale(-1.0, a);
-  const trb_touch touch = trb_touching(trb_add(r->v, trb_cross(r->omega, arm)), trb_add(ring->velocity, trb_cross(ring->omega, ring_arm)), normal);
-  const double    elastic = 0.5 * m->params.end_stiffness * d * sqrt(d), q = trb_damped(m, elastic, m->params.damping_race, touch.rate);
-  const double    mu = m->pocket_friction ? trb_sliding_coefficient(m, touch.speed) : 0.0, drag = q * mu / touch.speed;
-  const trb_vec3  force = trb_axpy(trb_scale(-q, normal), -drag, touch.sliding), torque = trb_cross(ring_arm, force);
+  const trb_touch touch =
+      trb_touching(trb_add(r->v, trb_cross(r->omega, arm)), trb_add(ring->velocity, trb_cross(ring->omega, ring_arm)), normal);
+  const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d), q = trb_damped(m, elastic, m->params.damping_race, touch.rate);
+  const double   mu = m->pocket_friction ? trb_sliding_coefficient(m, touch.speed) : 0.0, drag = q * mu / touch.speed;
+  const trb_vec3 force = trb_axpy(trb_scale(-q, normal), -drag, touch.sliding), torque = trb_cross(ring_arm, force);
   load->force = trb_add(load->force, force);
   load->moment = trb_add(load->moment, trb_cross(arm, force));
   load->ring_force = trb_sub(load->ring_force, force);
@@ -43,7 +45,8 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
 
 void trb_contact_front_rib(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
-  for (int j = 0; j < m->n_rollers; j++) {
+  for (int k = 0; k < at->n; k++) {
+    const int        j = at->chosen[k];
     trb_point_detail c = {0};
     for (int edge = 0; edge < 2; edge++) edge_on_end(m, &at->rollers[j], &at->inner[j], edge, &work->counters, &loads[j], &c);
     if (detail != NULL) detail->front_rib[j] = c;

@@ -59,7 +59,7 @@ enum {
 #define TRB_LANE_ENUM(name, unit, text) TRB_LANE_##name,
   TRB_LANE_FIELDS(TRB_LANE_ENUM)
 #undef TRB_LANE_ENUM
-  TRB_N_LANE_FIELDS
+      TRB_N_LANE_FIELDS
 };
 
 /* The nodes (n_lanes) of a lane field in a detail. */
@@ -77,12 +77,12 @@ typedef struct trb_race_input {
   const double          *sphere;
   const trb_race_nodes  *nodes;
   double                 sine, cosine; /* of the race's half angle */
-  double                 sign;   /* +1 outer, -1 inner: normal away from the bearing axis or towards it */
+  double                 sign;         /* +1 outer, -1 inner: normal away from the bearing axis or towards it */
 } trb_race_input;
 
 typedef struct trb_race_output {
-  trb_vec3 force, moment;           /* on the roller, about its centre of mass */
-  trb_vec3 ring_force, ring_moment; /* on the race, about ring->centre */
+  trb_vec3 force, moment;                   /* on the roller, about its centre of mass */
+  trb_vec3 ring_force, ring_moment;         /* on the race, about ring->centre */
   double   torque_traction, torque_rolling; /* on the race, about its axis */
   double   elastic, power_traction, power_rolling, power_pressure, power_damping;
   int      loaded; /* 0: no interference, all zero */
@@ -91,9 +91,8 @@ typedef struct trb_race_output {
 typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,
                                 trb_race_output *outputs);
 
-/* All rollers' large ends on the rib, a lane a roller. */
-typedef void trb_rib_kernel(const trb_model *m, const trb_roller_pose *rollers, const trb_ring_pose *rings, trb_lanes *lanes, trb_counters *counters,
-                            trb_race_output *outputs);
+/* The chosen rollers' large ends on the rib, a lane and an output a roller. */
+typedef void trb_rib_kernel(const trb_model *m, const trb_instant *at, trb_lanes *lanes, trb_counters *counters, trb_race_output *outputs);
 
 trb_raceway_kernel trb_raceway_kernel_scalar, trb_raceway_kernel_base, trb_raceway_kernel_avx2, trb_raceway_kernel_avx512;
 trb_rib_kernel     trb_rib_kernel_scalar, trb_rib_kernel_base, trb_rib_kernel_avx2, trb_rib_kernel_avx512;

@@ -7,7 +7,7 @@ static const trb_ring_pose fixed_ring = {{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 0,
 
 static trb_race_input race_input(const trb_model *m, const trb_instant *at, int contact)
 {
-  const int roller = contact / TRB_N_RACES, race = contact % TRB_N_RACES, outer = race == TRB_RACE_OUTER;
+  const int roller = at->chosen[contact / TRB_N_RACES], race = contact % TRB_N_RACES, outer = race == TRB_RACE_OUTER;
   return (trb_race_input){&at->rollers[roller],
                           outer ? &fixed_ring : &at->inner[roller],
                           m->centre + (size_t)roller * (size_t)m->n_lanes,
@@ -40,17 +40,19 @@ static void add_output(const trb_race_output *out, int race, trb_roller_load *lo
 }
 
 /* Lane fields of the tile's loaded contacts, in the order in which the kernel packed them. */
-static void copy_detail(const trb_model *m, const trb_lanes *lanes, const trb_race_output *outputs, int first, int n, trb_detail *detail)
+static void copy_detail(const trb_model *m, const int *chosen, const trb_lanes *lanes, const trb_race_output *outputs, int first, int n,
+                        trb_detail *detail)
 {
   const size_t  lane_count = (size_t)m->n_lanes, field_size = (size_t)(TRB_N_RACES * m->n_rollers) * lane_count;
   const double *from = (const double *)lanes;
   int           packed = 0;
   for (int c = 0; c < n; c++) {
     if (!outputs[c].loaded) continue;
-    const int    roller = (first + c) / TRB_N_RACES, race = (first + c) % TRB_N_RACES;
+    const int    roller = chosen[(first + c) / TRB_N_RACES], race = (first + c) % TRB_N_RACES;
     const size_t to = ((size_t)race * (size_t)m->n_rollers + (size_t)roller) * lane_count;
     for (int f = 0; f < TRB_N_LANE_FIELDS; f++)
-      memcpy(detail->lanes + (size_t)f * field_size + to, from + (size_t)f * TRB_LANE_STRIDE + (size_t)packed * lane_count, lane_count * sizeof(double));
+      memcpy(detail->lanes + (size_t)f * field_size + to, from + (size_t)f * TRB_LANE_STRIDE + (size_t)packed * lane_count,
+             lane_count * sizeof(double));
     packed++;
   }
 }
@@ -58,14 +60,14 @@ static void copy_detail(const trb_model *m, const trb_lanes *lanes, const trb_ra
 void trb_contact_raceway(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
   enum { MOST = TRB_TILE_LANES / TRB_LANE_PAD };
-  const int       total = m->n_rollers * TRB_N_RACES, per_tile = m->n_lanes < TRB_TILE_FILL ? TRB_TILE_FILL / m->n_lanes : 1;
+  const int       total = at->n * TRB_N_RACES, per_tile = m->n_lanes < TRB_TILE_FILL ? TRB_TILE_FILL / m->n_lanes : 1;
   trb_race_input  inputs[MOST];
   trb_race_output outputs[MOST];
   for (int first = 0; first < total; first += per_tile) {
     const int n = total - first < per_tile ? total - first : per_tile;
     for (int c = 0; c < n; c++) inputs[c] = race_input(m, at, first + c);
     trb_kernel_variants[work->variant].raceway(m, inputs, n, work->lanes, &work->counters, outputs);
-    for (int c = 0; c < n; c++) add_output(&outputs[c], (first + c) % TRB_N_RACES, &loads[(first + c) / TRB_N_RACES]);
-    if (detail != NULL) copy_detail(m, work->lanes, outputs, first, n, detail);
+    for (int c = 0; c < n; c++) add_output(&outputs[c], (first + c) % TRB_N_RACES, &loads[at->chosen[(first + c) / TRB_N_RACES]]);
+    if (detail != NULL) copy_detail(m, at->chosen, work->lanes, outputs, first, n, detail);
   }
 }

@@ -21,34 +21,37 @@ static double overhang(const trb_model *m, double load, double height)
   return semi > 0.0 ? trb_min((below + above) / (2.0 * semi), 1.0) : 0.0;
 }
 
-static void fill_detail(const trb_model *m, const trb_ring_pose *ring, int j, const trb_lanes *l, const trb_race_output *out, trb_point_detail *c)
+static void fill_detail(const trb_model *m, const trb_ring_pose *ring, int lane, const trb_lanes *l, const trb_race_output *out,
+                        trb_point_detail *c)
 {
-  *c = (trb_point_detail){.interference = l->interference[j], .height = height_of(m, ring, trb_v(l->px[j], l->py[j], l->pz[j]))};
+  *c =
+      (trb_point_detail){.interference = l->interference[lane], .height = height_of(m, ring, trb_v(l->px[lane], l->py[lane], l->pz[lane]))};
   if (!out->loaded) return;
-  c->load = -trb_dot(out->force, trb_v(l->nx[j], l->ny[j], l->nz[j]));
-  c->pressure = l->pressure[j];
-  c->mean_speed = l->mean_speed[j];
-  c->sliding_speed = l->sliding_speed[j];
-  c->slide_roll = l->slide_roll[j];
-  c->friction_coefficient = l->friction_coefficient[j];
+  c->load = -trb_dot(out->force, trb_v(l->nx[lane], l->ny[lane], l->nz[lane]));
+  c->pressure = l->pressure[lane];
+  c->mean_speed = l->mean_speed[lane];
+  c->sliding_speed = l->sliding_speed[lane];
+  c->slide_roll = l->slide_roll[lane];
+  c->friction_coefficient = l->friction_coefficient[lane];
   c->friction = c->load * c->friction_coefficient;
   c->overhang = overhang(m, c->load, c->height);
   if (!m->film) return;
-  c->film_elastic = l->film_elastic[j];
-  c->film_rigid = l->film_rigid[j];
-  c->thermal_factor = l->thermal_factor[j];
-  c->film = l->film[j];
-  c->film_parameter = l->film_parameter[j];
+  c->film_elastic = l->film_elastic[lane];
+  c->film_rigid = l->film_rigid[lane];
+  c->thermal_factor = l->thermal_factor[lane];
+  c->film = l->film[lane];
+  c->film_parameter = l->film_parameter[lane];
 }
 
 void trb_contact_rib(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
   trb_race_output outputs[TRB_TILE_LANES];
-  trb_kernel_variants[work->variant].rib(m, at->rollers, at->inner, work->lanes, &work->counters, outputs);
-  for (int j = 0; j < m->n_rollers; j++) {
-    const trb_race_output *out = &outputs[j];
+  trb_kernel_variants[work->variant].rib(m, at, work->lanes, &work->counters, outputs);
+  for (int k = 0; k < at->n; k++) {
+    const int              j = at->chosen[k];
+    const trb_race_output *out = &outputs[k];
     trb_roller_load       *load = &loads[j];
-    if (detail != NULL) fill_detail(m, &at->inner[j], j, work->lanes, out, &detail->rib[j]);
+    if (detail != NULL) fill_detail(m, &at->inner[j], k, work->lanes, out, &detail->rib[j]);
     if (!out->loaded) continue;
     load->force = trb_add(load->force, out->force);
     load->moment = trb_add(load->moment, out->moment);

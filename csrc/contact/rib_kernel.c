@@ -1,4 +1,4 @@
-/* Roller large ends on the back-face rib, all rollers at once: a lane a roller. The laws of friction are the raceways' passes. */
+/* Roller large ends on the back-face rib, all chosen rollers at once: a lane a roller. The laws of friction are the raceways' passes. */
 #include <math.h>
 
 #include "contact/passes.h"
@@ -9,13 +9,13 @@
 #define TRB_AXIS_GUARD 1e-9
 
 /* Deepest point of the end's sphere in the rib's cone, and the velocities there. */
-static void pass_geometry(const trb_model *m, const trb_roller_pose *rollers, const trb_ring_pose *rings, int n, trb_lanes *l)
+static void pass_geometry(const trb_model *m, const trb_instant *at, trb_lanes *l)
 {
   const trb_geometry *g = &m->geometry;
   const double        station = g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, sine = m->rib_sine, cosine = m->rib_cosine;
-  for (int j = 0; j < n; j++) {
-    const trb_roller_pose *r = &rollers[j];
-    const trb_ring_pose   *ring = &rings[j];
+  for (int j = 0; j < at->n; j++) {
+    const trb_roller_pose *r = &at->rollers[at->chosen[j]];
+    const trb_ring_pose   *ring = &at->inner[at->chosen[j]];
     const trb_vec3         centre = trb_axpy(r->x, station, r->frame.a), from = trb_sub(centre, ring->apex);
     const double           along = trb_dot(from, ring->axis);
     const trb_vec3         across = trb_axpy(from, -along, ring->axis);
@@ -54,7 +54,8 @@ static void pass_load(const trb_model *m, int n, trb_lanes *l)
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
-    const double d = trb_max(l->interference[i], TRB_SMALLEST_INTERFERENCE), log_d = log(d), root = exp((log_stiffness + 1.5 * log_d) / 3.0);
+    const double d = trb_max(l->interference[i], TRB_SMALLEST_INTERFERENCE), log_d = log(d),
+                 root = exp((log_stiffness + 1.5 * log_d) / 3.0);
     l->log_d[i] = log_d;
     l->load[i] = l->interference[i] > 0.0 ? stiffness * d * sqrt(d) : 0.0;
     l->half_width[i] = rolling * root;
@@ -78,9 +79,11 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
-static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int j, const trb_lanes *l, trb_race_output *out)
+static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int j, const trb_lanes *l,
+                       trb_race_output *out)
 {
-  const trb_vec3 normal = trb_v(l->nx[j], l->ny[j], l->nz[j]), point = trb_v(l->px[j], l->py[j], l->pz[j]), sliding = trb_v(l->sx[j], l->sy[j], l->sz[j]);
+  const trb_vec3 normal = trb_v(l->nx[j], l->ny[j], l->nz[j]), point = trb_v(l->px[j], l->py[j], l->pz[j]),
+                 sliding = trb_v(l->sx[j], l->sy[j], l->sz[j]);
   const double   elastic = l->load[j];
   double         load = elastic;
   if (m->params.damping > 0.0) load *= trb_max(1.0 + m->params.damping_race * l->approach[j], 0.0);
@@ -97,12 +100,12 @@ static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_r
   out->power_damping = (load - elastic) * l->approach[j];
 }
 
-void TRB_KERNEL_NAME(const trb_model *m, const trb_roller_pose *rollers, const trb_ring_pose *rings, trb_lanes *l, trb_counters *counters,
-                     trb_race_output *outputs)
+void TRB_KERNEL_NAME(const trb_model *m, const trb_instant *at, trb_lanes *l, trb_counters *counters, trb_race_output *outputs)
 {
-  const int           n = m->n_rollers, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
+  const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
   const trb_pass_kind kind = {TRB_POINT_MEAN_PRESSURE, m->params.roughness_rib};
-  pass_geometry(m, rollers, rings, n, l);
+  if (n == 0) return;
+  pass_geometry(m, at, l);
   pad(n, all, l);
   counters->rib_tests += n;
   int touching = 0;
@@ -124,5 +127,5 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_roller_pose *rollers, const t
   if (m->friction) pass_friction(m, &kind, all, l, counters);
   if (m->params.damping > 0.0) counters->damping_nodes += touching;
   for (int j = 0; j < n; j++)
-    if (l->interference[j] > 0.0) sum_roller(m, &rollers[j], &rings[j], j, l, &outputs[j]);
+    if (l->interference[j] > 0.0) sum_roller(m, &at->rollers[at->chosen[j]], &at->inner[at->chosen[j]], j, l, &outputs[j]);
 }

@@ -3,7 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_dynamics **dynamics, trb_message *message)
+trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
+                               trb_message *message)
 {
   *dynamics = NULL;
   trb_dynamics *d = calloc(1, sizeof *d);
@@ -14,13 +15,19 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
   d->rollers = calloc(n, sizeof *d->rollers);
   d->inner = calloc(n, sizeof *d->inner);
   d->loads = calloc(n, sizeof *d->loads);
+  d->everyone = calloc(n, sizeof *d->everyone);
+  d->clearances = calloc(n, sizeof *d->clearances);
   trb_status status = TRB_OK;
-  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
-  else status = trb_workspace_create(m, variant, &d->work, message);
+  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL || d->everyone == NULL || d->clearances == NULL)
+    status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
+  else
+    status = trb_workspace_create(m, variant, &d->work, message);
   if (status != TRB_OK) {
     trb_dynamics_free(d);
     return status;
   }
+  for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
+  d->arms = trb_clearance_arms_of(m);
   *dynamics = d;
   return TRB_OK;
 }
@@ -32,6 +39,8 @@ void trb_dynamics_free(trb_dynamics *d)
   free(d->rollers);
   free(d->inner);
   free(d->loads);
+  free(d->everyone);
+  free(d->clearances);
   free(d);
 }
 
@@ -60,7 +69,8 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
 {
-  return (trb_instant){&d->drive, d->rollers, d->inner, d->model->params.with_cage > 0.0 ? &d->cage : NULL};
+  return (trb_instant){&d->drive,   d->rollers,         d->inner, d->model->params.with_cage > 0.0 ? &d->cage : NULL,
+                       d->everyone, d->model->n_rollers};
 }
 
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail)
@@ -85,7 +95,8 @@ static turn_rates euler(const trb_frame *f, trb_vec3 omega, double parent, doubl
   out.tilt = (omega.y - parent * f->t.z) / cosine;
   out.frame_a = parent * f->a.z + out.tilt * sine;
   const double spin = axial * omega.z, turn = transverse * out.frame_a;
-  out.spin = trb_v((moment.x - omega.y * spin + turn * omega.y) / transverse, (moment.y - turn * omega.x + omega.x * spin) / transverse, moment.z / axial);
+  out.spin = trb_v((moment.x - omega.y * spin + turn * omega.y) / transverse, (moment.y - turn * omega.x + omega.x * spin) / transverse,
+                   moment.z / axial);
   return out;
 }
 
@@ -98,41 +109,79 @@ static trb_vec3 gravity_in(const trb_drive *drive, double cosine, double sine)
 static int has_gravity(const trb_drive *drive) { return drive->gravity.x != 0.0 || drive->gravity.y != 0.0 || drive->gravity.z != 0.0; }
 
 /* Planar: the frozen tilts couple the orbit to the transverse inertia; (m + It s^2/r^2) v_t' from Lagrange's equation of the orbit angle. */
-static void freeze_roller(const trb_dynamics *d, const trb_roller_pose *r, const trb_roller_load *load, double v_t_reference_rate, double gravity_t,
-                          double *rates)
+static double orbit_inertia(const trb_geometry *g, const trb_roller_pose *r)
 {
-  const trb_geometry *g = &d->model->geometry;
-  const trb_vec3      moment = trb_to_frame(&r->frame, load->moment);
-  const double        s = r->frame.n.z, inertia = g->roller_inertia_transverse * s * s / (r->radius * r->radius);
-  const double        force = load->force.y + g->roller_mass * gravity_t + s * moment.x / r->radius;
-  const double        coriolis = r->v.x * r->v.y / r->radius;
-  rates[TRB_ROLLER_v_t] = (force - (g->roller_mass - inertia) * coriolis) / (g->roller_mass + inertia) - v_t_reference_rate;
+  return g->roller_inertia_transverse * r->frame.n.z * r->frame.n.z / (r->radius * r->radius);
+}
+
+static void freeze_roller(const trb_geometry *g, const trb_roller_pose *r, double v_t_reference_rate, double gravity_t, double *rates)
+{
+  const double inertia = orbit_inertia(g, r), coriolis = r->v.x * r->v.y / r->radius;
+  rates[TRB_ROLLER_v_t] =
+      (g->roller_mass * gravity_t - (g->roller_mass - inertia) * coriolis) / (g->roller_mass + inertia) - v_t_reference_rate;
   rates[TRB_ROLLER_z] = rates[TRB_ROLLER_v_z] = rates[TRB_ROLLER_skew] = rates[TRB_ROLLER_tilt] = 0.0;
   rates[TRB_ROLLER_omega_n] = rates[TRB_ROLLER_omega_t] = 0.0;
 }
 
-void trb_dynamics_roller_rates(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates)
+void trb_dynamics_roller_inertia(const trb_dynamics *d, int roller, double *flow)
 {
   const trb_model       *m = d->model;
+  const trb_geometry    *g = &m->geometry;
   const trb_drive       *drive = &d->drive;
   const trb_roller_pose *r = &d->rollers[roller];
   const trb_rolling      rolling_rate = trb_pure_rolling(m, drive->shaft_rate);
-  const double           per_mass = 1.0 / m->geometry.roller_mass;
-  const trb_vec3         g = has_gravity(drive) ? gravity_in(drive, r->cosine, r->sine) : trb_v(0, 0, 0);
-  const turn_rates       turn = euler(&r->frame, r->omega_frame, r->orbit_speed, m->geometry.roller_inertia_transverse,
-                                      m->geometry.roller_inertia_axial, trb_to_frame(&r->frame, load->moment));
-  rates[TRB_ROLLER_r] = r->v.x;
-  rates[TRB_ROLLER_psi] = r->orbit_speed - drive->frame_speed;
-  rates[TRB_ROLLER_z] = r->v.z;
-  rates[TRB_ROLLER_skew] = turn.skew;
-  rates[TRB_ROLLER_tilt] = turn.tilt;
-  rates[TRB_ROLLER_v_r] = per_mass * load->force.x + g.x + r->v.y * r->orbit_speed;
-  rates[TRB_ROLLER_v_t] = per_mass * load->force.y + g.y - r->v.x * r->orbit_speed - rolling_rate.v_t;
-  rates[TRB_ROLLER_v_z] = per_mass * load->force.z + g.z;
-  rates[TRB_ROLLER_omega_n] = turn.spin.x - rolling_rate.omega_n;
-  rates[TRB_ROLLER_omega_t] = turn.spin.y;
-  rates[TRB_ROLLER_omega_a] = turn.spin.z - rolling_rate.omega_a;
-  if (m->params.planar > 0.0) freeze_roller(d, r, load, rolling_rate.v_t, g.y, rates);
+  const int              heavy = has_gravity(drive);
+  const trb_vec3         fall = heavy ? gravity_in(drive, r->cosine, r->sine) : trb_v(0, 0, 0);
+  const turn_rates       turn =
+      euler(&r->frame, r->omega_frame, r->orbit_speed, g->roller_inertia_transverse, g->roller_inertia_axial, trb_v(0, 0, 0));
+  flow[TRB_ROLLER_r] = r->v.x;
+  flow[TRB_ROLLER_psi] = r->orbit_speed - drive->frame_speed;
+  flow[TRB_ROLLER_z] = r->v.z;
+  flow[TRB_ROLLER_skew] = turn.skew;
+  flow[TRB_ROLLER_tilt] = turn.tilt;
+  flow[TRB_ROLLER_v_r] = fall.x + r->v.y * r->orbit_speed;
+  flow[TRB_ROLLER_v_t] = fall.y - r->v.x * r->orbit_speed - rolling_rate.v_t;
+  flow[TRB_ROLLER_v_z] = fall.z;
+  flow[TRB_ROLLER_omega_n] = turn.spin.x - rolling_rate.omega_n;
+  flow[TRB_ROLLER_omega_t] = turn.spin.y;
+  flow[TRB_ROLLER_omega_a] = turn.spin.z - rolling_rate.omega_a;
+  if (m->params.planar > 0.0) freeze_roller(g, r, rolling_rate.v_t, fall.y, flow);
+  const double frame_a = r->orbit_speed * r->frame.a.z + flow[TRB_ROLLER_tilt] * r->frame.a.y;
+  flow[TRB_FLOW_spin] = r->omega_frame.z - frame_a + g->roller_spin_ratio * drive->shaft_speed;
+  memset(flow + TRB_FLOW_quadrature, 0, TRB_N_QUADRATURES * sizeof *flow);
+  if (!heavy) return;
+  flow[TRB_FLOW_quadrature + TRB_Q_work_gravity] = g->roller_mass * trb_dot(fall, r->v);
+  d->work->counters.gravity_bodies++;
+}
+
+void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow)
+{
+  const trb_geometry    *g = &d->model->geometry;
+  const trb_roller_pose *r = &d->rollers[roller];
+  const trb_vec3         moment = trb_to_frame(&r->frame, load->moment);
+  const double           per_mass = 1.0 / g->roller_mass, per_transverse = 1.0 / g->roller_inertia_transverse;
+  flow[TRB_ROLLER_v_r] += per_mass * load->force.x;
+  flow[TRB_ROLLER_omega_a] += moment.z / g->roller_inertia_axial;
+  if (d->model->params.planar > 0.0) {
+    flow[TRB_ROLLER_v_t] += (load->force.y + r->frame.n.z * moment.x / r->radius) / (g->roller_mass + orbit_inertia(g, r));
+  } else {
+    flow[TRB_ROLLER_v_t] += per_mass * load->force.y;
+    flow[TRB_ROLLER_v_z] += per_mass * load->force.z;
+    flow[TRB_ROLLER_omega_n] += per_transverse * moment.x;
+    flow[TRB_ROLLER_omega_t] += per_transverse * moment.y;
+  }
+  for (int k = 0; k < TRB_N_POWERS; k++) flow[TRB_FLOW_quadrature + TRB_Q_loss_traction_outer + k] += load->power[k];
+}
+
+void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow)
+{
+  const trb_ring_pose *ring = &d->inner[roller];
+  const double         shaft = -trb_dot(load->ring_moment, ring->axis) * d->drive.shaft_speed;
+  trb_dynamics_roller_inertia(d, roller, flow);
+  trb_dynamics_roller_response(d, roller, load, flow);
+  flow[TRB_FLOW_quadrature + TRB_Q_work_shaft] += shaft;
+  flow[TRB_FLOW_quadrature + TRB_Q_work_ring] +=
+      -trb_dot(load->ring_force, ring->velocity) - trb_dot(load->ring_moment, ring->omega) - shaft;
 }
 
 void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 force, trb_vec3 moment, double *rates)
@@ -144,8 +193,8 @@ void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 fo
   if (m->params.with_cage <= 0.0) return;
   const double     w = drive->frame_speed, per_mass = 1.0 / m->params.cage_mass;
   const trb_vec3   g = has_gravity(drive) ? gravity_in(drive, 1.0, 0.0) : trb_v(0, 0, 0);
-  const turn_rates turn = euler(&c->frame, c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial,
-                                trb_to_frame(&c->frame, moment));
+  const turn_rates turn =
+      euler(&c->frame, c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial, trb_to_frame(&c->frame, moment));
   rates[TRB_CAGE_x] = c->v.x + w * y[TRB_CAGE_y];
   rates[TRB_CAGE_y] = c->v.y - w * y[TRB_CAGE_x];
   rates[TRB_CAGE_psi] = c->omega_frame.z - turn.frame_a;
@@ -161,46 +210,64 @@ void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 fo
   rates[TRB_CAGE_omega_t] = turn.spin.y;
 }
 
-/* Powers of the energy audit, each a sum of its own (physics: section 10). */
-static void quadrature_rates(const trb_dynamics *d, double *q)
+_Static_assert(TRB_Q_loss_traction_outer + TRB_N_POWERS == TRB_N_QUADRATURES, "a quadrature for every power, in the same order");
+
+void trb_dynamics_start(const trb_dynamics *d, double *rates)
 {
   const trb_model *m = d->model;
+  double          *q = rates + trb_state_quadrature(m);
   memset(q, 0, TRB_N_QUADRATURES * sizeof *q);
-  for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_load *l = &d->loads[j];
-    const trb_ring_pose   *ring = &d->inner[j];
-    const double           shaft = -trb_dot(l->ring_moment, ring->axis) * d->drive.shaft_speed;
-    q[TRB_Q_work_shaft] += shaft;
-    q[TRB_Q_work_ring] += -trb_dot(l->ring_force, ring->velocity) - trb_dot(l->ring_moment, ring->omega) - shaft;
-    for (int k = 0; k < TRB_N_POWERS; k++) q[TRB_Q_loss_traction_outer + k] += l->power[k];
-  }
-  if (!has_gravity(&d->drive)) return;
-  d->work->counters.gravity_bodies += m->n_rollers;
-  for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_pose *r = &d->rollers[j];
-    q[TRB_Q_work_gravity] += m->geometry.roller_mass * trb_dot(gravity_in(&d->drive, r->cosine, r->sine), r->v);
-  }
-  if (m->params.with_cage > 0.0) q[TRB_Q_work_gravity] += m->params.cage_mass * trb_dot(gravity_in(&d->drive, 1.0, 0.0), d->cage.v);
+  if (!has_gravity(&d->drive) || m->params.with_cage <= 0.0) return;
+  d->work->counters.gravity_bodies++;
+  q[TRB_Q_work_gravity] = m->params.cage_mass * trb_dot(gravity_in(&d->drive, 1.0, 0.0), d->cage.v);
 }
 
-_Static_assert(TRB_Q_loss_traction_outer + TRB_N_POWERS == TRB_N_QUADRATURES, "a quadrature for every power, in the same order");
+void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates)
+{
+  const trb_model *m = d->model;
+  double          *q = rates + trb_state_quadrature(m);
+  memcpy(rates + trb_state_roller(roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
+  rates[trb_state_spin(m) + roller] = flow[TRB_FLOW_spin];
+  for (int k = 0; k < TRB_N_QUADRATURES; k++) q[k] += flow[TRB_FLOW_quadrature + k];
+}
+
+int trb_dynamics_clear(const trb_dynamics *d, int roller, const double *y)
+{
+  const trb_model *m = d->model;
+  const int        faces = m->first_face[roller + 1] - m->first_face[roller];
+  if (faces == 0) return 1;
+  if (!trb_clearance_holds(&d->clearances[roller], &d->arms, y + trb_state_roller(roller), y + trb_state_cage(m))) return 0;
+  d->work->counters.pocket_tests += faces;
+  d->work->counters.pocket_culled += faces;
+  return 1;
+}
+
+void trb_dynamics_pocket(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_roller_load   load = {0};
+  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL);
+  trb_clearance_set(d->model, &d->clearances[roller], gap, y + trb_state_roller(roller), y + trb_state_cage(d->model));
+  if (gap > 0.0) return;
+  trb_dynamics_roller_response(d, roller, &load, flow);
+  *cage_force = trb_add(*cage_force, load.cage_force);
+  *cage_moment = trb_add(*cage_moment, load.cage_moment);
+}
 
 void trb_dynamics_derivative(trb_dynamics *d, double time, const double *y, double *rates)
 {
-  const trb_model *m = d->model;
-  trb_vec3         force = {0, 0, 0}, moment = {0, 0, 0};
-  double          *spin = rates + trb_state_spin(m);
+  const trb_model  *m = d->model;
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_vec3          force = {0, 0, 0}, moment = {0, 0, 0};
   trb_dynamics_pose(d, time, y);
-  trb_dynamics_loads(d, NULL);
+  trb_dynamics_start(d, rates);
+  trb_contact_rings_only(m, &at, d->work, d->loads);
+  d->work->counters.force_evaluations++;
   for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_pose *r = &d->rollers[j];
-    double                *rj = rates + trb_state_roller(j);
-    trb_dynamics_roller_rates(d, j, &d->loads[j], rj);
-    force = trb_add(force, d->loads[j].cage_force);
-    moment = trb_add(moment, d->loads[j].cage_moment);
-    const double frame_a = r->orbit_speed * r->frame.a.z + rj[TRB_ROLLER_tilt] * r->frame.a.y;
-    spin[j] = r->omega_frame.z - frame_a + m->geometry.roller_spin_ratio * d->drive.shaft_speed;
+    double flow[TRB_FLOW_SIZE];
+    trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
+    if (!trb_dynamics_clear(d, j, y)) trb_dynamics_pocket(d, j, y, flow, &force, &moment);
+    trb_dynamics_put(d, j, flow, rates);
   }
   trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));
-  quadrature_rates(d, rates + trb_state_quadrature(m));
 }

@@ -9,10 +9,12 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
   *motion = NULL;
   if (n < 1) return trb_fail(message, TRB_ERR_INPUT, "motion: no knots given, at least one needed");
   for (int i = 0; i < n * TRB_MOTION_COLUMNS; i++)
-    if (!isfinite(table[i])) return trb_fail(message, TRB_ERR_INPUT, "motion: knot %d, column %d is not finite", i / TRB_MOTION_COLUMNS, i % TRB_MOTION_COLUMNS);
+    if (!isfinite(table[i]))
+      return trb_fail(message, TRB_ERR_INPUT, "motion: knot %d, column %d is not finite", i / TRB_MOTION_COLUMNS, i % TRB_MOTION_COLUMNS);
   for (int i = 1; i < n; i++)
     if (!(table[i * TRB_MOTION_COLUMNS] > table[(i - 1) * TRB_MOTION_COLUMNS]))
-      return trb_fail(message, TRB_ERR_INPUT, "motion: time of knot %d = %g s: must be above the one before", i, table[i * TRB_MOTION_COLUMNS]);
+      return trb_fail(message, TRB_ERR_INPUT, "motion: time of knot %d = %g s: must be above the one before", i,
+                      table[i * TRB_MOTION_COLUMNS]);
   trb_motion *m = calloc(1, sizeof *m);
   if (m == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for prescribed motion");
   m->n = n;
@@ -84,6 +86,11 @@ void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity
   drive->inner.omega = trb_axpy(drive->ring_omega, shaft_speed, axis);
 }
 
+int trb_motion_under_way(const trb_motion *motion, double time)
+{
+  return motion->n > 1 && time > motion->table[0] && time < motion->table[(size_t)(motion->n - 1) * TRB_MOTION_COLUMNS];
+}
+
 void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive)
 {
   hermite       c[TRB_N_CHANNELS];
@@ -97,8 +104,10 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
     int low = 0, high = motion->n - 1;
     while (high - low > 1) {
       const int mid = (low + high) / 2;
-      if (time >= table[(size_t)mid * TRB_MOTION_COLUMNS]) low = mid;
-      else high = mid;
+      if (time >= table[(size_t)mid * TRB_MOTION_COLUMNS])
+        low = mid;
+      else
+        high = mid;
     }
     const double *a = table + (size_t)low * TRB_MOTION_COLUMNS;
     const double  h = a[TRB_MOTION_COLUMNS] - a[0], s = (time - a[0]) / h;
@@ -118,6 +127,6 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
   const double rotation[2] = {c[TRB_CHANNEL_rotation_x].value, c[TRB_CHANNEL_rotation_y].value};
   const double rate[2] = {c[TRB_CHANNEL_rotation_x].rate, c[TRB_CHANNEL_rotation_y].rate};
   trb_ring_place(m, trb_v(c[TRB_CHANNEL_displacement_x].value, c[TRB_CHANNEL_displacement_y].value, c[TRB_CHANNEL_displacement_z].value),
-                 trb_v(c[TRB_CHANNEL_displacement_x].rate, c[TRB_CHANNEL_displacement_y].rate, c[TRB_CHANNEL_displacement_z].rate), rotation, rate,
-                 drive->shaft_speed, drive);
+                 trb_v(c[TRB_CHANNEL_displacement_x].rate, c[TRB_CHANNEL_displacement_y].rate, c[TRB_CHANNEL_displacement_z].rate),
+                 rotation, rate, drive->shaft_speed, drive);
 }

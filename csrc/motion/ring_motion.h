@@ -18,6 +18,8 @@ typedef struct trb_motion {
 trb_status trb_motion_create(const double *table, int n, trb_motion **motion, trb_message *message);
 void       trb_motion_free(trb_motion *motion);
 
+/* Whether speed, ring or gravity are between two knots of their histories. */
+int  trb_motion_under_way(const trb_motion *motion, double time);
 void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive);
 
 /* Pose of the inner ring: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */

@@ -80,7 +80,10 @@ static int solver_initialize(SUNLinearSolver solver)
 }
 
 /* > 0: singular, the integrator may try again with another step. */
-static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) { return trb_arrow_factor(trb_arrow_of(matrix), solver->content) ? 0 : 1; }
+static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix)
+{
+  return trb_arrow_factor(trb_arrow_of(matrix), solver->content) ? 0 : 1;
+}
 
 static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance)
 {
@@ -102,12 +105,12 @@ static int solver_free(SUNLinearSolver solver)
   return 0;
 }
 
-SUNLinearSolver trb_arrow_linear_solver(int n_rollers, SUNContext context)
+SUNLinearSolver trb_arrow_linear_solver(int n_rollers, int variant, SUNContext context)
 {
   SUNLinearSolver    solver = SUNLinSolNewEmpty(context);
   trb_arrow_factors *factors = NULL;
   if (solver == NULL) return NULL;
-  if (trb_arrow_factors_create(n_rollers, &factors, NULL) != TRB_OK) {
+  if (trb_arrow_factors_create(n_rollers, variant, &factors, NULL) != TRB_OK) {
     SUNLinSolFreeEmpty(solver);
     return NULL;
   }

@@ -13,7 +13,8 @@
   X(atol_spin,      1e-3,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
   X(max_order,      2,     1,     5,    "highest order of BDF") \
   X(erk_order,      5,     2,     8,    "order of the explicit method") \
-  X(rings_age,      1e-2,  0,     1e3,  "bearing time after which the rings' part of the Jacobian is evaluated anew, s") \
+  X(rings_age,      0.1,   0,     1e3,  "bearing time after which the rings' part of the Jacobian is evaluated anew, s") \
+  X(rings_share,    0.1,   0,     1,    "share of the step's tolerance that forces of raceways and ribs may be off between exact evaluations") \
   X(jacobian_every, 51,    1,     1e6,  "most steps between evaluations of the pockets' part of the Jacobian") \
   X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \
   X(newton_share,   0.1,   1e-6,  1,    "share of the step's tolerance to which Newton's method converges") \
@@ -79,7 +80,7 @@ struct trb_integrator {
   const trb_integrator_kind *kind;
   trb_dynamics              *dynamics; /* owned by the simulation */
   const trb_motion          *motion;
-  const char                *variant;  /* kernel variant */
+  const char                *variant; /* kernel variant */
   trb_settings               settings;
   int                        n;        /* length of y */
   double                     time;     /* end of the last step, s */
@@ -90,12 +91,13 @@ struct trb_integrator {
   void                      *self;     /* of the kind */
 };
 
-extern const trb_integrator_kind trb_integrator_bdf, trb_integrator_erk;
+extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk;
 extern const trb_integrator_kind *const trb_integrator_kinds[];
 extern const int                        trb_n_integrator_kinds;
 
 /* Right-hand side with a finite check: 0, or 1 if a rate is not finite: BDF then tries a smaller step, the explicit method stops with
  * an error. */
+int trb_integrator_finite(const trb_integrator *it, const double *rates);
 int trb_integrator_rates(trb_integrator *it, double time, const double *y, double *rates);
 
 /* Error weights 1/(relative |y| + scale): positions and angles have no relative part, so that a roller's drift loosens nothing. */

@@ -7,23 +7,30 @@
 #include "stepping/integrator.h"
 #include "stepping/jacobian.h"
 #include "stepping/sundials_context.h"
+#include "stepping/vectors.h"
 
 typedef struct bdf {
   trb_sundials    sundials;
   void           *memory;
-  N_Vector        y;        /* over it->y */
-  N_Vector        scratch;  /* of its own */
+  N_Vector        y;       /* over it->y */
+  N_Vector        scratch; /* of its own */
   SUNMatrix       matrix;
   SUNLinearSolver solver;
   trb_jacobian   *jacobian;
-  trb_statistics  before;   /* totals up to the last restart */
-  double          smallest; /* smallest step, s */
+  trb_statistics  before;    /* totals up to the last restart */
+  double          smallest;  /* smallest step, s */
   double          filled_at; /* end of the last step when the Jacobian was last evaluated, s */
 } bdf;
 
 static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
 {
-  return trb_integrator_rates(data, time, N_VGetArrayPointer(y), N_VGetArrayPointer(out));
+  trb_integrator           *it = data;
+  bdf                      *self = it->self;
+  const trb_tangent_measure measure = {it->relative, it->scale, self->solver->content, it->settings.rings_share};
+  double                   *to = N_VGetArrayPointer(out);
+  if (!(measure.share > 0.0)) return trb_integrator_rates(it, time, N_VGetArrayPointer(y), to);
+  trb_tangents_derivative(self->jacobian->tangents, it->dynamics, &measure, time, N_VGetArrayPointer(y), to);
+  return trb_integrator_finite(it, to) ? 0 : 1;
 }
 
 static int weights(N_Vector y, N_Vector out, void *data)
@@ -42,8 +49,8 @@ static int jacobian(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix,
   (void)c;
   /* the rings' part anew: when it is old, or when Newton's method failed with the older one within this step */
   const trb_jacobian *jac = self->jacobian;
-  const int           again = it->time == self->filled_at && jac->rings_time < it->time;
-  const int           old = fabs(time - jac->rings_time) > it->settings.rings_age;
+  const int           again = it->time == self->filled_at && jac->tangents->time < it->time;
+  const int           old = fabs(time - jac->tangents->time) > it->settings.rings_age;
   self->filled_at = it->time;
   trb_jacobian_fill(self->jacobian, time, N_VGetArrayPointer(y), again || old, trb_arrow_of(matrix));
   return 0;
@@ -92,10 +99,11 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->y = trb_sundials_vector(&self->sundials, it->n, it->y);
   self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
   self->matrix = trb_arrow_matrix(m->n_rollers, with_cage, self->sundials.context);
-  self->solver = trb_arrow_linear_solver(m->n_rollers, self->sundials.context);
+  self->solver = trb_arrow_linear_solver(m->n_rollers, it->dynamics->work->variant, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
+  trb_vector_use(self->y, it->dynamics->work->variant);
   trb_sundials_quiet_cvode(&self->sundials, self->memory);
   status = trb_jacobian_create(m, it->motion, it->variant, &self->jacobian, message);
   return status == TRB_OK ? configure(it, message) : status;
@@ -149,7 +157,8 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   self->before = so_far;
   /* nothing is carried over a restart: what follows depends on time and state alone */
   self->filled_at = -INFINITY;
-  self->jacobian->has_rings = 0;
+  trb_tangents_forget(self->jacobian->tangents);
+  ((trb_arrow_factors *)self->solver->content)->gamma = 0.0;
   CHECK(CVodeReInit(self->memory, it->time, self->y));
   return TRB_OK;
 }
@@ -194,5 +203,8 @@ static int bdf_worst(trb_integrator *it)
   return worst;
 }
 
-const trb_integrator_kind trb_integrator_bdf = {"bdf", "backward differentiation of CVODE with the structured Jacobian",
-                                                bdf_create, bdf_free, bdf_restart, bdf_step, bdf_interpolate, read_totals, bdf_worst};
+const trb_integrator_kind trb_integrator_bdf = {"bdf",           "backward differentiation of CVODE with the structured Jacobian",
+                                                bdf_create,      bdf_free,
+                                                bdf_restart,     bdf_step,
+                                                bdf_interpolate, read_totals,
+                                                bdf_worst};

@@ -3,19 +3,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Differences by kind of entry: small beside what curves the laws (micrometres of interference, 1e-4 of slip), large beside rounding. */
-static const double difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
-
-trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian, trb_message *message)
+trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
+                               trb_message *message)
 {
   trb_jacobian *j = calloc(1, sizeof *j);
   *jacobian = NULL;
   if (j == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
   trb_status status = trb_dynamics_create(m, motion, variant, &j->d, message);
   if (status == TRB_OK) {
-    j->rings = calloc((size_t)m->n_rollers, sizeof *j->rings);
     j->moved = calloc((size_t)trb_state_size(m), sizeof *j->moved);
-    if (!j->rings || !j->moved) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
+    if (j->moved == NULL)
+      status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
+    else
+      status = trb_tangents_create(m, &j->tangents, message);
   }
   if (status != TRB_OK) {
     trb_jacobian_free(j);
@@ -29,41 +29,9 @@ void trb_jacobian_free(trb_jacobian *jacobian)
 {
   if (jacobian == NULL) return;
   trb_dynamics_free(jacobian->d);
-  free(jacobian->rings);
+  trb_tangents_free(jacobian->tangents);
   free(jacobian->moved);
   free(jacobian);
-}
-
-/* Columns of raceways, ribs and inertia in every roller's block; base: n rows of TRB_NR. */
-static trb_status fill_rings(trb_jacobian *jac, const double *y)
-{
-  trb_dynamics    *d = jac->d;
-  const trb_model *m = d->model;
-  trb_instant      at = trb_dynamics_instant(d);
-  double          *base = malloc((size_t)m->n_rollers * TRB_NR * sizeof *base);
-  if (base == NULL) return TRB_ERR_MEMORY;
-  trb_contact_rings_only(m, &at, d->work, d->loads);
-  for (int j = 0; j < m->n_rollers; j++) trb_dynamics_roller_rates(d, j, &d->loads[j], base + j * TRB_NR);
-  for (int c = 0; c < TRB_NR; c++) {
-    const double h = difference[trb_state_tolerance(m, c)], per = 1.0 / h;
-    for (int j = 0; j < m->n_rollers; j++) {
-      jac->moved[trb_state_roller(j) + c] = y[trb_state_roller(j) + c] + h;
-      trb_dynamics_pose_roller(d, j, jac->moved + trb_state_roller(j));
-    }
-    trb_contact_rings_only(m, &at, d->work, d->loads);
-    for (int j = 0; j < m->n_rollers; j++) {
-      double rates[TRB_NR];
-      trb_dynamics_roller_rates(d, j, &d->loads[j], rates);
-      for (int i = 0; i < TRB_NR; i++) jac->rings[j][i][c] = per * (rates[i] - base[j * TRB_NR + i]);
-      jac->moved[trb_state_roller(j) + c] = y[trb_state_roller(j) + c];
-    }
-  }
-  for (int j = 0; j < m->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
-  free(base);
-  jac->has_rings = 1;
-  jac->rings_time = d->drive.time;
-  jac->rings_evaluations++;
-  return TRB_OK;
 }
 
 /* Loads between one roller and its pocket at the poses kept. */
@@ -72,19 +40,16 @@ static trb_roller_load pocket_load(trb_dynamics *d, int roller)
   const trb_instant at = trb_dynamics_instant(d);
   trb_roller_load   load;
   memset(&load, 0, sizeof load);
-  trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL);
+  (void)trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL);
   return load;
 }
 
-/* Rates are affine in the loads: what a load adds to those of a roller, and of the cage. */
+/* What a load adds to the rates of a roller, and of the cage. */
 static void roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates)
 {
-  trb_roller_load none;
-  double          still[TRB_NR];
-  memset(&none, 0, sizeof none);
-  trb_dynamics_roller_rates(d, roller, load, rates);
-  trb_dynamics_roller_rates(d, roller, &none, still);
-  for (int i = 0; i < TRB_NR; i++) rates[i] -= still[i];
+  double flow[TRB_FLOW_SIZE] = {0};
+  trb_dynamics_roller_response(d, roller, load, flow);
+  memcpy(rates, flow, TRB_NR * sizeof *rates);
 }
 
 static void cage_response(const trb_dynamics *d, const double *y_cage, trb_vec3 force, trb_vec3 moment, double *rates)
@@ -104,14 +69,14 @@ static void pocket_columns(trb_jacobian *jac, int j, const double *y, const trb_
   double          *moved = jac->moved + trb_state_roller(j), was[TRB_NR];
   roller_response(d, j, base, was);
   for (int c = 0; c < TRB_NR; c++) {
-    const double h = difference[trb_state_tolerance(m, c)], per = 1.0 / h;
+    const double h = trb_difference[trb_state_tolerance(m, c)], per = 1.0 / h;
     double       now[TRB_NR], response[TRB_NC];
     moved[c] = yj[c] + h;
     trb_dynamics_pose_roller(d, j, moved);
     const trb_roller_load load = pocket_load(d, j);
     roller_response(d, j, &load, now);
     cage_response(d, y_cage, trb_sub(load.cage_force, base->cage_force), trb_sub(load.cage_moment, base->cage_moment), response);
-    for (int i = 0; i < TRB_NR; i++) block->own[i][c] += per * (now[i] - was[i]);
+    for (int i = 0; i < TRB_NR; i++) block->own[c][i] += per * (now[i] - was[i]);
     for (int i = 0; i < TRB_NC; i++) block->from[i][c] = per * response[i];
     moved[c] = yj[c];
   }
@@ -125,7 +90,7 @@ static void cage_column(trb_jacobian *jac, int c, const double *y, const trb_rol
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
   const int        at = trb_state_cage(m) + c;
-  const double     h = difference[trb_state_tolerance(m, at)], per = 1.0 / h;
+  const double     h = trb_difference[trb_state_tolerance(m, at)], per = 1.0 / h;
   double           rates[TRB_NC];
   jac->moved[at] = y[at] + h;
   trb_cage_pose_unpack(m, &d->drive, jac->moved + trb_state_cage(m), &d->cage);
@@ -156,9 +121,12 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   trb_arrow_zero(arrow);
   memcpy(jac->moved, y, (size_t)trb_state_size(m) * sizeof *y);
   trb_dynamics_pose(d, time, y);
-  /* a failed allocation leaves the older part: Newton's method then converges more slowly */
-  if (fresh || !jac->has_rings) (void)fill_rings(jac, y);
-  for (int j = 0; j < m->n_rollers; j++) memcpy(arrow->rollers[j].own, jac->rings[j], sizeof jac->rings[j]);
+  if (fresh || !jac->tangents->has_slopes) {
+    trb_tangents_differentiate(jac->tangents, d, y, jac->moved);
+    jac->rings_evaluations++;
+  }
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[j].own[c], jac->tangents->rollers[j].slope[c], TRB_NR * sizeof(double));
   if (!arrow->with_cage) return;
   trb_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
   double   cage_rates[TRB_NC];

@@ -7,20 +7,19 @@
 #define TRB_STEPPING_JACOBIAN_H
 
 #include "motion/dynamics.h"
-#include "stepping/arrow.h"
+#include "stepping/tangent.h"
 
 typedef struct trb_jacobian {
-  trb_dynamics    *d;        /* of its own, so that poses of the integration stay */
-  double         (*rings)[TRB_NR][TRB_NR]; /* per roller: the part of the rings */
-  double          *moved;    /* state with a difference */
-  double           rings_time; /* time at which the rings' part was evaluated, s */
-  int              has_rings;  /* whether it was at all */
-  long             rings_evaluations;
+  trb_dynamics *d;        /* of its own, so that poses of the integration stay */
+  trb_tangents *tangents; /* the part of the rings */
+  double       *moved;    /* state with a difference */
+  long          rings_evaluations;
 } trb_jacobian;
 
-trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian, trb_message *message);
+trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
+                               trb_message *message);
 void       trb_jacobian_free(trb_jacobian *jacobian);
 /* fresh: evaluate the rings' part anew, too. */
-void       trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
+void trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "contact/kernels.h"
 #include "rig.h"
 
 enum { MOST = 20, SIZE = MOST * TRB_NR + TRB_NC };
@@ -22,8 +23,10 @@ static void randomise(trb_arrow *a, double scale)
   trb_arrow_zero(a);
   for (int j = 0; j < a->n; j++) {
     trb_arrow_block *b = &a->rollers[j];
-    fill(&b->own[0][0], TRB_NR * TRB_NR, scale);
-    for (int c = 0; c < TRB_NR; c++) b->own[j % TRB_NR][c] *= 1e6;
+    for (int c = 0; c < TRB_NR; c++) {
+      fill(b->own[c], TRB_NR, scale);
+      b->own[c][j % TRB_NR] *= 1e6;
+    }
     b->coupled = a->with_cage && j % 3 != 1;
     if (!b->coupled) continue;
     fill(&b->to_cage[0][0], TRB_NR * TRB_NC, scale);
@@ -38,7 +41,7 @@ static void expand(const trb_arrow *a)
   memset(dense, 0, sizeof dense);
   for (int j = 0; j < a->n; j++)
     for (int i = 0; i < TRB_NR; i++) {
-      for (int c = 0; c < TRB_NR; c++) dense[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[i][c];
+      for (int c = 0; c < TRB_NR; c++) dense[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
       for (int c = 0; c < TRB_NC; c++) {
         dense[j * TRB_NR + i][cage + c] = a->rollers[j].to_cage[i][c];
         dense[cage + c][j * TRB_NR + i] = a->rollers[j].from[c][i];
@@ -70,7 +73,7 @@ static void eliminate(int n)
   }
 }
 
-static void check_solution(int n_rollers, int with_cage, double gamma)
+static void check_solution(int variant, int n_rollers, int with_cage, double gamma)
 {
   trb_arrow         *a, *copy;
   trb_arrow_factors *f;
@@ -78,7 +81,7 @@ static void check_solution(int n_rollers, int with_cage, double gamma)
   const int          n = n_rollers * TRB_NR + TRB_NC;
   if (!CHECK(trb_arrow_create(n_rollers, with_cage, &a, NULL) == TRB_OK)) return;
   if (!CHECK(trb_arrow_create(n_rollers, with_cage, &copy, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_factors_create(n_rollers, &f, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_factors_create(n_rollers, variant, &f, NULL) == TRB_OK)) return;
   for (int trial = 0; trial < 10; trial++) {
     randomise(copy, gamma == 0.0 ? 1.0 : 30.0);
     if (!with_cage && gamma == 0.0)
@@ -116,14 +119,14 @@ static void check_solution(int n_rollers, int with_cage, double gamma)
   trb_arrow_factors_free(f);
 }
 
-static void test_singular(void)
+static void test_singular(int variant)
 {
   trb_arrow         *a;
   trb_arrow_factors *f;
-  if (!CHECK(trb_arrow_create(3, 1, &a, NULL) == TRB_OK && trb_arrow_factors_create(3, &f, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(3, 1, &a, NULL) == TRB_OK && trb_arrow_factors_create(3, variant, &f, NULL) == TRB_OK)) return;
   randomise(a, 1.0);
   CHECK(trb_arrow_factor(a, f) == 1);
-  for (int c = 0; c < TRB_NR; c++) a->rollers[1].own[4][c] = 0.0;
+  for (int c = 0; c < TRB_NR; c++) a->rollers[1].own[c][4] = 0.0;
   CHECK(trb_arrow_factor(a, f) == 0);
   randomise(a, 1.0);
   a->rollers[2].own[3][7] = NAN;
@@ -146,11 +149,14 @@ static void test_singular(void)
 int main(void)
 {
   const int counts[] = {3, 12, MOST};
-  for (int i = 0; i < 3; i++)
-    for (int with_cage = 0; with_cage < 2; with_cage++) {
-      check_solution(counts[i], with_cage, 0.0);
-      check_solution(counts[i], with_cage, 0.7);
-    }
-  test_singular();
+  for (int variant = 0; variant < trb_n_kernel_variants; variant++) {
+    if (!trb_kernel_runs(variant)) continue;
+    for (int i = 0; i < 3; i++)
+      for (int with_cage = 0; with_cage < 2; with_cage++) {
+        check_solution(variant, counts[i], with_cage, 0.0);
+        check_solution(variant, counts[i], with_cage, 0.7);
+      }
+    test_singular(variant);
+  }
   return check_report();
 }

@@ -40,7 +40,7 @@ static void expand(const trb_model *m, const trb_arrow *a)
   memset(found, 0, sizeof found);
   for (int j = 0; j < m->n_rollers; j++)
     for (int i = 0; i < TRB_NR; i++) {
-      for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[i][c];
+      for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
       for (int c = 0; c < TRB_NC; c++) {
         found[j * TRB_NR + i][cage + c] = a->rollers[j].to_cage[i][c];
         found[cage + c][j * TRB_NR + i] = a->rollers[j].from[c][i];

@@ -141,10 +141,11 @@ def test_losses_are_minus_the_power_of_all_contact_forces(kit: SimpleNamespace) 
         assert put_in - float(growth) == pytest.approx(lost, abs=1e-5 * size)
 
 
+@pytest.mark.parametrize("share", [0.0, 0.1])
 @pytest.mark.parametrize("case", ["standard", "damped", "dry"])
-def test_every_loss_is_a_loss(kit: SimpleNamespace, case: str) -> None:
-    """Sliding friction and damping only ever take energy."""
-    result = run(kit, case, 1e-4)
+def test_every_loss_is_a_loss(kit: SimpleNamespace, case: str, share: float) -> None:
+    """Sliding friction and damping only ever take energy, tangents or not."""
+    result = run(kit, case, 1e-4, rings_share=share)
     for name in ("traction_outer", "traction_inner", "rib", "front_rib", "pocket", "damping"):
         assert result[f"power_{name}"].min() >= 0.0, name
         assert np.diff(result[f"loss_{name}"]).min() >= -1e-12, name

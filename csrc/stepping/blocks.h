@@ -1,0 +1,46 @@
+/* Dense kernels of the integrator: block_kernel.c compiled once an instruction set, as the contacts' kernels are; variants have the same
+ * order as trb_kernel_variants. Arithmetic is strict in all of them. */
+#ifndef TRB_STEPPING_BLOCKS_H
+#define TRB_STEPPING_BLOCKS_H
+
+#include "bearing/state.h"
+
+/* TRB_NP: a roller's entries, padded; TRB_TANGENT_IN: a roller's state and the angle of the frame; TRB_TANGENT_OUT: its flow, padded. */
+enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NC = TRB_CAGE_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = 24 };
+
+/* Blocks of one roller. */
+typedef struct trb_arrow_block {
+  double own[TRB_NR][TRB_NP];     /* d roller / d roller, column by column, padded by zeros */
+  double to_cage[TRB_NR][TRB_NC]; /* d roller / d cage, row by row */
+  double from[TRB_NC][TRB_NR];    /* d cage / d roller, row by row */
+  int    coupled;                 /* 0: both borders are zero */
+} trb_arrow_block;
+
+/* Columns are contiguous, so that a product with a vector is a sum of columns. */
+typedef struct trb_arrow_factor_block {
+  double inverse[TRB_NR][TRB_NP]; /* column by column: inverse of the roller's block */
+  double solved[TRB_NC][TRB_NP];  /* column by column: inverse to_cage */
+  double from[TRB_NR][TRB_NC];    /* column by column: border of the cage's rows */
+  int    coupled;
+} trb_arrow_factor_block;
+
+typedef struct trb_block_kernels {
+  /* Inverse of one roller's block, and where it touches the cage its share of the Schur complement, column by column; 0: singular. */
+  int (*factor)(const trb_arrow_block *b, trb_arrow_factor_block *g, double (*schur)[TRB_NC]);
+  /* Rollers' parts of a solution, eliminated from the cage's; then what the cage adds to them. */
+  void (*eliminate)(const trb_arrow_factor_block *g, int n, double *rollers, double *cage);
+  void (*substitute)(const trb_arrow_factor_block *g, int n, double *rollers, const double *cage);
+  /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. TRB_NP entries of
+   * y are read. */
+  double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);
+  /* value + slope step; slope column by column. */
+  void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, double *flow);
+  int (*finite)(const double *x, int n);
+} trb_block_kernels;
+
+extern const trb_block_kernels trb_block_kernels_scalar, trb_block_kernels_base, trb_block_kernels_avx2, trb_block_kernels_avx512;
+
+/* Kernels of a variant, an index into trb_kernel_variants. */
+const trb_block_kernels *trb_block_kernels_of(int variant);
+
+#endif

@@ -1,0 +1,219 @@
+#include "stepping/tangent.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
+
+/* Turn of the frame that counts as one tolerance, and by which slopes in it are evaluated, rad. */
+static const double turn_unit = 1e-3, turn_difference = 1e-5;
+/* Evaluations that an origin must serve, it or those before it in the mean, for its tangent to be used; the last one's weight in that. */
+static const double enough = 3.0, newest = 0.2;
+/* Reaches: least, largest; growth and decline at once; distance beyond which a tangent learns nothing. */
+static const double least_reach = 1e-3, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
+
+trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message)
+{
+  const size_t  n = (size_t)m->n_rollers;
+  trb_tangents *t = calloc(1, sizeof *t);
+  *tangents = NULL;
+  if (t != NULL) {
+    t->model = m;
+    t->rollers = aligned_alloc(64, (n * sizeof *t->rollers + 63) / 64 * 64);
+    t->flows = aligned_alloc(64, (n * sizeof *t->flows + 63) / 64 * 64);
+    t->far = calloc(n, sizeof *t->far);
+    t->touching = calloc(n, sizeof *t->touching);
+    t->beyond = calloc(n, sizeof *t->beyond);
+  }
+  if (t == NULL || t->rollers == NULL || t->flows == NULL || t->far == NULL || t->touching == NULL || t->beyond == NULL) {
+    trb_tangents_free(t);
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
+  }
+  memset(t->rollers, 0, n * sizeof *t->rollers);
+  memset(t->flows, 0, n * sizeof *t->flows);
+  *tangents = t;
+  return TRB_OK;
+}
+
+void trb_tangents_free(trb_tangents *tangents)
+{
+  if (tangents == NULL) return;
+  free(tangents->rollers);
+  free(tangents->flows);
+  free(tangents->far);
+  free(tangents->touching);
+  free(tangents->beyond);
+  free(tangents);
+}
+
+void trb_tangents_forget(trb_tangents *t)
+{
+  memset(t->rollers, 0, (size_t)t->model->n_rollers * sizeof *t->rollers);
+  t->has_slopes = 0;
+}
+
+static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_contact_rings_only(d->model, &at, d->work, d->loads);
+  for (int j = 0; j < d->model->n_rollers; j++) {
+    trb_tangent *r = &t->rollers[j];
+    double       flow[TRB_FLOW_SIZE];
+    trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
+    for (int i = 0; i < TRB_FLOW_SIZE; i++) r->slope[column][i] = per * (flow[i] - r->value[i]);
+  }
+}
+
+static int all_finite(const trb_tangents *t)
+{
+  double sum = 0.0;
+  for (int j = 0; j < t->model->n_rollers; j++)
+    for (int c = 0; c < TRB_TANGENT_IN; c++)
+      for (int i = 0; i < TRB_TANGENT_OUT; i++) sum += 0.0 * t->rollers[j].slope[c][i];
+  return sum == 0.0;
+}
+
+void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *y, double *moved)
+{
+  const trb_model  *m = d->model;
+  const trb_instant at = trb_dynamics_instant(d);
+  const double      time = d->drive.time, frame_speed = d->drive.frame_speed;
+  trb_contact_rings_only(m, &at, d->work, d->loads);
+  for (int j = 0; j < m->n_rollers; j++) {
+    trb_tangent *r = &t->rollers[j];
+    trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
+    memcpy(r->origin, y + trb_state_roller(j), TRB_NR * sizeof *y);
+    r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
+  }
+  for (int c = 0; c < TRB_NR; c++) {
+    const double h = trb_difference[trb_state_tolerance(m, c)];
+    for (int j = 0; j < m->n_rollers; j++) {
+      double *entry = &moved[trb_state_roller(j) + c];
+      *entry = y[trb_state_roller(j) + c] + h;
+      trb_dynamics_pose_roller(d, j, moved + trb_state_roller(j));
+      *entry = y[trb_state_roller(j) + c];
+    }
+    differentiate(t, d, c, 1.0 / h);
+  }
+  if (frame_speed != 0.0) {
+    trb_dynamics_pose(d, time + turn_difference / fabs(frame_speed), y);
+    differentiate(t, d, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
+  }
+  trb_dynamics_pose(d, time, y);
+  t->time = time;
+  t->has_slopes = 1;
+  if (!all_finite(t)) trb_tangents_forget(t);
+}
+
+static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const double *y)
+{
+  for (int i = 0; i < TRB_NR; i++) r->per[i] = 1.0 / (sqrt((double)TRB_NR) * (measure->relative[i] * fabs(y[i]) + measure->scale[i]));
+  r->per[TRB_TANGENT_TURN] = 1.0 / turn_unit;
+}
+
+/* An error in the rates as one of the step: through the integrator's linear system, in tolerances. */
+static double step_error(const trb_tangent *r, const trb_tangent_measure *measure, int roller, const double *error)
+{
+  const trb_arrow_factor_block *g = &measure->factors->rollers[roller];
+  double                        state[TRB_NP] = {0}, sum = 0.0;
+  for (int c = 0; c < TRB_NR; c++)
+    for (int i = 0; i < TRB_NP; i++) state[i] += g->inverse[c][i] * measure->factors->gamma * error[c];
+  for (int i = 0; i < TRB_NR; i++) sum += state[i] * r->per[i] * state[i] * r->per[i];
+  return sqrt(sum);
+}
+
+/* An exact flow becomes the origin: slopes corrected along the step, reach set by the error that was found. */
+static void learn(trb_tangent *r, const trb_tangent_measure *measure, int roller, const double *y, double turn, const double *flow)
+{
+  const trb_block_kernels *kernels = measure->factors->kernels;
+  double                   step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT], sum = 0.0;
+  for (int i = 0; i < TRB_FLOW_SIZE; i++) sum += flow[i] * 0.0;
+  if (!isfinite(sum)) return;
+  const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step)) : 0.0;
+  if (r->known && length < farthest) {
+    double direction[TRB_TANGENT_IN];
+    kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, error);
+    for (int i = 0; i < TRB_TANGENT_OUT; i++) error[i] = flow[i] - error[i];
+    const double found = step_error(r, measure, roller, error), factor = caution * sqrt(measure->share / (found + 1e-300));
+    r->reach = trb_clamp(length * trb_clamp(factor, decline, growth), least_reach, largest_reach);
+    for (int c = 0; c < TRB_TANGENT_IN; c++) direction[c] = step[c] * r->per[c] * r->per[c] / (length * length);
+    for (int c = 0; c < TRB_TANGENT_IN; c++)
+      for (int i = 0; i < TRB_TANGENT_OUT; i++) r->slope[c][i] += error[i] * direction[c];
+  } else {
+    r->reach = least_reach;
+  }
+  memcpy(r->value, flow, sizeof r->value);
+  memcpy(r->origin, y, TRB_NR * sizeof *y);
+  r->origin[TRB_TANGENT_TURN] = turn;
+  weigh(r, measure, y);
+  r->usual += newest * (r->served - r->usual);
+  r->served = 0;
+  r->known = 1;
+}
+
+/* Flows of the rollers whose tangents do not serve, exactly. */
+static void evaluate_far(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, int n_far, const double *y)
+{
+  trb_instant at = trb_dynamics_instant(d);
+  at.chosen = t->far;
+  at.n = n_far;
+  trb_contact_rings_only(d->model, &at, d->work, d->loads);
+  for (int k = 0; k < n_far; k++) {
+    const int j = t->far[k];
+    trb_dynamics_roller_flow(d, j, &d->loads[j], t->flows[j]);
+    if (t->beyond[j] && t->has_slopes && measure->factors->gamma > 0.0)
+      learn(&t->rollers[j], measure, j, y + trb_state_roller(j), d->drive.frame_angle, t->flows[j]);
+  }
+}
+
+/* Sliding and damping never give energy: beside zero, where their powers curve most, a tangent may. */
+static void keep_signs(double *flow)
+{
+  static const trb_power taken[] = {TRB_POWER_TRACTION_OUTER, TRB_POWER_TRACTION_INNER, TRB_POWER_RIB, TRB_POWER_FRONT_RIB,
+                                    TRB_POWER_DAMPING};
+  double *const          power = flow + TRB_FLOW_quadrature + TRB_Q_loss_traction_outer;
+  for (int k = 0; k < (int)(sizeof taken / sizeof taken[0]); k++) power[taken[k]] = trb_max(power[taken[k]], 0.0);
+}
+
+void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,
+                             double *rates)
+{
+  const trb_model         *m = d->model;
+  const trb_block_kernels *kernels = measure->factors->kernels;
+  trb_vec3                 force = {0, 0, 0}, moment = {0, 0, 0};
+  int                      n_far = 0;
+  if (trb_motion_under_way(d->motion, time)) {
+    for (int j = 0; j < m->n_rollers; j++) t->rollers[j].known = 0;
+    trb_dynamics_derivative(d, time, y, rates);
+    return;
+  }
+  trb_motion_at(d->motion, m, time, &d->drive);
+  trb_cage_pose_unpack(m, &d->drive, y + trb_state_cage(m), &d->cage);
+  trb_dynamics_start(d, rates);
+  d->work->counters.force_evaluations++;
+  for (int j = 0; j < m->n_rollers; j++) {
+    trb_tangent *r = &t->rollers[j];
+    double       step[TRB_TANGENT_IN];
+    const double distance2 =
+        r->known ? kernels->step_from(r->origin, r->per, y + trb_state_roller(j), d->drive.frame_angle, step) : (double)INFINITY;
+    t->beyond[j] = !(distance2 <= r->reach * r->reach);
+    t->touching[j] = !trb_dynamics_clear(d, j, y);
+    r->served += !t->beyond[j];
+    const int follows = !t->beyond[j] && (r->usual >= enough || r->served > enough);
+    if (follows) {
+      kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->flows[j]);
+      keep_signs(t->flows[j]);
+    } else {
+      t->far[n_far++] = j;
+    }
+    if (!follows || t->touching[j]) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
+  }
+  d->work->counters.tangent_rollers += m->n_rollers - n_far;
+  if (n_far > 0) evaluate_far(t, d, measure, n_far, y);
+  for (int j = 0; j < m->n_rollers; j++) {
+    if (t->touching[j]) trb_dynamics_pocket(d, j, y, t->flows[j], &force, &moment);
+    trb_dynamics_put(d, j, t->flows[j], rates);
+  }
+  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));
+}

@@ -1,0 +1,62 @@
+/* Tangents of the rollers' flows under the forces of raceways and ribs: what the rings' part of the Jacobian is made of, and, where a
+ * run allows it, what stands for these forces between their exact evaluations.
+ *
+ * Each roller has a tangent of its own. It is exact at an origin and serves within a reach about it, measured in tolerances of the run. An
+ * evaluation beyond the reach is exact; it becomes the origin, corrects the slopes along the way that was gone (Broyden's update), and the
+ * error that it finds sets the reach, so that the error stays near a given share of a step's tolerance. A tangent that would serve too
+ * seldom is not used at all: each new origin puts a small step into the forces, which costs the integrator more than it saves. */
+#ifndef TRB_STEPPING_TANGENT_H
+#define TRB_STEPPING_TANGENT_H
+
+#include "motion/dynamics.h"
+#include "stepping/arrow.h"
+
+/* Place of the frame's angle in an origin. */
+enum { TRB_TANGENT_TURN = TRB_NR };
+_Static_assert(TRB_TANGENT_IN == TRB_NR + 1 && (int)TRB_FLOW_SIZE <= (int)TRB_TANGENT_OUT,
+               "room for a roller's state, an angle and its flow");
+
+typedef struct trb_tangent {
+  double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column */
+  double value[TRB_TANGENT_OUT];                 /* flow at the origin */
+  double origin[TRB_TANGENT_IN];                 /* where it is exact */
+  double per[TRB_TANGENT_IN]; /* what measures distances: one over the tolerances there, so that the sum of squares is their mean */
+  double reach;               /* distance up to which it serves */
+  double usual;               /* evaluations that an origin serves, running mean */
+  int    served;              /* by this origin */
+  int    known;               /* 0: there is no origin */
+} trb_tangent;
+
+typedef struct trb_tangents {
+  const trb_model *model;
+  trb_tangent     *rollers;
+  double (*flows)[TRB_TANGENT_OUT]; /* scratch: of every roller */
+  int   *far;                       /* scratch: rollers to evaluate */
+  int   *beyond;                    /* scratch: whether a roller is beyond its reach */
+  int   *touching;                  /* scratch: rollers that may touch their pockets */
+  double time;                      /* at which slopes were last evaluated anew, s */
+  int    has_slopes;                /* whether they were at all */
+} trb_tangents;
+
+/* What the error of a tangent is measured with. */
+typedef struct trb_tangent_measure {
+  const double            *relative, *scale; /* tolerances, an entry of the state each */
+  const trb_arrow_factors *factors;          /* of the integrator's last linear system; an error in rates is one in the state by it */
+  double                   share;            /* of the step's tolerance that an error may be */
+} trb_tangent_measure;
+
+/* Differences by kind of entry: small beside what curves the laws (micrometres of interference, 1e-4 of slip), large beside rounding. */
+extern const double trb_difference[TRB_N_TOLERANCES];
+
+trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message);
+void       trb_tangents_free(trb_tangents *tangents);
+/* Forget origins, reaches and slopes. */
+void trb_tangents_forget(trb_tangents *tangents);
+/* Slopes anew by differences about a state whose poses d holds; moved: scratch as long as a state. */
+void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const double *y, double *moved);
+
+/* Right-hand side with tangents in place of the rings' forces where they serve; exact where the prescribed motion is under way. */
+void trb_tangents_derivative(trb_tangents *tangents, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,
+                             double *rates);
+
+#endif

@@ -1,0 +1,120 @@
+/* Clearances: as long as one holds nothing touches, wherever bodies have moved since it was found. */
+#include "motion/clearance.h"
+
+#include <stdlib.h>
+
+#include "check.h"
+#include "rig.h"
+
+enum { MOST = 512 };
+
+static unsigned long long seed = 23;
+
+/* Lower bound of a roller's gap at a state, and whether its pocket pushes. */
+static double gap_at(trb_dynamics *d, int roller, const double *y, int *touches)
+{
+  trb_roller_load load = {0};
+  trb_counters    counters = {0};
+  trb_dynamics_pose(d, 0.0, y);
+  const trb_instant at = trb_dynamics_instant(d);
+  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL);
+  *touches = trb_norm(load.cage_force) > 0.0 || counters.pocket_nodes > 0;
+  return gap;
+}
+
+/* From a state without contact, on along a random direction of all coordinates until the clearance ends. */
+static void walk(const trb_model *m, trb_dynamics *d, const double *start, const double *unit, int *held, int *reached)
+{
+  const trb_clearance_arms arms = trb_clearance_arms_of(m);
+  double                   direction[MOST] = {0}, y[MOST];
+  const int                only = (int)(11.0 * (0.5 + 0.5 * rig_random(&seed))), alone = rig_random(&seed) > 0.0;
+  for (int i = 0; i < TRB_CLEARANCE_CAGE; i++) direction[trb_state_cage(m) + i] = unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++) direction[trb_state_roller(j) + i] = unit[i] * rig_random(&seed);
+  for (int j = 0; j < m->n_rollers; j++) {
+    trb_clearance c;
+    int           touches;
+    memcpy(y, start, sizeof y);
+    const double gap = gap_at(d, j, y, &touches);
+    CHECK(!(gap > 0.0 && touches));
+    trb_clearance_set(m, &c, gap, y + trb_state_roller(j), y + trb_state_cage(m));
+    if (!(gap > 0.0)) {
+      CHECK(!trb_clearance_holds(&c, &arms, y + trb_state_roller(j), y + trb_state_cage(m)));
+      continue;
+    }
+    for (double along = 0.0; along < 40.0; along += 0.02) {
+      for (int i = 0; i < TRB_CLEARANCE_CAGE; i++)
+        if (!alone || only == TRB_CLEARANCE_ROLLER + i)
+          y[trb_state_cage(m) + i] = start[trb_state_cage(m) + i] + along * direction[trb_state_cage(m) + i];
+      for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++)
+        if (!alone || only == i) y[trb_state_roller(j) + i] = start[trb_state_roller(j) + i] + along * direction[trb_state_roller(j) + i];
+      const int    holds = trb_clearance_holds(&c, &arms, y + trb_state_roller(j), y + trb_state_cage(m));
+      const double now = gap_at(d, j, y, &touches);
+      if (holds) {
+        ++*held;
+        CHECK(!touches);
+        CHECK(now > 0.0);
+      } else {
+        *reached += touches;
+        if (touches) break;
+      }
+    }
+  }
+}
+
+static void check_scene(const trb_params *params)
+{
+  /* so that each coordinate alone moves surfaces by some tens of micrometres */
+  static const double unit[TRB_CLEARANCE_ROLLER + TRB_CLEARANCE_CAGE] = {2e-5, 5e-4, 2e-5, 1e-3, 1e-3, 2e-5, 2e-5, 2e-5, 5e-4, 5e-4, 5e-4};
+  const double        speed = 100 * TRB_PI;
+  trb_model          *m = rig_model(params);
+  trb_dynamics       *d;
+  double              y[MOST], start[MOST];
+  trb_motion         *motion = rig_motion(rig_state(m, 4930.0, speed, y), speed);
+  int                 held = 0, reached = 0;
+  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  for (int trial = 0; trial < 12; trial++) {
+    memcpy(start, y, sizeof start);
+    if (trial % 3 == 0) rig_disturb(m, &seed, start);
+    for (int i = 0; i < TRB_CLEARANCE_CAGE; i++) start[trb_state_cage(m) + i] += unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
+    walk(m, d, start, unit, &held, &reached);
+  }
+  CHECK(held > 1000);
+  CHECK(reached > 50);
+  trb_dynamics_free(d);
+  trb_motion_free(motion);
+  trb_model_free(m);
+}
+
+/* Not a number, and displacements beyond those that the arms are made for, prove nothing. */
+static void test_limits(void)
+{
+  const trb_params         p = rig_params();
+  trb_model               *m = rig_model(&p);
+  const trb_clearance_arms arms = trb_clearance_arms_of(m);
+  double                   roller[TRB_ROLLER_SIZE] = {0}, cage[TRB_CAGE_SIZE] = {0};
+  trb_clearance            c;
+  trb_clearance_set(m, &c, 1e-4, roller, cage);
+  CHECK(trb_clearance_holds(&c, &arms, roller, cage));
+  trb_clearance_set(m, &c, (double)NAN, roller, cage);
+  CHECK(!trb_clearance_holds(&c, &arms, roller, cage));
+  trb_clearance_set(m, &c, 1e-4, roller, cage);
+  cage[TRB_CAGE_psi] = NAN;
+  CHECK(!trb_clearance_holds(&c, &arms, roller, cage));
+  cage[TRB_CAGE_psi] = 0.0, cage[TRB_CAGE_x] = 1.0;
+  trb_clearance_set(m, &c, 1e-4, roller, cage);
+  CHECK(!trb_clearance_holds(&c, &arms, roller, cage));
+  trb_model_free(m);
+}
+
+int main(void)
+{
+  trb_params p = rig_params();
+  check_scene(&p);
+  p.pocket_edges = 0;
+  check_scene(&p);
+  p = rig_params(), p.n_slices = 8, p.cage_offset = 3e-3;
+  check_scene(&p);
+  test_limits();
+  return check_report();
+}

@@ -1,0 +1,267 @@
+/* Tangents of the rings' forces: exact at their origin, wrong by the square of the distance, corrected along the way that was gone, and
+ * never used while the prescribed motion is under way. */
+#include "stepping/tangent.h"
+
+#include <stdlib.h>
+
+#include "check.h"
+#include "rig.h"
+#include "stepping/integrator.h"
+
+enum { MOST = 512 };
+
+static unsigned long long seed = 3;
+
+/* A model in a state of its own, and what tangents need. */
+typedef struct bench {
+  trb_model          *model;
+  trb_motion         *motion;
+  trb_dynamics       *d;
+  trb_tangents       *tangents;
+  trb_arrow_factors  *factors;
+  trb_tangent_measure measure;
+  double              y[MOST], moved[MOST], relative[MOST], scale[MOST];
+} bench;
+
+static void close_bench(bench *b)
+{
+  trb_arrow_factors_free(b->factors);
+  trb_tangents_free(b->tangents);
+  trb_dynamics_free(b->d);
+  trb_motion_free(b->motion);
+  trb_model_free(b->model);
+}
+
+/* The linear system of a vanishing step, whose inverse is one: an error in rates is gamma times that in the state. */
+static int open_bench(bench *b, const trb_params *params, double share)
+{
+  static const double tolerance[TRB_N_TOLERANCES] = {3e-10, 3e-8, 1e-4, 1e-2, 1e30};
+  const double        speed = 100.0 * TRB_PI;
+  trb_arrow          *arrow;
+  memset(b, 0, sizeof *b);
+  b->model = rig_model(params);
+  b->motion = rig_motion(rig_state(b->model, 4930.0, speed, b->y), speed);
+  rig_disturb(b->model, &seed, b->y);
+  if (!CHECK(trb_dynamics_create(b->model, b->motion, "scalar", &b->d, NULL) == TRB_OK)) return 0;
+  if (!CHECK(trb_tangents_create(b->model, &b->tangents, NULL) == TRB_OK)) return 0;
+  if (!CHECK(trb_arrow_factors_create(b->model->n_rollers, b->d->work->variant, &b->factors, NULL) == TRB_OK)) return 0;
+  if (!CHECK(trb_arrow_create(b->model->n_rollers, 1, &arrow, NULL) == TRB_OK)) return 0;
+  trb_arrow_zero(arrow);
+  trb_arrow_scale_add_identity(arrow, -1e-5);
+  CHECK(trb_arrow_factor(arrow, b->factors));
+  trb_arrow_free(arrow);
+  for (int i = 0; i < trb_state_size(b->model); i++) {
+    b->scale[i] = tolerance[trb_state_tolerance(b->model, i)];
+    b->relative[i] = 0.0;
+  }
+  b->measure = (trb_tangent_measure){b->relative, b->scale, b->factors, share};
+  memcpy(b->moved, b->y, sizeof b->moved);
+  trb_dynamics_pose(b->d, 0.0, b->y);
+  trb_tangents_differentiate(b->tangents, b->d, b->y, b->moved);
+  for (int j = 0; j < b->model->n_rollers; j++) b->tangents->rollers[j].usual = 1e9;
+  return 1;
+}
+
+/* Largest difference of main rates over the tolerances a step of gamma has for them. */
+static double distance(const bench *b, const double *one, const double *other)
+{
+  double largest = 0.0;
+  for (int i = 0; i < trb_state_main_size(b->model); i++)
+    largest = fmax(largest, fabs(one[i] - other[i]) * b->factors->gamma / b->scale[i]);
+  return largest;
+}
+
+/* The same, of each roller's entries the mean square. */
+static double roller_distance(const bench *b, int roller, const double *one, const double *other)
+{
+  double sum = 0.0;
+  for (int i = trb_state_roller(roller); i < trb_state_roller(roller + 1); i++)
+    sum += pow((one[i] - other[i]) * b->factors->gamma / b->scale[i], 2.0) / TRB_ROLLER_SIZE;
+  return sqrt(sum);
+}
+
+/* A state at some tolerances from y in a fixed direction. */
+static void place(const bench *b, double tolerances, double *y)
+{
+  unsigned long long here = 17;
+  memcpy(y, b->y, sizeof b->y);
+  for (int i = 0; i < trb_state_cage(b->model); i++) y[i] += tolerances * b->scale[i] * rig_random(&here);
+}
+
+static void test_origin(const trb_params *params)
+{
+  bench  b;
+  double found[MOST], exact[MOST];
+  if (!open_bench(&b, params, 0.05)) return;
+  /* the first evaluation is exact and becomes the origin, the second follows the tangents from it */
+  for (int k = 0; k < 2; k++) {
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
+    trb_dynamics_derivative(b.d, 0.0, b.y, exact);
+    CHECK(b.d->work->counters.tangent_rollers == k * b.model->n_rollers);
+    for (int i = 0; i < trb_state_size(b.model); i++) CHECK_NEAR(found[i], exact[i], 1e-13 * fabs(exact[i]) + 1e-12);
+  }
+  close_bench(&b);
+}
+
+/* Half the distance, a quarter of the error; quadratures are followed like the rates. */
+static void test_order(const trb_params *params)
+{
+  bench  b;
+  double y[MOST], found[MOST], exact[MOST], off[2], lost[2];
+  if (!open_bench(&b, params, 1.0)) return;
+  for (int k = 0; k < 2; k++) {
+    trb_tangents_differentiate(b.tangents, b.d, b.y, b.moved);
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
+    for (int j = 0; j < b.model->n_rollers; j++) {
+      CHECK(b.tangents->rollers[j].known);
+      b.tangents->rollers[j].usual = 1e9;
+      b.tangents->rollers[j].reach = 1e6;
+    }
+    place(&b, k == 0 ? 40.0 : 20.0, y);
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
+    trb_dynamics_derivative(b.d, 0.0, y, exact);
+    const int power = trb_state_quadrature(b.model) + TRB_Q_loss_traction_inner;
+    off[k] = distance(&b, found, exact);
+    lost[k] = fabs(found[power] - exact[power]) / fabs(exact[power]);
+    trb_tangents_forget(b.tangents);
+    trb_dynamics_pose(b.d, 0.0, b.y);
+  }
+  CHECK(off[0] > 0.0 && lost[0] < 2e-2);
+  CHECK_NEAR(off[0] / off[1], 4.0, 0.6);
+  CHECK_NEAR(lost[0] / lost[1], 4.0, 0.6);
+  close_bench(&b);
+}
+
+/* A step beyond the reach is exact, and from the new origin the tangent leads back to the old one: Broyden's condition. */
+static void test_learning(const trb_params *params)
+{
+  bench  b;
+  double y[MOST], before[MOST], found[MOST], exact[MOST];
+  if (!open_bench(&b, params, 0.05)) return;
+  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, before);
+  place(&b, 300.0, y);
+  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
+  trb_dynamics_derivative(b.d, 0.0, y, exact);
+  for (int i = 0; i < trb_state_size(b.model); i++) CHECK_NEAR(found[i], exact[i], 1e-13 * fabs(exact[i]) + 1e-12);
+  CHECK(b.d->work->counters.tangent_rollers == 0);
+  for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].reach = 1e6;
+  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
+  CHECK(b.d->work->counters.tangent_rollers == b.model->n_rollers);
+  CHECK(distance(&b, found, before) < 1e-6);
+  close_bench(&b);
+}
+
+/* The error found sets the reach: within it, errors stay near the share of the tolerance. */
+static void test_reach(const trb_params *params)
+{
+  const double share = 0.05;
+  bench        b;
+  double       y[MOST], found[MOST], exact[MOST], largest = 0.0;
+  long long    followed = 0;
+  int          wide = 0;
+  if (!open_bench(&b, params, share)) return;
+  for (int k = 0; k < 4000; k++) {
+    place(&b, 40.0 * sin(0.01 * k) * sin(0.0037 * k), y);
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
+    const long long now = b.d->work->counters.tangent_rollers;
+    trb_dynamics_derivative(b.d, 0.0, y, exact);
+    for (int j = 0; j < b.model->n_rollers; j++) {
+      const double off = roller_distance(&b, j, found, exact);
+      wide += off > 2.0 * share;
+      largest = fmax(largest, off);
+    }
+    followed = now;
+  }
+  CHECK((double)followed > 0.5 * 4000 * b.model->n_rollers);
+  CHECK(wide < 0.1 * (double)followed);
+  CHECK(largest < 10.0 * share);
+  close_bench(&b);
+}
+
+/* Between two knots of the motion everything is exact, to the bit; after them tangents begin anew. */
+static void test_under_way(const trb_params *params)
+{
+  bench  b;
+  double table[2][TRB_MOTION_COLUMNS] = {{0}}, found[MOST], exact[MOST];
+  if (!open_bench(&b, params, 1.0)) return;
+  trb_motion_free(b.motion);
+  for (int k = 0; k < 2; k++) {
+    table[k][0] = k;
+    table[k][1 + 2 * TRB_CHANNEL_shaft_speed] = 300.0 + 10.0 * k;
+  }
+  if (!CHECK(trb_motion_create(&table[0][0], 2, &b.motion, NULL) == TRB_OK)) return;
+  b.d->motion = b.motion;
+  const double times[] = {1e-9, 0.5, 1.0 - 1e-12};
+  for (int k = 0; k < 3; k++) {
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, times[k], b.y, found);
+    trb_dynamics_derivative(b.d, times[k], b.y, exact);
+    CHECK(memcmp(found, exact, (size_t)trb_state_size(b.model) * sizeof *found) == 0);
+  }
+  CHECK(b.d->work->counters.tangent_rollers == 0);
+  for (int k = 0; k < 2; k++) trb_tangents_derivative(b.tangents, b.d, &b.measure, 1.0, b.y, found);
+  CHECK(b.d->work->counters.tangent_rollers == b.model->n_rollers);
+  close_bench(&b);
+}
+
+/* A tangent that an evaluation or two leave behind is not used; one that serves long is, after a while. */
+static void test_seldom(const trb_params *params)
+{
+  bench     b;
+  double    y[MOST], found[MOST], exact[MOST];
+  long long used = 0;
+  if (!open_bench(&b, params, 0.05)) return;
+  for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].usual = 0.0;
+  for (int k = 0; k < 400; k++) {
+    place(&b, k % 2 == 0 ? 3e4 : -3e4, y);
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
+    trb_dynamics_derivative(b.d, 0.0, y, exact);
+    for (int i = 0; i < trb_state_size(b.model); i++) CHECK_NEAR(found[i], exact[i], 1e-13 * fabs(exact[i]) + 1e-12);
+  }
+  CHECK(b.d->work->counters.tangent_rollers == 0);
+  for (int k = 0; k < 4000; k++) {
+    place(&b, 0.02 * k, y);
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
+    if (k == 2000) used = b.d->work->counters.tangent_rollers;
+  }
+  CHECK((double)(b.d->work->counters.tangent_rollers - used) > 0.5 * 2000 * b.model->n_rollers);
+  close_bench(&b);
+}
+
+/* What is not a number is not learned. */
+static void test_not_finite(const trb_params *params)
+{
+  bench  b;
+  double y[MOST], found[MOST], exact[MOST];
+  if (!open_bench(&b, params, 0.05)) return;
+  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
+  memcpy(y, b.y, sizeof y);
+  y[trb_state_roller(2) + TRB_ROLLER_v_t] = NAN;
+  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
+  CHECK(!isfinite(found[trb_state_roller(2) + TRB_ROLLER_v_t]));
+  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
+  trb_dynamics_derivative(b.d, 0.0, b.y, exact);
+  CHECK(distance(&b, found, exact) < 1e-6);
+  y[trb_state_roller(2) + TRB_ROLLER_v_t] = 1e300;
+  trb_dynamics_pose(b.d, 0.0, y);
+  trb_tangents_differentiate(b.tangents, b.d, y, b.moved);
+  CHECK(!b.tangents->has_slopes);
+  close_bench(&b);
+}
+
+int main(void)
+{
+  trb_params p = rig_params();
+  test_origin(&p);
+  test_order(&p);
+  test_learning(&p);
+  test_reach(&p);
+  test_under_way(&p);
+  test_seldom(&p);
+  test_not_finite(&p);
+  p.damping = 1, p.rolling_pressure_force = 1;
+  test_origin(&p);
+  test_order(&p);
+  p = rig_params(), p.planar = 1;
+  test_origin(&p);
+  return check_report();
+}
