@@ -6,10 +6,18 @@ from typing import Any
 
 import common
 
-COLOURS = {"bdf1": "tab:brown", "bdf2": "tab:blue", "bdf3": "tab:purple", "bdf5": "tab:pink", "erk": "tab:orange"}
+COLOURS = {
+    "bdf1": "tab:brown",
+    "bdf2": "tab:blue",
+    "bdf2exact": "tab:cyan",
+    "bdf3": "tab:purple",
+    "bdf5": "tab:pink",
+    "erk": "tab:orange",
+}
 TEXTS = {
     "bdf1": "BDF 1",
     "bdf2": "BDF to order 2",
+    "bdf2exact": "BDF to order 2, every force exact",
     "bdf3": "BDF to order 3",
     "bdf5": "BDF to order 5",
     "erk": "explicit",

@@ -18,15 +18,16 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
   d->everyone = calloc(n, sizeof *d->everyone);
   d->clearances = calloc(n, sizeof *d->clearances);
   trb_status status = TRB_OK;
-  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL || d->everyone == NULL || d->clearances == NULL)
+  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL || d->everyone == NULL || d->clearances == NULL) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
-  else
+  } else {
+    for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
     status = trb_workspace_create(m, variant, &d->work, message);
+  }
   if (status != TRB_OK) {
     trb_dynamics_free(d);
     return status;
   }
-  for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
   d->arms = trb_clearance_arms_of(m);
   *dynamics = d;
   return TRB_OK;
