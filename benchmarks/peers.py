@@ -43,6 +43,9 @@ SETTLING, BETWEEN, LENGTH, OUTPUTS = 0.04, 0.0113, 4e-3, 41
 IMPACT = 20.0
 """Windows: first and later starts (s), length (s), number of compared times, pocket force at which they start (N)."""
 
+EXACT = ", exact"
+"""Behind an integrator's name: without tangents of the rings' forces."""
+
 COLUMNS = {
     "name": "1: integrator, with the package it comes from",
     "model": "1: force model under it, 'numpy' or 'core'",
@@ -167,11 +170,13 @@ class Bench:
         return out
 
     def simulation(self, integrator: str, factor: float) -> Simulation:
-        """A simulation with an integrator of the core."""
+        """A simulation with an integrator of the core; with `EXACT` behind its name every force is evaluated exactly."""
         key = (integrator, factor)
         if key not in self.simulations:
             given = scaled(factor).model_dump()
-            self.simulations[key] = Simulation(self.scene, integrator=integrator, **given)
+            given |= {"rings_share": 0.0} if integrator.endswith(EXACT) else {}
+            name = integrator.removesuffix(EXACT)
+            self.simulations[key] = Simulation(self.scene, integrator=name, **given)
         return self.simulations[key]
 
     def _core_run(self, window: Window, factor: float, integrator: str) -> tuple[Array, Simulation]:
@@ -301,7 +306,7 @@ def per_call(function: Callable[[], Any]) -> float:
 def methods(bench: Bench, quick: bool) -> list[Method]:
     """The core's integrators, the standard one first, then the alternatives."""
     standard = RunOptions().integrator
-    own = [standard, *(name for name in _integrators() if name != standard)]
+    own = [standard, standard + EXACT, *(name for name in _integrators() if name != standard)]
     out = []
     for name in own:
         explicit = name == "erk"
@@ -532,7 +537,9 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         "LSODA takes a dense Jacobian only; solve_ivp does not hand on its limits of order: 'order 2' goes around it.",
         "SciPy's BDF has no limit of order: 'order 2' changes a private constant while it steps.",
         "Radau, BDF and scikit-sundae take one relative tolerance for all entries, LSODA one for each.",
-        "Alternatives have the Jacobian in one batched call (24 states), sparse where the package takes it.",
+        "Alternatives have the Jacobian in one batched call (24 states), sparse where the package takes it; 'its differences' "
+        "has what the package offers alone.",
+        "trbdyn's bdf takes forces of raceways and ribs from tangents between exact evaluations; 'exact' does not.",
     ]
     shown = ["name", "ratio", "ratio_low", "ratio_high", "us_per_evaluation", "us_per_step", "wall_s_per_revolution",
              "error_cage_over_cpr", "steps", "evaluations", "jacobians"]  # fmt: skip
