@@ -1,7 +1,8 @@
 """The NumPy model under the integrators that a user would pick: SciPy's `solve_ivp` and scikit-sundae's CVODE.
 
-Each gets what its package takes: the arrow-shaped Jacobian as a sparse matrix, tolerances for each kind of quantity, order 2
-where it can be limited (above, lightly damped contact modes hold the steps down).
+Each gets what its package takes: the pattern of the arrow-shaped Jacobian or the Jacobian itself, as a sparse matrix where
+that is possible, tolerances for each kind of quantity, order 2 where it can be limited (above, lightly damped contact modes
+hold the steps down).
 """
 
 from __future__ import annotations
@@ -117,8 +118,10 @@ class BDF2(BDF):  # type: ignore[misc]
             scipy_bdf.MAX_ORDER = before
 
 
-def under_scipy(method: type[Any], problem: Problem, tolerances: Tolerances, *, dense: bool = False) -> Run:
-    """An integration with `solve_ivp`."""
+def under_scipy(
+    method: type[Any], problem: Problem, tolerances: Tolerances, *, ours: bool = True, dense: bool = False
+) -> Run:
+    """An integration with `solve_ivp`: with our Jacobian, or with its own differences over the Jacobian's pattern."""
 
     class Counted(method):  # type: ignore[misc]
         steps = 0
@@ -127,6 +130,12 @@ def under_scipy(method: type[Any], problem: Problem, tolerances: Tolerances, *, 
             Counted.steps += 1
             return super()._step_impl()
 
+    given: dict[str, Any] = {}
+    if ours:
+        given = {"jac": problem.jacobian.dense_copy if dense else problem.jacobian.sparse}
+    elif not dense:
+        # its differences call the model with many states at once
+        given = {"jac_sparsity": problem.jacobian.sparsity, "vectorized": True}
     began, before = clock.process_time(), problem.jacobian.count
     found = solve_ivp(
         problem.guarded(),
@@ -134,40 +143,41 @@ def under_scipy(method: type[Any], problem: Problem, tolerances: Tolerances, *, 
         problem.state,
         method=Counted,
         t_eval=problem.times,
-        jac=problem.jacobian.dense_copy if dense else problem.jacobian.sparse,
         # LSODA takes one for each entry, the others one for all
         rtol=np.maximum(tolerances.relative, LEAST_RTOL) if issubclass(method, LSODA) else tolerances.relative.max(),
         atol=tolerances.absolute,
+        **given,
     )
     wall = clock.process_time() - began
     if not found.success:
         raise RuntimeError(found.message)
-    return Run(found.y[problem.cage].T, wall, Counted.steps, found.nfev, problem.jacobian.count - before)
+    jacobians = problem.jacobian.count - before if ours else found.njev
+    return Run(found.y[problem.cage].T, wall, Counted.steps, found.nfev, jacobians)
 
 
-def radau(problem: Problem, tolerances: Tolerances) -> Run:
+def radau(problem: Problem, tolerances: Tolerances, *, ours: bool = True) -> Run:
     """SciPy, Radau IIA of order 5."""
-    return under_scipy(Radau, problem, tolerances)
+    return under_scipy(Radau, problem, tolerances, ours=ours)
 
 
-def bdf(problem: Problem, tolerances: Tolerances) -> Run:
+def bdf(problem: Problem, tolerances: Tolerances, *, ours: bool = True) -> Run:
     """SciPy, backward differentiation up to order 5."""
-    return under_scipy(BDF, problem, tolerances)
+    return under_scipy(BDF, problem, tolerances, ours=ours)
 
 
-def bdf_two(problem: Problem, tolerances: Tolerances) -> Run:
+def bdf_two(problem: Problem, tolerances: Tolerances, *, ours: bool = True) -> Run:
     """SciPy, backward differentiation up to order 2, by changing a private constant."""
-    return under_scipy(BDF2, problem, tolerances)
+    return under_scipy(BDF2, problem, tolerances, ours=ours)
 
 
-def lsoda(problem: Problem, tolerances: Tolerances) -> Run:
+def lsoda(problem: Problem, tolerances: Tolerances, *, ours: bool = True) -> Run:
     """SciPy, LSODA with a dense Jacobian; it takes no other."""
-    return under_scipy(LSODA, problem, tolerances, dense=True)
+    return under_scipy(LSODA, problem, tolerances, ours=ours, dense=True)
 
 
-def lsoda_two(problem: Problem, tolerances: Tolerances) -> Run:
+def lsoda_two(problem: Problem, tolerances: Tolerances, *, ours: bool = True) -> Run:
     """SciPy, LSODA whose stiff method goes to order 2 at most, through a subclass."""
-    return under_scipy(LSODA2, problem, tolerances, dense=True)
+    return under_scipy(LSODA2, problem, tolerances, ours=ours, dense=True)
 
 
 def sundae(problem: Problem, tolerances: Tolerances, linear: str = "sparse") -> Run:

@@ -126,7 +126,7 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
     jac->rings_evaluations++;
   }
   for (int j = 0; j < m->n_rollers; j++)
-    for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[j].own[c], jac->tangents->rollers[j].slope[c], TRB_NR * sizeof(double));
+    for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[j].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
   if (!arrow->with_cage) return;
   trb_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
   double   cage_rates[TRB_NC];

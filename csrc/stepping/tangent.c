@@ -11,7 +11,7 @@ static const double turn_unit = 1e-3, turn_difference = 1e-5;
 /* Evaluations that an origin must serve, it or those before it in the mean, for its tangent to be used; the last one's weight in that. */
 static const double enough = 3.0, newest = 0.2;
 /* Reaches: least, largest; growth and decline at once; distance beyond which a tangent learns nothing. */
-static const double least_reach = 1e-3, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
+static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
 
 trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message)
 {
@@ -62,6 +62,7 @@ static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double p
     double       flow[TRB_FLOW_SIZE];
     trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
     for (int i = 0; i < TRB_FLOW_SIZE; i++) r->slope[column][i] = per * (flow[i] - r->value[i]);
+    if (column < TRB_NR) memcpy(r->found[column], r->slope[column], sizeof r->found[column]);
   }
 }
 
@@ -101,9 +102,20 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
     differentiate(t, d, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
   trb_dynamics_pose(d, time, y);
+  /* slopes are good: tangents serve at once, from a small reach on */
+  for (int j = 0; j < m->n_rollers && !t->has_slopes; j++) {
+    t->rollers[j].reach = first_reach;
+    t->rollers[j].usual = enough;
+  }
   t->time = time;
   t->has_slopes = 1;
   if (!all_finite(t)) trb_tangents_forget(t);
+}
+
+const double *trb_tangents_column(const trb_tangents *t, int roller, int column)
+{
+  const trb_tangent *r = &t->rollers[roller];
+  return r->usual >= enough ? r->slope[column] : r->found[column];
 }
 
 static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const double *y)
@@ -141,7 +153,7 @@ static void learn(trb_tangent *r, const trb_tangent_measure *measure, int roller
     for (int c = 0; c < TRB_TANGENT_IN; c++)
       for (int i = 0; i < TRB_TANGENT_OUT; i++) r->slope[c][i] += error[i] * direction[c];
   } else {
-    r->reach = least_reach;
+    r->reach = first_reach;
   }
   memcpy(r->value, flow, sizeof r->value);
   memcpy(r->origin, y, TRB_NR * sizeof *y);

@@ -17,7 +17,8 @@ _Static_assert(TRB_TANGENT_IN == TRB_NR + 1 && (int)TRB_FLOW_SIZE <= (int)TRB_TA
                "room for a roller's state, an angle and its flow");
 
 typedef struct trb_tangent {
-  double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column */
+  double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, corrected */
+  double found[TRB_NR][TRB_NR];  /* rates' slopes as differences gave them, column by column */
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
   double per[TRB_TANGENT_IN]; /* what measures distances: one over the tolerances there, so that the sum of squares is their mean */
@@ -54,6 +55,9 @@ void       trb_tangents_free(trb_tangents *tangents);
 void trb_tangents_forget(trb_tangents *tangents);
 /* Slopes anew by differences about a state whose poses d holds; moved: scratch as long as a state. */
 void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const double *y, double *moved);
+
+/* Column of a roller's block of the Jacobian: of its tangent if that is used, else as differences gave it. */
+const double *trb_tangents_column(const trb_tangents *tangents, int roller, int column);
 
 /* Right-hand side with tangents in place of the rings' forces where they serve; exact where the prescribed motion is under way. */
 void trb_tangents_derivative(trb_tangents *tangents, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,

@@ -124,7 +124,7 @@ def test_other_effects_are_refused() -> None:
 
 
 def test_interpolation_at_equal_error() -> None:
-    from peers import at_error
+    from peer_cost.compare import at_error
 
     points = [(1e-1, 1.0), (1e-3, 100.0), (2e-3, 500.0)]
     assert at_error(points, 1e-2) == pytest.approx(10.0)

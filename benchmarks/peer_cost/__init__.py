@@ -1,0 +1,1 @@
+"""Parts of peers.py: what is run, how alternatives are compared, the picture."""
