@@ -24,9 +24,7 @@ PY      := $(VENV)/bin/python
 PIP     := $(PY) -m pip --disable-pip-version-check
 SOURCES := $(shell find csrc trbdyn -type f -not -path '*/__pycache__/*')
 TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws bearing contact motion stepping python))
-# folders of csrc/ that are formatted; the others keep what was written by hand
-FORMATTED ?= base laws python tests
-STYLED  := $(wildcard $(FORMATTED:%=csrc/%/*.[ch]))
+STYLED  := $(wildcard csrc/*/*.[ch])
 # Python tests that together run nearly every line of the C sources; the leak tests count a memory that sanitizers keep
 SANITIZED := $(addprefix tests/,laws/test_in_contacts.py laws/test_extremes.py laws/test_oracles.py api/test_laws_api.py geometry \
   api/test_simulation.py api/test_pockets.py physics/test_looking.py physics/test_contacts.py physics/test_effects.py \

@@ -76,8 +76,8 @@ static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *
   g->sphere_centre = pole - g->sphere_radius;
   const double sr = g->sphere_centre * sin(g->roller_axis_angle), sz = g->sphere_centre * cos(g->roller_axis_angle);
   if (!(p->rib_contact_height < g->large_end_diameter))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: must be below the roller's large-end diameter, %g m", p->rib_contact_height,
-                    g->large_end_diameter);
+    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: must be below the roller's large-end diameter, %g m",
+                    p->rib_contact_height, g->large_end_diameter);
   const double sine = (p->rib_contact_height - (sr * cos(ai) - sz * sin(ai))) / g->sphere_radius;
   if (!(fabs(sine) < 1.0))
     return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the large end's sphere (radius %g m) does not reach it",
@@ -86,12 +86,13 @@ static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *
   g->rib_contact_radius = sr + g->sphere_radius * sin(g->rib_normal_angle);
   g->rib_contact_z = sz + g->sphere_radius * cos(g->rib_normal_angle);
   if (!(g->rib_normal_angle > 0.0 && g->rib_normal_angle < 1.5))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the rib's face would not close towards the roller", p->rib_contact_height);
+    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the rib's face would not close towards the roller",
+                    p->rib_contact_height);
   g->rib_curvature_radius = g->rib_contact_radius / sin(g->rib_normal_angle);
   const double curvature = 1.0 / g->sphere_radius - 1.0 / g->rib_curvature_radius;
   if (!(curvature > 0.0))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "sphere_ratio = %g: the large end (radius %g m) is flatter than the rib (%g m)", p->sphere_ratio,
-                    g->sphere_radius, g->rib_curvature_radius);
+    return trb_fail(message, TRB_ERR_GEOMETRY, "sphere_ratio = %g: the large end (radius %g m) is flatter than the rib (%g m)",
+                    p->sphere_ratio, g->sphere_radius, g->rib_curvature_radius);
   g->rib_rx = 1.0 / curvature;
   g->rib_ry = g->sphere_radius;
   const trb_hertz_point hertz = trb_hertz_point_constants(g->rib_rx, g->rib_ry, g->effective_modulus);

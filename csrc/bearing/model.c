@@ -54,7 +54,8 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
   const trb_geometry *g = &m->geometry;
   const double        nu = g->roller_half_angle, half = 0.5 * p->effective_length;
   double              node[TRB_MAX_NODES], weight[TRB_MAX_NODES];
-  if (m->n_nodes < 1 || m->n_nodes > TRB_MAX_NODES) return trb_fail(message, TRB_ERR_INPUT, "n_slices = %d: must be 1 to %d", m->n_nodes, TRB_MAX_NODES);
+  if (m->n_nodes < 1 || m->n_nodes > TRB_MAX_NODES)
+    return trb_fail(message, TRB_ERR_INPUT, "n_slices = %d: must be 1 to %d", m->n_nodes, TRB_MAX_NODES);
   trb_quadrature((int)p->quadrature, m->n_nodes, node, weight);
   for (int k = 0; k < m->n_lanes; k++) {
     const int    used = k < m->n_nodes ? k : m->n_nodes - 1;

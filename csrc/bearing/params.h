@@ -147,7 +147,7 @@ enum {
 #define TRB_CHANNEL_ENUM(name, unit, text) TRB_CHANNEL_##name,
   TRB_MOTION_CHANNELS(TRB_CHANNEL_ENUM)
 #undef TRB_CHANNEL_ENUM
-  TRB_N_CHANNELS
+      TRB_N_CHANNELS
 };
 
 extern const trb_param_info trb_param_table[TRB_N_PARAMS];

@@ -42,6 +42,7 @@ void trb_cage_pose_unpack(const trb_model *m, const trb_drive *drive, const doub
 
 trb_ring_pose trb_ring_pose_in_frame(const trb_ring_pose *ring, double cosine, double sine)
 {
-  return (trb_ring_pose){trb_turn_z(ring->apex, cosine, -sine), trb_turn_z(ring->axis, cosine, -sine), trb_turn_z(ring->centre, cosine, -sine),
-                         trb_turn_z(ring->velocity, cosine, -sine), trb_turn_z(ring->omega, cosine, -sine)};
+  return (trb_ring_pose){trb_turn_z(ring->apex, cosine, -sine), trb_turn_z(ring->axis, cosine, -sine),
+                         trb_turn_z(ring->centre, cosine, -sine), trb_turn_z(ring->velocity, cosine, -sine),
+                         trb_turn_z(ring->omega, cosine, -sine)};
 }

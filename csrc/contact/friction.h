@@ -33,7 +33,8 @@ static inline double trb_sliding_coefficient(const trb_model *m, double speed)
 {
   const trb_params *p = &m->params;
   if (p->lubrication == TRB_LUBRICATION_DRY) return trb_coulomb_coefficient(p, speed);
-  return trb_friction_boundary(trb_slide_roll_cage(speed, p->cage_entrainment_speed), p->boundary_limit, p->boundary_slope, p->boundary_decay);
+  return trb_friction_boundary(trb_slide_roll_cage(speed, p->cage_entrainment_speed), p->boundary_limit, p->boundary_slope,
+                               p->boundary_decay);
 }
 
 /* Hunt & Crossley, never pulling. */

@@ -58,8 +58,8 @@ static inline void pass_thermal(const trb_model *m, int n, trb_lanes *l)
 {
   const double base = m->log_thermal, modulus = m->geometry.effective_modulus, floor = m->params.thermal_floor;
   TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-      l->thermal_factor[i] = trb_film_thermal(l->pressure[i] / modulus, base + 2.0 * l->log_u[i], log(l->slide_roll[i]), floor);
+  TRB_LANES for (int i = 0; i < n; i++) l->thermal_factor[i] =
+      trb_film_thermal(l->pressure[i] / modulus, base + 2.0 * l->log_u[i], log(l->slide_roll[i]), floor);
 }
 
 /* (3) with a starvation factor. */

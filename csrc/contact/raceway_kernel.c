@@ -14,9 +14,9 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
 {
   const trb_roller_pose *r = in->roller;
   const trb_ring_pose   *g = in->ring;
-  const trb_vec3         x = r->x, a = r->frame.a, v = r->v, w = r->omega, k = g->axis, o = g->apex, b = g->centre, rv = g->velocity, rw = g->omega;
-  const double           sine = in->sine, cosine = in->cosine, sign = in->sign, orbit = r->orbit_speed;
-  double                 largest = -INFINITY;
+  const trb_vec3 x = r->x, a = r->frame.a, v = r->v, w = r->omega, k = g->axis, o = g->apex, b = g->centre, rv = g->velocity, rw = g->omega;
+  const double   sine = in->sine, cosine = in->cosine, sign = in->sign, orbit = r->orbit_speed;
+  double         largest = -INFINITY;
   TRB_PADDED(n);
   for (int i = 0; i < n; i++) {
     const double s = in->centre[i], rho = in->sphere[i];
@@ -181,7 +181,8 @@ static void sum_pressure_force(const trb_race_input *in, int first, int n, const
   double                 power = 0.0;
   for (int i = first; i < first + n; i++) {
     const double   share = l->roller_share[i], scale = 2.0 * l->rolling[i] / l->mean_speed[i];
-    const trb_vec3 normal = trb_v(l->nx[i], l->ny[i], l->nz[i]), point = trb_v(l->px[i], l->py[i], l->pz[i]), mean = trb_v(l->mx[i], l->my[i], l->mz[i]);
+    const trb_vec3 normal = trb_v(l->nx[i], l->ny[i], l->nz[i]), point = trb_v(l->px[i], l->py[i], l->pz[i]),
+                   mean = trb_v(l->mx[i], l->my[i], l->mz[i]);
     const trb_vec3 on_roller = trb_scale(scale * share, mean), on_ring = trb_scale(scale * (1.0 - share), mean);
     /* centres of curvature along the normal: R1 = Re/share inwards, R2 = Re/(1 - share) into the ring (negative: a cup) */
     const trb_vec3 from_roller = trb_sub(trb_axpy(point, -l->radius[i] / share, normal), r->x);
@@ -190,13 +191,14 @@ static void sum_pressure_force(const trb_race_input *in, int first, int n, const
     out->moment = trb_add(out->moment, trb_cross(from_roller, on_roller));
     out->ring_force = trb_add(out->ring_force, on_ring);
     out->ring_moment = trb_add(out->ring_moment, trb_cross(from_ring, on_ring));
-    power -= trb_dot(on_roller, trb_add(r->v, trb_cross(r->omega, from_roller))) + trb_dot(on_ring, trb_add(g->velocity, trb_cross(g->omega, from_ring)));
+    power -= trb_dot(on_roller, trb_add(r->v, trb_cross(r->omega, from_roller))) +
+             trb_dot(on_ring, trb_add(g->velocity, trb_cross(g->omega, from_ring)));
   }
   out->power_pressure = power;
 }
 
-static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const int *loaded, int n_loaded, int rolling, trb_lanes *l, trb_counters *counters,
-                        trb_race_output *outputs)
+static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const int *loaded, int n_loaded, int rolling, trb_lanes *l,
+                        trb_counters *counters, trb_race_output *outputs)
 {
   const int n = m->n_lanes;
   for (int c = 0; c < n_loaded; c++) {
@@ -213,7 +215,8 @@ static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const 
   }
 }
 
-void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inputs, trb_lanes *l, trb_counters *counters, trb_race_output *outputs)
+void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inputs, trb_lanes *l, trb_counters *counters,
+                     trb_race_output *outputs)
 {
   int       loaded[TRB_TILE_LANES / TRB_LANE_PAD], n_loaded = 0;
   const int n = m->n_lanes, rolling = m->params.rolling_resistance > 0.0 && m->film;

@@ -36,7 +36,11 @@ trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 /* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures (physics: section 10).
  * It is affine in the loads: what inertia and gravity give, and the response to a load. */
-enum { TRB_FLOW_spin = TRB_ROLLER_SIZE, TRB_FLOW_quadrature = TRB_ROLLER_SIZE + 1, TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_N_QUADRATURES };
+enum {
+  TRB_FLOW_spin = TRB_ROLLER_SIZE,
+  TRB_FLOW_quadrature = TRB_ROLLER_SIZE + 1,
+  TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_N_QUADRATURES
+};
 void trb_dynamics_roller_inertia(const trb_dynamics *d, int roller, double *flow);
 /* Added to a flow; the load is one that puts nothing on the inner ring. */
 void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow);

@@ -18,22 +18,23 @@ typedef struct solver {
   const trb_model *m;
   trb_equilibrium *e;
   trb_dynamics    *d;
-  double          *forces;   /* per roller (3): generalised force */
-  double          *ring;     /* per roller (5): generalised force on the ring */
-  double          *shifted;  /* the same after a difference */
+  double          *forces;  /* per roller (3): generalised force */
+  double          *ring;    /* per roller (5): generalised force on the ring */
+  double          *shifted; /* the same after a difference */
   double          *ring_shifted;
-  double          *own;      /* per roller (3x3) stiffness */
-  double          *to_ring;  /* per roller (3x5): d force of roller / d ring */
-  double          *from_ring; /* per roller (5x3): d force on ring / d roller */
-  double          *solved;   /* per roller (3x6): own^-1 [to_ring, force] */
-  double          *trial;    /* per roller (3) */
+  double          *own;                                              /* per roller (3x3) stiffness */
+  double          *to_ring;                                          /* per roller (3x5): d force of roller / d ring */
+  double          *from_ring;                                        /* per roller (5x3): d force on ring / d roller */
+  double          *solved;                                           /* per roller (3x6): own^-1 [to_ring, force] */
+  double          *trial;                                            /* per roller (3) */
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS]; /* of the ring at fixed rollers */
   double           total[TRB_RING_FREEDOMS];                         /* generalised force on the ring with its load */
   double           energy;
 } solver;
 
 static const double difference[TRB_ROLLER_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE};
-static const double ring_difference[TRB_RING_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE, TRB_STEP_ANGLE};
+static const double ring_difference[TRB_RING_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE,
+                                                          TRB_STEP_ANGLE};
 
 /* At rest the contacts are frictionless: no sliding, no rolling. */
 static void place(solver *s, const double *rollers, const double *displacement)
@@ -62,7 +63,8 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
   const trb_rolling   rolling = trb_pure_rolling(m, s->e->shaft_speed);
   const double        orbit = g->cage_speed_ratio * s->e->shaft_speed;
   /* gyroscopic moment: rate of the angular momentum of a roller that spins and orbits */
-  const double gyro = orbit * cos(g->roller_axis_angle) * g->roller_inertia_transverse * rolling.omega_n - rolling.omega_n * g->roller_inertia_axial * rolling.omega_a;
+  const double gyro = orbit * cos(g->roller_axis_angle) * g->roller_inertia_transverse * rolling.omega_n -
+                      rolling.omega_n * g->roller_inertia_axial * rolling.omega_a;
   double       energy = 0.0;
   place(s, rollers, displacement);
   trb_instant at = trb_dynamics_instant(s->d);
@@ -270,10 +272,11 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
   }
   e->residual = off;
   if (off < 1e-5 * fmax(largest_load(s), 1e-3)) return TRB_OK;
-  return trb_fail(message, TRB_ERR_LOAD,
-                  "no equilibrium: after %d steps %g N stay unbalanced under force (%g, %g, %g) N, moment (%g, %g) N m; the bearing cannot carry this "
-                  "load (an axial load towards -z must seat the rollers)",
-                  e->iterations, off, e->load[0], e->load[1], e->load[2], e->load[3], e->load[4]);
+  return trb_fail(
+      message, TRB_ERR_LOAD,
+      "no equilibrium: after %d steps %g N stay unbalanced under force (%g, %g, %g) N, moment (%g, %g) N m; the bearing cannot carry this "
+      "load (an axial load towards -z must seat the rollers)",
+      e->iterations, off, e->load[0], e->load[1], e->load[2], e->load[3], e->load[4]);
 }
 
 /* Normal loads of the contacts at the solution. */
@@ -315,8 +318,9 @@ trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_mes
     trb_dynamics_free(s.d);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the equilibrium");
   }
-  double *at = block, **const parts[] = {&s.forces, &s.ring, &s.shifted, &s.ring_shifted, &s.own, &s.to_ring, &s.from_ring, &s.solved, &s.trial};
-  const size_t sizes[] = {3, 5, 3, 5, 9, 15, 15, 18, 3};
+  double        *at = block,
+         **const parts[] = {&s.forces, &s.ring, &s.shifted, &s.ring_shifted, &s.own, &s.to_ring, &s.from_ring, &s.solved, &s.trial};
+  const size_t   sizes[] = {3, 5, 3, 5, 9, 15, 15, 18, 3};
   for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
     *parts[i] = at;
     at += n * sizes[i];

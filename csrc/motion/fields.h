@@ -6,14 +6,14 @@
 #define TRB_MOTION_FIELDS_H
 
 typedef enum trb_field_kind {
-  TRB_FIELD_SCALAR,       /* ()        */
-  TRB_FIELD_VEC2,         /* (2,)      */
-  TRB_FIELD_VEC3,         /* (3,)      */
-  TRB_FIELD_QUATERNION,   /* (4,)      w, x, y, z */
-  TRB_FIELD_ROLLER,       /* (Z,)      */
-  TRB_FIELD_ROLLER_VEC3,  /* (Z, 3)    */
-  TRB_FIELD_ROLLER_QUAT,  /* (Z, 4)    */
-  TRB_FIELD_POCKET_FACE   /* (Z, slots) */
+  TRB_FIELD_SCALAR,      /* ()        */
+  TRB_FIELD_VEC2,        /* (2,)      */
+  TRB_FIELD_VEC3,        /* (3,)      */
+  TRB_FIELD_QUATERNION,  /* (4,)      w, x, y, z */
+  TRB_FIELD_ROLLER,      /* (Z,)      */
+  TRB_FIELD_ROLLER_VEC3, /* (Z, 3)    */
+  TRB_FIELD_ROLLER_QUAT, /* (Z, 4)    */
+  TRB_FIELD_POCKET_FACE  /* (Z, slots) */
 } trb_field_kind;
 
 #define TRB_FIELDS(X) \

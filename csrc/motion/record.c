@@ -22,14 +22,23 @@ int trb_field_shape(const trb_model *m, trb_field_kind kind, int shape[2])
 {
   shape[0] = shape[1] = 1;
   switch (kind) {
-    case TRB_FIELD_SCALAR: return 0;
-    case TRB_FIELD_VEC2: shape[0] = 2; return 1;
-    case TRB_FIELD_VEC3: shape[0] = 3; return 1;
-    case TRB_FIELD_QUATERNION: shape[0] = 4; return 1;
-    case TRB_FIELD_ROLLER: shape[0] = m->n_rollers; return 1;
-    case TRB_FIELD_ROLLER_VEC3: shape[0] = m->n_rollers; shape[1] = 3; return 2;
-    case TRB_FIELD_ROLLER_QUAT: shape[0] = m->n_rollers; shape[1] = 4; return 2;
-    case TRB_FIELD_POCKET_FACE: shape[0] = m->n_rollers; shape[1] = m->n_slots; return 2;
+  case TRB_FIELD_SCALAR: return 0;
+  case TRB_FIELD_VEC2: shape[0] = 2; return 1;
+  case TRB_FIELD_VEC3: shape[0] = 3; return 1;
+  case TRB_FIELD_QUATERNION: shape[0] = 4; return 1;
+  case TRB_FIELD_ROLLER: shape[0] = m->n_rollers; return 1;
+  case TRB_FIELD_ROLLER_VEC3:
+    shape[0] = m->n_rollers;
+    shape[1] = 3;
+    return 2;
+  case TRB_FIELD_ROLLER_QUAT:
+    shape[0] = m->n_rollers;
+    shape[1] = 4;
+    return 2;
+  case TRB_FIELD_POCKET_FACE:
+    shape[0] = m->n_rollers;
+    shape[1] = m->n_slots;
+    return 2;
   }
   return 0;
 }
@@ -91,10 +100,10 @@ static void put_cage(writer *w, const double *y)
   const trb_model     *m = d->model;
   const trb_drive     *drive = &d->drive;
   const trb_cage_pose *c = &d->cage;
-  const trb_vec3       plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage_rail_offset);
-  const trb_vec3       axis = from_r(drive, c->frame.a), centre = from_r(drive, c->x);
-  const trb_frame      body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};
-  trb_vec3             force = {0, 0, 0}, moment = {0, 0, 0};
+  const trb_vec3  plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage_rail_offset);
+  const trb_vec3  axis = from_r(drive, c->frame.a), centre = from_r(drive, c->x);
+  const trb_frame body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};
+  trb_vec3        force = {0, 0, 0}, moment = {0, 0, 0};
   for (int j = 0; j < m->n_rollers; j++) {
     force = trb_add(force, d->loads[j].cage_force);
     moment = trb_add(moment, d->loads[j].cage_moment);
@@ -149,7 +158,8 @@ static race_means race_mean(const trb_model *m, const trb_detail *detail, int ra
     out.film += q * field[TRB_LANE_film][k];
     out.film_parameter += q * field[TRB_LANE_film_parameter][k];
     /* sliding along rolling: the mean velocity's direction */
-    const double along = field[TRB_LANE_sx][k] * field[TRB_LANE_mx][k] + field[TRB_LANE_sy][k] * field[TRB_LANE_my][k] + field[TRB_LANE_sz][k] * field[TRB_LANE_mz][k];
+    const double along = field[TRB_LANE_sx][k] * field[TRB_LANE_mx][k] + field[TRB_LANE_sy][k] * field[TRB_LANE_my][k] +
+                         field[TRB_LANE_sz][k] * field[TRB_LANE_mz][k];
     const double mean = field[TRB_LANE_mean_speed][k];
     out.slide_roll += q * along / (mean * mean);
     out.traction -= q * field[TRB_LANE_friction_coefficient][k] / field[TRB_LANE_sliding_speed][k] * field[TRB_LANE_sy][k] +

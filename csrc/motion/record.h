@@ -17,7 +17,7 @@ enum {
 #define TRB_FIELD_ENUM(name, group, kind, unit, text) TRB_FIELD_AT_##name,
   TRB_FIELDS(TRB_FIELD_ENUM)
 #undef TRB_FIELD_ENUM
-  TRB_N_FIELDS
+      TRB_N_FIELDS
 };
 
 extern const trb_field_info trb_field_table[TRB_N_FIELDS];

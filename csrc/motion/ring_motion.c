@@ -104,10 +104,8 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
     int low = 0, high = motion->n - 1;
     while (high - low > 1) {
       const int mid = (low + high) / 2;
-      if (time >= table[(size_t)mid * TRB_MOTION_COLUMNS])
-        low = mid;
-      else
-        high = mid;
+      if (time >= table[(size_t)mid * TRB_MOTION_COLUMNS]) low = mid;
+      else high = mid;
     }
     const double *a = table + (size_t)low * TRB_MOTION_COLUMNS;
     const double  h = a[TRB_MOTION_COLUMNS] - a[0], s = (time - a[0]) / h;

@@ -138,5 +138,5 @@ static int erk_worst(trb_integrator *it)
   return worst;
 }
 
-const trb_integrator_kind trb_integrator_erk = {"erk", "explicit Runge-Kutta of ARKODE", erk_create, erk_free, erk_restart, erk_step,
-                                                erk_interpolate, read_totals, erk_worst};
+const trb_integrator_kind trb_integrator_erk = {
+    "erk", "explicit Runge-Kutta of ARKODE", erk_create, erk_free, erk_restart, erk_step, erk_interpolate, read_totals, erk_worst};

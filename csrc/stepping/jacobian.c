@@ -12,10 +12,8 @@ trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, con
   trb_status status = trb_dynamics_create(m, motion, variant, &j->d, message);
   if (status == TRB_OK) {
     j->moved = calloc((size_t)trb_state_size(m), sizeof *j->moved);
-    if (j->moved == NULL)
-      status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
-    else
-      status = trb_tangents_create(m, &j->tangents, message);
+    if (j->moved == NULL) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
+    else status = trb_tangents_create(m, &j->tangents, message);
   }
   if (status != TRB_OK) {
     trb_jacobian_free(j);

@@ -23,7 +23,8 @@ static void describe(const trb_model *m, int index, trb_message *out)
   static const char *const cage[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(TRB_STATE_NAME)};
 #undef TRB_STATE_NAME
   if (index < 0) (void)trb_fail(out, TRB_OK, "no single quantity");
-  else if (index < trb_state_cage(m)) (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
+  else if (index < trb_state_cage(m))
+    (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
   else if (index < trb_state_main_size(m)) (void)trb_fail(out, TRB_OK, "cage, %s", cage[index - trb_state_cage(m)]);
   else (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(m));
 }
@@ -44,7 +45,8 @@ static trb_status check_state(const trb_model *m, double time, const double *sta
                       y[TRB_ROLLER_skew]);
   }
   if (fabs(state[trb_state_cage(m) + TRB_CAGE_skew]) > 1.5)
-    return trb_fail(message, TRB_ERR_STATE, "cage: skew = %g rad: beyond what the coordinates hold", state[trb_state_cage(m) + TRB_CAGE_skew]);
+    return trb_fail(message, TRB_ERR_STATE, "cage: skew = %g rad: beyond what the coordinates hold",
+                    state[trb_state_cage(m) + TRB_CAGE_skew]);
   return TRB_OK;
 }
 
@@ -88,8 +90,9 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   return TRB_OK;
 }
 
-trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant, const trb_settings *settings,
-                                 double time, const double *state, trb_simulation **simulation, trb_message *message)
+trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant,
+                                 const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
+                                 trb_message *message)
 {
   *simulation = NULL;
   trb_status status = check_settings(settings, message);
@@ -178,7 +181,8 @@ trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, dou
   *steps = 0;
   while (*rows < n) {
     const double time = times[*rows];
-    if (time < s->previous) return trb_fail(message, TRB_ERR_INPUT, "output time %g s lies before the last step, at %g s", time, s->previous);
+    if (time < s->previous)
+      return trb_fail(message, TRB_ERR_INPUT, "output time %g s lies before the last step, at %g s", time, s->previous);
     if (time <= s->integrator.time) {
       const trb_status status = output(s, time, records + (size_t)*rows * length, message);
       if (status != TRB_OK) return status;

@@ -8,17 +8,18 @@
 typedef struct trb_simulation {
   const trb_model  *model;
   const trb_motion *motion;
-  trb_dynamics     *dynamics;   /* of the integration */
-  trb_dynamics     *onlooker;   /* of records and looks from outside */
+  trb_dynamics     *dynamics; /* of the integration */
+  trb_dynamics     *onlooker; /* of records and looks from outside */
   trb_integrator    integrator;
   trb_detail       *detail;
-  double           *between;    /* state at an output time */
-  double            previous;   /* start of the last step, s */
+  double           *between;  /* state at an output time */
+  double            previous; /* start of the last step, s */
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */
-trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant, const trb_settings *settings,
-                                 double time, const double *state, trb_simulation **simulation, trb_message *message);
+trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant,
+                                 const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
+                                 trb_message *message);
 void       trb_simulation_free(trb_simulation *s);
 
 /* Start the integrator again at a state. */

@@ -3,7 +3,8 @@
 #include <stdio.h>
 
 #if TRB_SUNDIALS_AT_LEAST(7, 0)
-static void keep_message(int line, const char *function, const char *file, const char *text, SUNErrCode code, void *data, SUNContext context)
+static void keep_message(int line, const char *function, const char *file, const char *text, SUNErrCode code, void *data,
+                         SUNContext context)
 {
   trb_sundials *s = data;
   (void)line;

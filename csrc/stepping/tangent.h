@@ -18,7 +18,7 @@ _Static_assert(TRB_TANGENT_IN == TRB_NR + 1 && (int)TRB_FLOW_SIZE <= (int)TRB_TA
 
 typedef struct trb_tangent {
   double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, corrected */
-  double found[TRB_NR][TRB_NR];  /* rates' slopes as differences gave them, column by column */
+  double found[TRB_NR][TRB_NR];                  /* rates' slopes as differences gave them, column by column */
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
   double per[TRB_TANGENT_IN]; /* what measures distances: one over the tolerances there, so that the sum of squares is their mean */

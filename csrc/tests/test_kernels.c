@@ -56,6 +56,31 @@ static void compare(const trb_model *m, const char *variant, const trb_dynamics 
   }
 }
 
+/* Any choice of rollers has the loads that they have among all; the others' loads are left alone. */
+static void check_choice(trb_dynamics *d)
+{
+  const trb_model *m = d->model;
+  trb_instant      at = trb_dynamics_instant(d);
+  trb_roller_load  all[12], some[12];
+  int              chosen[12], taken[12] = {0};
+  trb_contact_rings_only(m, &at, d->work, all);
+  memset(some, 0x55, sizeof some);
+  at.chosen = chosen;
+  at.n = 0;
+  for (int j = 0; j < m->n_rollers; j++) {
+    taken[j] = rig_random(&seed) > 0.3;
+    if (taken[j]) chosen[at.n++] = j;
+  }
+  trb_contact_rings_only(m, &at, d->work, some);
+  for (int j = 0; j < m->n_rollers; j++) {
+    const double   *one = (const double *)&all[j], *other = (const double *)&some[j];
+    trb_roller_load untouched;
+    memset(&untouched, 0x55, sizeof untouched);
+    if (!taken[j]) CHECK(memcmp(&some[j], &untouched, sizeof untouched) == 0);
+    for (size_t i = 0; taken[j] && i < sizeof all[j] / sizeof *one; i++) CHECK_NEAR(other[i], one[i], 1e-12 * fabs(one[i]));
+  }
+}
+
 static void check_scene(const char *name, const trb_params *params, double speed)
 {
   trb_model    *m = rig_model(params);
@@ -79,6 +104,10 @@ static void check_scene(const char *name, const trb_params *params, double speed
       trb_dynamics_pose(other, 0.01, disturbed);
       trb_dynamics_loads(other, NULL);
       compare(m, variant, exact, other, detail);
+      memset(&other->work->counters, 0, sizeof other->work->counters);
+      check_choice(other);
+      memset(&other->work->counters, 0, sizeof other->work->counters);
+      trb_dynamics_loads(other, NULL);
       /* what is evaluated is the same, too */
       trb_counters a = exact->work->counters, b = other->work->counters;
       memset(&exact->work->counters, 0, sizeof a);
