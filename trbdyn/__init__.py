@@ -24,9 +24,10 @@ if TYPE_CHECKING:
     from trbdyn.lubricants import Lubricant
     from trbdyn.motion import History
     from trbdyn.results import Result, load
+    from trbdyn.resuming import resume
     from trbdyn.run_options import RunOptions
     from trbdyn.scene import Scene, Start
-    from trbdyn.simulation import Simulation, resume
+    from trbdyn.simulation import Simulation
     from trbdyn.toml_case import load_case
 
 _MODULES = {
@@ -58,7 +59,7 @@ _NAMES = {
     "TrbError": "trbdyn.errors",
     "load": "trbdyn.results",
     "load_case": "trbdyn.toml_case",
-    "resume": "trbdyn.simulation",
+    "resume": "trbdyn.resuming",
 }
 
 __all__ = [

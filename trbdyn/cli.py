@@ -205,7 +205,7 @@ def _run(options: argparse.Namespace) -> int:
 def _resume(options: argparse.Namespace) -> int:
     import warnings
 
-    from trbdyn.simulation import resume
+    from trbdyn.resuming import resume
 
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)

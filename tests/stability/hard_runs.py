@@ -13,7 +13,7 @@ from hard_scenes import Hard, smooth
 from numpy.typing import NDArray
 
 import trbdyn as trb
-from trbdyn import simulation
+from trbdyn import running
 
 Array = NDArray[np.float64]
 
@@ -93,12 +93,12 @@ def _run(sim: trb.Simulation, duration: float, slow: bool = False) -> tuple[trb.
         return not slow and clock.process_time() - began > PATIENCE
 
     began = clock.process_time()
-    before = simulation.CHUNK_RECORDS
-    simulation.CHUNK_RECORDS = WATCH_RECORDS
+    before = running.CHUNK_RECORDS
+    running.CHUNK_RECORDS = WATCH_RECORDS
     try:
         result = sim.run(duration=duration, save_every=max(duration / 2000, 1e-5), callback=watch)
     finally:
-        simulation.CHUNK_RECORDS = before
+        running.CHUNK_RECORDS = before
     return result, np.array(watched)
 
 

@@ -1,0 +1,310 @@
+"""One run of a simulation: its records, callbacks, signals, checkpoints, and how it ends."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import signal
+import threading
+import time as clock
+from collections.abc import Callable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core, checkpoint
+from trbdyn import fields as field_table
+from trbdyn.checkpoint import Checkpoint
+from trbdyn.errors import FileError, StepError
+from trbdyn.motion import History
+from trbdyn.result_file import ResultWriter, reason
+from trbdyn.results import Result, load
+from trbdyn.run_options import RunOptions
+from trbdyn.sources import segment_paths
+
+if TYPE_CHECKING:
+    from trbdyn.simulation import Simulation
+
+Array = NDArray[np.float64]
+Callback = Callable[["Simulation"], bool | None]
+
+CHUNK_RECORDS = 256
+"""Records between looks at signals, callbacks and the file."""
+CHUNK_STEPS = 4000
+"""Steps between looks at signals: about a tenth of a second."""
+
+_BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"
+
+
+class Run:
+    """One call of `Simulation.run`, or what is left of it when it is resumed."""
+
+    def __init__(
+        self, sim: Simulation, options: RunOptions, times: Array, callback: Callback | None, done: int = 0
+    ) -> None:
+        self.sim = sim
+        self.options = options
+        self.times = times
+        self.callback = callback
+        self.done = done
+        self.notes: list[str] = []
+        self.kept: list[Array] = []
+        self.filling: Array | None = None
+        self.writer: ResultWriter | None = None
+        self.output: Path | None = None
+        self.interrupted: list[int] = []
+        self.began = clock.perf_counter()
+        self.spent = 0.0
+
+    def write_to(self, output: Path, segment: int = 0, run_id: str | None = None) -> None:
+        """Write records to a file, and checkpoints beside it if there is a schedule. A new run replaces an older one."""
+        sim = self.sim
+        path = output if segment == 0 else output.with_name(f"{output.stem}.part{segment}{output.suffix}")
+        self.writer = ResultWriter(
+            path,
+            scene=sim.scene,
+            layout=sim._model.record_layout(),
+            fields=field_table.table(),
+            groups=self.options.save_groups,
+            meta=self._meta(),
+            geometry=asdict(sim.scene.bearing.geometry),
+            run_id=run_id,
+            segment=segment,
+            first_record=self.done,
+        )
+        self.output = output
+        if run_id is None:
+            try:
+                checkpoint.remove(output)
+                for older in segment_paths(output).values():
+                    older.unlink(missing_ok=True)
+                if self.options.checkpoint_every is not None and sim._core.time == sim._begun:
+                    self._write_checkpoint()
+            except OSError as error:
+                self.writer.close()
+                raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
+
+    def go(self, *, progress: bool) -> Result:
+        from tqdm import tqdm
+
+        sim = self.sim
+        span = float(self.times[-1] - self.times[0])
+        with tqdm(total=span, disable=not progress, unit="s", bar_format=_BAR) as bar:
+            try:
+                with _interrupts() as self.interrupted:
+                    message = self._loop(bar)
+            except _core.CoreStepError as error:
+                result = self._finish(False, str(error))
+                time, body, quantity = sim.time, *_culprit(str(error))
+                raise StepError(str(error), time=time, body=body, quantity=quantity, result=result) from None
+            except StepError as error:
+                error.result = self._finish(False, str(error))
+                raise
+            except KeyboardInterrupt:
+                if self.filling is not None:
+                    self._keep(self.filling[: int(np.count_nonzero(np.isfinite(self.filling[:, 0])))])
+                return self._finish(False, f"stopped by the user at {sim.time:.6g} s")
+            except FileError:
+                self._abandon()
+                raise
+            except BaseException as error:
+                self._finish(False, f"ended by {type(error).__name__} at {sim.time:.6g} s: {error}")
+                raise
+        return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
+
+    def _loop(self, bar: Any) -> str | None:
+        """Until all records are filled; what ended the run before, or None."""
+        sim, every = self.sim, self.options.checkpoint_every
+        due = checkpoint.next_time(sim._begun, every)
+        while self.done < self.times.size:
+            chunk = self.times[self.done : self.done + CHUNK_RECORDS]
+            # a signal may come before the core's answer does: what is filled is seen by its finite times
+            self.filling = records = np.full((chunk.size, sim._model.record_length), np.nan)
+            before = clock.perf_counter()
+            try:
+                rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due)
+            except _core.CoreStepError as error:
+                self._keep(records[: getattr(error, "rows", 0)])
+                raise
+            finally:
+                self.spent += clock.perf_counter() - before
+            self.filling = None
+            self._keep(records[:rows])
+            # the records up to here are made with the past that the integrator is about to forget
+            if sim.time >= due and self.done < self.times.size and self.times[self.done] > sim.time:
+                sim._begin_again()
+                due = checkpoint.next_time(sim.time, every)
+                self._write_checkpoint()
+            bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
+            if sim.scene.effects.bodies == "rollers" and rows:
+                _check_apart(sim, records[:rows])
+            ended = self.callback is not None and self.callback(sim)
+            if self.interrupted:
+                raise KeyboardInterrupt
+            if ended:
+                return f"ended by the callback at {sim.time:.6g} s"
+        return None
+
+    def _keep(self, records: Array) -> None:
+        if not len(records):
+            return
+        self.done += len(records)
+        self.sim._reached = float(self.times[self.done - 1])
+        if self.writer is None:
+            self.kept.append(records)
+        else:
+            self.writer.append(records)
+
+    def _write_checkpoint(self) -> None:
+        """Where the run is now; its records go to the disk first."""
+        if self.writer is None or self.output is None:
+            return
+        sim = self.sim
+        self.writer.sync()
+        found = Checkpoint(
+            run_id=self.writer.run_id,
+            scene=sim.scene.to_dict(),
+            model=sim.scene.fingerprint,
+            options=self.options.to_dict(),
+            instruction_set=sim.instruction_set,
+            build=checkpoint.build_digest(),
+            motion=checkpoint.digest_of(sim._motion),
+            start=float(self.times[0]),
+            end=float(self.times[-1]),
+            time=sim.time,
+            done=self.done,
+            statistics=sim._totals,
+            counters=sim._counted,
+            stepping_s=self.spent,
+            state=sim._core.state(),
+        )
+        checkpoint.write(checkpoint.checkpoint_path(self.output), found)
+
+    def _abandon(self) -> None:
+        """Leave a result file that cannot be written as it is: the records in it can be read, a checkpoint goes on from there."""
+        if self.writer is not None:
+            with contextlib.suppress(FileError):
+                self.writer.close()
+
+    def _meta(self) -> dict[str, Any]:
+        settings = {name: value for name, value in self.options.to_dict().items() if name not in ("save_groups",)}
+        return {
+            "instruction_set": self.sim.instruction_set,
+            "sundials_version": _core.sundials_version(),
+            "core_version": _core.version(),
+            "settings": settings,
+            "notes": self.notes,
+        }
+
+    def _stats(self) -> dict[str, Any]:
+        """Solver statistics of the whole simulation, and the wall time of this run."""
+        sim = self.sim
+        turned = abs(_turns(sim.scene.speed_rpm, float(self.times[0]), sim._reached))
+        bearing = sim._reached - float(self.times[0])
+        stats: dict[str, Any] = {
+            name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
+            for name, value in sim.statistics.items()
+        }
+        return stats | {
+            "wall_s": clock.perf_counter() - self.began,
+            "stepping_s": self.spent,
+            "bearing_time_s": bearing,
+            "revolutions": turned,
+            "wall_s_per_revolution": self.spent / turned if turned > 0.0 else math.nan,
+            "real_time_factor": bearing / self.spent if self.spent > 0.0 else math.nan,
+            "integrator": self.options.integrator,
+            "instruction_set": sim.instruction_set,
+        }
+
+    def _finish(self, success: bool, message: str) -> Result:
+        sim, ended = self.sim, self.sim.state
+        if not success:
+            # what stopped between two records goes on from where it stands
+            sim._reached = ended.time
+        how: dict[str, Any] = {
+            "success": success,
+            "message": message,
+            "stats": self._stats(),
+            "counters": sim.counters,
+            "final_time": ended.time,
+            "final_state": ended.vector,
+        }
+        if self.writer is not None:
+            assert self.output is not None
+            self.writer.finish(**how)
+            if success:
+                checkpoint.remove(self.output)
+            return load(self.output)
+        records = np.concatenate(self.kept) if self.kept else np.empty((0, sim._model.record_length))
+        return Result.from_records(
+            records,
+            sim._model.record_layout(),
+            scene=sim.scene,
+            geometry=asdict(sim.scene.bearing.geometry),
+            meta=self._meta(),
+            groups=self.options.save_groups,
+            **how,
+        )
+
+
+def output_times(start: float, end: float, every: float) -> Array:
+    """Times of the records (s): every so often, and at the end."""
+    count = max(math.ceil((end - start) / every - 1e-9), 1)
+    times: Array = np.asarray(start + every * np.arange(count + 1), dtype=np.float64)
+    times[-1] = end
+    return times
+
+
+@contextlib.contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """A list that Ctrl-C adds to, so that it comes between steps and records and never gets lost; a second one comes at once."""
+    caught: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+
+    def catch(number: int, frame: FrameType | None) -> None:
+        caught.append(number)
+        signal.signal(signal.SIGINT, before)
+
+    if threading.current_thread() is not threading.main_thread() or before is not signal.default_int_handler:
+        yield caught
+        return
+    signal.signal(signal.SIGINT, catch)
+    try:
+        yield caught
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _turns(speed_rpm: float | History, start: float, end: float) -> float:
+    if isinstance(speed_rpm, History):
+        return speed_rpm.integral(start, end) / 60.0
+    return speed_rpm * (end - start) / 60.0
+
+
+def _culprit(text: str) -> tuple[str | None, str | None]:
+    """Body and quantity named at the end of the core's message."""
+    _, _, named = text.partition("largest error: ")
+    body, _, quantity = named.partition(", ")
+    return (body or None, quantity or None) if quantity else (None, None)
+
+
+def _check_apart(sim: Simulation, records: Array) -> None:
+    """Rollers without a cage must not touch each other, as nothing in the model keeps them apart."""
+    places = {name: (offset, shape) for name, offset, shape in sim._model.record_layout()}
+    offset, (count,) = places["roller_orbit_angle"]
+    angles = np.sort(np.mod(records[:, offset : offset + count], 2.0 * math.pi), axis=1)
+    gaps = np.diff(np.concatenate([angles, angles[:, :1] + 2.0 * math.pi], axis=1), axis=1)
+    bearing = sim.scene.bearing
+    nearest = bearing.pitch_diameter * np.sin(0.5 * gaps.min(axis=1))
+    if float(nearest.min()) < bearing.roller.diameter:
+        raise StepError(
+            f"two rollers touch before {sim.time:.6g} s: without a cage nothing in the model keeps them apart; "
+            "shorten the run or give effects.bodies = 'rollers_and_cage'",
+            time=sim.time,
+            body="rollers",
+            quantity="spacing",
+        )
