@@ -20,37 +20,28 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from trbdyn.run_options import RunOptions
-    from trbdyn.study.definition import (
-        Axis,
-        Case,
-        Study,
-        cases,
-        fingerprint,
-        grid,
-        load_study,
-        of_scenes,
-        random,
-        shipped_studies,
-    )
+    from trbdyn.study.definition import Axis, Case, Study, fingerprint
+    from trbdyn.study.design import cases, grid, of_scenes, random
     from trbdyn.study.gather import load, save
     from trbdyn.study.runner import collect, run
+    from trbdyn.study.study_file import load_study, shipped_studies
 
 _NAMES = {
     "Axis": "trbdyn.study.definition",
     "Case": "trbdyn.study.definition",
     "RunOptions": "trbdyn.run_options",
     "Study": "trbdyn.study.definition",
-    "cases": "trbdyn.study.definition",
+    "cases": "trbdyn.study.design",
     "collect": "trbdyn.study.runner",
     "fingerprint": "trbdyn.study.definition",
-    "grid": "trbdyn.study.definition",
+    "grid": "trbdyn.study.design",
     "load": "trbdyn.study.gather",
-    "load_study": "trbdyn.study.definition",
-    "of_scenes": "trbdyn.study.definition",
-    "random": "trbdyn.study.definition",
+    "load_study": "trbdyn.study.study_file",
+    "of_scenes": "trbdyn.study.design",
+    "random": "trbdyn.study.design",
     "run": "trbdyn.study.runner",
     "save": "trbdyn.study.gather",
-    "shipped_studies": "trbdyn.study.definition",
+    "shipped_studies": "trbdyn.study.study_file",
 }
 
 __all__ = [

@@ -43,8 +43,8 @@ def add_sweep_parser(commands: Any, parents: list[argparse.ArgumentParser] | Non
 
 def run_sweep(options: argparse.Namespace) -> int:
     """Run a study; the exit code is 0 if no case failed."""
-    from trbdyn.study.definition import load_study
     from trbdyn.study.runner import run
+    from trbdyn.study.study_file import load_study
 
     study = load_study(options.study)
     folder = Path(options.output or Path(options.study).stem)

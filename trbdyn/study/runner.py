@@ -13,7 +13,8 @@ from trbdyn.errors import InputError
 from trbdyn.run_options import RunOptions
 from trbdyn.scene import Scene
 from trbdyn.study import gather
-from trbdyn.study.definition import Case, Study, of_scenes
+from trbdyn.study.definition import Case, Study
+from trbdyn.study.design import of_scenes
 from trbdyn.study.executors import Outcome, execute
 from trbdyn.study.index import Entry, Index
 from trbdyn.study.work import Observable, Report, Task, as_plain, run_case, said

@@ -1,0 +1,236 @@
+"""Designs of studies: grids, lists and seeded random draws of overrides."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from trbdyn.errors import InputError
+from trbdyn.run_options import RunOptions
+from trbdyn.scene import Scene
+from trbdyn.study.definition import Axis, Base, Case, Overrides, Study, label, plain
+from trbdyn.toml_case import TABLES
+
+
+def _case(base: Base, parameters: Mapping[str, Any], overrides: Overrides) -> Case:
+    try:
+        scene, run = base.build(overrides)
+    except InputError as error:
+        return Case(dict(parameters), None, RunOptions(), str(error))
+    return Case(dict(parameters), scene, run)
+
+
+def _coordinate(value: Any) -> Any:
+    value = plain(value) if isinstance(value, np.generic) else value
+    return value if isinstance(value, bool | int | float | str) else label(value)
+
+
+def _are_sets(values: Any) -> bool:
+    """Whether these are sets of overrides by labels: every key of theirs is a dotted path."""
+    sets = list(values.values()) if isinstance(values, Mapping) else []
+    return bool(sets) and all(isinstance(entry, Mapping) and all("." in str(key) for key in entry) for entry in sets)
+
+
+def _axis(name: str, values: Any) -> Axis:
+    is_path = name.split(".")[0].split("[")[0] in TABLES and not _are_sets(values)
+    if isinstance(values, Mapping):
+        labels = tuple(values)
+        overrides = [{name: value} if is_path else dict(value) for value in values.values()]
+    elif is_path:
+        listed = list(values)
+        labels = tuple(_coordinate(value) for value in listed)
+        overrides = [{name: value} for value in listed]
+    else:
+        raise InputError.of(name, "a sequence", "must be a path, or have a mapping of labels to overrides")
+    if not labels:
+        raise InputError.of(name, "empty", "must have at least one value")
+    if len(set(labels)) != len(labels):
+        raise InputError.of(name, list(labels), "must not have the same value or label twice")
+    return Axis(name, name if is_path else "", labels, tuple(overrides))
+
+
+def _short_names(paths: Sequence[str]) -> list[str]:
+    """The last part of each path where that is enough to tell them apart, else the whole path."""
+    last = [path.rsplit(".", 1)[-1] for path in paths]
+    return [short if last.count(short) == 1 else path for short, path in zip(last, paths, strict=True)]
+
+
+def grid(
+    base: Scene | Mapping[str, Any] | str | FilePath,
+    axes: Mapping[str, Sequence[Any] | Mapping[Any, Any]],
+    run: RunOptions | None = None,
+    *,
+    fixed: Overrides | None = None,
+    name: str = "study",
+) -> Study:
+    """Every combination of values.
+
+    Parameters
+    ----------
+    base : Scene, mapping, str or Path
+        What the axes change: a scene, the tables of a case, a TOML case or the name of a shipped one.
+    axes : mapping of str to sequence or mapping
+        Values of each path, such as ``{"scene.speed_rpm": [1000, 2000]}``. Labels may be given as ``{label: value}``. A name
+        that is no path may have a mapping of labels to sets of overrides, to change several values together.
+    run : RunOptions, optional
+        How each case is run; by default as the base says.
+    fixed : mapping, optional
+        Overrides of every case.
+    name : str
+        Name of the study.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        If an axis is wrong, or no case at all can be built.
+    """
+    changed, listed = Base.of(base, run), [_axis(axis, values) for axis, values in axes.items()]
+    names = _short_names([axis.name for axis in listed])
+    listed = [Axis(short, a.path, a.labels, a.overrides) for short, a in zip(names, listed, strict=True)]
+    made = []
+    for places in itertools.product(*(range(len(axis.labels)) for axis in listed)):
+        overrides = dict(fixed or {})
+        for axis, place in zip(listed, places, strict=True):
+            overrides |= axis.overrides[place]
+        made.append(_case(changed, {a.name: a.labels[p] for a, p in zip(listed, places, strict=True)}, overrides))
+    return _checked(Study(tuple(made), tuple(listed), name))
+
+
+def cases(
+    base: Scene | Mapping[str, Any] | str | FilePath,
+    overrides: Iterable[Overrides],
+    run: RunOptions | None = None,
+    *,
+    name: str = "study",
+) -> Study:
+    """A list of cases, one a set of overrides.
+
+    Parameters
+    ----------
+    base : Scene, mapping, str or Path
+        As in `grid`.
+    overrides : iterable of mapping
+        For each case its values by their paths.
+    run : RunOptions, optional
+        How each case is run; by default as the base says.
+    name : str
+        Name of the study.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        If no case at all can be built.
+    """
+    changed = Base.of(base, run)
+    listed = [dict(entry) for entry in overrides]
+    paths = list(dict.fromkeys(path for entry in listed for path in entry))
+    names = dict(zip(paths, _short_names(paths), strict=True))
+    made = [_case(changed, {names[p]: _coordinate(v) for p, v in entry.items()}, entry) for entry in listed]
+    return _checked(Study(tuple(made), (), name))
+
+
+def of_scenes(scenes: Iterable[Scene | tuple[Scene, RunOptions]], run: RunOptions | None = None) -> Study:
+    """A study of given scenes, each with the same run options or its own."""
+    made = []
+    for place, entry in enumerate(scenes):
+        scene, own = entry if isinstance(entry, tuple) else (entry, run)
+        if own is None:
+            raise InputError.of("run", None, "must be given with scenes: RunOptions(revolutions=...)")
+        made.append(Case({"number": place}, scene, own))
+    return Study(tuple(made))
+
+
+def random(
+    base: Scene | Mapping[str, Any] | str | FilePath,
+    ranges: Mapping[str, Any],
+    count: int,
+    seed: int,
+    run: RunOptions | None = None,
+    *,
+    fixed: Overrides | None = None,
+    name: str = "study",
+) -> Study:
+    """Random cases, the same ones for the same seed.
+
+    Parameters
+    ----------
+    base : Scene, mapping, str or Path
+        As in `grid`.
+    ranges : mapping of str to tuple or mapping
+        For each path a range ``(low, high)``, or ``{"low": ..., "high": ..., "scale": "linear" | "log"}``, or
+        ``{"choice": [...]}``. Whole numbers at both ends give whole numbers, both ends included.
+    count : int
+        Number of cases. A larger count keeps the first ones, and so does another path.
+    seed : int
+        Seed of the random numbers.
+    run : RunOptions, optional
+        How each case is run; by default as the base says.
+    fixed : mapping, optional
+        Overrides of every case.
+    name : str
+        Name of the study.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        If a range is wrong, or no case at all can be built.
+    """
+    if count < 1 or seed < 0:
+        raise InputError.of("count" if count < 1 else "seed", min(count, seed), "must be positive")
+    columns = {path: _draws(path, entry, count, seed) for path, entry in ranges.items()}
+    names = _short_names(list(columns))
+    changed, made = Base.of(base, run), []
+    for place in range(count):
+        drawn = {path: column[place] for path, column in columns.items()}
+        parameters = {n: _coordinate(value) for n, value in zip(names, drawn.values(), strict=True)}
+        made.append(_case(changed, parameters, {**(fixed or {}), **drawn}))
+    return _checked(Study(tuple(made), (), name))
+
+
+def _draws(path: str, entry: Any, count: int, seed: int) -> list[Any]:
+    """Random values of one path: from a stream of its own, one number a case."""
+    unit = np.random.default_rng([seed, *path.encode()]).random(count)
+    if isinstance(entry, Mapping) and set(entry) == {"choice"}:
+        choices = list(entry["choice"])
+        return [choices[int(u * len(choices))] for u in unit]
+    if isinstance(entry, Mapping):
+        if not {"low", "high"} <= set(entry) <= {"low", "high", "scale"}:
+            raise InputError.of(path, dict(entry), "must have low and high, and may have scale; or choice")
+        low, high, scale = entry["low"], entry["high"], entry.get("scale", "linear")
+    else:
+        low, high = entry
+        scale = "linear"
+    if scale not in ("linear", "log") or not low < high or (scale == "log" and low <= 0):
+        raise InputError.of(path, (low, high, scale), "must be a range low < high, linear or log (then above 0)")
+    if scale == "log":
+        return [float(low * (high / low) ** u) for u in unit]
+    if isinstance(low, int) and isinstance(high, int):
+        return [int(low + u * (high - low + 1)) for u in unit]
+    return [float(low + u * (high - low)) for u in unit]
+
+
+def _checked(study: Study) -> Study:
+    """The study; an error if none of its cases can be built, as after a mistyped path."""
+    if not study.cases:
+        raise InputError.of("study", "empty", "must have at least one case")
+    if all(case.scene is None for case in study.cases):
+        raise InputError.of(
+            "study", study.cases[0].parameters, f"no case can be built; the first: {study.cases[0].error}"
+        )
+    return study
