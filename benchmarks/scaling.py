@@ -232,6 +232,10 @@ def draw(report: common.Report) -> Any:
         axes.set_xlabel(label)
         axes.set_title(f"cost against {sweep}")
         axes.set_xticks(x, [f"{value:g}" for value in x])
+        values = [row[name] for row in rows for name in series]
+        if max(values) < 30.0 * min(values):
+            ticks = [t for t in (5, 7, 10, 15, 20, 30, 40, 50, 70, 100, 150) if min(values) <= t <= max(values)]
+            axes.set_yticks(ticks, [f"{tick}" for tick in ticks])
         axes.minorticks_off()
         axes.legend(fontsize=8)
         axes.grid(alpha=0.3)

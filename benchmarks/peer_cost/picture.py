@@ -15,7 +15,7 @@ def draw(rows: list[dict[str, Any]], summary: dict[str, Any]) -> None:
     figure, (left, right) = plt.subplots(
         1, 2, figsize=(12.0, 6.0), width_ratios=[2.2, 1.0], constrained_layout=True
     )  # fmt: skip
-    colours = plt.get_cmap("tab10").colors
+    colours = plt.get_cmap("tab20").colors
     for index, row in enumerate(rows):
         own = row["model"] == "core"
         points = sorted(row["points"], key=lambda point: point["error"])
@@ -29,7 +29,8 @@ def draw(rows: list[dict[str, Any]], summary: dict[str, Any]) -> None:
             linestyle="-" if own else "--",
             linewidth=2.2 if own else 1.2,
             markersize=6 if own else 4.5,
-            color=colours[index % 10],
+            color=colours[(2 * index) % 20 + index // 10],
+            markerfacecolor="white" if row["jacobian"] == "ours" else None,
             label=text,
         )
     target = summary["target_error_over_cpr"]
