@@ -86,9 +86,37 @@ void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity
   drive->inner.omega = trb_axpy(drive->ring_omega, shaft_speed, axis);
 }
 
+/* Steps that an interval between two knots takes at least. */
+enum { STEPS_AN_INTERVAL = 8 };
+
+static double knot(const trb_motion *motion, int i) { return motion->table[(size_t)i * TRB_MOTION_COLUMNS]; }
+
+/* Index of the last knot at or before a time between the first and the last. */
+static int interval_of(const trb_motion *motion, double time)
+{
+  int low = 0, high = motion->n - 1;
+  while (high - low > 1) {
+    const int mid = (low + high) / 2;
+    if (time >= knot(motion, mid)) low = mid;
+    else high = mid;
+  }
+  return low;
+}
+
+double trb_motion_stop(const trb_motion *motion, double time)
+{
+  const double first = knot(motion, 0), last = knot(motion, motion->n - 1);
+  if (motion->n == 1 || time >= last) return INFINITY;
+  if (time < first) return first;
+  const int    low = interval_of(motion, time);
+  const double next = knot(motion, low + 1), part = time + (next - knot(motion, low)) / STEPS_AN_INTERVAL;
+  /* no sliver of a step is left before the knot */
+  return part < next - 0.5 * (part - time) ? part : next;
+}
+
 int trb_motion_under_way(const trb_motion *motion, double time)
 {
-  return motion->n > 1 && time > motion->table[0] && time < motion->table[(size_t)(motion->n - 1) * TRB_MOTION_COLUMNS];
+  return motion->n > 1 && time > knot(motion, 0) && time < knot(motion, motion->n - 1);
 }
 
 void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive)
@@ -101,12 +129,7 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
     for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = (hermite){row[1 + 2 * i], 0.0};
     drive->shaft_angle = (late ? motion->angle[motion->n - 1] : 0.0) + row[1 + 2 * TRB_CHANNEL_shaft_speed] * (time - row[0]);
   } else {
-    int low = 0, high = motion->n - 1;
-    while (high - low > 1) {
-      const int mid = (low + high) / 2;
-      if (time >= table[(size_t)mid * TRB_MOTION_COLUMNS]) low = mid;
-      else high = mid;
-    }
+    const int     low = interval_of(motion, time);
     const double *a = table + (size_t)low * TRB_MOTION_COLUMNS;
     const double  h = a[TRB_MOTION_COLUMNS] - a[0], s = (time - a[0]) / h;
     for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = channel_at(a, i, s, h);

@@ -19,8 +19,11 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
 void       trb_motion_free(trb_motion *motion);
 
 /* Whether speed, ring or gravity are between two knots of their histories. */
-int  trb_motion_under_way(const trb_motion *motion, double time);
-void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive);
+int trb_motion_under_way(const trb_motion *motion, double time);
+/* Where a step from a time on must end at the latest, so that no part of a history is stepped over: the next knot, and within an interval
+ * a part of it. INFINITY where nothing changes any more. */
+double trb_motion_stop(const trb_motion *motion, double time);
+void   trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive);
 
 /* Pose of the inner ring: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */
 void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity, const double rotation[2], const double rotation_rate[2],

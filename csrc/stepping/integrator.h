@@ -91,6 +91,9 @@ struct trb_integrator {
   void                      *self;     /* of the kind */
 };
 
+/* A time that no run reaches, s. */
+#define TRB_NEVER 1e30
+
 extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk;
 extern const trb_integrator_kind *const trb_integrator_kinds[];
 extern const int                        trb_n_integrator_kinds;

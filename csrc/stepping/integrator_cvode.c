@@ -167,7 +167,10 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
 {
   bdf        *self = it->self;
   sunrealtype reached = it->time, step = 0.0;
-  const int   flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
+  /* set anew at every step: far away where nothing changes any more */
+  const double stop = trb_motion_stop(it->motion, it->time);
+  if (it->motion->n > 1) CHECK(CVodeSetStopTime(self->memory, fmin(stop, TRB_NEVER)));
+  const int flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "CVODE stopped (%d): %s", flag, self->sundials.text);
   CHECK(CVodeGetLastStep(self->memory, &step));
   self->smallest = fmin(self->smallest, step);

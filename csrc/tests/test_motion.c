@@ -151,6 +151,30 @@ static void test_rotation_vectors(const trb_model *m)
   }
 }
 
+/* From stop to stop every knot is met, every interval in eight parts at least, none a sliver; outside there is but the first knot. */
+static void test_stops(const trb_motion *motion)
+{
+  const double first = table[0][0], last = table[KNOTS - 1][0];
+  double       time = first - 1.0;
+  int          met = 0, steps = 0;
+  CHECK(trb_motion_stop(motion, time) == first);
+  CHECK(trb_motion_stop(motion, last) == (double)INFINITY && trb_motion_stop(motion, last + 1.0) == (double)INFINITY);
+  for (time = first; time < last && steps < 1000; steps++) {
+    const double stop = trb_motion_stop(motion, time);
+    double       interval = 0.0;
+    CHECK(stop > time);
+    for (int i = 1; i < KNOTS; i++) {
+      if (time >= table[i - 1][0] && time < table[i][0]) interval = table[i][0] - table[i - 1][0];
+      CHECK(!(time < table[i][0] && stop > table[i][0]));
+      met += stop == table[i][0];
+    }
+    CHECK(stop - time < 0.19 * interval && stop - time > 0.05 * interval);
+    time = stop;
+  }
+  CHECK(met == KNOTS - 1);
+  CHECK(time == last);
+}
+
 static void refused(int n, const char *says)
 {
   trb_motion *motion = NULL;
@@ -186,6 +210,7 @@ int main(void)
   test_outside(m, motion);
   test_pose(m, motion);
   test_rotation_vectors(m);
+  test_stops(motion);
   test_bad_tables();
   trb_motion_free(motion);
   trb_model_free(m);

@@ -29,7 +29,7 @@ def whirl(**options: object) -> Simulation:
 def states() -> list[tuple[NDArray[np.float64], float]]:
     """Places in mid-collision."""
     sim, found = whirl(), []
-    for start in 0.02 + 0.0073 * np.arange(8):
+    for start in 0.02 + 0.0073 * np.arange(16):
         while sim.time < start or sim.contacts()["pocket_load"].max() < 20.0:
             sim.step()
         found.append((sim.state.vector, sim.time))
@@ -59,8 +59,8 @@ def test_tangents_cost_no_accuracy(
         sim = whirl(accuracy=accuracy, rings_share=share)
         off = [np.abs(cage_path(sim, place) - path).max() / PLAY for place, path in zip(states, truth, strict=True)]
         error[share] = float(np.exp(np.mean(np.log(off))))
-    # geometric means over eight windows of a path that impacts make scatter
-    assert error[RunOptions().rings_share] < 2.0 * error[0.0]
+    # geometric means over sixteen windows of errors that impacts scatter over a factor of ten
+    assert error[RunOptions().rings_share] < 3.0 * error[0.0]
     assert error[RunOptions().rings_share] < {"standard": 5e-3, "reference": 5e-4}[accuracy]
 
 

@@ -185,21 +185,23 @@ def unloaded_within(kit: SimpleNamespace, within: float, effects: Effects) -> Re
     return kit.simulate(effects, scenery={"ring": "follows", "axial_load": load}).run(duration=6e-3)
 
 
-@pytest.mark.parametrize("within", [1e-5, 1e-6])
+@pytest.mark.parametrize("within", [1e-5, 1e-6, 1e-8, 1e-9])
 @pytest.mark.parametrize("effects", [PAPER, STANDARD], ids=["paper", "standard"])
 def test_the_work_of_a_sudden_load_is_in_the_balance(kit: SimpleNamespace, within: float, effects: Effects) -> None:
+    """However sudden: no step passes over it."""
     result = unloaded_within(kit, within, effects)
     assert result.energy_audit.work["ring"] > 1.0
     assert closure(result) < 1e-2
 
 
-def test_a_load_that_changes_between_two_evaluations_leaves_the_audit_open(kit: SimpleNamespace) -> None:
-    """Within 1 ns no evaluation may see the ring move. Then its work is missing in the audit, and in nothing else: bodies move
-    as under a change of 1 us.
-    """
-    seen, unseen = unloaded_within(kit, 1e-6, PAPER), unloaded_within(kit, 1e-9, PAPER)
-    work, residual = unseen.energy_audit.work["ring"], unseen.energy_audit.residual
-    assert work - residual == pytest.approx(seen.energy_audit.work["ring"], rel=0.1)
-    np.testing.assert_allclose(unseen.kinetic_energy[-1], seen.kinetic_energy[-1], rtol=1e-2)
-    losses = [sum(float(result[f"loss_{name}"][-1]) for name in LOSSES) for result in (seen, unseen)]
-    np.testing.assert_allclose(losses[1], losses[0], rtol=0.05)
+@pytest.mark.parametrize("integrator", ["bdf", "erk"])
+def test_a_shock_between_two_steps_is_not_missed(kit: SimpleNamespace, integrator: str) -> None:
+    """A cage that falls freely has the impulse of a shock far shorter than a step."""
+    effects = Effects.frictionless().replace(pocket_bars=False, pocket_ends=False)
+    width, height = 1e-8, 1e6
+    pulse = [0.0, 0.0, height, 0.0, 0.0]
+    times = [0.0, 1e-3, 1e-3 + width, 1e-3 + 2 * width, 2e-3]
+    gravity = (0.0, History.table(times, pulse), 0.0)
+    sim = kit.simulate(effects, scenery={"gravity": gravity}, integrator=integrator)
+    result = sim.run(duration=1.5e-3)
+    assert float(result.cage_velocity[-1, 1]) == pytest.approx(width * height, rel=1e-3)
