@@ -24,12 +24,13 @@ if TYPE_CHECKING:
     from trbdyn.study.design import cases, grid, of_scenes, random
     from trbdyn.study.gather import load, save
     from trbdyn.study.runner import collect, run
-    from trbdyn.study.study_file import load_study, shipped_studies
+    from trbdyn.study.study_file import STUDIES, load_study, shipped_studies
 
 _NAMES = {
     "Axis": "trbdyn.study.definition",
     "Case": "trbdyn.study.definition",
     "RunOptions": "trbdyn.run_options",
+    "STUDIES": "trbdyn.study.study_file",
     "Study": "trbdyn.study.definition",
     "cases": "trbdyn.study.design",
     "collect": "trbdyn.study.runner",
@@ -45,6 +46,7 @@ _NAMES = {
 }
 
 __all__ = [
+    "STUDIES",
     "Axis",
     "Case",
     "RunOptions",

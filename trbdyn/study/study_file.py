@@ -11,6 +11,7 @@ from trbdyn.study.design import cases, grid, random
 from trbdyn.toml_case import DATA
 
 STUDIES: Final = DATA / "studies"
+"""Where the shipped studies lie."""
 _KINDS: Final = ("grid", "list", "random")
 
 
