@@ -114,10 +114,12 @@ double trb_motion_stop(const trb_motion *motion, double time)
   return part < next - 0.5 * (part - time) ? part : next;
 }
 
-int trb_motion_under_way(const trb_motion *motion, double time)
+int trb_motion_changes(const trb_motion *motion, double from, double to)
 {
-  return motion->n > 1 && time > knot(motion, 0) && time < knot(motion, motion->n - 1);
+  return motion->n > 1 && to > knot(motion, 0) && from < knot(motion, motion->n - 1);
 }
+
+int trb_motion_under_way(const trb_motion *motion, double time) { return trb_motion_changes(motion, time, time); }
 
 void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive)
 {

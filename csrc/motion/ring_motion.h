@@ -20,6 +20,8 @@ void       trb_motion_free(trb_motion *motion);
 
 /* Whether speed, ring or gravity are between two knots of their histories. */
 int trb_motion_under_way(const trb_motion *motion, double time);
+/* Whether they are so at any time between two. */
+int trb_motion_changes(const trb_motion *motion, double from, double to);
 /* Where a step from a time on must end at the latest, so that no part of a history is stepped over: the next knot, and within an interval
  * a part of it. INFINITY where nothing changes any more. */
 double trb_motion_stop(const trb_motion *motion, double time);

@@ -14,6 +14,7 @@
   X(max_order,      2,     1,     5,    "highest order of BDF") \
   X(erk_order,      5,     2,     8,    "order of the explicit method") \
   X(rings_age,      1e-2,  0,     1e3,  "bearing time after which the rings' part of the Jacobian is evaluated anew, s") \
+  X(rings_uses,     20,    1,     1e6,  "Jacobians after which the same is done") \
   X(rings_share,    0.1,   0,     1,    "share of the step's tolerance that forces of raceways and ribs may be off between exact evaluations") \
   X(jacobian_every, 51,    1,     1e6,  "most steps between evaluations of the pockets' part of the Jacobian") \
   X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \

@@ -20,6 +20,7 @@ typedef struct bdf {
   trb_statistics  before;    /* totals up to the last restart */
   double          smallest;  /* smallest step, s */
   double          filled_at; /* end of the last step when the Jacobian was last evaluated, s */
+  int             uses;      /* Jacobians that the rings' part has served since it was evaluated */
 } bdf;
 
 static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
@@ -47,12 +48,16 @@ static int jacobian(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix,
   (void)a;
   (void)b;
   (void)c;
-  /* the rings' part anew: when it is old, or when Newton's method failed with the older one within this step */
-  const trb_jacobian *jac = self->jacobian;
-  const int           again = it->time == self->filled_at && jac->tangents->time < it->time;
-  const int           old = fabs(time - jac->tangents->time) > it->settings.rings_age;
+  /* the rings' part anew: when it is old or has served often, when Newton's method failed with it before within this step, and always
+   * while speed or ring change or have just done so: an old stiff slope makes corrections so small that they seem to converge */
+  const double made = self->jacobian->tangents->time;
+  const int    again = it->time == self->filled_at && made < it->time;
+  const int    old = fabs(time - made) > it->settings.rings_age || self->uses >= it->settings.rings_uses;
+  const int    changing = trb_motion_changes(it->motion, time - it->settings.rings_age, time);
+  const int    fresh = again || old || changing;
   self->filled_at = it->time;
-  trb_jacobian_fill(self->jacobian, time, N_VGetArrayPointer(y), again || old, trb_arrow_of(matrix));
+  self->uses = fresh ? 0 : self->uses + 1;
+  trb_jacobian_fill(self->jacobian, time, N_VGetArrayPointer(y), fresh, trb_arrow_of(matrix));
   return 0;
 }
 
@@ -157,6 +162,7 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   self->before = so_far;
   /* nothing is carried over a restart: what follows depends on time and state alone */
   self->filled_at = -INFINITY;
+  self->uses = 0;
   trb_tangents_forget(self->jacobian->tangents);
   ((trb_arrow_factors *)self->solver->content)->gamma = 0.0;
   CHECK(CVodeReInit(self->memory, it->time, self->y));

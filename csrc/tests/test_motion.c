@@ -172,6 +172,9 @@ static void test_stops(const trb_motion *motion)
     time = stop;
   }
   CHECK(met == KNOTS - 1);
+  CHECK(!trb_motion_changes(motion, first - 1.0, first) && trb_motion_changes(motion, first - 1.0, first + 1e-9));
+  CHECK(trb_motion_changes(motion, last - 1e-9, last + 1.0) && !trb_motion_changes(motion, last, last + 1.0));
+  CHECK(!trb_motion_under_way(motion, first) && trb_motion_under_way(motion, 0.5 * (first + last)) && !trb_motion_under_way(motion, last));
   CHECK(time == last);
 }
 
