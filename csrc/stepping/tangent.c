@@ -8,8 +8,8 @@ const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
 /* Turn of the frame that counts as one tolerance, and by which slopes in it are evaluated, rad. */
 static const double turn_unit = 1e-3, turn_difference = 1e-5;
-/* Evaluations that an origin must serve, it or those before it in the mean, for its tangent to be used; the last one's weight in that. */
-static const double enough = 3.0, newest = 0.2;
+/* Evaluations that origins must serve in the mean, or the present one must have, for its tangent to be used; the last one's weight in the mean. */
+static const double enough = 3.0, enough_now = 9.0, newest = 0.2;
 /* Reaches: least, largest; growth and decline at once; distance beyond which a tangent learns nothing. */
 static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
 
@@ -212,7 +212,7 @@ void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent
     t->beyond[j] = !(distance2 <= r->reach * r->reach);
     t->touching[j] = !trb_dynamics_clear(d, j, y);
     r->served += !t->beyond[j];
-    const int follows = !t->beyond[j] && (r->usual >= enough || r->served > enough);
+    const int follows = !t->beyond[j] && (r->usual >= enough || r->served > enough_now);
     if (follows) {
       kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->flows[j]);
       keep_signs(t->flows[j]);
