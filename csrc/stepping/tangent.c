@@ -10,6 +10,8 @@ const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 static const double turn_unit = 1e-3, turn_difference = 1e-5;
 /* Evaluations that origins must serve in the mean, or the present one must have, for its tangent to be used; the last one's weight in the mean. */
 static const double enough = 3.0, enough_now = 9.0, newest = 0.2;
+/* Error in its powers that a tangent may have. */
+static const double power_share = 0.03;
 /* Reaches: least, largest; growth and decline at once; distance beyond which a tangent learns nothing. */
 static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
 
@@ -135,6 +137,17 @@ static double step_error(const trb_tangent *r, const trb_tangent_measure *measur
   return sqrt(sum);
 }
 
+/* An error in the powers over all that the roller turns over: what a stiff contact hides from the state shows in its work. */
+static double power_error(const double *flow, const double *error)
+{
+  double off = 0.0, all = 0.0;
+  for (int i = TRB_FLOW_quadrature; i < TRB_FLOW_SIZE; i++) {
+    off += fabs(error[i]);
+    all += fabs(flow[i]);
+  }
+  return off / (all + 1e-300);
+}
+
 /* An exact flow becomes the origin: slopes corrected along the step, reach set by the error that was found. */
 static void learn(trb_tangent *r, const trb_tangent_measure *measure, int roller, const double *y, double turn, const double *flow)
 {
@@ -147,7 +160,8 @@ static void learn(trb_tangent *r, const trb_tangent_measure *measure, int roller
     double direction[TRB_TANGENT_IN];
     kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, error);
     for (int i = 0; i < TRB_TANGENT_OUT; i++) error[i] = flow[i] - error[i];
-    const double found = step_error(r, measure, roller, error), factor = caution * sqrt(measure->share / (found + 1e-300));
+    const double in_state = step_error(r, measure, roller, error), in_power = power_error(flow, error) / power_share;
+    const double factor = caution / sqrt(trb_max(in_state / measure->share, in_power) + 1e-300);
     r->reach = trb_clamp(length * trb_clamp(factor, decline, growth), least_reach, largest_reach);
     for (int c = 0; c < TRB_TANGENT_IN; c++) direction[c] = step[c] * r->per[c] * r->per[c] / (length * length);
     for (int c = 0; c < TRB_TANGENT_IN; c++)
