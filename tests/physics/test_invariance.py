@@ -146,6 +146,7 @@ def test_reversed_run_is_the_mirror_image(kit: SimpleNamespace) -> None:
     effects = Effects.standard().replace(gravity=False)
     runs = []
     for speed in (3000.0, -3000.0):
+        # every force exact: a tangent's reach turns on roundings, which the mirror does not share
         sim = kit.simulate(effects, scenery={"speed_rpm": speed}, accuracy="reference", rings_share=0.0)
         vector = sim.state.vector
         state = sim.view(vector)
