@@ -35,6 +35,7 @@ typedef struct trb_block_kernels {
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);
   /* value + slope step; slope column by column. */
   void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, double *flow);
+  /* Whether all entries are finite. */
   int (*finite)(const double *x, int n);
 } trb_block_kernels;
 

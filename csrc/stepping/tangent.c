@@ -148,13 +148,13 @@ static double power_error(const double *flow, const double *error)
   return off / (all + 1e-300);
 }
 
-/* An exact flow becomes the origin: slopes corrected along the step, reach set by the error that was found. */
+/* An exact flow becomes the origin: slopes corrected along the step (Broyden 1965, Math. Comp. 19, 577, with the tolerances' metric), reach
+ * set by the error that was found. */
 static void learn(trb_tangent *r, const trb_tangent_measure *measure, int roller, const double *y, double turn, const double *flow)
 {
   const trb_block_kernels *kernels = measure->factors->kernels;
-  double                   step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT], sum = 0.0;
-  for (int i = 0; i < TRB_FLOW_SIZE; i++) sum += flow[i] * 0.0;
-  if (!isfinite(sum)) return;
+  double                   step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];
+  if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
   const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step)) : 0.0;
   if (r->known && length < farthest) {
     double direction[TRB_TANGENT_IN];
