@@ -10,36 +10,12 @@ static SUNMatrix_ID matrix_id(SUNMatrix matrix)
   return SUNMATRIX_CUSTOM;
 }
 
-static SUNMatrix matrix_clone(SUNMatrix matrix)
-{
-  const trb_arrow *arrow = trb_arrow_of(matrix);
-  return trb_arrow_matrix(arrow->n, arrow->with_cage, matrix->sunctx);
-}
-
 static void matrix_destroy(SUNMatrix matrix)
 {
   if (matrix == NULL) return;
   trb_arrow_free(matrix->content);
   matrix->content = NULL;
   SUNMatFreeEmpty(matrix);
-}
-
-static int matrix_zero(SUNMatrix matrix)
-{
-  trb_arrow_zero(trb_arrow_of(matrix));
-  return 0;
-}
-
-static int matrix_copy(SUNMatrix from, SUNMatrix to)
-{
-  trb_arrow_copy(trb_arrow_of(from), trb_arrow_of(to));
-  return 0;
-}
-
-static int matrix_scale_add_identity(sunrealtype c, SUNMatrix matrix)
-{
-  trb_arrow_scale_add_identity(trb_arrow_of(matrix), c);
-  return 0;
 }
 
 SUNMatrix trb_arrow_matrix(int n_rollers, int with_cage, SUNContext context)
@@ -53,11 +29,7 @@ SUNMatrix trb_arrow_matrix(int n_rollers, int with_cage, SUNContext context)
   }
   matrix->content = arrow;
   matrix->ops->getid = matrix_id;
-  matrix->ops->clone = matrix_clone;
   matrix->ops->destroy = matrix_destroy;
-  matrix->ops->zero = matrix_zero;
-  matrix->ops->copy = matrix_copy;
-  matrix->ops->scaleaddi = matrix_scale_add_identity;
   return matrix;
 }
 

@@ -18,15 +18,70 @@ enum { ACCUMULATORS = 16 };
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
 /* Factors that keep an entry or not; rows are read in one piece, where a single entry that was just written would hold the load up. */
-#define ROW(c) {c > 0, c > 1, c > 2, c > 3, c > 4, c > 5, c > 6, c > 7, c > 8, c > 9, c > 10, 1}
-static const double before[TRB_NR][TRB_NP] = {ROW(0), ROW(1), ROW(2), ROW(3), ROW(4), ROW(5), ROW(6), ROW(7), ROW(8), ROW(9), ROW(10)};
+#define ROWS {ROW(0), ROW(1), ROW(2), ROW(3), ROW(4), ROW(5), ROW(6), ROW(7), ROW(8), ROW(9), ROW(10), ROW(11)}
+#define ROW(c) {c > 0, c > 1, c > 2, c > 3, c > 4, c > 5, c > 6, c > 7, c > 8, c > 9, c > 10, c > 11}
+static const double before[TRB_NP][TRB_NP] = ROWS;
 #undef ROW
-#define ROW(c) {c == 0, c == 1, c == 2, c == 3, c == 4, c == 5, c == 6, c == 7, c == 8, c == 9, c == 10, 0}
-static const double unit[TRB_NR][TRB_NP] = {ROW(0), ROW(1), ROW(2), ROW(3), ROW(4), ROW(5), ROW(6), ROW(7), ROW(8), ROW(9), ROW(10)};
+#define ROW(c) {c == 0, c == 1, c == 2, c == 3, c == 4, c == 5, c == 6, c == 7, c == 8, c == 9, c == 10, c == 11}
+static const double unit[TRB_NP][TRB_NP] = ROWS;
 #undef ROW
 
 /* 1 for a roller's entries, 0 for the padding. */
 static const double roller[TRB_NP] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0};
+
+/* Pivots c and c + 1 of Gauss-Jordan in place, as they stand. Gives the largest multiplier of a row below them. */
+static inline double take_two(double (*restrict a)[TRB_NP], int n, int c)
+{
+  const int    d = c + 1;
+  const double per = 1.0 / a[c][c], beside = per * a[c][d], below = a[d][c], per2 = 1.0 / (a[d][d] - below * beside);
+  double       row[TRB_NP], row2[TRB_NP], keep[TRB_NP], most = fabs(below), most2 = 0.0;
+  for (int k = 0; k < TRB_NP; k++) keep[k] = 1.0 - unit[c][k] - unit[d][k];
+  for (int k = 0; k < TRB_NP; k++) row[k] = per * ((1.0 - unit[c][k]) * a[c][k] + unit[c][k]);
+  for (int k = 0; k < TRB_NP; k++) row2[k] = (1.0 - unit[c][k]) * a[d][k] - below * row[k];
+  for (int k = 0; k < TRB_NP; k++) row2[k] = per2 * ((1.0 - unit[d][k]) * row2[k] + unit[d][k]);
+  for (int k = 0; k < TRB_NP; k++) row[k] = (1.0 - unit[d][k]) * row[k] - beside * row2[k];
+  for (int i = d + 1; i < n; i++) most = larger(most, fabs(a[i][c]));
+  for (int i = 0; i < n; i++) {
+    const double m = a[i][c], m2 = a[i][d];
+    if (i > d) most2 = larger(most2, fabs(m2 - m * beside));
+    for (int k = 0; k < TRB_NP; k++) a[i][k] = keep[k] * a[i][k] - m * row[k] - m2 * row2[k];
+  }
+  for (int k = 0; k < TRB_NP; k++) a[c][k] = row[k];
+  for (int k = 0; k < TRB_NP; k++) a[d][k] = row2[k];
+  return larger(most * fabs(per), most2 * fabs(per2));
+}
+
+static inline void take(double (*restrict a)[TRB_NP], int n, int c)
+{
+  const double per = 1.0 / a[c][c];
+  double       row[TRB_NP], keep[TRB_NP];
+  for (int k = 0; k < TRB_NP; k++) keep[k] = 1.0 - unit[c][k];
+  for (int k = 0; k < TRB_NP; k++) row[k] = per * (keep[k] * a[c][k] + unit[c][k]);
+  for (int i = 0; i < n; i++) {
+    const double m = a[i][c];
+    for (int k = 0; k < TRB_NP; k++) a[i][k] = keep[k] * a[i][k] - m * row[k];
+  }
+  for (int k = 0; k < TRB_NP; k++) a[c][k] = row[k];
+}
+
+static inline int block_finite(double (*restrict a)[TRB_NP], int n)
+{
+  double check[TRB_NP] = {0}, sum = 0.0;
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < TRB_NP; k++) check[k] += 0.0 * a[i][k];
+  for (int k = 0; k < TRB_NP; k++) sum += check[k];
+  return sum == 0.0;
+}
+
+/* Gauss-Jordan in place without exchanges; 0: a multiplier was too large, or the result is not finite. */
+static inline int invert_as_is(double (*restrict a)[TRB_NP], int n)
+{
+  double most = 0.0;
+  int    c = 0;
+  for (; c + 1 < n; c += 2) most = larger(take_two(a, n, c), most);
+  if (c < n) take(a, n, c);
+  return most * DIAGONAL_SHARE <= 1.0 && block_finite(a, n);
+}
 
 /* Largest entry by magnitude of row c from column c on. */
 static inline double largest_from(const double *row, int c)
@@ -38,99 +93,114 @@ static inline double largest_from(const double *row, int c)
 }
 
 /* Column of the pivot of row c, or -1. */
-static inline int pivot_of(const double *row, int c)
+static inline int pivot_of(const double *row, int n, int c)
 {
   const double largest = largest_from(row, c);
   if (!(largest > 0.0)) return -1;
   if (fabs(row[c]) >= DIAGONAL_SHARE * largest) return c;
-  for (int k = c + 1; k < TRB_NR; k++)
+  for (int k = c + 1; k < n; k++)
     if (fabs(row[k]) == largest) return k;
   return -1;
 }
 
-/* Gauss-Jordan in place with pivots along rows; the padding columns are zero and stay so. */
-static int invert(double (*restrict a)[TRB_NP])
+/* Gauss-Jordan in place with pivots along rows; padding columns are zero and stay so. */
+static int invert_with_exchanges(double (*restrict a)[TRB_NP], int n)
 {
-  int    pivot[TRB_NR];
-  double check[TRB_NP] = {0}, sum = 0.0;
-  for (int c = 0; c < TRB_NR; c++) {
-    const int best = pivot_of(a[c], c);
+  int pivot[TRB_NP];
+  for (int c = 0; c < n; c++) {
+    const int best = pivot_of(a[c], n, c);
     if (best < 0) return 0;
     pivot[c] = best;
-    if (best != c)
-      for (int i = 0; i < TRB_NR; i++) {
-        const double keep = a[i][c];
-        a[i][c] = a[i][best];
-        a[i][best] = keep;
-      }
-    const double per = 1.0 / a[c][c];
-    double       row[TRB_NP], keep[TRB_NP];
-    for (int k = 0; k < TRB_NP; k++) keep[k] = 1.0 - unit[c][k];
-    for (int k = 0; k < TRB_NP; k++) row[k] = per * (keep[k] * a[c][k] + unit[c][k]);
-    for (int i = 0; i < TRB_NR; i++) {
-      const double m = a[i][c];
-      for (int k = 0; k < TRB_NP; k++) a[i][k] = keep[k] * a[i][k] - m * row[k];
+    for (int i = 0; best != c && i < n; i++) {
+      const double keep = a[i][c];
+      a[i][c] = a[i][best];
+      a[i][best] = keep;
     }
-    for (int k = 0; k < TRB_NP; k++) a[c][k] = row[k];
+    take(a, n, c);
   }
   /* exchanged columns are rows of the inverse */
-  for (int c = TRB_NR - 1; c >= 0; c--) {
+  for (int c = n - 1; c >= 0; c--) {
     if (pivot[c] == c) continue;
     double keep[TRB_NP];
     memcpy(keep, a[c], sizeof keep);
     memcpy(a[c], a[pivot[c]], sizeof keep);
     memcpy(a[pivot[c]], keep, sizeof keep);
   }
-  for (int i = 0; i < TRB_NR; i++)
-    for (int k = 0; k < TRB_NP; k++) check[k] += 0.0 * a[i][k];
-  for (int k = 0; k < TRB_NP; k++) sum += check[k];
-  return sum == 0.0;
+  return block_finite(a, n);
 }
 
-static int factor(const trb_arrow_block *b, trb_arrow_factor_block *g, double (*schur)[TRB_NC])
+static inline void combine(double one, double scale, const double (*from)[TRB_NP], double (*restrict to)[TRB_NP], int n)
 {
-  /* the columns are the rows of the transpose, and so are those of the inverse */
-  memcpy(g->inverse, b->own, sizeof g->inverse);
-  if (!invert(g->inverse)) return 0;
-  g->coupled = b->coupled;
-  if (!b->coupled) return 1;
-  memset(g->solved, 0, sizeof g->solved);
-  for (int c = 0; c < TRB_NC; c++)
+  for (int c = 0; c < n; c++)
+    for (int i = 0; i < TRB_NP; i++) to[c][i] = one * unit[c][i] + scale * from[c][i];
+}
+
+/* Inverse of one times the unit matrix and scale times another one. Rows that are columns of a matrix make those of its inverse. Rates of
+ * places are velocities: along rows of the matrix the diagonal leads, and exchanges are rare. */
+static inline int invert(double one, double scale, const double (*from)[TRB_NP], double (*restrict to)[TRB_NP], int n)
+{
+  combine(one, scale, from, to, n);
+  if (invert_as_is(to, n)) return 1;
+  combine(one, scale, from, to, n);
+  return invert_with_exchanges(to, n);
+}
+
+static int factor(const trb_arrow_block *b, double gamma, trb_arrow_factor_block *g)
+{
+  return invert(1.0, -gamma, b->own, g->inverse, TRB_NR);
+}
+
+static void border(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
+                   double (*schur)[TRB_NC])
+{
+  for (int c = 0; c < TRB_NC; c++) {
+    double sum[TRB_NP] = {0};
     for (int q = 0; q < TRB_NR; q++) {
-      const double m = b->to_cage[q][c];
-      for (int i = 0; i < TRB_NP; i++) g->solved[c][i] += m * g->inverse[q][i];
+      const double m = -gamma * b->to_cage[q][c];
+      for (int i = 0; i < TRB_NP; i++) sum[i] += m * own->inverse[q][i];
     }
-  for (int i = 0; i < TRB_NC; i++)
-    for (int q = 0; q < TRB_NR; q++) g->from[q][i] = b->from[i][q];
-  for (int c = 0; c < TRB_NC; c++)
+    memcpy(g->solved[c], sum, sizeof sum);
+  }
+  for (int q = 0; q < TRB_NR; q++)
+    for (int i = 0; i < TRB_NC; i++) g->from[q][i] = -gamma * b->from[q][i];
+  for (int c = 0; c < TRB_NC; c++) {
+    double sum[TRB_NC] = {0};
     for (int q = 0; q < TRB_NR; q++) {
       const double m = g->solved[c][q];
-      for (int i = 0; i < TRB_NC; i++) schur[c][i] -= m * g->from[q][i];
+      for (int i = 0; i < TRB_NC; i++) sum[i] += m * g->from[q][i];
     }
-  return 1;
-}
-
-static void eliminate(const trb_arrow_factor_block *g, int n, double *restrict rollers, double *restrict cage)
-{
-  for (int j = 0; j < n; j++) {
-    double *x = rollers + j * TRB_NR, sum[TRB_NP] = {0};
-    for (int c = 0; c < TRB_NR; c++)
-      for (int i = 0; i < TRB_NP; i++) sum[i] += x[c] * g[j].inverse[c][i];
-    memcpy(x, sum, TRB_NR * sizeof *x);
-    if (!g[j].coupled) continue;
-    for (int c = 0; c < TRB_NR; c++)
-      for (int i = 0; i < TRB_NC; i++) cage[i] -= x[c] * g[j].from[c][i];
+    for (int i = 0; i < TRB_NC; i++) schur[c][i] -= sum[i];
   }
 }
 
-static void substitute(const trb_arrow_factor_block *g, int n, double *restrict rollers, const double *restrict cage)
+static int invert_cage(const double (*schur)[TRB_NC], double (*inverse)[TRB_NC]) { return invert(0.0, 1.0, schur, inverse, TRB_NC); }
+
+static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const double (*cage)[TRB_NC],
+                  double *restrict x)
 {
+  double *const y = x + n * TRB_NR;
+  double        right[TRB_NC], sum[TRB_NP];
+  memcpy(right, y, sizeof right);
   for (int j = 0; j < n; j++) {
-    if (!g[j].coupled) continue;
-    double *x = rollers + j * TRB_NR, sum[TRB_NP] = {0};
+    double *const z = x + j * TRB_NR;
+    memset(sum, 0, sizeof sum);
+    for (int c = 0; c < TRB_NR; c++)
+      for (int i = 0; i < TRB_NP; i++) sum[i] += z[c] * own[j].inverse[c][i];
+    memcpy(z, sum, TRB_NR * sizeof *z);
+    for (int c = 0; border[j].coupled && c < TRB_NR; c++)
+      for (int i = 0; i < TRB_NC; i++) right[i] -= sum[c] * border[j].from[c][i];
+  }
+  memset(sum, 0, sizeof sum);
+  for (int c = 0; c < TRB_NC; c++)
+    for (int i = 0; i < TRB_NC; i++) sum[i] += right[c] * cage[c][i];
+  memcpy(y, sum, TRB_NC * sizeof *y);
+  for (int j = 0; j < n; j++) {
+    if (!border[j].coupled) continue;
+    double *const z = x + j * TRB_NR;
+    double        change[TRB_NP] = {0};
     for (int c = 0; c < TRB_NC; c++)
-      for (int i = 0; i < TRB_NP; i++) sum[i] += cage[c] * g[j].solved[c][i];
-    for (int i = 0; i < TRB_NR; i++) x[i] -= sum[i];
+      for (int i = 0; i < TRB_NP; i++) change[i] += y[c] * border[j].solved[c][i];
+    for (int i = 0; i < TRB_NR; i++) z[i] -= change[i];
   }
 }
 
@@ -167,4 +237,5 @@ static int all_finite(const double *x, int n)
   return sum == 0.0;
 }
 
-const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {factor, eliminate, substitute, step_from, follow, all_finite};
+const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {factor,    border, invert_cage, solve,
+                                                                            step_from, follow, all_finite};

@@ -8,28 +8,38 @@
 /* TRB_NP: a roller's entries, padded; TRB_TANGENT_IN: a roller's state and the angle of the frame; TRB_TANGENT_OUT: its flow, padded. */
 enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NC = TRB_CAGE_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = 24 };
 
-/* Blocks of one roller. */
+/* A roller's own block, and where it touches the cage both borders: apart, so that what every system needs is one stretch of memory. */
 typedef struct trb_arrow_block {
-  double own[TRB_NR][TRB_NP];     /* d roller / d roller, column by column, padded by zeros */
-  double to_cage[TRB_NR][TRB_NC]; /* d roller / d cage, row by row */
-  double from[TRB_NC][TRB_NR];    /* d cage / d roller, row by row */
-  int    coupled;                 /* 0: both borders are zero */
+  double own[TRB_NR][TRB_NP]; /* d roller / d roller, column by column, padded by zeros */
 } trb_arrow_block;
+
+typedef struct trb_arrow_border {
+  double to_cage[TRB_NR][TRB_NC]; /* d roller / d cage, row by row */
+  double from[TRB_NR][TRB_NC];    /* d cage / d roller, column by column */
+  int    coupled;                 /* 0: both are zero, whatever they hold */
+} trb_arrow_border;
 
 /* Columns are contiguous, so that a product with a vector is a sum of columns. */
 typedef struct trb_arrow_factor_block {
   double inverse[TRB_NR][TRB_NP]; /* column by column: inverse of the roller's block */
-  double solved[TRB_NC][TRB_NP];  /* column by column: inverse to_cage */
-  double from[TRB_NR][TRB_NC];    /* column by column: border of the cage's rows */
-  int    coupled;
 } trb_arrow_factor_block;
 
+typedef struct trb_arrow_factor_border {
+  double solved[TRB_NC][TRB_NP]; /* column by column: inverse to_cage */
+  double from[TRB_NR][TRB_NC];   /* column by column: border of the cage's rows */
+  int    coupled;
+} trb_arrow_factor_border;
+
 typedef struct trb_block_kernels {
-  /* Inverse of one roller's block, and where it touches the cage its share of the Schur complement, column by column; 0: singular. */
-  int (*factor)(const trb_arrow_block *b, trb_arrow_factor_block *g, double (*schur)[TRB_NC]);
-  /* Rollers' parts of a solution, eliminated from the cage's; then what the cage adds to them. */
-  void (*eliminate)(const trb_arrow_factor_block *g, int n, double *rollers, double *cage);
-  void (*substitute)(const trb_arrow_factor_block *g, int n, double *rollers, const double *cage);
+  /* Of I - gamma J: the inverse of a roller's block; 0: singular. */
+  int (*factor)(const trb_arrow_block *b, double gamma, trb_arrow_factor_block *g);
+  /* What a roller's border adds to a solution, and its share of the cage's Schur complement, column by column. */
+  void (*border)(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
+                 double (*schur)[TRB_NC]);
+  /* Inverse of the cage's Schur complement, both column by column; 0: singular. */
+  int (*invert_cage)(const double (*schur)[TRB_NC], double (*inverse)[TRB_NC]);
+  /* x: rollers then cage, overwritten by the solution; cage: inverse of its Schur complement. */
+  void (*solve)(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const double (*cage)[TRB_NC], double *x);
   /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. TRB_NP entries of
    * y are read. */
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);

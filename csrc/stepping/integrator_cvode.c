@@ -40,14 +40,9 @@ static int weights(N_Vector y, N_Vector out, void *data)
   return 0;
 }
 
-static int jacobian(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix, void *data, N_Vector a, N_Vector b, N_Vector c)
+static void fill(const trb_integrator *it, double time, const double *y, trb_arrow *arrow)
 {
-  const trb_integrator *it = data;
-  bdf                  *self = it->self;
-  (void)fy;
-  (void)a;
-  (void)b;
-  (void)c;
+  bdf *self = it->self;
   /* the rings' part anew: when it is old or has served often, when Newton's method failed with it before within this step, and always
    * while speed or ring change or have just done so: an old stiff slope makes corrections so small that they seem to converge */
   const double made = self->jacobian->tangents->time;
@@ -57,7 +52,22 @@ static int jacobian(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix,
   const int    fresh = again || old || changing;
   self->filled_at = it->time;
   self->uses = fresh ? 0 : self->uses + 1;
-  trb_jacobian_fill(self->jacobian, time, N_VGetArrayPointer(y), fresh, trb_arrow_of(matrix));
+  trb_jacobian_fill(self->jacobian, time, y, fresh, arrow);
+}
+
+/* The matrix stays the Jacobian: the solver makes I - gamma J as it reads it. usable: the Jacobian need not be filled anew;
+ * SUNDIALS has had two names for its int of two values. */
+static int linear_system(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix, int usable, int *filled, sunrealtype gamma,
+                         void *data, N_Vector a, N_Vector b, N_Vector c)
+{
+  trb_arrow *arrow = trb_arrow_of(matrix);
+  (void)fy;
+  (void)a;
+  (void)b;
+  (void)c;
+  if (!usable) fill(data, time, N_VGetArrayPointer(y), arrow);
+  *filled = !usable;
+  arrow->gamma = gamma;
   return 0;
 }
 
@@ -78,7 +88,7 @@ static trb_status configure(trb_integrator *it, trb_message *message)
   CHECK(CVodeSetUserData(self->memory, it));
   CHECK(CVodeWFtolerances(self->memory, weights));
   CHECK(CVodeSetLinearSolver(self->memory, self->solver, self->matrix));
-  CHECK(CVodeSetJacFn(self->memory, jacobian));
+  CHECK(CVodeSetLinSysFn(self->memory, linear_system));
   CHECK(CVodeSetMaxOrd(self->memory, (int)it->settings.max_order));
   CHECK(CVodeSetMaxStep(self->memory, it->settings.max_step));
   CHECK(CVodeSetMaxErrTestFails(self->memory, 15));

@@ -59,7 +59,8 @@ static void cage_response(const trb_dynamics *d, const double *y_cage, trb_vec3 
 }
 
 /* What a pocket in contact adds to its roller's block and to the border from it. */
-static void pocket_columns(trb_jacobian *jac, int j, const double *y, const trb_roller_load *base, trb_arrow_block *block)
+static void pocket_columns(trb_jacobian *jac, int j, const double *y, const trb_roller_load *base, trb_arrow_block *block,
+                           trb_arrow_border *border)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
@@ -75,7 +76,7 @@ static void pocket_columns(trb_jacobian *jac, int j, const double *y, const trb_
     roller_response(d, j, &load, now);
     cage_response(d, y_cage, trb_sub(load.cage_force, base->cage_force), trb_sub(load.cage_moment, base->cage_moment), response);
     for (int i = 0; i < TRB_NR; i++) block->own[c][i] += per * (now[i] - was[i]);
-    for (int i = 0; i < TRB_NC; i++) block->from[i][c] = per * response[i];
+    for (int i = 0; i < TRB_NC; i++) border->from[c][i] = per * response[i];
     moved[c] = yj[c];
   }
   trb_dynamics_pose_roller(d, j, yj);
@@ -93,7 +94,7 @@ static void cage_column(trb_jacobian *jac, int c, const double *y, const trb_rol
   jac->moved[at] = y[at] + h;
   trb_cage_pose_unpack(m, &d->drive, jac->moved + trb_state_cage(m), &d->cage);
   for (int j = 0; j < m->n_rollers; j++) {
-    if (!arrow->rollers[j].coupled) continue;
+    if (!arrow->borders[j].coupled) continue;
     const trb_roller_load now = pocket_load(d, j);
     trb_roller_load       change;
     double                response[TRB_NR];
@@ -101,7 +102,7 @@ static void cage_column(trb_jacobian *jac, int c, const double *y, const trb_rol
     change.force = trb_sub(now.force, base[j].force);
     change.moment = trb_sub(now.moment, base[j].moment);
     roller_response(d, j, &change, response);
-    for (int i = 0; i < TRB_NR; i++) arrow->rollers[j].to_cage[i][c] = per * response[i];
+    for (int i = 0; i < TRB_NR; i++) arrow->borders[j].to_cage[i][c] = per * response[i];
     force = trb_add(force, trb_sub(now.cage_force, base[j].cage_force));
     moment = trb_add(moment, trb_sub(now.cage_moment, base[j].cage_moment));
   }
@@ -116,7 +117,6 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
-  trb_arrow_zero(arrow);
   memcpy(jac->moved, y, (size_t)trb_state_size(m) * sizeof *y);
   trb_dynamics_pose(d, time, y);
   if (fresh || !jac->tangents->has_slopes) {
@@ -132,11 +132,11 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   trb_roller_load *base = d->loads;
   for (int j = 0; j < m->n_rollers; j++) {
     base[j] = pocket_load(d, j);
-    arrow->rollers[j].coupled = touches(&base[j]);
-    if (!arrow->rollers[j].coupled) continue;
+    arrow->borders[j].coupled = touches(&base[j]);
+    if (!arrow->borders[j].coupled) continue;
     force = trb_add(force, base[j].cage_force);
     moment = trb_add(moment, base[j].cage_moment);
-    pocket_columns(jac, j, y, &base[j], &arrow->rollers[j]);
+    pocket_columns(jac, j, y, &base[j], &arrow->rollers[j], &arrow->borders[j]);
   }
   trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, cage_rates);
   for (int c = 0; c < TRB_NC; c++) cage_column(jac, c, y, base, cage_rates, force, moment, arrow);

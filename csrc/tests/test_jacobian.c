@@ -42,8 +42,8 @@ static void expand(const trb_model *m, const trb_arrow *a)
     for (int i = 0; i < TRB_NR; i++) {
       for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
       for (int c = 0; c < TRB_NC; c++) {
-        found[j * TRB_NR + i][cage + c] = a->rollers[j].to_cage[i][c];
-        found[cage + c][j * TRB_NR + i] = a->rollers[j].from[c][i];
+        found[j * TRB_NR + i][cage + c] = a->borders[j].to_cage[i][c];
+        found[cage + c][j * TRB_NR + i] = a->borders[j].from[i][c];
       }
     }
   for (int i = 0; i < TRB_NC; i++)
@@ -84,7 +84,7 @@ static void check_scene(const trb_params *params, double load, int touching)
   if (!CHECK(trb_arrow_create(m->n_rollers, m->params.with_cage > 0.0, &arrow, NULL) == TRB_OK)) return;
   rig_disturb(m, &seed, y);
   trb_jacobian_fill(jac, 0.01, y, 1, arrow);
-  for (int j = 0; j < m->n_rollers; j++) coupled += arrow->rollers[j].coupled;
+  for (int j = 0; j < m->n_rollers; j++) coupled += arrow->borders[j].coupled;
   CHECK(coupled >= touching);
   expand(m, arrow);
   differentiate(d, 0.01, y, 0.05);

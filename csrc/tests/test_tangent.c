@@ -46,8 +46,7 @@ static int open_bench(bench *b, const trb_params *params, double share)
   if (!CHECK(trb_tangents_create(b->model, &b->tangents, NULL) == TRB_OK)) return 0;
   if (!CHECK(trb_arrow_factors_create(b->model->n_rollers, b->d->work->variant, &b->factors, NULL) == TRB_OK)) return 0;
   if (!CHECK(trb_arrow_create(b->model->n_rollers, 1, &arrow, NULL) == TRB_OK)) return 0;
-  trb_arrow_zero(arrow);
-  trb_arrow_scale_add_identity(arrow, -1e-5);
+  arrow->gamma = 1e-5;
   CHECK(trb_arrow_factor(arrow, b->factors));
   trb_arrow_free(arrow);
   for (int i = 0; i < trb_state_size(b->model); i++) {
