@@ -68,8 +68,8 @@ int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *f)
 {
   double schur[TRB_NC][TRB_NC]; /* column by column */
   f->gamma = 0.0;
-  for (int i = 0; i < TRB_NC; i++)
-    for (int k = 0; k < TRB_NC; k++) schur[k][i] = (double)(i == k) - arrow->gamma * arrow->cage[i][k];
+  for (int c = 0; c < TRB_NC; c++)
+    for (int i = 0; i < TRB_NC; i++) schur[c][i] = (double)(i == c) - arrow->gamma * arrow->cage[c][i];
   for (int j = 0; j < arrow->n; j++)
     if (!f->kernels->factor(&arrow->rollers[j], arrow->gamma, &f->rollers[j])) return 0;
   for (int j = 0; j < arrow->n; j++) {

@@ -14,7 +14,7 @@ typedef struct trb_arrow {
   double            gamma;                /* of the system I - gamma J that is to be solved */
   trb_arrow_block  *rollers;              /* n */
   trb_arrow_border *borders;              /* n */
-  double            cage[TRB_NC][TRB_NC]; /* row by row */
+  double            cage[TRB_NC][TRB_NC]; /* column by column */
 } trb_arrow;
 
 typedef struct trb_arrow_factors {

@@ -10,7 +10,7 @@
 #define TRB_JOIN_(a, b) a##b
 #define TRB_JOIN(a, b) TRB_JOIN_(a, b)
 
-/* A pivot on the diagonal is taken if it is no smaller than this share of the largest. */
+/* A pivot on the diagonal is taken if it is no smaller than this share of the largest, so that no multiplier exceeds its inverse. */
 #define DIAGONAL_SHARE 0.1
 
 enum { ACCUMULATORS = 16 };
@@ -29,7 +29,8 @@ static const double unit[TRB_NP][TRB_NP] = ROWS;
 /* 1 for a roller's entries, 0 for the padding. */
 static const double roller[TRB_NP] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0};
 
-/* Pivots c and c + 1 of Gauss-Jordan in place, as they stand. Gives the largest multiplier of a row below them. */
+/* Pivots c and c + 1 of Gauss-Jordan in place, as they stand: two at a time, rows are read and written half as often. Gives the largest
+ * multiplier of a row below them. */
 static inline double take_two(double (*restrict a)[TRB_NP], int n, int c)
 {
   const int    d = c + 1;
@@ -40,10 +41,9 @@ static inline double take_two(double (*restrict a)[TRB_NP], int n, int c)
   for (int k = 0; k < TRB_NP; k++) row2[k] = (1.0 - unit[c][k]) * a[d][k] - below * row[k];
   for (int k = 0; k < TRB_NP; k++) row2[k] = per2 * ((1.0 - unit[d][k]) * row2[k] + unit[d][k]);
   for (int k = 0; k < TRB_NP; k++) row[k] = (1.0 - unit[d][k]) * row[k] - beside * row2[k];
-  for (int i = d + 1; i < n; i++) most = larger(most, fabs(a[i][c]));
   for (int i = 0; i < n; i++) {
     const double m = a[i][c], m2 = a[i][d];
-    if (i > d) most2 = larger(most2, fabs(m2 - m * beside));
+    if (i > d) most = larger(most, fabs(m)), most2 = larger(most2, fabs(m2 - m * beside));
     for (int k = 0; k < TRB_NP; k++) a[i][k] = keep[k] * a[i][k] - m * row[k] - m2 * row2[k];
   }
   for (int k = 0; k < TRB_NP; k++) a[c][k] = row[k];
@@ -64,12 +64,14 @@ static inline void take(double (*restrict a)[TRB_NP], int n, int c)
   for (int k = 0; k < TRB_NP; k++) a[c][k] = row[k];
 }
 
-static inline int block_finite(double (*restrict a)[TRB_NP], int n)
+static int all_finite(const double *x, int n)
 {
-  double check[TRB_NP] = {0}, sum = 0.0;
-  for (int i = 0; i < n; i++)
-    for (int k = 0; k < TRB_NP; k++) check[k] += 0.0 * a[i][k];
-  for (int k = 0; k < TRB_NP; k++) sum += check[k];
+  double    check[ACCUMULATORS] = {0}, sum = 0.0;
+  const int whole = n - n % ACCUMULATORS;
+  for (int i = 0; i < whole; i += ACCUMULATORS)
+    for (int k = 0; k < ACCUMULATORS; k++) check[k] += 0.0 * x[i + k];
+  for (int i = whole; i < n; i++) check[i - whole] += 0.0 * x[i];
+  for (int k = 0; k < ACCUMULATORS; k++) sum += check[k];
   return sum == 0.0;
 }
 
@@ -80,7 +82,7 @@ static inline int invert_as_is(double (*restrict a)[TRB_NP], int n)
   int    c = 0;
   for (; c + 1 < n; c += 2) most = larger(take_two(a, n, c), most);
   if (c < n) take(a, n, c);
-  return most * DIAGONAL_SHARE <= 1.0 && block_finite(a, n);
+  return most * DIAGONAL_SHARE <= 1.0 && all_finite(&a[0][0], n * TRB_NP);
 }
 
 /* Largest entry by magnitude of row c from column c on. */
@@ -126,7 +128,7 @@ static int invert_with_exchanges(double (*restrict a)[TRB_NP], int n)
     memcpy(a[c], a[pivot[c]], sizeof keep);
     memcpy(a[pivot[c]], keep, sizeof keep);
   }
-  return block_finite(a, n);
+  return all_finite(&a[0][0], n * TRB_NP);
 }
 
 static inline void combine(double one, double scale, const double (*from)[TRB_NP], double (*restrict to)[TRB_NP], int n)
@@ -150,58 +152,55 @@ static int factor(const trb_arrow_block *b, double gamma, trb_arrow_factor_block
   return invert(1.0, -gamma, b->own, g->inverse, TRB_NR);
 }
 
+/* to = scale columns x, written in one piece; a sum that starts from memset stays in vectors. */
+static inline void set_product(const double (*columns)[TRB_NP], int n, const double *x, double scale, double *to)
+{
+  double sum[TRB_NP];
+  memset(sum, 0, sizeof sum);
+  for (int c = 0; c < n; c++)
+    for (int i = 0; i < TRB_NP; i++) sum[i] += x[c] * columns[c][i];
+  for (int i = 0; i < TRB_NP; i++) to[i] = scale * sum[i];
+}
+
+/* to += scale columns x */
+static inline void add_product(const double (*columns)[TRB_NP], int n, const double *x, double scale, double *to)
+{
+  double sum[TRB_NP];
+  for (int i = 0; i < TRB_NP; i++) sum[i] = to[i];
+  for (int c = 0; c < n; c++)
+    for (int i = 0; i < TRB_NP; i++) sum[i] += scale * x[c] * columns[c][i];
+  for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
+}
+
 static void border(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
                    double (*schur)[TRB_NC])
 {
-  for (int c = 0; c < TRB_NC; c++) {
-    double sum[TRB_NP] = {0};
-    for (int q = 0; q < TRB_NR; q++) {
-      const double m = -gamma * b->to_cage[q][c];
-      for (int i = 0; i < TRB_NP; i++) sum[i] += m * own->inverse[q][i];
-    }
-    memcpy(g->solved[c], sum, sizeof sum);
-  }
   for (int q = 0; q < TRB_NR; q++)
     for (int i = 0; i < TRB_NC; i++) g->from[q][i] = -gamma * b->from[q][i];
-  for (int c = 0; c < TRB_NC; c++) {
-    double sum[TRB_NC] = {0};
-    for (int q = 0; q < TRB_NR; q++) {
-      const double m = g->solved[c][q];
-      for (int i = 0; i < TRB_NC; i++) sum[i] += m * g->from[q][i];
-    }
-    for (int i = 0; i < TRB_NC; i++) schur[c][i] -= sum[i];
-  }
+  for (int c = 0; c < TRB_NC; c++) set_product(own->inverse, TRB_NR, b->to_cage[c], -gamma, g->solved[c]);
+  for (int c = 0; c < TRB_NC; c++) add_product((const double (*)[TRB_NP])g->from, TRB_NR, g->solved[c], -1.0, schur[c]);
 }
 
 static int invert_cage(const double (*schur)[TRB_NC], double (*inverse)[TRB_NC]) { return invert(0.0, 1.0, schur, inverse, TRB_NC); }
 
+/* Rollers are written with their padding, in one piece, and the entry that it covers is put back. */
 static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const double (*cage)[TRB_NC],
                   double *restrict x)
 {
   double *const y = x + n * TRB_NR;
-  double        right[TRB_NC], sum[TRB_NP];
+  double        right[TRB_NC];
   memcpy(right, y, sizeof right);
   for (int j = 0; j < n; j++) {
     double *const z = x + j * TRB_NR;
-    memset(sum, 0, sizeof sum);
-    for (int c = 0; c < TRB_NR; c++)
-      for (int i = 0; i < TRB_NP; i++) sum[i] += z[c] * own[j].inverse[c][i];
-    memcpy(z, sum, TRB_NR * sizeof *z);
-    for (int c = 0; border[j].coupled && c < TRB_NR; c++)
-      for (int i = 0; i < TRB_NC; i++) right[i] -= sum[c] * border[j].from[c][i];
+    const double  covered = z[TRB_NR];
+    set_product(own[j].inverse, TRB_NR, z, 1.0, z);
+    z[TRB_NR] = covered;
+    if (border[j].coupled) add_product(border[j].from, TRB_NR, z, -1.0, right);
   }
-  memset(sum, 0, sizeof sum);
-  for (int c = 0; c < TRB_NC; c++)
-    for (int i = 0; i < TRB_NC; i++) sum[i] += right[c] * cage[c][i];
-  memcpy(y, sum, TRB_NC * sizeof *y);
-  for (int j = 0; j < n; j++) {
-    if (!border[j].coupled) continue;
-    double *const z = x + j * TRB_NR;
-    double        change[TRB_NP] = {0};
-    for (int c = 0; c < TRB_NC; c++)
-      for (int i = 0; i < TRB_NP; i++) change[i] += y[c] * border[j].solved[c][i];
-    for (int i = 0; i < TRB_NR; i++) z[i] -= change[i];
-  }
+  set_product(cage, TRB_NC, right, 1.0, y);
+  memcpy(right, y, sizeof right);
+  for (int j = 0; j < n; j++)
+    if (border[j].coupled) add_product(border[j].solved, TRB_NC, right, -1.0, x + j * TRB_NR);
 }
 
 static double step_from(const double *restrict origin, const double *restrict per, const double *restrict y, double turn,
@@ -224,17 +223,6 @@ static void follow(const double *restrict value, const double (*restrict slope)[
   for (int c = 0; c < TRB_TANGENT_IN; c++)
     for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] += step[c] * slope[c][i];
   memcpy(flow, sum, sizeof sum);
-}
-
-static int all_finite(const double *x, int n)
-{
-  double    check[ACCUMULATORS] = {0}, sum = 0.0;
-  const int whole = n - n % ACCUMULATORS;
-  for (int i = 0; i < whole; i += ACCUMULATORS)
-    for (int k = 0; k < ACCUMULATORS; k++) check[k] += 0.0 * x[i + k];
-  for (int i = whole; i < n; i++) check[i - whole] += 0.0 * x[i];
-  for (int k = 0; k < ACCUMULATORS; k++) sum += check[k];
-  return sum == 0.0;
 }
 
 const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {factor,    border, invert_cage, solve,

@@ -14,7 +14,7 @@ typedef struct trb_arrow_block {
 } trb_arrow_block;
 
 typedef struct trb_arrow_border {
-  double to_cage[TRB_NR][TRB_NC]; /* d roller / d cage, row by row */
+  double to_cage[TRB_NC][TRB_NR]; /* d roller / d cage, column by column */
   double from[TRB_NR][TRB_NC];    /* d cage / d roller, column by column */
   int    coupled;                 /* 0: both are zero, whatever they hold */
 } trb_arrow_border;

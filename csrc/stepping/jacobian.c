@@ -102,12 +102,12 @@ static void cage_column(trb_jacobian *jac, int c, const double *y, const trb_rol
     change.force = trb_sub(now.force, base[j].force);
     change.moment = trb_sub(now.moment, base[j].moment);
     roller_response(d, j, &change, response);
-    for (int i = 0; i < TRB_NR; i++) arrow->borders[j].to_cage[i][c] = per * response[i];
+    for (int i = 0; i < TRB_NR; i++) arrow->borders[j].to_cage[c][i] = per * response[i];
     force = trb_add(force, trb_sub(now.cage_force, base[j].cage_force));
     moment = trb_add(moment, trb_sub(now.cage_moment, base[j].cage_moment));
   }
   trb_dynamics_cage_rates(d, jac->moved + trb_state_cage(m), force, moment, rates);
-  for (int i = 0; i < TRB_NC; i++) arrow->cage[i][c] = per * (rates[i] - base_rates[i]);
+  for (int i = 0; i < TRB_NC; i++) arrow->cage[c][i] = per * (rates[i] - base_rates[i]);
   jac->moved[at] = y[at];
 }
 

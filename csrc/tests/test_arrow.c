@@ -43,7 +43,7 @@ static void of_system(trb_arrow *a)
     for (int c = 0; c < TRB_NR; c++)
       for (int i = 0; i < TRB_NR; i++) a->rollers[j].own[c][i] = per * ((double)(i == c) - a->rollers[j].own[c][i]);
   for (int i = 0; i < TRB_NC; i++)
-    for (int c = 0; c < TRB_NC; c++) a->cage[i][c] = per * ((double)(i == c) - a->cage[i][c]);
+    for (int c = 0; c < TRB_NC; c++) a->cage[c][i] = per * ((double)(i == c) - a->cage[c][i]);
 }
 
 static void randomise(trb_arrow *a, int kind)
@@ -69,12 +69,12 @@ static void expand(const trb_arrow *a)
     for (int i = 0; i < TRB_NR; i++) {
       for (int c = 0; c < TRB_NR; c++) dense[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
       for (int c = 0; c < TRB_NC && a->borders[j].coupled; c++) {
-        dense[j * TRB_NR + i][cage + c] = a->borders[j].to_cage[i][c];
+        dense[j * TRB_NR + i][cage + c] = a->borders[j].to_cage[c][i];
         dense[cage + c][j * TRB_NR + i] = a->borders[j].from[i][c];
       }
     }
   for (int i = 0; i < TRB_NC; i++)
-    for (int c = 0; c < TRB_NC; c++) dense[cage + i][cage + c] = a->cage[i][c];
+    for (int c = 0; c < TRB_NC; c++) dense[cage + i][cage + c] = a->cage[c][i];
   for (int i = 0; i < n; i++)
     for (int c = 0; c < n; c++) dense[i][c] = (double)(i == c) - a->gamma * dense[i][c];
 }
@@ -187,10 +187,10 @@ static void test_singular(int variant)
       }
       randomise(a, kind);
       for (int j = 0; j < N; j++) a->borders[j].coupled = 0;
-      for (int c = 0; c < TRB_NC; c++) a->cage[at][c] = (double)(c == at);
+      for (int c = 0; c < TRB_NC; c++) a->cage[c][at] = (double)(c == at);
       expect_singular(a, f);
       randomise(a, kind);
-      a->borders[0].to_cage[at][3] = NAN;
+      a->borders[0].to_cage[3][at] = NAN;
       expect_singular(a, f);
     }
   /* a block of rank one */

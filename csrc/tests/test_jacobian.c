@@ -42,12 +42,12 @@ static void expand(const trb_model *m, const trb_arrow *a)
     for (int i = 0; i < TRB_NR; i++) {
       for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
       for (int c = 0; c < TRB_NC; c++) {
-        found[j * TRB_NR + i][cage + c] = a->borders[j].to_cage[i][c];
+        found[j * TRB_NR + i][cage + c] = a->borders[j].to_cage[c][i];
         found[cage + c][j * TRB_NR + i] = a->borders[j].from[i][c];
       }
     }
   for (int i = 0; i < TRB_NC; i++)
-    for (int c = 0; c < TRB_NC; c++) found[cage + i][cage + c] = a->cage[i][c];
+    for (int c = 0; c < TRB_NC; c++) found[cage + i][cage + c] = a->cage[c][i];
   for (int i = 0; i < n; i++)
     for (int c = 0; c < n; c++) found[i][c] *= unit[trb_state_tolerance(m, c)] / unit[trb_state_tolerance(m, i)];
 }
