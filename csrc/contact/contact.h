@@ -134,9 +134,23 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
 
 /* Zero the chosen rollers' loads and sum the pairs of rollers and rings only. */
 void trb_contact_rings_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads);
-/* Add what one roller and its pocket do to each other; gives a lower bound of the gap, not above 0 where they touch. */
+typedef struct trb_wrench {
+  trb_vec3 force;  /* N */
+  trb_vec3 moment; /* N m */
+} trb_wrench;
+
+/* How the wrench on a roller, about its centre of mass, follows its motion relative to its pocket: a column for a translation along each
+ * axis, then for a turn about each, the pocket at rest. Left out is that the normal at an edge turns, load over radius beside stiffness. */
+typedef struct trb_pocket_slopes {
+  trb_frame  axes;        /* in the roller's cylindrical frame, for motions and wrenches */
+  trb_wrench place[6];    /* per m and rad */
+  trb_wrench velocity[6]; /* per m/s and rad/s */
+} trb_pocket_slopes;
+
+/* What one roller and its pocket do to each other; gives a lower bound of the gap, not above 0 where they touch. The load is written only
+ * there, or with a detail, and so are slopes, if they are wanted. */
 double trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
-                             trb_detail *detail);
+                             trb_pocket_slopes *slopes, trb_detail *detail);
 
 /* Buffers of every intermediate quantity; freed by trb_detail_free. */
 trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message);

@@ -4,22 +4,24 @@
  * from the bounded polygon. A small-end face meets the roller's end plane with its vertices, each with its share of the stiffness.
  * All three depend on points fixed in their bodies, so edges and corners make no energy. */
 #include <math.h>
+#include <string.h>
 
 #include "contact/contact.h"
 #include "contact/friction.h"
 #include "laws/interference.h"
 #include "laws/line_contact.h"
 
-/* Roller and cage as the pocket sees them. */
+/* Roller and cage as the pocket sees them. Motions and sums only where they touch. */
 typedef struct pocket_view {
-  trb_frame axes;     /* pocket axes, in the roller's cylindrical frame */
-  trb_vec3  x;        /* roller's centre of mass, from the pocket's origin */
-  trb_vec3  a;        /* roller's axis */
-  trb_vec3  v, omega; /* roller's velocities */
-  trb_vec3  cage;     /* cage's centre of mass, from the pocket's origin */
-  trb_vec3  cage_v, cage_omega;
+  trb_frame axes; /* pocket axes, in the roller's cylindrical frame */
+  trb_vec3  x;    /* roller's centre of mass, from the pocket's origin */
+  trb_vec3  a;    /* roller's axis */
+  trb_vec3  cage; /* cage's centre of mass, from the pocket's origin */
+  trb_vec3  v, omega, cage_v, cage_omega;
   trb_vec3  force, moment;           /* on the roller, about its centre of mass */
   trb_vec3  cage_force, cage_moment; /* on the cage, about its centre of mass */
+
+  trb_pocket_slopes *slopes; /* or NULL */
 } pocket_view;
 
 /* What a face carries. */
@@ -28,61 +30,117 @@ typedef struct pocket_sums {
   double deepest;         /* largest interference, m */
 } pocket_sums;
 
-static pocket_view view_pocket(const trb_model *m, const trb_roller_pose *r, const trb_cage_pose *cage, int roller)
+/* Exponent of the interference in a point contact's load. */
+#define TRB_POINT_EXPONENT 1.5
+
+static trb_vec3 array_vector(const double *v) { return trb_v(v[0], v[1], v[2]); }
+
+static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_cage_pose *cage, int roller, pocket_view *p)
 {
   const trb_frame in_r = trb_compose(&cage->body, &m->pocket_axes[roller]);
-  const trb_vec3  origin = trb_add(cage->x, trb_from_frame(&cage->body, m->pocket_origin[roller]));
-  const trb_vec3  origin_here = trb_turn_z(origin, r->cosine, -r->sine), cage_here = trb_turn_z(cage->x, r->cosine, -r->sine);
-  pocket_view     p = {0};
-  p.axes = (trb_frame){trb_turn_z(in_r.n, r->cosine, -r->sine), trb_turn_z(in_r.t, r->cosine, -r->sine),
-                       trb_turn_z(in_r.a, r->cosine, -r->sine)};
-  p.x = trb_to_frame(&p.axes, trb_sub(r->x, origin_here));
-  p.a = trb_to_frame(&p.axes, r->frame.a);
-  p.v = trb_to_frame(&p.axes, r->v);
-  p.omega = trb_to_frame(&p.axes, r->omega);
-  p.cage = trb_to_frame(&p.axes, trb_sub(cage_here, origin_here));
-  p.cage_v = trb_to_frame(&p.axes, trb_turn_z(cage->v, r->cosine, -r->sine));
-  p.cage_omega = trb_to_frame(&p.axes, trb_turn_z(cage->omega, r->cosine, -r->sine));
-  return p;
+  const trb_vec3  from_cage = trb_from_frame(&cage->body, m->pocket_origin[roller]);
+  const trb_vec3  origin = trb_turn_z(trb_add(cage->x, from_cage), r->cosine, -r->sine);
+  p->axes = (trb_frame){trb_turn_z(in_r.n, r->cosine, -r->sine), trb_turn_z(in_r.t, r->cosine, -r->sine),
+                        trb_turn_z(in_r.a, r->cosine, -r->sine)};
+  p->x = trb_to_frame(&p->axes, trb_sub(r->x, origin));
+  p->a = trb_to_frame(&p->axes, r->frame.a);
 }
 
-/* Normal from the roller into the face; adds the wrench of one point. */
-static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_vec3 point, trb_vec3 normal, double elastic,
-                 trb_counters *counters, trb_roller_load *load, pocket_sums *sums)
+static void view_motions(const trb_roller_pose *r, const trb_cage_pose *cage, const trb_vec3 *pocket_origin, pocket_view *p)
 {
-  const trb_vec3  arm = trb_sub(point, p->x), cage_arm = trb_sub(point, p->cage);
+  const trb_vec3 from_cage = trb_turn_z(trb_from_frame(&cage->body, *pocket_origin), r->cosine, -r->sine);
+  p->cage = trb_to_frame(&p->axes, trb_scale(-1.0, from_cage));
+  p->v = trb_to_frame(&p->axes, r->v);
+  p->omega = trb_to_frame(&p->axes, r->omega);
+  p->cage_v = trb_to_frame(&p->axes, trb_turn_z(cage->v, r->cosine, -r->sine));
+  p->cage_omega = trb_to_frame(&p->axes, trb_turn_z(cage->omega, r->cosine, -r->sine));
+  p->force = p->moment = p->cage_force = p->cage_moment = trb_v(0, 0, 0);
+}
+
+/* A point of contact. */
+typedef struct pocket_touch {
+  trb_vec3 point, normal; /* normal: from the roller into the face */
+  double   interference;  /* m */
+  double   elastic;       /* load without damping, N */
+  double   exponent;      /* of the interference in it */
+  trb_vec3 carried;       /* part of the arm that turns with the roller while the normal stays, m; or */
+  int      on_end;        /* point of the face on the roller's end: the normal turns with the roller, the point stays */
+} pocket_touch;
+
+static void add_slope(trb_wrench *w, trb_vec3 arm, trb_vec3 force)
+{
+  w->force = trb_add(w->force, force);
+  w->moment = trb_add(w->moment, trb_cross(arm, force));
+}
+
+/* The force moves with motion k, and turns. */
+static void add_carried(trb_wrench *w, int k, trb_vec3 unit, const pocket_touch *c, trb_vec3 arm, trb_vec3 force, double q)
+{
+  if (c->on_end && k >= 3) add_slope(w, arm, trb_scale(-q, trb_cross(unit, c->normal)));
+  else if (c->on_end) w->moment = trb_sub(w->moment, trb_cross(unit, force));
+  else if (k >= 3) w->moment = trb_add(w->moment, trb_cross(trb_cross(unit, c->carried), force));
+}
+
+/* d(-q n - q mu(v) s/v) for every motion: the load follows interference and its rate, friction the load, and the sliding s of speed v. */
+static void add_slopes(const trb_model *m, const pocket_touch *c, const trb_touch *touch, trb_vec3 arm, double q, double factor,
+                       trb_pocket_slopes *slopes)
+{
+  const double   step = 1e-6 * touch->speed, mu = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed) : 0.0;
+  const double   more = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed + step) : 0.0;
+  const double   drag = q * mu / touch->speed, bend = q * (more / (touch->speed + step) - mu / touch->speed) / (step * touch->speed);
+  const double   stiffness = c->exponent * q / c->interference,
+                 damping = q > 0.0 ? m->params.damping * m->params.damping_cage * c->elastic : 0.0;
+  const trb_vec3 load = trb_axpy(c->normal, mu / touch->speed, touch->sliding);
+  const trb_vec3 units[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const trb_vec3 force = trb_axpy(trb_scale(-q, c->normal), -drag, touch->sliding);
+  for (int k = 0; k < 6; k++) {
+    const trb_vec3 unit = units[k % 3], moved = k < 3 ? unit : trb_cross(unit, arm);
+    const double   deeper = trb_dot(c->normal, moved);
+    const trb_vec3 slid = trb_axpy(moved, -deeper, c->normal);
+    const trb_vec3 dragged = trb_add(trb_scale(drag, slid), trb_scale(bend * trb_dot(touch->sliding, slid), touch->sliding));
+    add_slope(&slopes->place[k], arm, trb_scale(-stiffness * deeper, load));
+    add_carried(&slopes->place[k], k, unit, c, arm, force, q);
+    add_slope(&slopes->velocity[k], arm, trb_sub(trb_scale(-damping * deeper, load), dragged));
+  }
+}
+
+/* Adds the wrench of one point. */
+static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, const pocket_touch *c, trb_counters *counters,
+                 trb_roller_load *load, pocket_sums *sums)
+{
+  const trb_vec3  arm = trb_sub(c->point, p->x), cage_arm = trb_sub(c->point, p->cage);
   const trb_touch touch =
-      trb_touching(trb_add(p->v, trb_cross(p->omega, arm)), trb_add(p->cage_v, trb_cross(p->cage_omega, cage_arm)), normal);
-  const double q = trb_damped(m, elastic, m->params.damping_cage, touch.rate);
+      trb_touching(trb_add(p->v, trb_cross(p->omega, arm)), trb_add(p->cage_v, trb_cross(p->cage_omega, cage_arm)), c->normal);
+  const double q = trb_damped(m, c->elastic, m->params.damping_cage, touch.rate), factor = f->face.friction_factor[0];
   double       mu = 0.0;
-  if (m->pocket_friction) mu = f->face.friction_factor[0] * trb_sliding_coefficient(m, touch.speed);
+  if (m->pocket_friction) mu = factor * trb_sliding_coefficient(m, touch.speed);
   const double   drag = q * mu / touch.speed;
-  const trb_vec3 force = trb_axpy(trb_scale(-q, normal), -drag, touch.sliding);
+  const trb_vec3 force = trb_axpy(trb_scale(-q, c->normal), -drag, touch.sliding);
   p->force = trb_add(p->force, force);
   p->moment = trb_add(p->moment, trb_cross(arm, force));
   p->cage_force = trb_sub(p->cage_force, force);
   p->cage_moment = trb_sub(p->cage_moment, trb_cross(cage_arm, force));
+  load->elastic += c->elastic * c->interference / (1.0 + c->exponent);
   load->power[TRB_POWER_POCKET] += drag * trb_dot(touch.sliding, touch.sliding);
-  load->power[TRB_POWER_DAMPING] += (q - elastic) * touch.rate;
+  load->power[TRB_POWER_DAMPING] += (q - c->elastic) * touch.rate;
   sums->force += q;
   sums->friction += q * mu;
   counters->pocket_nodes++;
+  if (p->slopes != NULL) add_slopes(m, c, &touch, arm, q, factor, p->slopes);
 }
 
-static trb_vec3 array_vector(const double *v) { return trb_v(v[0], v[1], v[2]); }
-
-/* Interference of a sphere with a bounded face; the normal points from the sphere's centre to the nearest point. Without contact it is
- * the plane's, which is no less, unless it is wanted exactly. */
-static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_vec3 centre, double radius, int exact, trb_vec3 *normal)
+/* Interference of a sphere with a bounded face, its centre h above the plane; the normal points from the centre to the nearest point.
+ * Without contact it is the plane's, which is no less, unless it is wanted exactly. */
+static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_vec3 centre, double h, double radius, int exact,
+                             trb_vec3 *normal)
 {
-  const trb_vec3 u = array_vector(f->face.u), v = array_vector(f->face.v), from = trb_sub(centre, array_vector(f->face.origin));
-  const double   h = trb_dot(from, f->normal);
   if (m->params.pocket_edges <= 0.0 || (h >= radius && !exact)) {
     *normal = trb_scale(-1.0, f->normal);
     return radius - h;
   }
-  const double cu = trb_dot(from, u), cv = trb_dot(from, v);
-  double       nu, nv;
+  const trb_vec3 u = array_vector(f->face.u), v = array_vector(f->face.v), from = trb_sub(centre, array_vector(f->face.origin));
+  const double   cu = trb_dot(from, u), cv = trb_dot(from, v);
+  double         nu, nv;
   trb_nearest_in_polygon(f->face.outline, f->n, cu, cv, &nu, &nv);
   const trb_vec3 to = trb_axpy(trb_axpy(trb_scale(-h, f->normal), nu - cu, u), nv - cv, v);
   const double   distance = trb_norm(to);
@@ -90,112 +148,176 @@ static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_v
   return radius - distance;
 }
 
+static double height(const trb_pocket_face *f, trb_vec3 point) { return trb_dot(trb_sub(point, array_vector(f->face.origin)), f->normal); }
+
 static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
                           trb_roller_load *load, pocket_sums *sums)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
   const double  stiffness = m->palmgren * f->face.stiffness_factor[0], *weight = m->race[TRB_RACE_OUTER].weight;
+  const double  middle = height(f, p->x), along = trb_dot(p->a, f->normal);
   for (int k = 0; k < m->n_nodes; k++) {
+    const double h = middle + centre[k] * along;
+    if (h >= sphere[k] && !exact) continue;
     trb_vec3       normal;
     const trb_vec3 c = trb_axpy(p->x, centre[k], p->a);
-    const double   d = sphere_on_face(m, f, c, sphere[k], exact, &normal);
+    const double   d = sphere_on_face(m, f, c, h, sphere[k], exact, &normal);
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > 0.0)) continue;
-    const double q = stiffness * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
-    load->elastic += TRB_PALMGREN_ENERGY * q * d;
-    push(m, f, p, trb_axpy(c, sphere[k] - 0.5 * d, normal), normal, q, counters, load, sums);
+    const double       q = stiffness * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
+    const pocket_touch touch = {trb_axpy(c, sphere[k] - 0.5 * d, normal), normal, d, q, TRB_PALMGREN_EXPONENT, trb_sub(c, p->x), 0};
+    push(m, f, p, &touch, counters, load, sums);
   }
+}
+
+static trb_vec3 end_sphere(const trb_model *m, const pocket_view *p)
+{
+  const trb_geometry *g = &m->geometry;
+  return trb_axpy(p->x, g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, p->a);
 }
 
 static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int exact, trb_counters *counters,
                               trb_roller_load *load, pocket_sums *sums)
 {
   const trb_geometry *g = &m->geometry;
-  const trb_vec3      c = trb_axpy(p->x, g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, p->a);
+  const trb_vec3      c = end_sphere(m, p);
   trb_vec3            normal;
-  const double        d = sphere_on_face(m, f, c, g->sphere_radius, exact, &normal);
+  const double        d = sphere_on_face(m, f, c, height(f, c), g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
-  const double q = m->params.end_stiffness * f->face.stiffness_factor[0] * d * sqrt(d);
-  load->elastic += 0.4 * q * d;
-  push(m, f, p, trb_axpy(c, g->sphere_radius - 0.5 * d, normal), normal, q, counters, load, sums);
+  const double       q = m->params.end_stiffness * f->face.stiffness_factor[0] * d * sqrt(d);
+  const pocket_touch touch = {trb_axpy(c, g->sphere_radius - 0.5 * d, normal), normal, d, q, TRB_POINT_EXPONENT, trb_sub(c, p->x), 0};
+  push(m, f, p, &touch, counters, load, sums);
+}
+
+static trb_vec3 small_end(const trb_model *m, const pocket_view *p)
+{
+  return trb_axpy(p->x, m->geometry.small_end_station - m->geometry.roller_mass_offset, p->a);
+}
+
+static trb_vec3 vertex_of(const trb_pocket_face *f, int i)
+{
+  const double *vertex = f->face.outline + 2 * i;
+  return trb_axpy(trb_axpy(array_vector(f->face.origin), vertex[0], array_vector(f->face.u)), vertex[1], array_vector(f->face.v));
 }
 
 static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_counters *counters, trb_roller_load *load,
                               pocket_sums *sums)
 {
-  const trb_vec3 end = trb_axpy(p->x, m->geometry.small_end_station - m->geometry.roller_mass_offset, p->a), normal = trb_scale(-1.0, p->a);
+  const trb_vec3 end = small_end(m, p), normal = trb_scale(-1.0, p->a);
   const double   stiffness = m->params.end_stiffness * f->face.stiffness_factor[0] / f->n;
   for (int i = 0; i < f->n; i++) {
-    const double  *vertex = f->face.outline + 2 * i;
-    const trb_vec3 point =
-        trb_axpy(trb_axpy(array_vector(f->face.origin), vertex[0], array_vector(f->face.u)), vertex[1], array_vector(f->face.v));
-    const double d = trb_dot(trb_sub(point, end), p->a);
+    const trb_vec3 point = vertex_of(f, i);
+    const double   d = trb_dot(trb_sub(point, end), p->a);
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > 0.0)) continue;
-    const double q = stiffness * d * sqrt(d);
-    load->elastic += 0.4 * q * d;
-    push(m, f, p, point, normal, q, counters, load, sums);
+    const double       q = stiffness * d * sqrt(d);
+    const pocket_touch touch = {point, normal, d, q, TRB_POINT_EXPONENT, {0, 0, 0}, 1};
+    push(m, f, p, &touch, counters, load, sums);
   }
 }
 
-/* Lower bound of the gap: a bounded face is no nearer than its plane, and the height over a plane less the sphere's radius is linear
- * along an undropped cone, so that its least value is at an end; a profile only takes material away. */
+/* A bounded face is no nearer than its plane, and the height over a plane less the sphere's radius is linear along an undropped cone, so
+ * that its least value is at an end; a profile only takes material away. */
 static double flank_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
 {
-  const double   tangent = m->roller_tangent, cosine = m->roller_cosine, deviation = 0.5 * m->diameter_deviation[roller];
-  const trb_vec3 origin = array_vector(f->face.origin);
-  double         gap = INFINITY;
+  const double tangent = m->roller_tangent, cosine = m->roller_cosine, deviation = 0.5 * m->diameter_deviation[roller];
+  const double middle = height(f, p->x), along = trb_dot(p->a, f->normal);
+  double       gap = INFINITY;
   for (int end = -1; end <= 1; end += 2) {
-    const double   station = 0.5 * end * m->params.effective_length, radius = (m->geometry.apex_to_mid + station) * tangent + deviation;
-    const trb_vec3 c = trb_axpy(p->x, station + radius * tangent - m->geometry.roller_mass_offset, p->a);
-    gap = trb_min(gap, trb_dot(trb_sub(c, origin), f->normal) - radius / cosine);
+    const double station = 0.5 * end * m->params.effective_length, radius = (m->geometry.apex_to_mid + station) * tangent + deviation;
+    gap = trb_min(gap, middle + (station + radius * tangent - m->geometry.roller_mass_offset) * along - radius / cosine);
   }
   return gap;
+}
+
+static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p)
+{
+  const trb_vec3 end = small_end(m, p);
+  double         gap = INFINITY;
+  for (int i = 0; i < f->n; i++) gap = trb_min(gap, trb_dot(trb_sub(end, vertex_of(f, i)), p->a));
+  return gap;
+}
+
+/* Lower bound of the gap. */
+static double face_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
+{
+  if (f->part == TRB_PART_FLANK) return flank_gap(m, f, p, roller);
+  if (f->part == TRB_PART_LARGE_END) return height(f, end_sphere(m, p)) - m->geometry.sphere_radius;
+  return small_end_gap(m, f, p);
+}
+
+static pocket_sums face_forces(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
+                               trb_roller_load *load)
+{
+  pocket_sums sums = {0.0, 0.0, -INFINITY};
+  if (f->part == TRB_PART_FLANK) flank_on_face(m, f, p, roller, exact, counters, load, &sums);
+  else if (f->part == TRB_PART_LARGE_END) large_end_on_face(m, f, p, exact, counters, load, &sums);
+  else small_end_on_face(m, f, p, counters, load, &sums);
+  return sums;
+}
+
+static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f, const pocket_sums *sums, trb_detail *detail)
+{
+  const int slot = roller * m->n_slots + f->slot;
+  detail->pocket_force[slot] += sums->force;
+  detail->pocket_friction[slot] += sums->friction;
+  detail->pocket_interference[slot] = trb_max(detail->pocket_interference[slot], sums->deepest);
 }
 
 double trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
-                             trb_detail *detail)
+                             trb_pocket_slopes *slopes, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
+  const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
   const int              exact = detail != NULL;
-  pocket_view            p = view_pocket(m, r, at->cage, roller);
+  pocket_view            p;
   double                 gap = INFINITY;
-  for (int i = m->first_face[roller]; i < m->first_face[roller + 1]; i++) {
-    const trb_pocket_face *f = &m->faces[i];
-    pocket_sums            sums = {0.0, 0.0, -INFINITY};
-    counters->pocket_tests++;
-    if (f->part == TRB_PART_FLANK) {
-      const double flank = flank_gap(m, f, &p, roller);
-      gap = trb_min(gap, flank);
-      if (!exact && flank >= 0.0) {
-        counters->pocket_culled++;
-        continue;
-      }
-      flank_on_face(m, f, &p, roller, exact, counters, load, &sums);
-    } else if (f->part == TRB_PART_LARGE_END) {
-      large_end_on_face(m, f, &p, exact, counters, load, &sums);
-      gap = trb_min(gap, -sums.deepest);
-    } else {
-      small_end_on_face(m, f, &p, counters, load, &sums);
-      gap = trb_min(gap, -sums.deepest);
-    }
-    if (detail != NULL) {
-      const int slot = roller * m->n_slots + f->slot;
-      detail->pocket_force[slot] += sums.force;
-      detail->pocket_friction[slot] += sums.friction;
-      detail->pocket_interference[slot] = trb_max(detail->pocket_interference[slot], sums.deepest);
-    }
+  view_places(m, r, at->cage, roller, &p);
+  counters->pocket_tests += end - first;
+  for (const trb_pocket_face *f = first; f < end; f++) gap = trb_min(gap, face_gap(m, f, &p, roller));
+  if (gap > 0.0 && !exact) {
+    counters->pocket_culled += end - first;
+    return gap;
   }
-  if (gap > 0.0) return gap;
-  load->force = trb_add(load->force, trb_from_frame(&p.axes, p.force));
-  load->moment = trb_add(load->moment, trb_from_frame(&p.axes, p.moment));
-  load->cage_force = trb_add(load->cage_force, trb_turn_z(trb_from_frame(&p.axes, p.cage_force), r->cosine, r->sine));
-  load->cage_moment = trb_add(load->cage_moment, trb_turn_z(trb_from_frame(&p.axes, p.cage_moment), r->cosine, r->sine));
+  view_motions(r, at->cage, &m->pocket_origin[roller], &p);
+  memset(load, 0, sizeof *load);
+  if (slopes != NULL) *slopes = (trb_pocket_slopes){.axes = p.axes};
+  p.slopes = slopes;
+  gap = INFINITY;
+  for (const trb_pocket_face *f = first; f < end; f++) {
+    const double least = face_gap(m, f, &p, roller);
+    if (least > 0.0 && !exact) {
+      counters->pocket_culled++;
+      gap = trb_min(gap, least);
+      continue;
+    }
+    const pocket_sums sums = face_forces(m, f, &p, roller, exact, counters, load);
+    gap = trb_min(gap, f->part == TRB_PART_FLANK ? least : -sums.deepest);
+    if (exact) add_detail(m, roller, f, &sums, detail);
+  }
+  load->force = trb_from_frame(&p.axes, p.force);
+  load->moment = trb_from_frame(&p.axes, p.moment);
+  load->cage_force = trb_turn_z(trb_from_frame(&p.axes, p.cage_force), r->cosine, r->sine);
+  load->cage_moment = trb_turn_z(trb_from_frame(&p.axes, p.cage_moment), r->cosine, r->sine);
   return gap;
+}
+
+static void add_load(const trb_roller_load *load, trb_roller_load *to)
+{
+  to->force = trb_add(to->force, load->force);
+  to->moment = trb_add(to->moment, load->moment);
+  to->cage_force = trb_add(to->cage_force, load->cage_force);
+  to->cage_moment = trb_add(to->cage_moment, load->cage_moment);
+  to->elastic += load->elastic;
+  to->power[TRB_POWER_POCKET] += load->power[TRB_POWER_POCKET];
+  to->power[TRB_POWER_DAMPING] += load->power[TRB_POWER_DAMPING];
 }
 
 void trb_contact_pocket(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
-  for (int k = 0; k < at->n; k++) (void)trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &loads[at->chosen[k]], detail);
+  for (int k = 0; k < at->n; k++) {
+    trb_roller_load load;
+    if (trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail) <= 0.0) add_load(&load, &loads[at->chosen[k]]);
+  }
 }

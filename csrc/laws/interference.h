@@ -17,8 +17,9 @@ static inline void trb_nearest_in_polygon(const double *vertices, int n, double 
   int    inside = 1;
   *nearest_u = u;
   *nearest_v = v;
-  for (int i = 0; i < n; i++) {
-    const double *p = vertices + 2 * i, *q = vertices + 2 * ((i + 1) % n);
+  const double *p = vertices + 2 * (n - 1);
+  for (int i = 0; i < n; p = vertices + 2 * i++) {
+    const double *q = vertices + 2 * i;
     const double  eu = q[0] - p[0], ev = q[1] - p[1], du = u - p[0], dv = v - p[1];
     /* to the right of an edge is outside */
     if (eu * dv - ev * du >= 0.0) continue;

@@ -246,8 +246,8 @@ int trb_dynamics_clear(const trb_dynamics *d, int roller, const double *y)
 void trb_dynamics_pocket(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment)
 {
   const trb_instant at = trb_dynamics_instant(d);
-  trb_roller_load   load = {0};
-  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL);
+  trb_roller_load   load;
+  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL, NULL);
   trb_clearance_set(d->model, &d->clearances[roller], gap, y + trb_state_roller(roller), y + trb_state_cage(d->model));
   if (gap > 0.0) return;
   trb_dynamics_roller_response(d, roller, &load, flow);

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stepping/coupling.h"
+
 trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message)
 {
@@ -32,17 +34,7 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   free(jacobian);
 }
 
-/* Loads between one roller and its pocket at the poses kept. */
-static trb_roller_load pocket_load(trb_dynamics *d, int roller)
-{
-  const trb_instant at = trb_dynamics_instant(d);
-  trb_roller_load   load;
-  memset(&load, 0, sizeof load);
-  (void)trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL);
-  return load;
-}
-
-/* What a load adds to the rates of a roller, and of the cage. */
+/* What a load adds to the rates of a roller. */
 static void roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates)
 {
   double flow[TRB_FLOW_SIZE] = {0};
@@ -50,68 +42,48 @@ static void roller_response(const trb_dynamics *d, int roller, const trb_roller_
   memcpy(rates, flow, TRB_NR * sizeof *rates);
 }
 
-static void cage_response(const trb_dynamics *d, const double *y_cage, trb_vec3 force, trb_vec3 moment, double *rates)
-{
-  double still[TRB_NC];
-  trb_dynamics_cage_rates(d, y_cage, trb_v(0, 0, 0), trb_v(0, 0, 0), still);
-  trb_dynamics_cage_rates(d, y_cage, force, moment, rates);
-  for (int i = 0; i < TRB_NC; i++) rates[i] -= still[i];
-}
+/* Change of the cage's loads with each of its coordinates. */
+typedef struct cage_loads {
+  trb_vec3 force[TRB_NC], moment[TRB_NC];
+} cage_loads;
 
-/* What a pocket in contact adds to its roller's block and to the border from it. */
-static void pocket_columns(trb_jacobian *jac, int j, const double *y, const trb_roller_load *base, trb_arrow_block *block,
-                           trb_arrow_border *border)
+/* What a pocket in contact adds to its roller's block, to both borders, and to the cage's loads. still: rates of a cage without loads. */
+static void add_pocket(const trb_dynamics *d, int j, const trb_coupling *k, const double *y_cage, const double *still,
+                       trb_arrow_block *block, trb_arrow_border *border, cage_loads *sums)
 {
-  trb_dynamics    *d = jac->d;
-  const trb_model *m = d->model;
-  const double    *y_cage = y + trb_state_cage(m), *yj = y + trb_state_roller(j);
-  double          *moved = jac->moved + trb_state_roller(j), was[TRB_NR];
-  roller_response(d, j, base, was);
+  double change[TRB_NR], rates[TRB_NC];
   for (int c = 0; c < TRB_NR; c++) {
-    const double h = trb_difference[trb_state_tolerance(m, c)], per = 1.0 / h;
-    double       now[TRB_NR], response[TRB_NC];
-    moved[c] = yj[c] + h;
-    trb_dynamics_pose_roller(d, j, moved);
-    const trb_roller_load load = pocket_load(d, j);
-    roller_response(d, j, &load, now);
-    cage_response(d, y_cage, trb_sub(load.cage_force, base->cage_force), trb_sub(load.cage_moment, base->cage_moment), response);
-    for (int i = 0; i < TRB_NR; i++) block->own[c][i] += per * (now[i] - was[i]);
-    for (int i = 0; i < TRB_NC; i++) border->from[c][i] = per * response[i];
-    moved[c] = yj[c];
+    const trb_roller_load load = trb_coupling_of_roller(k, c);
+    roller_response(d, j, &load, change);
+    trb_dynamics_cage_rates(d, y_cage, load.cage_force, load.cage_moment, rates);
+    for (int i = 0; i < TRB_NR; i++) block->own[c][i] += change[i];
+    for (int i = 0; i < TRB_NC; i++) border->from[c][i] = rates[i] - still[i];
   }
-  trb_dynamics_pose_roller(d, j, yj);
+  for (int c = 0; c < TRB_NC; c++) {
+    const trb_roller_load load = trb_coupling_of_cage(k, c);
+    roller_response(d, j, &load, change);
+    for (int i = 0; i < TRB_NR; i++) border->to_cage[c][i] = change[i];
+    sums->force[c] = trb_add(sums->force[c], load.cage_force);
+    sums->moment[c] = trb_add(sums->moment[c], load.cage_moment);
+  }
 }
 
-/* Column c of the cage's block and of the border to the rollers that touch. base: pocket loads, with rollers' flags in `touch`. */
-static void cage_column(trb_jacobian *jac, int c, const double *y, const trb_roller_load *base, const double *base_rates, trb_vec3 force,
-                        trb_vec3 moment, trb_arrow *arrow)
+/* The cage's block by differences of its rates under the loads force and moment, which change with its coordinates. */
+static void cage_block(trb_jacobian *jac, const double *y, trb_vec3 force, trb_vec3 moment, const cage_loads *changes, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
-  const int        at = trb_state_cage(m) + c;
-  const double     h = trb_difference[trb_state_tolerance(m, at)], per = 1.0 / h;
-  double           rates[TRB_NC];
-  jac->moved[at] = y[at] + h;
-  trb_cage_pose_unpack(m, &d->drive, jac->moved + trb_state_cage(m), &d->cage);
-  for (int j = 0; j < m->n_rollers; j++) {
-    if (!arrow->borders[j].coupled) continue;
-    const trb_roller_load now = pocket_load(d, j);
-    trb_roller_load       change;
-    double                response[TRB_NR];
-    memset(&change, 0, sizeof change);
-    change.force = trb_sub(now.force, base[j].force);
-    change.moment = trb_sub(now.moment, base[j].moment);
-    roller_response(d, j, &change, response);
-    for (int i = 0; i < TRB_NR; i++) arrow->borders[j].to_cage[c][i] = per * response[i];
-    force = trb_add(force, trb_sub(now.cage_force, base[j].cage_force));
-    moment = trb_add(moment, trb_sub(now.cage_moment, base[j].cage_moment));
+  double          *y_cage = jac->moved + trb_state_cage(m), base[TRB_NC], rates[TRB_NC];
+  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, base);
+  for (int c = 0; c < TRB_NC; c++) {
+    const double was = y_cage[c], h = trb_difference[trb_state_tolerance(m, trb_state_cage(m) + c)], per = 1.0 / h;
+    y_cage[c] = was + h;
+    trb_cage_pose_unpack(m, &d->drive, y_cage, &d->cage);
+    trb_dynamics_cage_rates(d, y_cage, trb_axpy(force, h, changes->force[c]), trb_axpy(moment, h, changes->moment[c]), rates);
+    for (int i = 0; i < TRB_NC; i++) arrow->cage[c][i] = per * (rates[i] - base[i]);
+    y_cage[c] = was;
   }
-  trb_dynamics_cage_rates(d, jac->moved + trb_state_cage(m), force, moment, rates);
-  for (int i = 0; i < TRB_NC; i++) arrow->cage[c][i] = per * (rates[i] - base_rates[i]);
-  jac->moved[at] = y[at];
 }
-
-static int touches(const trb_roller_load *load) { return trb_dot(load->cage_force, load->cage_force) > 0.0; }
 
 void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fresh, trb_arrow *arrow)
 {
@@ -126,18 +98,22 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   for (int j = 0; j < m->n_rollers; j++)
     for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[j].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
   if (!arrow->with_cage) return;
-  trb_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
-  double   cage_rates[TRB_NC];
-  /* no pair of the rings runs from here on: their loads' place serves the pockets */
-  trb_roller_load *base = d->loads;
+  const trb_instant at = trb_dynamics_instant(d);
+  const double     *y_cage = y + trb_state_cage(m);
+  trb_vec3          force = {0, 0, 0}, moment = {0, 0, 0};
+  cage_loads        changes = {0};
+  double            still[TRB_NC];
+  trb_dynamics_cage_rates(d, y_cage, force, moment, still);
   for (int j = 0; j < m->n_rollers; j++) {
-    base[j] = pocket_load(d, j);
-    arrow->borders[j].coupled = touches(&base[j]);
+    trb_coupling    k;
+    trb_roller_load load;
+    arrow->borders[j].coupled =
+        trb_contact_pocket_of(m, &at, j, &d->work->counters, &load, &k.slopes, NULL) <= 0.0 && trb_norm(load.cage_force) > 0.0;
     if (!arrow->borders[j].coupled) continue;
-    force = trb_add(force, base[j].cage_force);
-    moment = trb_add(moment, base[j].cage_moment);
-    pocket_columns(jac, j, y, &base[j], &arrow->rollers[j], &arrow->borders[j]);
+    trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
+    force = trb_add(force, load.cage_force);
+    moment = trb_add(moment, load.cage_moment);
+    add_pocket(d, j, &k, y_cage, still, &arrow->rollers[j], &arrow->borders[j], &changes);
   }
-  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, cage_rates);
-  for (int c = 0; c < TRB_NC; c++) cage_column(jac, c, y, base, cage_rates, force, moment, arrow);
+  cage_block(jac, y, force, moment, &changes, arrow);
 }

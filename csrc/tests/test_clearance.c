@@ -17,7 +17,7 @@ static double gap_at(trb_dynamics *d, int roller, const double *y, int *touches)
   trb_counters    counters = {0};
   trb_dynamics_pose(d, 0.0, y);
   const trb_instant at = trb_dynamics_instant(d);
-  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL);
+  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL, NULL);
   *touches = trb_norm(load.cage_force) > 0.0 || counters.pocket_nodes > 0;
   return gap;
 }
