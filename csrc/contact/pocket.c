@@ -218,17 +218,20 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
 }
 
 /* A bounded face is no nearer than its plane, and the height over a plane less the sphere's radius is linear along an undropped cone, so
- * that its least value is at an end; a profile only takes material away. */
+ * that its least value is at an end; a profile only takes material away. Where that is not enough, of the nodes. */
 static double flank_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
 {
-  const double tangent = m->roller_tangent, cosine = m->roller_cosine, deviation = 0.5 * m->diameter_deviation[roller];
-  const double middle = height(f, p->x), along = trb_dot(p->a, f->normal);
-  double       gap = INFINITY;
+  const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
+  const double  tangent = m->roller_tangent, cosine = m->roller_cosine, deviation = 0.5 * m->diameter_deviation[roller];
+  const double  middle = height(f, p->x), along = trb_dot(p->a, f->normal);
+  double        gap = INFINITY, of_nodes = INFINITY;
   for (int end = -1; end <= 1; end += 2) {
     const double station = 0.5 * end * m->params.effective_length, radius = (m->geometry.apex_to_mid + station) * tangent + deviation;
     gap = trb_min(gap, middle + (station + radius * tangent - m->geometry.roller_mass_offset) * along - radius / cosine);
   }
-  return gap;
+  if (gap > 0.0) return gap;
+  for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k]);
+  return of_nodes;
 }
 
 static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p)
