@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "laws/film.h"
 #include "laws/line_contact.h"
 #include "laws/profile.h"
@@ -212,14 +213,7 @@ static void fill_constants(trb_model *m)
   m->film = !dry && (p->lubrication != TRB_LUBRICATION_BOUNDARY) && (m->friction || p->rolling_resistance > 0.0);
 }
 
-/* Arrays for the vector loops start on cache lines. */
-static double *doubles(size_t count)
-{
-  const size_t bytes = (count * sizeof(double) + 63) / 64 * 64;
-  double      *array = aligned_alloc(64, bytes > 0 ? bytes : 64);
-  if (array != NULL) memset(array, 0, bytes > 0 ? bytes : 64);
-  return array;
-}
+static double *doubles(size_t count) { return trb_zeros(count, sizeof(double)); }
 
 static int allocate(trb_model *m)
 {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "contact/kernels.h"
 
 const trb_kernel_variant trb_kernel_variants[] = {
@@ -48,13 +49,12 @@ trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_wor
   const trb_status status = choose_variant(variant, &chosen, message);
   if (status != TRB_OK) return status;
   trb_workspace *w = calloc(1, sizeof *w);
-  trb_lanes     *lanes = aligned_alloc(64, sizeof *lanes);
+  trb_lanes     *lanes = trb_zeros(1, sizeof *lanes);
   if (w == NULL || lanes == NULL) {
     free(w);
     free(lanes);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a workspace");
   }
-  memset(lanes, 0, sizeof *lanes);
   w->lanes = lanes;
   w->variant = chosen;
   *work = w;

@@ -1,24 +1,16 @@
 #include "stepping/arrow.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-/* Zeros that start with a cache line. */
-static void *zeros(int n, size_t size)
-{
-  const size_t bytes = ((size_t)n * size + 63) / 64 * 64;
-  void        *made = aligned_alloc(64, bytes);
-  if (made != NULL) memset(made, 0, bytes);
-  return made;
-}
+#include "base/memory.h"
 
 trb_status trb_arrow_create(int n_rollers, int with_cage, trb_arrow **arrow, trb_message *message)
 {
   trb_arrow *a = calloc(1, sizeof *a);
   *arrow = NULL;
   if (a != NULL) {
-    a->rollers = zeros(n_rollers, sizeof *a->rollers);
-    a->borders = zeros(n_rollers, sizeof *a->borders);
+    a->rollers = trb_zeros((size_t)n_rollers, sizeof *a->rollers);
+    a->borders = trb_zeros((size_t)n_rollers, sizeof *a->borders);
   }
   if (a == NULL || a->rollers == NULL || a->borders == NULL) {
     trb_arrow_free(a);
@@ -43,8 +35,8 @@ trb_status trb_arrow_factors_create(int n_rollers, int variant, trb_arrow_factor
   trb_arrow_factors *f = calloc(1, sizeof *f);
   *factors = NULL;
   if (f != NULL) {
-    f->rollers = zeros(n_rollers, sizeof *f->rollers);
-    f->borders = zeros(n_rollers, sizeof *f->borders);
+    f->rollers = trb_zeros((size_t)n_rollers, sizeof *f->rollers);
+    f->borders = trb_zeros((size_t)n_rollers, sizeof *f->borders);
   }
   if (f == NULL || f->rollers == NULL || f->borders == NULL) {
     trb_arrow_factors_free(f);

@@ -216,14 +216,20 @@ static double step_from(const double *restrict origin, const double *restrict pe
 }
 
 static void follow(const double *restrict value, const double (*restrict slope)[TRB_TANGENT_OUT], const double *restrict step,
-                   double *restrict flow)
+                   const double *restrict least, double *restrict flow)
 {
   double sum[TRB_TANGENT_OUT];
   memcpy(sum, value, sizeof sum);
   for (int c = 0; c < TRB_TANGENT_IN; c++)
     for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] += step[c] * slope[c][i];
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = larger(sum[i], least[i]);
   memcpy(flow, sum, sizeof sum);
 }
 
+static void weigh(const double *restrict relative, const double *restrict scale, const double *restrict y, int n, double *restrict weights)
+{
+  for (int i = 0; i < n; i++) weights[i] = 1.0 / (relative[i] * fabs(y[i]) + scale[i]);
+}
+
 const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {factor,    border, invert_cage, solve,
-                                                                            step_from, follow, all_finite};
+                                                                            step_from, follow, weigh,       all_finite};

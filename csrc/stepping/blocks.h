@@ -43,8 +43,10 @@ typedef struct trb_block_kernels {
   /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. TRB_NP entries of
    * y are read. */
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);
-  /* value + slope step; slope column by column. */
-  void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, double *flow);
+  /* value + slope step, no less than least; slope column by column. */
+  void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, const double *least, double *flow);
+  /* Error weights 1/(relative |y| + scale). */
+  void (*weigh)(const double *relative, const double *scale, const double *y, int n, double *weights);
   /* Whether all entries are finite. */
   int (*finite)(const double *x, int n);
 } trb_block_kernels;

@@ -51,7 +51,7 @@ static trb_vec3 to_roller(const trb_coupling *k, trb_vec3 v) { return trb_turn_z
 static trb_vec3 to_cage(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, k->roller->sine); }
 
 /* Change of the wrench on the roller with a motion relative to the pocket. */
-static trb_wrench follow(const trb_coupling *k, rigid motion, int is_place)
+static trb_wrench wrench_of(const trb_coupling *k, rigid motion, int is_place)
 {
   const trb_wrench *columns = is_place ? k->slopes.place : k->slopes.velocity;
   const trb_frame  *axes = &k->slopes.axes;
@@ -91,7 +91,7 @@ trb_roller_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
 {
   const int       is_place = coordinate < TRB_ROLLER_v_r;
   const rigid     motion = roller_motion(k->roller, coordinate);
-  trb_roller_load load = loads_of(k, follow(k, motion, is_place), is_place ? motion.shift : none);
+  trb_roller_load load = loads_of(k, wrench_of(k, motion, is_place), is_place ? motion.shift : none);
   if (!is_place) return load;
   /* the frames that the roller's force and moment are written in turn with it */
   if (coordinate == TRB_ROLLER_psi) load.force = trb_sub(load.force, trb_cross(third, k->force));
@@ -104,7 +104,7 @@ trb_roller_load trb_coupling_of_cage(const trb_coupling *k, int coordinate)
   const int      is_place = coordinate < TRB_CAGE_v_x;
   const rigid    cage = cage_motion(k->cage, coordinate);
   const trb_vec3 shift = trb_scale(-1.0, to_roller(k, cage.shift)), turn = trb_scale(-1.0, to_roller(k, cage.turn));
-  trb_wrench     change = follow(k, (rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
+  trb_wrench     change = wrench_of(k, (rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
   if (!is_place) return loads_of(k, change, none);
   /* the roller moves the other way in the pocket, whose forces turn with the cage */
   change.force = trb_sub(change.force, trb_cross(turn, k->force));

@@ -1,7 +1,5 @@
 #include "stepping/integrator.h"
 
-#include <math.h>
-
 #include "stepping/blocks.h"
 
 const trb_setting_info trb_setting_table[TRB_N_SETTINGS] = {
@@ -26,5 +24,5 @@ int trb_integrator_rates(trb_integrator *it, double time, const double *y, doubl
 
 void trb_integrator_weights(const trb_integrator *it, const double *y, double *weights)
 {
-  for (int i = 0; i < it->n; i++) weights[i] = 1.0 / (it->relative[i] * fabs(y[i]) + it->scale[i]);
+  trb_block_kernels_of(it->dynamics->work->variant)->weigh(it->relative, it->scale, y, it->n, weights);
 }

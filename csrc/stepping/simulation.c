@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 static trb_status check_settings(const trb_settings *settings, trb_message *message)
 {
   const double *values = (const double *)settings;
@@ -75,10 +77,10 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   trb_integrator *it = &s->integrator;
   trb_status      status;
   it->n = trb_state_size(s->model);
-  it->y = calloc((size_t)it->n, sizeof(double));
-  it->scale = calloc((size_t)it->n, sizeof(double));
-  it->relative = calloc((size_t)it->n, sizeof(double));
-  s->between = calloc((size_t)it->n, sizeof(double));
+  it->y = trb_zeros((size_t)it->n, sizeof(double));
+  it->scale = trb_zeros((size_t)it->n, sizeof(double));
+  it->relative = trb_zeros((size_t)it->n, sizeof(double));
+  s->between = trb_zeros((size_t)it->n, sizeof(double));
   if (!it->y || !it->scale || !it->relative || !s->between) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
   if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->dynamics, message)) != TRB_OK) return status;
   if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->onlooker, message)) != TRB_OK) return status;

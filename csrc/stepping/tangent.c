@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
 /* Turn of the frame that counts as one tolerance, and by which slopes in it are evaluated, rad. */
@@ -15,6 +17,16 @@ static const double power_share = 0.03;
 /* Reaches: least, largest; growth and decline at once; distance beyond which a tangent learns nothing. */
 static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
 
+/* Sliding and damping never give energy: beside zero, where their powers curve most, a tangent may. */
+static void set_bounds(trb_tangents *t)
+{
+  static const trb_power taken[] = {TRB_POWER_TRACTION_OUTER, TRB_POWER_TRACTION_INNER, TRB_POWER_RIB, TRB_POWER_FRONT_RIB,
+                                    TRB_POWER_DAMPING};
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) t->least[i] = t->anything[i] = -INFINITY;
+  for (int k = 0; k < (int)(sizeof taken / sizeof taken[0]); k++)
+    t->least[TRB_FLOW_quadrature + TRB_Q_loss_traction_outer + taken[k]] = 0.0;
+}
+
 trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message)
 {
   const size_t  n = (size_t)m->n_rollers;
@@ -22,8 +34,8 @@ trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_
   *tangents = NULL;
   if (t != NULL) {
     t->model = m;
-    t->rollers = aligned_alloc(64, (n * sizeof *t->rollers + 63) / 64 * 64);
-    t->flows = aligned_alloc(64, (n * sizeof *t->flows + 63) / 64 * 64);
+    t->rollers = trb_zeros(n, sizeof *t->rollers);
+    t->flows = trb_zeros(n, sizeof *t->flows);
     t->far = calloc(n, sizeof *t->far);
     t->touching = calloc(n, sizeof *t->touching);
     t->beyond = calloc(n, sizeof *t->beyond);
@@ -32,8 +44,7 @@ trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
-  memset(t->rollers, 0, n * sizeof *t->rollers);
-  memset(t->flows, 0, n * sizeof *t->flows);
+  set_bounds(t);
   *tangents = t;
   return TRB_OK;
 }
@@ -150,15 +161,16 @@ static double power_error(const double *flow, const double *error)
 
 /* An exact flow becomes the origin: slopes corrected along the step (Broyden 1965, Math. Comp. 19, 577, with the tolerances' metric), reach
  * set by the error that was found. */
-static void learn(trb_tangent *r, const trb_tangent_measure *measure, int roller, const double *y, double turn, const double *flow)
+static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *y, double turn, const double *flow)
 {
+  trb_tangent             *r = &t->rollers[roller];
   const trb_block_kernels *kernels = measure->factors->kernels;
   double                   step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];
   if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
   const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step)) : 0.0;
   if (r->known && length < farthest) {
     double direction[TRB_TANGENT_IN];
-    kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, error);
+    kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->anything, error);
     for (int i = 0; i < TRB_TANGENT_OUT; i++) error[i] = flow[i] - error[i];
     const double in_state = step_error(r, measure, roller, error), in_power = power_error(flow, error) / power_share;
     const double factor = caution / sqrt(trb_max(in_state / measure->share, in_power) + 1e-300);
@@ -189,17 +201,8 @@ static void evaluate_far(trb_tangents *t, trb_dynamics *d, const trb_tangent_mea
     const int j = t->far[k];
     trb_dynamics_roller_flow(d, j, &d->loads[j], t->flows[j]);
     if (t->beyond[j] && t->has_slopes && measure->factors->gamma > 0.0)
-      learn(&t->rollers[j], measure, j, y + trb_state_roller(j), d->drive.frame_angle, t->flows[j]);
+      learn(t, j, measure, y + trb_state_roller(j), d->drive.frame_angle, t->flows[j]);
   }
-}
-
-/* Sliding and damping never give energy: beside zero, where their powers curve most, a tangent may. */
-static void keep_signs(double *flow)
-{
-  static const trb_power taken[] = {TRB_POWER_TRACTION_OUTER, TRB_POWER_TRACTION_INNER, TRB_POWER_RIB, TRB_POWER_FRONT_RIB,
-                                    TRB_POWER_DAMPING};
-  double *const          power = flow + TRB_FLOW_quadrature + TRB_Q_loss_traction_outer;
-  for (int k = 0; k < (int)(sizeof taken / sizeof taken[0]); k++) power[taken[k]] = trb_max(power[taken[k]], 0.0);
 }
 
 void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,
@@ -228,8 +231,7 @@ void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent
     r->served += !t->beyond[j];
     const int follows = !t->beyond[j] && (r->usual >= enough || r->served > enough_now);
     if (follows) {
-      kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->flows[j]);
-      keep_signs(t->flows[j]);
+      kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, t->flows[j]);
     } else {
       t->far[n_far++] = j;
     }

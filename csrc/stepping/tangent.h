@@ -31,12 +31,13 @@ typedef struct trb_tangent {
 typedef struct trb_tangents {
   const trb_model *model;
   trb_tangent     *rollers;
-  double (*flows)[TRB_TANGENT_OUT]; /* scratch: of every roller */
-  int   *far;                       /* scratch: rollers to evaluate */
-  int   *beyond;                    /* scratch: whether a roller is beyond its reach */
-  int   *touching;                  /* scratch: rollers that may touch their pockets */
-  double time;                      /* at which slopes were last evaluated anew, s */
-  int    has_slopes;                /* whether they were at all */
+  double           least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT]; /* lower bounds of flows that are followed, and none */
+  double (*flows)[TRB_TANGENT_OUT];                                   /* scratch: of every roller */
+  int   *far;                                                         /* scratch: rollers to evaluate */
+  int   *beyond;                                                      /* scratch: whether a roller is beyond its reach */
+  int   *touching;                                                    /* scratch: rollers that may touch their pockets */
+  double time;                                                        /* at which slopes were last evaluated anew, s */
+  int    has_slopes;                                                  /* whether they were at all */
 } trb_tangents;
 
 /* What the error of a tangent is measured with. */

@@ -28,6 +28,13 @@ static void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_V
   ENTRIES for (long i = 0; i < n; i++) to[i] = a * from[i] + b * other[i];
 }
 
+static void constant(sunrealtype a, N_Vector z)
+{
+  double    *to = N_VGetArrayPointer(z);
+  const long n = length_of(z);
+  for (long i = 0; i < n; i++) to[i] = a;
+}
+
 static void scale(sunrealtype a, N_Vector x, N_Vector z)
 {
   const double *from = N_VGetArrayPointer(x);
@@ -50,6 +57,7 @@ static sunrealtype rms_norm(N_Vector x, N_Vector w)
 
 void TRB_JOIN(trb_vector_use_, TRB_KERNEL_VARIANT)(N_Vector v)
 {
+  v->ops->nvconst = constant;
   v->ops->nvlinearsum = linear_sum;
   v->ops->nvscale = scale;
   v->ops->nvwrmsnorm = rms_norm;
