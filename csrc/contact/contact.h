@@ -147,10 +147,18 @@ typedef struct trb_pocket_slopes {
   trb_wrench velocity[6]; /* per m/s and rad/s */
 } trb_pocket_slopes;
 
-/* What one roller and its pocket do to each other; gives a lower bound of the gap, not above 0 where they touch. The load is written only
- * there, or with a detail, and so are slopes, if they are wanted. */
-double trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
-                             trb_pocket_slopes *slopes, trb_detail *detail);
+/* Lower bounds of the gaps between a roller and its pocket, m: of its flank, and of its ends. Not above 0: it may touch. */
+enum { TRB_GAP_FLANK, TRB_GAP_ENDS, TRB_N_GAPS };
+typedef struct trb_pocket_gaps {
+  double of[TRB_N_GAPS];
+} trb_pocket_gaps;
+
+static inline int trb_pocket_clear(const trb_pocket_gaps *gaps) { return gaps->of[TRB_GAP_FLANK] > 0.0 && gaps->of[TRB_GAP_ENDS] > 0.0; }
+
+/* What one roller and its pocket do to each other. The load is written only where they may touch, or with a detail, and so are slopes, if
+ * they are wanted. */
+trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
+                                      trb_pocket_slopes *slopes, trb_detail *detail);
 
 /* Buffers of every intermediate quantity; freed by trb_detail_free. */
 trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message);

@@ -268,42 +268,50 @@ static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f,
   detail->pocket_interference[slot] = trb_max(detail->pocket_interference[slot], sums->deepest);
 }
 
-double trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
-                             trb_pocket_slopes *slopes, trb_detail *detail)
+/* A face's gap among those of its kind. */
+static void note_gap(trb_pocket_gaps *gaps, const trb_pocket_face *f, double gap)
+{
+  double *of = &gaps->of[f->part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS];
+  *of = trb_min(*of, gap);
+}
+
+trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
+                                      trb_pocket_slopes *slopes, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
   const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
+  const trb_pocket_gaps  far = {{INFINITY, INFINITY}};
   const int              exact = detail != NULL;
   pocket_view            p;
-  double                 gap = INFINITY;
+  trb_pocket_gaps        gaps = far;
   view_places(m, r, at->cage, roller, &p);
   counters->pocket_tests += end - first;
-  for (const trb_pocket_face *f = first; f < end; f++) gap = trb_min(gap, face_gap(m, f, &p, roller));
-  if (gap > 0.0 && !exact) {
+  for (const trb_pocket_face *f = first; f < end; f++) note_gap(&gaps, f, face_gap(m, f, &p, roller));
+  if (trb_pocket_clear(&gaps) && !exact) {
     counters->pocket_culled += end - first;
-    return gap;
+    return gaps;
   }
   view_motions(r, at->cage, &m->pocket_origin[roller], &p);
   memset(load, 0, sizeof *load);
   if (slopes != NULL) *slopes = (trb_pocket_slopes){.axes = p.axes};
   p.slopes = slopes;
-  gap = INFINITY;
+  gaps = far;
   for (const trb_pocket_face *f = first; f < end; f++) {
     const double least = face_gap(m, f, &p, roller);
     if (least > 0.0 && !exact) {
       counters->pocket_culled++;
-      gap = trb_min(gap, least);
+      note_gap(&gaps, f, least);
       continue;
     }
     const pocket_sums sums = face_forces(m, f, &p, roller, exact, counters, load);
-    gap = trb_min(gap, f->part == TRB_PART_FLANK ? least : -sums.deepest);
+    note_gap(&gaps, f, f->part == TRB_PART_FLANK ? least : -sums.deepest);
     if (exact) add_detail(m, roller, f, &sums, detail);
   }
   load->force = trb_from_frame(&p.axes, p.force);
   load->moment = trb_from_frame(&p.axes, p.moment);
   load->cage_force = trb_turn_z(trb_from_frame(&p.axes, p.cage_force), r->cosine, r->sine);
   load->cage_moment = trb_turn_z(trb_from_frame(&p.axes, p.cage_moment), r->cosine, r->sine);
-  return gap;
+  return gaps;
 }
 
 static void add_load(const trb_roller_load *load, trb_roller_load *to)
@@ -320,7 +328,8 @@ static void add_load(const trb_roller_load *load, trb_roller_load *to)
 void trb_contact_pocket(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
 {
   for (int k = 0; k < at->n; k++) {
-    trb_roller_load load;
-    if (trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail) <= 0.0) add_load(&load, &loads[at->chosen[k]]);
+    trb_roller_load       load;
+    const trb_pocket_gaps gaps = trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail);
+    if (!trb_pocket_clear(&gaps)) add_load(&load, &loads[at->chosen[k]]);
   }
 }

@@ -5,25 +5,27 @@
 #ifndef TRB_MOTION_CLEARANCE_H
 #define TRB_MOTION_CLEARANCE_H
 
-#include "bearing/state.h"
+#include "contact/contact.h"
 
 /* Coordinates that come first in a roller's and in the cage's state. */
 enum { TRB_CLEARANCE_ROLLER = TRB_ROLLER_tilt + 1, TRB_CLEARANCE_CAGE = TRB_CAGE_psi + 1 };
 
 typedef struct trb_clearance {
-  double gap;                          /* lower bound of the gap there, m; not above 0: nothing is known */
-  double roller[TRB_CLEARANCE_ROLLER]; /* where it was found */
-  double cage[TRB_CLEARANCE_CAGE];
+  trb_pocket_gaps gaps;                         /* lower bounds there; not above 0: nothing is known */
+  double          roller[TRB_CLEARANCE_ROLLER]; /* where it was found */
+  double          cage[TRB_CLEARANCE_CAGE];
 } trb_clearance;
 
-/* How far a unit of each coordinate moves any point that can touch, at most, m/m or m/rad. */
+/* How far a unit of each coordinate moves what can touch, at most, m/m or m/rad. The large end's sphere has its centre far from the roller:
+ * flanks, which come nearer, have shorter arms. */
 typedef struct trb_clearance_arms {
   double roller[TRB_CLEARANCE_ROLLER];
   double cage[TRB_CLEARANCE_CAGE];
 } trb_clearance_arms;
 
-trb_clearance_arms trb_clearance_arms_of(const trb_model *m);
-void               trb_clearance_set(const trb_model *m, trb_clearance *c, double gap, const double *y_roller, const double *y_cage);
+/* arms: of every gap. */
+void trb_clearance_arms_of(const trb_model *m, trb_clearance_arms *arms);
+void trb_clearance_set(const trb_model *m, trb_clearance *c, const trb_pocket_gaps *gaps, const double *y_roller, const double *y_cage);
 /* Whether the roller is proven not to touch its pocket. */
 int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_cage);
 

@@ -28,7 +28,7 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
     trb_dynamics_free(d);
     return status;
   }
-  d->arms = trb_clearance_arms_of(m);
+  trb_clearance_arms_of(m, d->arms);
   *dynamics = d;
   return TRB_OK;
 }
@@ -237,7 +237,7 @@ int trb_dynamics_clear(const trb_dynamics *d, int roller, const double *y)
   const trb_model *m = d->model;
   const int        faces = m->first_face[roller + 1] - m->first_face[roller];
   if (faces == 0) return 1;
-  if (!trb_clearance_holds(&d->clearances[roller], &d->arms, y + trb_state_roller(roller), y + trb_state_cage(m))) return 0;
+  if (!trb_clearance_holds(&d->clearances[roller], d->arms, y + trb_state_roller(roller), y + trb_state_cage(m))) return 0;
   d->work->counters.pocket_tests += faces;
   d->work->counters.pocket_culled += faces;
   return 1;
@@ -245,11 +245,11 @@ int trb_dynamics_clear(const trb_dynamics *d, int roller, const double *y)
 
 void trb_dynamics_pocket(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment)
 {
-  const trb_instant at = trb_dynamics_instant(d);
-  trb_roller_load   load;
-  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL, NULL);
-  trb_clearance_set(d->model, &d->clearances[roller], gap, y + trb_state_roller(roller), y + trb_state_cage(d->model));
-  if (gap > 0.0) return;
+  const trb_instant     at = trb_dynamics_instant(d);
+  trb_roller_load       load;
+  const trb_pocket_gaps gaps = trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL, NULL);
+  trb_clearance_set(d->model, &d->clearances[roller], &gaps, y + trb_state_roller(roller), y + trb_state_cage(d->model));
+  if (trb_pocket_clear(&gaps)) return;
   trb_dynamics_roller_response(d, roller, &load, flow);
   *cage_force = trb_add(*cage_force, load.cage_force);
   *cage_moment = trb_add(*cage_moment, load.cage_moment);

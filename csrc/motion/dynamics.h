@@ -17,7 +17,7 @@ typedef struct trb_dynamics {
   trb_roller_load   *loads;
   int               *everyone; /* 0, 1, ...: all rollers */
   trb_clearance     *clearances;
-  trb_clearance_arms arms;
+  trb_clearance_arms arms[TRB_N_GAPS];
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */

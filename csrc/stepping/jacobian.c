@@ -105,10 +105,10 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   double            still[TRB_NC];
   trb_dynamics_cage_rates(d, y_cage, force, moment, still);
   for (int j = 0; j < m->n_rollers; j++) {
-    trb_coupling    k;
-    trb_roller_load load;
-    arrow->borders[j].coupled =
-        trb_contact_pocket_of(m, &at, j, &d->work->counters, &load, &k.slopes, NULL) <= 0.0 && trb_norm(load.cage_force) > 0.0;
+    trb_coupling          k;
+    trb_roller_load       load;
+    const trb_pocket_gaps gaps = trb_contact_pocket_of(m, &at, j, &d->work->counters, &load, &k.slopes, NULL);
+    arrow->borders[j].coupled = !trb_pocket_clear(&gaps) && trb_norm(load.cage_force) > 0.0;
     if (!arrow->borders[j].coupled) continue;
     trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
     force = trb_add(force, load.cage_force);

@@ -10,24 +10,25 @@ enum { MOST = 512 };
 
 static unsigned long long seed = 23;
 
-/* Lower bound of a roller's gap at a state, and whether its pocket pushes. */
-static double gap_at(trb_dynamics *d, int roller, const double *y, int *touches)
+/* Lower bounds of a roller's gaps at a state, and whether its pocket pushes. */
+static trb_pocket_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touches)
 {
   trb_roller_load load = {0};
   trb_counters    counters = {0};
   trb_dynamics_pose(d, 0.0, y);
-  const trb_instant at = trb_dynamics_instant(d);
-  const double      gap = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL, NULL);
+  const trb_instant     at = trb_dynamics_instant(d);
+  const trb_pocket_gaps gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL, NULL);
   *touches = trb_norm(load.cage_force) > 0.0 || counters.pocket_nodes > 0;
-  return gap;
+  return gaps;
 }
 
 /* From a state without contact, on along a random direction of all coordinates until the clearance ends. */
 static void walk(const trb_model *m, trb_dynamics *d, const double *start, const double *unit, int *held, int *reached)
 {
-  const trb_clearance_arms arms = trb_clearance_arms_of(m);
-  double                   direction[MOST] = {0}, y[MOST];
-  const int                only = (int)(11.0 * (0.5 + 0.5 * rig_random(&seed))), alone = rig_random(&seed) > 0.0;
+  trb_clearance_arms arms[TRB_N_GAPS];
+  double             direction[MOST] = {0}, y[MOST];
+  trb_clearance_arms_of(m, arms);
+  const int only = (int)(11.0 * (0.5 + 0.5 * rig_random(&seed))), alone = rig_random(&seed) > 0.0;
   for (int i = 0; i < TRB_CLEARANCE_CAGE; i++) direction[trb_state_cage(m) + i] = unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
   for (int j = 0; j < m->n_rollers; j++)
     for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++) direction[trb_state_roller(j) + i] = unit[i] * rig_random(&seed);
@@ -35,11 +36,11 @@ static void walk(const trb_model *m, trb_dynamics *d, const double *start, const
     trb_clearance c;
     int           touches;
     memcpy(y, start, sizeof y);
-    const double gap = gap_at(d, j, y, &touches);
-    CHECK(!(gap > 0.0 && touches));
-    trb_clearance_set(m, &c, gap, y + trb_state_roller(j), y + trb_state_cage(m));
-    if (!(gap > 0.0)) {
-      CHECK(!trb_clearance_holds(&c, &arms, y + trb_state_roller(j), y + trb_state_cage(m)));
+    const trb_pocket_gaps gaps = gaps_at(d, j, y, &touches);
+    CHECK(!(trb_pocket_clear(&gaps) && touches));
+    trb_clearance_set(m, &c, &gaps, y + trb_state_roller(j), y + trb_state_cage(m));
+    if (!trb_pocket_clear(&gaps)) {
+      CHECK(!trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + trb_state_cage(m)));
       continue;
     }
     for (double along = 0.0; along < 40.0; along += 0.02) {
@@ -48,12 +49,12 @@ static void walk(const trb_model *m, trb_dynamics *d, const double *start, const
           y[trb_state_cage(m) + i] = start[trb_state_cage(m) + i] + along * direction[trb_state_cage(m) + i];
       for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++)
         if (!alone || only == i) y[trb_state_roller(j) + i] = start[trb_state_roller(j) + i] + along * direction[trb_state_roller(j) + i];
-      const int    holds = trb_clearance_holds(&c, &arms, y + trb_state_roller(j), y + trb_state_cage(m));
-      const double now = gap_at(d, j, y, &touches);
+      const int             holds = trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + trb_state_cage(m));
+      const trb_pocket_gaps now = gaps_at(d, j, y, &touches);
       if (holds) {
         ++*held;
         CHECK(!touches);
-        CHECK(now > 0.0);
+        CHECK(trb_pocket_clear(&now));
       } else {
         *reached += touches;
         if (touches) break;
@@ -89,21 +90,23 @@ static void check_scene(const trb_params *params)
 /* Not a number, and displacements beyond those that the arms are made for, prove nothing. */
 static void test_limits(void)
 {
-  const trb_params         p = rig_params();
-  trb_model               *m = rig_model(&p);
-  const trb_clearance_arms arms = trb_clearance_arms_of(m);
-  double                   roller[TRB_ROLLER_SIZE] = {0}, cage[TRB_CAGE_SIZE] = {0};
-  trb_clearance            c;
-  trb_clearance_set(m, &c, 1e-4, roller, cage);
-  CHECK(trb_clearance_holds(&c, &arms, roller, cage));
-  trb_clearance_set(m, &c, (double)NAN, roller, cage);
-  CHECK(!trb_clearance_holds(&c, &arms, roller, cage));
-  trb_clearance_set(m, &c, 1e-4, roller, cage);
+  const trb_params      p = rig_params();
+  trb_model            *m = rig_model(&p);
+  trb_clearance_arms    arms[TRB_N_GAPS];
+  const trb_pocket_gaps near = {{1e-4, 1e-4}}, unknown = {{1e-4, (double)NAN}};
+  double                roller[TRB_ROLLER_SIZE] = {0}, cage[TRB_CAGE_SIZE] = {0};
+  trb_clearance         c;
+  trb_clearance_arms_of(m, arms);
+  trb_clearance_set(m, &c, &near, roller, cage);
+  CHECK(trb_clearance_holds(&c, arms, roller, cage));
+  trb_clearance_set(m, &c, &unknown, roller, cage);
+  CHECK(!trb_clearance_holds(&c, arms, roller, cage));
+  trb_clearance_set(m, &c, &near, roller, cage);
   cage[TRB_CAGE_psi] = NAN;
-  CHECK(!trb_clearance_holds(&c, &arms, roller, cage));
+  CHECK(!trb_clearance_holds(&c, arms, roller, cage));
   cage[TRB_CAGE_psi] = 0.0, cage[TRB_CAGE_x] = 1.0;
-  trb_clearance_set(m, &c, 1e-4, roller, cage);
-  CHECK(!trb_clearance_holds(&c, &arms, roller, cage));
+  trb_clearance_set(m, &c, &near, roller, cage);
+  CHECK(!trb_clearance_holds(&c, arms, roller, cage));
   trb_model_free(m);
 }
 
