@@ -55,6 +55,9 @@ ACCURACY: Final = {
 }
 """Presets, chosen on the front that benchmarks/work_precision.py draws."""
 
+RINGS_SHARE: Final = {"fast": 0.3, "standard": 0.3, "reference": 0.1}
+"""`RunOptions.rings_share` of the presets: no accuracy is lost that shows."""
+
 
 class RunOptions(Model):
     """How long to run, how accurately, and what to keep.
@@ -79,9 +82,10 @@ class RunOptions(Model):
         Largest order of BDF; above 2, lightly damped contact modes hold its steps down.
     max_step, first_step : float
         Largest and first step (s); 0: chosen by the integrator.
-    rings_share : float
+    rings_share : float, optional
         Share of a step's tolerance that forces of raceways and ribs may be off: between their exact evaluations BDF takes
-        them from tangents, a roller's own, whose error is measured at the next exact one (1). 0: always exact.
+        them from tangents, a roller's own, whose error is measured at the next exact one (1). 0: always exact; by default
+        that of the preset, `RINGS_SHARE`.
     checkpoint_every : float, optional
         Bearing time between checkpoints (s): the integrator starts anew at the first step's end at or after each multiple
         of it, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
@@ -102,7 +106,7 @@ class RunOptions(Model):
     max_order: Annotated[Whole, unit("1", ge=1, le=5)] = 2
     max_step: Annotated[Number, unit("s", ge=0)] = 0.0
     first_step: Annotated[Number, unit("s", ge=0)] = 0.0
-    rings_share: Annotated[Number, unit("1", ge=0, le=1)] = 0.1
+    rings_share: Annotated[Number, unit("1", ge=0, le=1)] | None = None
     checkpoint_every: Annotated[Number, unit("s", ge=1e-9)] | None = None
 
     _root: ClassVar[str | None] = "run"
@@ -127,7 +131,7 @@ class RunOptions(Model):
             **self.tolerances.model_dump(),
             "max_order": float(self.max_order),
             "first_step": self.first_step,
-            "rings_share": self.rings_share,
+            "rings_share": RINGS_SHARE[self.accuracy] if self.rings_share is None else self.rings_share,
             **chosen,
         }
 

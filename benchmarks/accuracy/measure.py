@@ -161,7 +161,7 @@ def wall_time(
     for state in states:
         runs = []
         for done in range(2 * repeats):
-            runs.append(_timed_run(Simulation(at_state(scene, state), **settings), revolutions, save_every))
+            runs.append(timed_run(Simulation(at_state(scene, state), **settings), revolutions, save_every))
             quietest = {name: min(one[name] for one in runs) for name in ("wall", "cpu")}
             if done + 1 >= repeats and quietest["wall"] < 1.1 * quietest["cpu"]:
                 break
@@ -179,7 +179,7 @@ def wall_time(
     return {name: float(np.median([row[name] for row in rows])) for name in rows[0]}
 
 
-def _timed_run(sim: Simulation, revolutions: float, save_every: float) -> dict[str, float]:
+def timed_run(sim: Simulation, revolutions: float, save_every: float) -> dict[str, float]:
     """Wall and processor time of the core alone (s), the bearing time (s), and what the integrator did."""
     end = RunOptions(revolutions=revolutions).end_time(sim.scene.speed_rpm, sim.time)
     bearing = end - sim.time

@@ -52,12 +52,12 @@ class Run:
     wall : float
         Time (s): of the processor, which on a machine that does nothing else is that of the clock.
     steps, evaluations, jacobians : int
-        Steps taken, states whose rates were evaluated one by one, Jacobians.
+        Steps taken (nan: not counted), states whose rates were evaluated one by one, Jacobians.
     """
 
     cage: Array
     wall: float
-    steps: int
+    steps: float
     evaluations: int
     jacobians: int
 
@@ -68,13 +68,14 @@ class TooLong(RuntimeError):
 
 @dataclass
 class Problem:
-    """Model, start, output times and the time that an integration may take."""
+    """Model, start, output times, the time that an integration may take, and whether its steps are to be counted."""
 
     model: NumpyModel
     jacobian: Jacobian
     state: Array
     times: Array
     limit: float = 600.0
+    count: bool = True
 
     def guarded(self) -> Callable[[float, Array], Array]:
         """The right-hand side, which gives up after `limit` seconds."""
@@ -223,8 +224,8 @@ def sundae(problem: Problem, tolerances: Tolerances, linear: str = "sparse") -> 
         raise failure[0]
     if not found.success or len(found.t) != len(problem.times):
         raise RuntimeError(found.message)
-    # between two times only it gives every step
-    steps = len(solver.solve(problem.times[[0, -1]], problem.state).t) - 1
+    # between two times only it gives every step, in a run of its own
+    steps = len(solver.solve(problem.times[[0, -1]], problem.state).t) - 1 if problem.count else np.nan
     return Run(found.y[:, problem.cage], wall, steps, int(found.nfev), int(found.njev))
 
 

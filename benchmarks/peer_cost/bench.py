@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 import time as clock
 from collections.abc import Callable, Sequence
@@ -11,6 +12,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from accuracy.measure import timed_run
 from numpy.typing import NDArray
 from numpy_model import Jacobian, NumpyModel, solvers
 
@@ -24,6 +26,12 @@ SPEED_RPM, AXIAL_LOAD = 3000.0, 4930.0
 SETTLING, BETWEEN, LENGTH, OUTPUTS = 0.04, 0.0113, 4e-3, 41
 IMPACT = 20.0
 """Windows: first and later starts (s), length (s), number of compared times, pocket force at which they start (N)."""
+
+TURN = 60.0 / SPEED_RPM
+"""What is timed from the start of the first windows (s), but for alternatives so slow that a window has to do: a turn."""
+
+TIMED = 3
+"""Windows from which runs are timed; the errors are of all."""
 
 EXACT = ", exact"
 """Behind an integrator's name: without tangents of the rings' forces."""
@@ -54,13 +62,22 @@ class Point:
 
 @dataclass(frozen=True)
 class Method:
-    """An integrator, the factors on the standard tolerances at which it is measured, and how often a short run is."""
+    """An integrator: how it runs, from a window's start with a factor on the standard tolerances over a stretch, and whether steps
+    need to be counted; the factors at which it is measured, how often a timed run is repeated, whether it is so slow that a few
+    windows have to do, for errors and times.
+    """
 
     name: str
     model: str
-    run: Callable[[Window, float], solvers.Run]
+    run: Callable[[Window, float, float, bool], solvers.Run]
     factors: Sequence[float]
     repeats: int = 1
+    slow: bool = False
+
+    @property
+    def stretch(self) -> float:
+        """What is timed (s)."""
+        return LENGTH if self.slow else TURN
 
 
 def kinds(model: NumpyModel) -> NDArray[np.intp]:
@@ -79,19 +96,18 @@ class Bench:
     """Scene, windows, and the two models."""
 
     def __init__(self, options: argparse.Namespace) -> None:
-        effects = Effects.paper()
-        if options.gauss is not None:
-            effects = effects.replace(quadrature="gauss", n_slices=options.gauss)
+        effects = Effects.paper().replace(quadrature="gauss", n_slices=options.gauss)
+        if options.slices is not None:
+            effects = effects.replace(quadrature="uniform", n_slices=options.slices)
         self.scene: Scene = scene_30310(SPEED_RPM, AXIAL_LOAD, start=Start.whirl(0.9), effects=effects)
         self.play = self.scene.bearing.cage.play_radial
-        self.turns = LENGTH * SPEED_RPM / 60.0
         self.repeats = 1 if options.quick else 3
         self.model = NumpyModel(self.scene)
         self.jacobian = Jacobian(self.model)
         self.kinds = kinds(self.model)
         self.simulations: dict[tuple[str, float], Simulation] = {}
-        self.paces: list[float] = []
-        self.windows = self._windows(3 if options.quick else 5)
+        self.paces: dict[float, list[float]] = {}
+        self.windows = self._windows(12 if options.quick else 24)
 
     def _windows(self, count: int) -> list[Window]:
         sim = Simulation(self.scene)
@@ -132,70 +148,74 @@ class Bench:
         turned = (place[:, 0] + 1j * place[:, 1]) * np.exp(-1j * angle)
         return np.stack([turned.real, turned.imag], axis=1), sim
 
-    def core(self, window: Window, factor: float, integrator: str) -> solvers.Run:
-        """The core over a window: a run with records for the error, then one that only steps for the time."""
+    def core(self, window: Window, factor: float, stretch: float, _: bool, *, integrator: str) -> solvers.Run:
+        """The core: a run with records over the window for the error, then one without over the stretch for the time."""
         path, sim = self._core_run(window, factor, integrator)
-        sim.set_state(window.state, float(window.times[0]))
-        before, end = sim.statistics, float(window.times[-1])
-        began = clock.process_time()
-        while sim.time < end:
-            sim.step()
-        wall = clock.process_time() - began
-        did = {name: value - before[name] for name, value in sim.statistics.items()}
+        wall, did = self._timed(sim, window, stretch)
         return solvers.Run(
             path, wall, int(did["steps"]), int(did["rhs_evaluations"]), int(did.get("jacobian_evaluations", 0))
         )
 
-    def peer(self, window: Window, factor: float, run: Callable[..., solvers.Run]) -> solvers.Run:
-        """An alternative over a window."""
+    def _timed(self, sim: Simulation, window: Window, stretch: float) -> tuple[float, dict[str, float]]:
+        """Time from a window's start over a stretch (s), and what the integrator did there."""
+        sim.set_state(window.state, float(window.times[0]))
+        before = sim.statistics
+        after = timed_run(sim, stretch / TURN, stretch)
+        return after["cpu"], {name: after[name] - value for name, value in before.items() if not isinstance(value, str)}
+
+    def peer(
+        self, window: Window, factor: float, stretch: float, count: bool, *, run: Callable[..., solvers.Run]
+    ) -> solvers.Run:
+        """An alternative over a stretch; its path over the window."""
         given = scaled(factor)
         absolute = np.array([given.atol_position, given.atol_angle, given.atol_velocity, given.atol_spin])
         tolerances = solvers.Tolerances(np.where(self.kinds >= 2, given.rtol, 0.0), absolute[self.kinds])
+        end = window.times[0] + stretch
+        times = window.times if stretch <= LENGTH else np.append(window.times, end)
         problem = solvers.Problem(
-            self.model, self.jacobian, window.state[: self.model.n_state], window.times, limit=60.0
+            self.model, self.jacobian, window.state[: self.model.n_state], times, limit=120.0, count=count
         )
-        return run(problem, tolerances)
+        found = run(problem, tolerances)
+        return dataclasses.replace(found, cage=found.cage[:OUTPUTS])
 
     def error(self, window: Window, cage: Array) -> float:
         """Largest distance of the cage's centre from the reference over Cpr."""
         return float(np.hypot(*(cage - window.reference).T).max()) / self.play
 
-    def pace(self) -> float:
-        """Time of the core over the first window at the standard tolerances (s)."""
-        sim, window = self.simulation(RunOptions().integrator, 1.0), self.windows[0]
-        spent = []
-        for _ in range(3):
-            sim.set_state(window.state, float(window.times[0]))
-            began = clock.process_time()
-            while sim.time < window.times[-1]:
-                sim.step()
-            spent.append(clock.process_time() - began)
-        self.paces.append(float(np.median(spent)))
-        return self.paces[-1]
+    def pace(self, window: Window, stretch: float) -> float:
+        """Time of the core over a stretch at the standard tolerances (s)."""
+        sim = self.simulation(RunOptions().integrator, 1.0)
+        spent = min(self._timed(sim, window, stretch)[0] for _ in range(3))
+        self.paces.setdefault(stretch, []).append(spent)
+        return spent
 
     def measure(self, method: Method) -> list[Point]:
-        """Points of an integrator; times in units of the core's pace until `settle`."""
+        """Points of an integrator; times in units of the core's pace over the same stretch until `settle`."""
         points = []
+        turns = method.stretch / TURN
         for factor in method.factors:
-            errors, walls, counts = [], [], []
-            for window in self.windows:
+            errors, ratios, counts = [], [], []
+            for index, window in enumerate(self.windows[: TIMED if method.slow else None]):
+                if index >= TIMED:
+                    errors.append(self.error(window, method.run(window, factor, LENGTH, False).cage))
+                    continue
                 spent = []
                 for _ in range(self.repeats * method.repeats):
-                    before = self.pace()
-                    run = method.run(window, factor)
-                    spent.append(run.wall / (0.5 * (before + self.pace())))
+                    before = self.pace(window, method.stretch)
+                    run = method.run(window, factor, method.stretch, index == 0)
+                    spent.append(run.wall / min(before, self.pace(window, method.stretch)))
                 errors.append(self.error(window, run.cage))
-                walls.append(float(np.median(spent)))
+                ratios.append(float(np.median(spent)))
                 counts.append((run.steps, run.evaluations, run.jacobians))
-            steps, evaluations, jacobians = np.mean(counts, axis=0) / self.turns
+            steps, evaluations, jacobians = np.nanmean(counts, axis=0) / turns
             error = float(np.exp(np.mean(np.log(errors))))
-            points.append(Point(factor, error, float(np.mean(walls)) / self.turns, steps, evaluations, jacobians))
+            points.append(Point(factor, error, float(np.mean(ratios)), steps, evaluations, jacobians))
         return points
 
     def settle(self, points: list[Point]) -> None:
-        """From units of the core's pace to seconds."""
+        """From units of the core's pace to seconds a turn."""
         for point in points:
-            point.wall *= float(np.median(self.paces))
+            point.wall *= float(np.median(self.paces[TURN]))
 
     def check(self) -> float:
         """Largest difference of NumPy's rates from the core's over the forces that make them, at the windows' ends."""

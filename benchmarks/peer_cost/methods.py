@@ -21,7 +21,8 @@ from .bench import EXACT, Bench, Method
 OURS = ", our Jacobian"
 """Behind the name of an alternative that is handed the batched Jacobian."""
 
-Peer = tuple[str, Callable[..., solvers.Run], list[float]]
+Peer = tuple[str, Callable[..., solvers.Run], list[float], bool]
+"""Name, integration, factors on the tolerances, whether it is slow."""
 
 
 def own(bench: Bench) -> list[Method]:
@@ -42,40 +43,40 @@ def _packages(quick: bool) -> list[Peer]:
     """What the packages do by themselves."""
     # these take long: one tolerance, at which they are the least slow, has to do in a quick run
     peers: list[Peer] = [
-        ("SciPy Radau", partial(solvers.radau, ours=False), [30.0] if quick else [30.0, 10.0]),
-        ("SciPy BDF", partial(solvers.bdf, ours=False), [10.0] if quick else [10.0, 3.0]),
-        ("SciPy LSODA", partial(solvers.lsoda, ours=False), [30.0] if quick else [30.0, 10.0]),
+        ("SciPy Radau", partial(solvers.radau, ours=False), [100.0] if quick else [30.0, 10.0], True),
+        ("SciPy BDF", partial(solvers.bdf, ours=False), [10.0] if quick else [10.0, 3.0], True),
+        ("SciPy LSODA", partial(solvers.lsoda, ours=False), [30.0] if quick else [30.0, 10.0], True),
     ]
     if not quick:
-        peers.append(("SciPy BDF, order 2", partial(solvers.bdf_two, ours=False), [10.0, 3.0]))
+        peers.append(("SciPy BDF, order 2", partial(solvers.bdf_two, ours=False), [10.0, 3.0], True))
     if importlib.util.find_spec("sksundae") is None:
         print("scikit-sundae is not installed (pip install scikit-sundae): its CVODE is left out")
     else:
-        peers.append(("scikit-sundae CVODE", solvers.sundae_pattern, [10.0, 3.0, 1.0]))
+        peers.append(("scikit-sundae CVODE", solvers.sundae_pattern, [3.0] if quick else [10.0, 3.0, 1.0], False))
     return peers
 
 
 def _handed(quick: bool) -> list[Peer]:
     """The same with our Jacobian."""
     peers: list[Peer] = [
-        ("SciPy Radau", solvers.radau, [30.0, 3.0, 1.0]),
-        ("SciPy BDF", solvers.bdf, [10.0, 3.0, 1.0]),
-        ("SciPy BDF, order 2", solvers.bdf_two, [10.0, 3.0, 1.0]),
-        ("SciPy LSODA", solvers.lsoda, [30.0, 10.0, 3.0]),
-        ("SciPy LSODA, order 2", solvers.lsoda_two, [30.0, 10.0, 3.0]),
+        ("SciPy Radau", solvers.radau, [3.0] if quick else [30.0, 3.0, 1.0], True),
+        ("SciPy BDF", solvers.bdf, [10.0] if quick else [10.0, 3.0, 1.0], True),
+        ("SciPy BDF, order 2", solvers.bdf_two, [3.0, 1.0] if quick else [10.0, 3.0, 1.0], False),
+        ("SciPy LSODA", solvers.lsoda, [10.0] if quick else [30.0, 10.0, 3.0], True),
+        ("SciPy LSODA, order 2", solvers.lsoda_two, [10.0] if quick else [30.0, 10.0, 3.0], False),
     ]
     if importlib.util.find_spec("sksundae") is not None:
-        peers.append(("scikit-sundae CVODE", solvers.sundae, [10.0, 3.0, 1.0, 0.3]))
+        peers.append(("scikit-sundae CVODE", solvers.sundae, [1.0, 0.3] if quick else [10.0, 3.0, 1.0, 0.3], False))
         if not quick:
-            peers.append(("scikit-sundae CVODE, dense", solvers.sundae_dense, [10.0, 3.0, 1.0, 0.3]))
-    return [(name + OURS, run, factors) for name, run, factors in peers]
+            peers.append(("scikit-sundae CVODE, dense", solvers.sundae_dense, [10.0, 3.0, 1.0, 0.3], False))
+    return [(name + OURS, *rest) for name, *rest in peers]
 
 
 def alternatives(bench: Bench, quick: bool) -> list[Method]:
     """The packages by themselves, then with our Jacobian."""
     out = []
-    for name, run, factors in [*_packages(quick), *_handed(quick)]:
+    for name, run, factors, slow in [*_packages(quick), *_handed(quick)]:
         ours = name.endswith(OURS)
         more = sorted({100.0, *factors, 0.3, 0.1}, reverse=True) if ours and not quick else factors
-        out.append(Method(name, "numpy", partial(bench.peer, run=run), more))
+        out.append(Method(name, "numpy", partial(bench.peer, run=run), more, slow=slow))
     return out

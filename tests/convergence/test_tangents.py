@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import Effects, Simulation
-from trbdyn.run_options import ACCURACY, RunOptions
+from trbdyn.run_options import ACCURACY
 
 WINDOW = 3e-3
 PLAY = 0.25e-3
@@ -54,19 +54,19 @@ def truth(states: list[tuple[NDArray[np.float64], float]]) -> list[NDArray[np.fl
 def test_tangents_cost_no_accuracy(
     accuracy: str, states: list[tuple[NDArray[np.float64], float]], truth: list[NDArray[np.float64]]
 ) -> None:
-    error = {}
-    for share in (0.0, RunOptions().rings_share):
+    error: dict[float | None, float] = {}
+    for share in (0.0, None):
         sim = whirl(accuracy=accuracy, rings_share=share)
         off = [np.abs(cage_path(sim, place) - path).max() / PLAY for place, path in zip(states, truth, strict=True)]
         error[share] = float(np.exp(np.mean(np.log(off))))
     # geometric means over sixteen windows of errors that impacts scatter over a factor of ten
-    assert error[RunOptions().rings_share] < 3.0 * error[0.0]
-    assert error[RunOptions().rings_share] < {"standard": 5e-3, "reference": 5e-4}[accuracy]
+    assert error[None] < 3.0 * error[0.0]
+    assert error[None] < {"standard": 5e-3, "reference": 5e-4}[accuracy]
 
 
 def test_most_forces_come_from_tangents(states: list[tuple[NDArray[np.float64], float]]) -> None:
     counted = {}
-    for share in (0.0, RunOptions().rings_share):
+    for share in (0.0, None):
         sim = whirl(rings_share=share)
         sim.set_state(*states[0])
         counted[share] = sim.run(duration=0.02).counters
@@ -78,7 +78,7 @@ def test_most_forces_come_from_tangents(states: list[tuple[NDArray[np.float64], 
 
 
 def test_the_energy_audit_closes_as_well(states: list[tuple[NDArray[np.float64], float]]) -> None:
-    for share in (0.0, RunOptions().rings_share):
+    for share in (0.0, None):
         sim = whirl(rings_share=share)
         sim.set_state(*states[0])
         assert sim.run(duration=0.02).energy_closure < 5e-4
@@ -92,7 +92,7 @@ def test_motion_under_way_is_exact(kit: SimpleNamespace) -> None:
     """To the bit, and tangents serve once it has ended."""
     speed = trb.History(times=(0.0, 4e-3), values=(3000.0, 3100.0))
     runs = []
-    for share in (0.0, RunOptions().rings_share):
+    for share in (0.0, None):
         sim = kit.simulate(scenery={"speed_rpm": speed}, rings_share=share)
         runs.append(sim.run(duration=3e-3))
         assert runs[-1].counters["tangent_rollers"] == 0
