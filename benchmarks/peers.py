@@ -2,18 +2,19 @@
 
 The model (`numpy_model`) is checked against the core, then a whirling, colliding cage (30310, 4930 N, 3000 rpm) is run from
 mid-collision states, at several tolerances, by every alternative and by the core. The error is that over a short window: the
-largest distance of the cage's centre from a reference of the core's explicit method at far tighter tolerances, in units of the
-radial play Cpr, as a geometric mean over the windows. The time is that of a turn of the shaft from the first of these
-states; for the slowest alternatives both are of three windows. `ratio` is an alternative's time over that of the core's standard integrator at
-equal error: the error of accuracy="standard", both interpolated in log-log; `ratio_low` and `ratio_high` are the least and the
-largest of it from a third to three times that error.
+largest distance of the cage's centre from a reference of the core's explicit method at far tighter tolerances, in units of
+the radial play Cpr, as a geometric mean over the windows. The time is that of a turn of the shaft from the first of these
+states; for the slowest alternatives both are of three windows. `ratio` is an alternative's time over that of the core's
+standard integrator at equal error: the error of accuracy="standard", both interpolated in log-log; `ratio_low` and
+`ratio_high` are the least and the largest of it from a third to three times that error.
 
-Alternatives come twice: as their package offers them (pattern of the Jacobian, states in batches, limit of order, where it takes
-these), and handed the core's idea of a Jacobian, written for NumPy: "our Jacobian". `best_ratio` is of the former,
+Alternatives come twice: as their package offers them (pattern of the Jacobian, states in batches, limit of order, where it
+takes these), and handed the core's idea of a Jacobian, written for NumPy: "our Jacobian". `best_ratio` is of the former,
 `best_ratio_our_jacobian` of the latter.
 
-Times are of the processor, so that other processes count little, and each is put in relation to a run of the core over the same
-stretch just before and after it. Alternatives integrate the state without its tail (spin angles, energies), which spares them something.
+Times are of the processor, so that other processes count little, and each is put in relation to a run of the core over the
+same stretch just before and after it. Alternatives integrate the state without its tail (spin angles, energies), which spares
+them something.
 """
 
 from __future__ import annotations

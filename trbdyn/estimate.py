@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
-from trbdyn.run_options import RunOptions
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation

@@ -62,9 +62,10 @@ class Point:
 
 @dataclass(frozen=True)
 class Method:
-    """An integrator: how it runs, from a window's start with a factor on the standard tolerances over a stretch, and whether steps
-    need to be counted; the factors at which it is measured, how often a timed run is repeated, whether it is so slow that a few
-    windows have to do, for errors and times.
+    """An integrator.
+
+    It runs from a window's start with a factor on the standard tolerances over a stretch, and is told whether steps are to be
+    counted. Where it is slow, a few windows have to do, for errors and times.
     """
 
     name: str
