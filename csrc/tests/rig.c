@@ -144,6 +144,23 @@ void rig_disturb(const trb_model *m, unsigned long long *seed, double *state)
   state[trb_state_cage(m) + TRB_CAGE_x] += 1.2e-4;
 }
 
+/* Largest force of a roller on the cage at a state. */
+static double largest_push(trb_dynamics *d, const double *y)
+{
+  double largest = 0.0;
+  trb_dynamics_pose(d, 0.01, y);
+  trb_dynamics_loads(d, NULL);
+  for (int j = 0; j < d->model->n_rollers; j++) largest = fmax(largest, trb_norm(d->loads[j].cage_force));
+  return largest;
+}
+
+void rig_draw_back(trb_dynamics *d, double most, const double *to, double *y)
+{
+  const int n = trb_state_main_size(d->model);
+  for (int step = 0; step < 4000 && largest_push(d, y) > most; step++)
+    for (int i = 0; i < n; i++) y[i] += 1e-3 * (to[i] - y[i]);
+}
+
 /* A linear congruential sequence, its bits mixed. */
 double rig_random(unsigned long long *seed)
 {

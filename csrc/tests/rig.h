@@ -24,4 +24,7 @@ void rig_disturb(const trb_model *m, unsigned long long *seed, double *state);
 /* Uniform over -1 to 1. */
 double rig_random(unsigned long long *seed);
 
+/* Back towards a state until no roller pushes the cage with more than a force. */
+void rig_draw_back(trb_dynamics *d, double most, const double *to, double *state);
+
 #endif

@@ -80,24 +80,6 @@ static void compare(const trb_model *m, double tolerance)
   }
 }
 
-/* Largest force of a roller on the cage at a state. */
-static double largest_push(trb_dynamics *d, const double *y)
-{
-  double largest = 0.0;
-  trb_dynamics_pose(d, 0.01, y);
-  trb_dynamics_loads(d, NULL);
-  for (int j = 0; j < d->model->n_rollers; j++) largest = fmax(largest, trb_norm(d->loads[j].cage_force));
-  return largest;
-}
-
-/* Back towards a state until no roller pushes the cage with more than a force. */
-static void draw_back(trb_dynamics *d, double most, const double *to, double *y)
-{
-  const int n = trb_state_main_size(d->model);
-  for (int step = 0; step < 4000 && largest_push(d, y) > most; step++)
-    for (int i = 0; i < n; i++) y[i] += 1e-3 * (to[i] - y[i]);
-}
-
 /* most: force of a roller on the cage, N. Loads over radii, which the slopes of pockets leave out, grow with it. */
 static void check_scene(const trb_params *params, double load, double most, int touching, double tolerance)
 {
@@ -114,7 +96,7 @@ static void check_scene(const trb_params *params, double load, double most, int 
   if (!CHECK(trb_arrow_create(m->n_rollers, m->params.with_cage > 0.0, &arrow, NULL) == TRB_OK)) return;
   memcpy(start, y, sizeof start);
   rig_disturb(m, &seed, y);
-  draw_back(d, most, start, y);
+  rig_draw_back(d, most, start, y);
   trb_jacobian_fill(jac, 0.01, y, 1, arrow);
   for (int j = 0; j < m->n_rollers; j++) coupled += arrow->borders[j].coupled;
   CHECK(coupled >= touching);
