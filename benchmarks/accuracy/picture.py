@@ -111,7 +111,7 @@ def draw_front(report: common.Report) -> Any:
     flat = grid.ravel()
     for axes, case in zip(flat, cases, strict=False):
         _front(axes, report.results, case)
-    flat[len(cases) - 1].legend(fontsize=8, loc="upper right")
+    figure.legend(*flat[len(cases) - 1].get_legend_handles_labels(), fontsize=8, loc="outside lower center", ncols=5)
     _slices(flat[-1], report.results)
     machine = common.processor()["name"]
     figure.suptitle(
