@@ -43,18 +43,16 @@ static int weights(N_Vector y, N_Vector out, void *data)
 static void fill(const trb_integrator *it, double time, const double *y, trb_arrow *arrow)
 {
   bdf *self = it->self;
-  /* the rings' part anew: when it is old or has served often, and always while speed or ring change or have just done so: an old stiff
-   * slope makes corrections so small that they seem to converge. What does not serve, when Newton's method failed with it before within
-   * this step */
+  /* the rings' part anew: when it is old or has served often, when Newton's method failed with it before within this step, and always
+   * while speed or ring change or have just done so: an old stiff slope makes corrections so small that they seem to converge */
   const double made = self->jacobian->tangents->time;
   const int    again = it->time == self->filled_at && made < it->time;
   const int    old = fabs(time - made) > it->settings.rings_age || self->uses >= it->settings.rings_uses;
   const int    changing = trb_motion_changes(it->motion, time - it->settings.rings_age, time);
-
-  const trb_renewal renewal = old || changing ? TRB_RENEW_ALL : again ? TRB_RENEW_UNSERVED : TRB_RENEW_NONE;
+  const int    fresh = again || old || changing;
   self->filled_at = it->time;
-  self->uses = renewal != TRB_RENEW_NONE ? 0 : self->uses + 1;
-  trb_jacobian_fill(self->jacobian, time, y, renewal, arrow);
+  self->uses = fresh ? 0 : self->uses + 1;
+  trb_jacobian_fill(self->jacobian, time, y, fresh, arrow);
 }
 
 /* The matrix stays the Jacobian: the solver makes I - gamma J as it reads it. usable: the Jacobian need not be filled anew;

@@ -85,14 +85,14 @@ static void cage_block(trb_jacobian *jac, const double *y, trb_vec3 force, trb_v
   }
 }
 
-void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, trb_renewal renewal, trb_arrow *arrow)
+void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fresh, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
   memcpy(jac->moved, y, (size_t)trb_state_size(m) * sizeof *y);
   trb_dynamics_pose(d, time, y);
-  if (renewal != TRB_RENEW_NONE || !jac->tangents->has_slopes) {
-    trb_tangents_differentiate(jac->tangents, d, renewal, y, jac->moved);
+  if (fresh || !jac->tangents->has_slopes) {
+    trb_tangents_differentiate(jac->tangents, d, y, jac->moved);
     jac->rings_evaluations++;
   }
   for (int j = 0; j < m->n_rollers; j++)

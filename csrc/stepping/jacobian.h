@@ -19,7 +19,7 @@ typedef struct trb_jacobian {
 trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message);
 void       trb_jacobian_free(trb_jacobian *jacobian);
-/* renewal: what of the rings' part is evaluated anew. */
-void trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, trb_renewal renewal, trb_arrow *arrow);
+/* fresh: evaluate the rings' part anew, too. */
+void trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
 
 #endif

@@ -66,11 +66,11 @@ void trb_tangents_forget(trb_tangents *t)
   t->has_slopes = 0;
 }
 
-static void differentiate(trb_tangents *t, trb_dynamics *d, const trb_instant *at, int column, double per)
+static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
 {
-  trb_contact_rings_only(d->model, at, d->work, d->loads);
-  for (int k = 0; k < at->n; k++) {
-    const int    j = at->chosen[k];
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_contact_rings_only(d->model, &at, d->work, d->loads);
+  for (int j = 0; j < d->model->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
     double       flow[TRB_FLOW_SIZE];
     trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
@@ -88,35 +88,13 @@ static int all_finite(const trb_tangents *t)
   return sum == 0.0;
 }
 
-/* Offset and tilt of the inner ring, m and rad, beside which contacts' interferences of micrometres are the same around the bearing. */
-static const double centred_offset = 1e-7, centred_tilt = 1e-6;
-
-static int is_centred(const trb_ring_pose *inner)
-{
-  return hypot(inner->apex.x, inner->apex.y) < centred_offset && hypot(inner->axis.x, inner->axis.y) < centred_tilt;
-}
-
-/* Rollers whose slopes are due: all, or, as slopes that served change on the way around the bearing only if the ring is off its axis,
- * those whose tangents do not serve. */
-static trb_instant due(const trb_tangents *t, const trb_dynamics *d, trb_renewal renewal)
-{
-  trb_instant at = trb_dynamics_instant(d);
-  if (renewal == TRB_RENEW_ALL || !t->has_slopes || !is_centred(&d->drive.inner)) return at;
-  at.n = 0;
-  for (int j = 0; j < t->model->n_rollers; j++)
-    if (t->rollers[j].usual < enough) t->far[at.n++] = j;
-  at.chosen = t->far;
-  return at;
-}
-
-void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, trb_renewal renewal, const double *y, double *moved)
+void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *y, double *moved)
 {
   const trb_model  *m = d->model;
-  const trb_instant at = due(t, d, renewal);
+  const trb_instant at = trb_dynamics_instant(d);
   const double      time = d->drive.time, frame_speed = d->drive.frame_speed;
   trb_contact_rings_only(m, &at, d->work, d->loads);
-  for (int k = 0; k < at.n; k++) {
-    const int    j = at.chosen[k];
+  for (int j = 0; j < m->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
     memcpy(r->origin, y + trb_state_roller(j), TRB_NR * sizeof *y);
@@ -124,18 +102,17 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, trb_renewal re
   }
   for (int c = 0; c < TRB_NR; c++) {
     const double h = trb_difference[trb_state_tolerance(m, c)];
-    for (int k = 0; k < at.n; k++) {
-      const int j = at.chosen[k];
-      double   *entry = &moved[trb_state_roller(j) + c];
+    for (int j = 0; j < m->n_rollers; j++) {
+      double *entry = &moved[trb_state_roller(j) + c];
       *entry = y[trb_state_roller(j) + c] + h;
       trb_dynamics_pose_roller(d, j, moved + trb_state_roller(j));
       *entry = y[trb_state_roller(j) + c];
     }
-    differentiate(t, d, &at, c, 1.0 / h);
+    differentiate(t, d, c, 1.0 / h);
   }
   if (frame_speed != 0.0) {
     trb_dynamics_pose(d, time + turn_difference / fabs(frame_speed), y);
-    differentiate(t, d, &at, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
+    differentiate(t, d, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
   trb_dynamics_pose(d, time, y);
   /* slopes are good: tangents serve at once, from a small reach on */
@@ -143,7 +120,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, trb_renewal re
     t->rollers[j].reach = first_reach;
     t->rollers[j].usual = enough;
   }
-  if (at.n == m->n_rollers) t->time = time;
+  t->time = time;
   t->has_slopes = 1;
   if (!all_finite(t)) trb_tangents_forget(t);
 }

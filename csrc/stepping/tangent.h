@@ -54,11 +54,8 @@ trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_
 void       trb_tangents_free(trb_tangents *tangents);
 /* Forget origins, reaches and slopes. */
 void trb_tangents_forget(trb_tangents *tangents);
-/* Which slopes are evaluated anew: those of tangents that serve are corrected as they go. */
-typedef enum trb_renewal { TRB_RENEW_NONE, TRB_RENEW_UNSERVED, TRB_RENEW_ALL } trb_renewal;
-
 /* Slopes anew by differences about a state whose poses d holds; moved: scratch as long as a state. */
-void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, trb_renewal renewal, const double *y, double *moved);
+void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const double *y, double *moved);
 
 /* Column of a roller's block of the Jacobian: of its tangent if that is used, else as differences gave it. */
 const double *trb_tangents_column(const trb_tangents *tangents, int roller, int column);

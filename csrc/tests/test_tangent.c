@@ -56,7 +56,7 @@ static int open_bench(bench *b, const trb_params *params, double share)
   b->measure = (trb_tangent_measure){b->relative, b->scale, b->factors, share};
   memcpy(b->moved, b->y, sizeof b->moved);
   trb_dynamics_pose(b->d, 0.0, b->y);
-  trb_tangents_differentiate(b->tangents, b->d, TRB_RENEW_ALL, b->y, b->moved);
+  trb_tangents_differentiate(b->tangents, b->d, b->y, b->moved);
   for (int j = 0; j < b->model->n_rollers; j++) b->tangents->rollers[j].usual = 1e9;
   return 1;
 }
@@ -109,7 +109,7 @@ static void test_order(const trb_params *params)
   double y[MOST], found[MOST], exact[MOST], off[2], lost[2];
   if (!open_bench(&b, params, 1.0)) return;
   for (int k = 0; k < 2; k++) {
-    trb_tangents_differentiate(b.tangents, b.d, TRB_RENEW_ALL, b.y, b.moved);
+    trb_tangents_differentiate(b.tangents, b.d, b.y, b.moved);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
     for (int j = 0; j < b.model->n_rollers; j++) {
       CHECK(b.tangents->rollers[j].known);
@@ -242,7 +242,7 @@ static void test_not_finite(const trb_params *params)
   CHECK(distance(&b, found, exact) < 1e-6);
   y[trb_state_roller(2) + TRB_ROLLER_v_t] = 1e300;
   trb_dynamics_pose(b.d, 0.0, y);
-  trb_tangents_differentiate(b.tangents, b.d, TRB_RENEW_ALL, y, b.moved);
+  trb_tangents_differentiate(b.tangents, b.d, y, b.moved);
   CHECK(!b.tangents->has_slopes);
   close_bench(&b);
 }
