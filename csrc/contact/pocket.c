@@ -13,13 +13,13 @@
 
 /* Roller and cage as the pocket sees them. Motions and sums only where they touch. */
 typedef struct pocket_view {
-  trb_frame axes; /* pocket axes, in the roller's cylindrical frame */
-  trb_vec3  x;    /* roller's centre of mass, from the pocket's origin */
-  trb_vec3  a;    /* roller's axis */
-  trb_vec3  cage; /* cage's centre of mass, from the pocket's origin */
-  trb_vec3  v, omega, cage_v, cage_omega;
-  trb_vec3  force, moment;           /* on the roller, about its centre of mass */
-  trb_vec3  cage_force, cage_moment; /* on the cage, about its centre of mass */
+  trb_frame axes;                         /* pocket axes, in the roller's cylindrical frame */
+  trb_vec3  x;                            /* roller's centre of mass, from the pocket's origin */
+  trb_vec3  a;                            /* roller's axis */
+  trb_vec3  cage;                         /* cage's centre of mass, from the pocket's origin */
+  trb_vec3  v, omega, cage_v, cage_omega; /* velocities of roller and cage, m/s and rad/s */
+  trb_vec3  force, moment;                /* on the roller, about its centre of mass */
+  trb_vec3  cage_force, cage_moment;      /* on the cage, about its centre of mass */
 
   trb_pocket_slopes *slopes; /* or NULL */
 } pocket_view;
@@ -59,7 +59,7 @@ static void view_motions(const trb_roller_pose *r, const trb_cage_pose *cage, co
 
 /* A point of contact. */
 typedef struct pocket_touch {
-  trb_vec3 point, normal; /* normal: from the roller into the face */
+  trb_vec3 point, normal; /* m; from the roller into the face */
   double   interference;  /* m */
   double   elastic;       /* load without damping, N */
   double   exponent;      /* of the interference in it */

@@ -122,7 +122,7 @@ def test_alternatives_reach_the_cores_path(name: str) -> None:
 
     scene = SCENES["colliding"]()
     sim = Simulation(scene)
-    while sim.time < 2e-3:
+    while sim.time < 2e-3 or sim.contacts()["pocket_load"].max() < 5.0:
         sim.step()
     model, times, place = NumpyModel(scene), sim.time + np.linspace(0.0, 3e-4, 7), sim.state
     entries = scene.bearing.n_rollers
@@ -135,8 +135,7 @@ def test_alternatives_reach_the_cores_path(name: str) -> None:
     path = (result.cage_position[:, 0] + 1j * result.cage_position[:, 1]) * np.exp(-1j * angle)
     assert np.ptp(np.abs(path)) > 1e-7
     np.testing.assert_allclose(found.cage, np.stack([path.real, path.imag], axis=1), atol=1e-3 * 0.25e-3)
-    assert found.steps > 0
-    assert found.evaluations > 5
+    assert found.steps > 5
     # LSODA stays with its explicit method over so short a run
     assert found.jacobians > 0 or name == "lsoda_two"
 
