@@ -6,6 +6,7 @@
 
 #include "contact/kernels.h"
 #include "motion/equilibrium.h"
+#include "motion/peaks.h"
 #include "motion/record.h"
 
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
@@ -85,6 +86,21 @@ static PyObject *record_layout(PyObject *self, PyObject *none)
     int       shape[2];
     const int n = trb_field_shape(m, trb_field_table[i].kind, shape);
     PyObject *row = Py_BuildValue("(siN)", trb_field_table[i].name, trb_record_offset(m, i), shape_tuple(n, shape));
+    if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
+    Py_XDECREF(row);
+  }
+  return list;
+}
+
+static PyObject *peak_layout(PyObject *self, PyObject *none)
+{
+  const trb_model *m = ((model_object *)self)->model;
+  PyObject        *list = PyList_New(0);
+  (void)none;
+  for (int i = 0; list != NULL && i < TRB_N_PEAK_FIELDS; i++) {
+    int       shape[2];
+    const int n = trb_field_shape(m, trb_peak_kind(&trb_peak_field_table[i]), shape);
+    PyObject *row = Py_BuildValue("(siN)", trb_peak_field_table[i].name, trb_peak_offset(m, i), shape_tuple(n, shape));
     if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
     Py_XDECREF(row);
   }
@@ -173,6 +189,7 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 
 static PyMethodDef methods[] = {
     {"record_layout", record_layout, METH_NOARGS, "(name, offset, shape) of every field of a record."},
+    {"peak_layout", peak_layout, METH_NOARGS, "(name, offset, shape) of every field of a row of peaks."},
     {"state_layout", state_layout, METH_NOARGS, "(name, offset, shape) of the parts of a state vector."},
     {"equilibrium", (PyCFunction)(void (*)(void))equilibrium, METH_VARARGS | METH_KEYWORDS, "Static equilibrium at speed."},
     {NULL, NULL, 0, NULL},
