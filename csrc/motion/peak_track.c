@@ -34,18 +34,23 @@ void trb_peak_track_start(const trb_peak_sizes *n, trb_peak_track *track, double
 /* The area under a straight line. */
 static double area(double h, double from, double to) { return 0.5 * h * (from + to); }
 
+static void note(trb_peak_track *track, int i, double time, double value)
+{
+  track->most[i] = value;
+  track->when[i] = time;
+}
+
 void trb_peak_track_line(const trb_peak_sizes *n, trb_peak_track *track, double time, const double *values)
 {
   const double h = time - track->span[1];
-  for (int i = 0; i < n->all; i++) {
-    const int higher = values[i] > track->most[i];
-    track->most[i] = higher ? values[i] : track->most[i];
-    track->when[i] = higher ? time : track->when[i];
-  }
-  for (int i = 0; i < n->loads; i++) track->integral[i] += area(h, track->value[i], values[i]);
+  for (int i = n->pocket; i < n->all; i++)
+    if (values[i] > track->most[i]) note(track, i, time, values[i]);
+  for (int i = n->pocket; i < n->loads; i++) track->integral[i] += area(h, track->value[i], values[i]);
   for (int i = 0; i < n->pocket; i++) {
     const double from = track->value[i], to = values[i];
     if (!(from > 0.0) && !(to > 0.0)) continue;
+    if (to > track->most[i]) note(track, i, time, to);
+    track->integral[i] += area(h, from, to);
     if (!(from > 0.0)) {
       track->impacts[i] += 1.0;
       track->impulse[i] = 0.0;

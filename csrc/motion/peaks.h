@@ -2,16 +2,12 @@
  * their extremes, means and impacts are kept over each record's interval and over the whole run; motion/peak_fields.h lists them.
  *
  * Between the ends of two steps every quantity is taken as a straight line. So the peaks of a run do not depend on its records, and the
- * largest peak of its records is that of the run. Raceways are evaluated again where their loads may have changed by TRB_PEAK_SHARE since
- * they were last, to first order in small displacements; all else is evaluated at every step. */
+ * largest peak of its records is that of the run. motion/peak_look.h says how exact the values are. */
 #ifndef TRB_MOTION_PEAKS_H
 #define TRB_MOTION_PEAKS_H
 
 #include "motion/peak_fields.h"
 #include "motion/record.h"
-
-/* Share of a raceway's load, and of its film's entrainment speed, that a held value may be off. */
-#define TRB_PEAK_SHARE 1e-3
 
 typedef struct trb_peak_field_info {
   const char   *name;

@@ -140,10 +140,15 @@ static void put_roller(writer *w, int j, const double *y, double spin_offset)
   PUT(roller_tilt, j) = y[TRB_ROLLER_tilt];
 }
 
-trb_race_means trb_record_race(const trb_model *m, const trb_detail *detail, int race, int roller)
+typedef struct race_means {
+  double load, pressure, film, film_parameter, slide_roll, traction;
+} race_means;
+
+/* Sums over the nodes of a contact; means are weighted by load. */
+static race_means race_mean(const trb_model *m, const trb_detail *detail, int race, int roller)
 {
-  const double  *field[TRB_N_LANE_FIELDS];
-  trb_race_means out = {0};
+  const double *field[TRB_N_LANE_FIELDS];
+  race_means    out = {0};
   for (int f = 0; f < TRB_N_LANE_FIELDS; f++) field[f] = trb_detail_lane(m, detail, f, race, roller);
   for (int k = 0; k < m->n_nodes; k++) {
     const double q = field[TRB_LANE_load][k];
@@ -175,8 +180,7 @@ trb_race_means trb_record_race(const trb_model *m, const trb_detail *detail, int
 static void put_contacts(writer *w, int j)
 {
   const trb_model        *m = w->d->model;
-  const trb_race_means    outer = trb_record_race(m, w->detail, TRB_RACE_OUTER, j);
-  const trb_race_means    inner = trb_record_race(m, w->detail, TRB_RACE_INNER, j);
+  const race_means        outer = race_mean(m, w->detail, TRB_RACE_OUTER, j), inner = race_mean(m, w->detail, TRB_RACE_INNER, j);
   const trb_point_detail *rib = &w->detail->rib[j];
   PUT_RACE(outer, outer);
   PUT_RACE(inner, inner);

@@ -28,13 +28,6 @@ const char *trb_field_kind_name(trb_field_kind kind);
 int trb_field_shape(const trb_model *m, trb_field_kind kind, int shape[2]);
 /* Offset of a field in a record; TRB_N_FIELDS gives the record's length. */
 int trb_record_offset(const trb_model *m, int field);
-
-/* Sums over the nodes of one raceway contact in a detail; means are weighted by load. Without a load all is zero. */
-typedef struct trb_race_means {
-  double load, pressure, film, film_parameter, slide_roll, traction;
-} trb_race_means;
-trb_race_means trb_record_race(const trb_model *m, const trb_detail *detail, int race, int roller);
-
 /* Fill a record at (time, y). detail: buffers of the caller. */
 void trb_record_fill(trb_dynamics *d, double time, const double *y, trb_detail *detail, double *record);
 
