@@ -251,7 +251,8 @@ class Run:
             # what stopped between two records goes on from where it stands
             sim._reached, sim._end = sim._core.time, None
         ended = sim.state
-        peaks = peak_table.from_row(sim._core.whole_peaks(ended.time), sim._model.peak_layout()) if self.with_peaks else {}
+        row = sim._core.whole_peaks(ended.time)
+        peaks = peak_table.from_row(row, sim._model.peak_layout()) if row.size else {}
         sim._core.end_peaks()
         how: dict[str, Any] = {
             "peaks": peaks,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -111,8 +112,13 @@ class Simulation:
         self._end = None
 
     def _stand_at(self, time: float) -> None:
-        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there."""
-        self._end = None if time == self._core.time else State(time, self._core.state_at(time))
+        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there. Where a
+        callback has gone on after that instant, or has set a state, the present state is that one.
+        """
+        self._end = None
+        if time != self._core.time:
+            with contextlib.suppress(_core.CoreInputError):
+                self._end = State(time, self._core.state_at(time))
 
     def _begin_again(self) -> None:
         """A new integrator where the present one is; what was counted stays."""
