@@ -1,7 +1,7 @@
 """Peaks: what happens between records, kept by the core at the end of every step of the integrator.
 
-Between the ends of two steps every quantity is taken as a straight line. So peaks do not depend on `save_every`, and the largest of the
-peaks of a run's records is that of the run. The core owns the table (``csrc/motion/peak_fields.h``).
+Between the ends of two steps every quantity is taken as a straight line. So peaks do not depend on `save_every`, and the largest of
+the peaks of a run's records is that of the run. The core owns the table (``csrc/motion/peak_fields.h``).
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ def _joined() -> dict[str, str]:
 class Peaks(Mapping[str, Array]):
     """Extremes, means and impacts over a stretch of time, by name.
 
-    ``peaks["pocket_force_peak"]`` is the largest normal force between each roller and each face of its pocket (N), shape (Z, slots), and
-    ``peaks["pocket_force_peak_time"]`` says when it was (s). `trbdyn.peaks.table` lists all with their units.
+    ``peaks["pocket_force_peak"]`` is the largest normal force between each roller and each face of its pocket (N), shape
+    (Z, slots), and ``peaks["pocket_force_peak_time"]`` says when it was (s). `trbdyn.peaks.table` lists all with their units.
 
     Parameters
     ----------

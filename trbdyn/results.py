@@ -264,8 +264,8 @@ class Result(Derived):
     def peaks(self) -> Peaks:
         """Extremes, means and impacts between the records too: of the whole run, or of a window's records.
 
-        ``result.peaks["pocket_force_peak"]`` is the hardest force of each pocket's face, ``result.pocket_force_peak`` that since the
-        record before, at each record.
+        ``result.peaks["pocket_force_peak"]`` is the largest force on each face of each pocket, ``result.pocket_force_peak`` the
+        largest since the record before, at each record.
 
         Raises
         ------

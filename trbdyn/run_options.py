@@ -72,8 +72,9 @@ class RunOptions(Model):
     save_every : float
         Time between saved records (s).
     save_groups : sequence of str
-        Groups of quantities to save; 'time' is always among them. With 'peaks' the core looks at all loads at the end of every step and
-        keeps their extremes, means and impacts over each record's interval and the whole run; without it that costs nothing.
+        Groups of quantities to save; 'time' is always among them. With 'peaks' the core looks at all loads at the end of every
+        step and keeps their extremes, means and impacts over each record's interval and the whole run; without it that costs
+        nothing.
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances, `ACCURACY`.
     integrator : {'bdf', 'erk'}

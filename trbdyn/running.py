@@ -65,7 +65,9 @@ class Run:
         self.with_peaks = peak_table.GROUP in options.save_groups
         if self.with_peaks:
             self.fields += peak_table.table()
-            self.layout += [(name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()]
+            self.layout += [
+                (name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()
+            ]
 
     def _keep_peaks(self, since: float) -> None:
         """From a time of the last step on, if the run wants them and does not keep them yet."""

@@ -112,8 +112,8 @@ class Simulation:
         self._end = None
 
     def _stand_at(self, time: float) -> None:
-        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there. Where a
-        callback has gone on after that instant, or has set a state, the present state is that one.
+        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there.
+        Where a callback has gone on after that instant, or has set a state, the present state is that one.
         """
         self._end = None
         if time != self._core.time:
@@ -136,8 +136,8 @@ class Simulation:
     def time(self) -> float:
         """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
 
-        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the run's end; the
-        next run or step goes on from the step's own end, so that a run in pieces takes the steps of the whole run.
+        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the run's end;
+        the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the whole run.
         """
         return self._core.time if self._end is None else self._end.time
 

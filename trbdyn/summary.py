@@ -124,7 +124,7 @@ def _motion(result: Result) -> dict[str, Any]:
         if group in groups and (result.has_cage or group not in ("cage", "pocket")):
             out |= part(window)
     if not result.has_cage:
-        out |= dict.fromkeys((name for name in out if name.startswith("pocket_")))
+        out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
     if "energy" in groups:
         audit = result.energy_audit
         out |= {"energy_closure": audit.closure, "energy_residual": audit.residual}

@@ -11,7 +11,7 @@ trb_hold_arms trb_hold_arms_raceway(const trb_model *m)
   for (int j = 0; j < m->n_rollers; j++)
     for (int k = 0; k < m->n_nodes; k++) reach = fmax(reach, fabs(m->centre[j * m->n_lanes + k]));
   const trb_race_nodes *outer = &m->race[TRB_RACE_OUTER], *inner = &m->race[TRB_RACE_INNER];
-  return (trb_hold_arms){fmax(outer->cosine, inner->cosine), fmax(outer->sine, inner->sine), reach, reach, size_of_roller(m),
+  return (trb_hold_arms){fmax(outer->cosine, inner->cosine),    fmax(outer->sine, inner->sine), reach, reach, size_of_roller(m),
                          0.5 * m->geometry.roller_centre_radius};
 }
 
@@ -21,8 +21,8 @@ trb_hold_arms trb_hold_arms_rib(const trb_model *m)
   const trb_geometry *g = &m->geometry;
   const double        station = g->sphere_centre - g->apex_to_mid - g->roller_mass_offset;
   const double        lean = fabs(m->rib_sine * m->axis_cosine - m->rib_cosine * m->axis_sine);
-  return (trb_hold_arms){fabs(m->rib_sine), fabs(m->rib_cosine), lean * fabs(station), fabs(station),
-                         size_of_roller(m), fabs(g->roller_centre_radius + station * m->axis_sine)};
+  return (trb_hold_arms){fabs(m->rib_sine), fabs(m->rib_cosine), lean * fabs(station),
+                         fabs(station),     size_of_roller(m),   fabs(g->roller_centre_radius + station * m->axis_sine)};
 }
 
 /* The deepest point wanders round the end: the arm is that of the rib's edge. */

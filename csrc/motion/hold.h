@@ -1,6 +1,7 @@
-/* Holds: proofs, to first order in small displacements, that a load found at one state has changed little at another, so that it need not
- * be evaluated again. A load follows an interference, which follows the place of a roller; it and the film follow its velocity too. Each
- * coordinate counts with the longest arm by which it moves the contact along its normal. What is prescribed must be the same at both states. */
+/* Holds: proofs, to first order in small displacements, that a load found at one state has changed little at another, so that it need
+ * not be evaluated again. A load follows an interference, which follows the place of a roller; it and the film follow its velocity too.
+ * Each coordinate counts with the longest arm by which it moves the contact along its normal. What is prescribed must be the same at
+ * both states. */
 #ifndef TRB_MOTION_HOLD_H
 #define TRB_MOTION_HOLD_H
 

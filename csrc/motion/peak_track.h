@@ -11,14 +11,14 @@ typedef struct trb_peak_sizes {
 
 /* All in one block of trb_peak_track_length() numbers, which is all that there is to save. */
 typedef struct trb_peak_track {
-  double *span;      /* start and end of what it covers, s */
-  double *value;     /* at its end */
-  double *most;      /* largest values, and their times, s */
+  double *span;  /* start and end of what it covers, s */
+  double *value; /* at its end */
+  double *most;  /* largest values, and their times, s */
   double *when;
-  double *integral;  /* of the loads, N s */
-  double *impacts;   /* contacts of a pocket's face that began */
-  double *impulse;   /* of the contact under way, or of the last one, N s */
-  double *hardest;   /* largest impulse of one contact, N s */
+  double *integral; /* of the loads, N s */
+  double *impacts;  /* contacts of a pocket's face that began */
+  double *impulse;  /* of the contact under way, or of the last one, N s */
+  double *hardest;  /* largest impulse of one contact, N s */
 } trb_peak_track;
 
 int            trb_peak_track_length(const trb_peak_sizes *n);

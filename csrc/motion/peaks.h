@@ -1,5 +1,5 @@
-/* Peaks: what happens between records. At the end of every step all loads, pressures, film parameters, skews and spacings are looked at, and
- * their extremes, means and impacts are kept over each record's interval and over the whole run; motion/peak_fields.h lists them.
+/* Peaks: what happens between records. At the end of every step all loads, pressures, film parameters, skews and spacings are looked
+ * at, and their extremes, means and impacts are kept over each record's interval and over the whole run; motion/peak_fields.h lists them.
  *
  * Between the ends of two steps every quantity is taken as a straight line. So the peaks of a run do not depend on its records, and the
  * largest peak of its records is that of the run. motion/peak_look.h says how exact the values are. */

@@ -465,8 +465,7 @@ static PyObject *restore_peaks(PyObject *object, PyObject *values)
     Py_XDECREF(array);
     return NULL;
   }
-  const trb_status status =
-      trb_simulation_restore_peaks(self->simulation, PyArray_DATA(array), (int)PyArray_DIM(array, 0), &message);
+  const trb_status status = trb_simulation_restore_peaks(self->simulation, PyArray_DATA(array), (int)PyArray_DIM(array, 0), &message);
   leave(self, 0);
   Py_DECREF(array);
   if (status != TRB_OK) return trb_raise(status, &message);

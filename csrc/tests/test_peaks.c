@@ -79,9 +79,9 @@ static void test_against_records(void)
   enum { WIDTH = 64 };
   const int       length = trb_record_offset(m, TRB_N_FIELDS), z = m->n_rollers, pockets = z * m->n_slots;
   trb_simulation *s = disturbed(3);
-  double         *record = calloc((size_t)length, sizeof *record), *row = calloc((size_t)trb_peak_offset(m, TRB_N_PEAK_FIELDS), sizeof *row);
-  double          pocket[WIDTH] = {0}, mean[WIDTH] = {0}, before[WIDTH], outer[WIDTH] = {0}, pressure[WIDTH] = {0}, rib[WIDTH] = {0}, film[WIDTH];
-  double          skew[WIDTH] = {0}, last = 0.0;
+  double *record = calloc((size_t)length, sizeof *record), *row = calloc((size_t)trb_peak_offset(m, TRB_N_PEAK_FIELDS), sizeof *row);
+  double  pocket[WIDTH] = {0}, mean[WIDTH] = {0}, before[WIDTH], outer[WIDTH] = {0}, pressure[WIDTH] = {0}, rib[WIDTH] = {0}, film[WIDTH];
+  double  skew[WIDTH] = {0}, last = 0.0;
   for (int i = 0; i < WIDTH; i++) film[i] = INFINITY;
   if (!CHECK(s != NULL && record != NULL && row != NULL && pockets <= WIDTH)) return;
   CHECK(trb_simulation_begin_peaks(s, 0.0, NULL) == TRB_OK);

@@ -44,7 +44,9 @@ def test_run_returns_everything(short: Result) -> None:
     assert short.final_time == 2e-3
     assert short.final_state is not None
     assert short.final_state.shape == (12 * 11 + 12 + 12 + 11,)
-    assert [field.name for field in short.fields] == [field.name for field in (*field_table.table(), *peak_table.table())]
+    assert [field.name for field in short.fields] == [
+        field.name for field in (*field_table.table(), *peak_table.table())
+    ]
     for name in ("steps", "rhs_evaluations", "jacobian_evaluations", "wall_s", "wall_s_per_revolution"):
         assert short.stats[name] > 0, name
     assert short.stats["bearing_time_s"] == pytest.approx(2e-3)

@@ -75,7 +75,9 @@ SCENES = {
     "axial": {},
     "radial": {"radial_load": 2000.0},
     "tilted": {"misalignment_x": 1e-3},
-    "dry": {"effects": Effects.standard().replace(lubrication="dry", rolling_resistance=False, rolling_pressure_force=False)},
+    "dry": {
+        "effects": Effects.standard().replace(lubrication="dry", rolling_resistance=False, rolling_pressure_force=False)
+    },
     "rollers": {"effects": Effects.standard().replace(bodies="rollers"), "start": trb.Start.equal()},
 }
 
@@ -83,7 +85,9 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_step_by_step(name: str) -> None:
     """Against records at the end of every step: of pockets to the last bit, of rings to what may be held."""
-    scene = scene_30310(3000.0, 4930.0, **({"effects": Effects.standard(), "start": trb.Start.whirl(0.9)} | SCENES[name]))
+    scene = scene_30310(
+        3000.0, 4930.0, **({"effects": Effects.standard(), "start": trb.Start.whirl(0.9)} | SCENES[name])
+    )
     sim = Simulation(scene)
     sim._core.begin_peaks(0.0)
     rows = [sim.record()]
@@ -104,9 +108,13 @@ def test_step_by_step(name: str) -> None:
     for quantity in ("outer_load", "inner_load", "rib_load", "front_rib_load", "pocket_force"):
         mean = np.trapezoid(records[quantity], time, axis=0) / time[-1]
         size = records[quantity].max()
-        np.testing.assert_allclose(found[f"{quantity}_mean"], mean, rtol=SHARE, atol=SHARE * size + 1e-300, err_msg=quantity)
+        np.testing.assert_allclose(
+            found[f"{quantity}_mean"], mean, rtol=SHARE, atol=SHARE * size + 1e-300, err_msg=quantity
+        )
     for quantity in ("outer_load", "inner_load", "rib_load", "outer_pressure", "inner_pressure", "rib_pressure"):
-        np.testing.assert_allclose(found[f"{quantity}_peak"], records[quantity].max(axis=0), rtol=SHARE, err_msg=quantity)
+        np.testing.assert_allclose(
+            found[f"{quantity}_peak"], records[quantity].max(axis=0), rtol=SHARE, err_msg=quantity
+        )
     for side in ("outer", "inner", "rib"):
         loaded = np.where(records[f"{side}_load"] > 0.0, records[f"{side}_film_parameter"], np.inf).min(axis=0)
         wanted = np.where(np.isfinite(loaded) & scene.effects.films, loaded, np.nan)
@@ -118,7 +126,10 @@ def test_nobody_pays_who_does_not_ask(kit: SimpleNamespace, tmp_path: Path) -> N
     sim = kit.simulate(Effects.paper())
     seen = []
     result = sim.run(
-        duration=1e-3, save_groups=["pocket"], output=tmp_path / "r.h5", callback=lambda now: seen.append(now._core.row_length)
+        duration=1e-3,
+        save_groups=["pocket"],
+        output=tmp_path / "r.h5",
+        callback=lambda now: seen.append(now._core.row_length),
     )
     assert set(seen) == {sim._model.record_length}
     assert not result._info.peaks
@@ -131,7 +142,9 @@ def test_nobody_pays_who_does_not_ask(kit: SimpleNamespace, tmp_path: Path) -> N
 
 
 def test_files_hold_the_peaks(runs: dict[float, Result], tmp_path: Path) -> None:
-    result = Simulation(whirling()).run(duration=SPAN, save_every=1e-3, save_groups=["peaks"], output=tmp_path / "run.h5")
+    result = Simulation(whirling()).run(
+        duration=SPAN, save_every=1e-3, save_groups=["peaks"], output=tmp_path / "run.h5"
+    )
     loaded = trb.load(tmp_path / "run.h5")
     for found in (result, loaded):
         assert found.groups == ("time", "peaks")

@@ -277,7 +277,14 @@ def test_checkpoints_that_say_what_cannot_be_are_refused(broken: Path, changes: 
 
 @pytest.mark.parametrize(
     "changes",
-    [{"time": "now"}, {"done": -1}, {"done": True}, {"start": 1.0, "end": 0.0}, {"state": np.array([np.nan])}, {"peaks": np.array([np.nan])}],
+    [
+        {"time": "now"},
+        {"done": -1},
+        {"done": True},
+        {"start": 1.0, "end": 0.0},
+        {"state": np.array([np.nan])},
+        {"peaks": np.array([np.nan])},
+    ],
 )
 def test_checkpoints_of_wrong_kinds_fall_back(broken: Path, reference: trb.Result, changes: dict[str, Any]) -> None:
     path = checkpoint_path(broken)
