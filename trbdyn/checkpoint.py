@@ -5,8 +5,9 @@ time, whether or not anybody resumes it. So a run that goes on from a checkpoint
 that was never interrupted: to the last bit, on the same build and instruction set.
 
 The file ``run.checkpoint`` beside ``run.h5``, format version 2: a line that names the format and its version; the SHA-256 of
-all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under another
-name, synchronised to the disk and then renamed; the one before it stays as ``run.checkpoint.previous``. Nothing in it is executed.
+all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under
+another name, synchronised to the disk and then renamed; the one before it stays as ``run.checkpoint.previous``.
+Nothing in it is executed.
 """
 
 from __future__ import annotations

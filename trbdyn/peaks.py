@@ -1,7 +1,7 @@
 """Peaks: what happens between records, kept by the core at the end of every step of the integrator.
 
-Between the ends of two steps every quantity is taken as a straight line. So peaks do not depend on `save_every`, and the largest of
-the peaks of a run's records is that of the run. The core owns the table (``csrc/motion/peak_fields.h``).
+Between the ends of two steps every quantity is taken as a straight line. So peaks do not depend on `save_every`, and the largest
+of the peaks of a run's records is that of the run. The core owns the table (``csrc/motion/peak_fields.h``).
 """
 
 from __future__ import annotations

@@ -11,8 +11,8 @@ Schema ``trbdyn-result``, version 1:
 - ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters`` and ``final_time``; empty until the run
   has ended
 - ``/final_state``: the state vector at ``final_time``; empty until then
-- ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then, and missing if no
-  peaks are kept
+- ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then; missing if
+  no peaks are kept
 
 A file is data: nothing in it is executed, and links or storage that lead out of the file are refused.
 

@@ -112,12 +112,12 @@ struct trb_lanes;
 
 /* Intermediate quantities, kept where a caller wants to look; NULL in the inner loop. */
 typedef struct trb_detail {
-  double           *lanes;           /* [lane field][race][roller][node of n_lanes] */
-  trb_point_detail *rib;             /* n_rollers */
-  trb_point_detail *front_rib;       /* n_rollers */
-  double           *pocket_force;    /* [roller][slot], N */
-  double           *pocket_friction; /* [roller][slot], N */
-  double *pocket_interference;       /* [roller][slot], largest; negative: smallest gap found, m; NULL: faces out of reach are left out */
+  double           *lanes;               /* [lane field][race][roller][node of n_lanes] */
+  trb_point_detail *rib;                 /* n_rollers */
+  trb_point_detail *front_rib;           /* n_rollers */
+  double           *pocket_force;        /* [roller][slot], N */
+  double           *pocket_friction;     /* [roller][slot], N */
+  double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
 } trb_detail;
 
 /* Scratch of one thread. */
