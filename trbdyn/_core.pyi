@@ -66,6 +66,7 @@ class Model:
     n_slots: int
     n_state: int
     record_length: int
+    peak_length: int
     instruction_set: str
     def equilibrium(
         self, load: Array, fixed: Array, displacement: Array, shaft_speed: float, angles: Array

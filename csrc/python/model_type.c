@@ -62,6 +62,7 @@ static PyObject *get_number(PyObject *self, void *closure)
   if (strcmp(name, "n_rollers") == 0) return PyLong_FromLong(m->n_rollers);
   if (strcmp(name, "n_slots") == 0) return PyLong_FromLong(m->n_slots);
   if (strcmp(name, "n_state") == 0) return PyLong_FromLong(trb_state_size(m));
+  if (strcmp(name, "peak_length") == 0) return PyLong_FromLong(trb_peak_offset(m, TRB_N_PEAK_FIELDS));
   return PyLong_FromLong(trb_record_offset(m, TRB_N_FIELDS));
 }
 
@@ -200,6 +201,7 @@ static PyGetSetDef properties[] = {
     {"n_slots", get_number, NULL, "most faces in a pocket", "n_slots"},
     {"n_state", get_number, NULL, "length of a state vector", "n_state"},
     {"record_length", get_number, NULL, "length of a record", "record_length"},
+    {"peak_length", get_number, NULL, "length of a row of peaks", "peak_length"},
     {"instruction_set", get_variant, NULL, "kernel variant in use", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };

@@ -36,6 +36,13 @@ def test_peaks_do_not_depend_on_records(runs: dict[float, Result], every: float)
         np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 
 
+def test_pocket_statistics_are_those_of_all_steps(runs: dict[float, Result]) -> None:
+    stats = runs[EVERY[0]].pocket_statistics()
+    np.testing.assert_array_equal(stats.peak, runs[EVERY[-1]].peaks["pocket_force_peak"])
+    np.testing.assert_array_equal(stats.mean, runs[EVERY[-1]].peaks["pocket_force_mean"])
+    assert runs[EVERY[0]].summary()["pocket_force_peak"] == runs[EVERY[-1]].summary()["pocket_force_peak"]
+
+
 def test_records_miss_what_peaks_see(runs: dict[float, Result]) -> None:
     samples = [runs[every].pocket_force.max() for every in EVERY]
     peak = runs[EVERY[0]].peaks["pocket_force_peak"].max()
