@@ -92,9 +92,11 @@ void trb_peaks_begin(trb_peaks *p, double time, const double *y, double end, con
   trb_peak_track_start(&p->n, &p->whole, time, p->value, 0);
   trb_peak_track_start(&p->n, &p->interval, time, p->value, 0);
   *p->end = time;
-  if (!(end > time)) return;
-  trb_peak_look_at(p->look, end, y_end, p->value);
-  *p->end = end;
+  if (end > time) {
+    trb_peak_look_at(p->look, end, y_end, p->value);
+    *p->end = end;
+  }
+  trb_peak_look_forget(p->look); /* as after trb_peaks_restore: a checkpoint may lie here */
 }
 
 void trb_peaks_step(trb_peaks *p, double time, const double *y)
