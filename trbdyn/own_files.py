@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import uuid
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -53,6 +54,20 @@ def file_path(value: object, field: str) -> Path:
     if path.name in ("", "..") or text.endswith(os.sep):
         raise InputError.of(field, value, "must name a file, not a folder")
     return path
+
+
+def folder_path(value: object, field: str) -> Path:
+    """A path as users give it: a text or path-like that names a folder.
+
+    Raises
+    ------
+    InputError
+        If it is no path, or empty.
+    """
+    text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
+    if not isinstance(text, str) or not text or "\0" in text:
+        raise InputError.of(field, value, "must be the path of a folder, without null characters")
+    return Path(text)
 
 
 def output_path(value: object, *, overwrite: bool, field: str = "output") -> Path:
@@ -156,6 +171,46 @@ def put_in_place(draft: Path, path: Path, *, replace: bool) -> None:
         os.replace(draft, path)
         return
     os.unlink(draft)
+
+
+def write_whole(path: Path, content: bytes, *, overwrite: bool) -> None:
+    """Write a file that is either the old one or the whole new one.
+
+    Raises
+    ------
+    FileError
+        If it is there and shall not be replaced.
+    OSError
+        If it cannot be written.
+    """
+    draft, stream = create_draft(path, uuid.uuid4().hex)
+    try:
+        with stream:
+            stream.write(content)
+        put_in_place(draft, path, replace=overwrite)
+    except FileExistsError:
+        draft.unlink(missing_ok=True)
+        raise exists_already(path) from None
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+def read_text(path: Path, largest: int = 16 << 20) -> str:
+    """The text of a small file, UTF-8.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    ValueError
+        If it is longer than `largest` bytes, or no text.
+    """
+    with path.open("rb") as stream:
+        data = stream.read(largest + 1)
+    if len(data) > largest:
+        raise ValueError(f"it is larger than {largest >> 20} MB")
+    return data.decode("utf-8")
 
 
 def set_aside(path: Path) -> Path:

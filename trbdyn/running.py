@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from trbdyn import _core, checkpoint
 from trbdyn import fields as field_table
 from trbdyn.checkpoint import Checkpoint
-from trbdyn.errors import FileError, StepError
+from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.motion import History
 from trbdyn.result_file import ResultWriter, reason
 from trbdyn.results import Result, load
@@ -35,6 +35,8 @@ Callback = Callable[["Simulation"], bool | None]
 
 CHUNK_RECORDS = 256
 """Records between looks at signals, callbacks and the file."""
+MOST_RECORDS = 50_000_000
+"""Most records of a run: their times alone take 400 MB."""
 CHUNK_STEPS = 4000
 """Steps between looks at signals: about a tenth of a second."""
 
@@ -317,7 +319,16 @@ def _run_id(path: Path) -> str | None:
 
 
 def output_times(start: float, end: float, every: float) -> Array:
-    """Times of the records (s): every so often, and at the end."""
+    """Times of the records (s): every so often, and at the end.
+
+    Raises
+    ------
+    InputError
+        If there would be too many.
+    """
+    if (end - start) / every > MOST_RECORDS:
+        allowed = f"must be at least {(end - start) / MOST_RECORDS:.3g}, for at most {MOST_RECORDS} records in this run (s)"
+        raise InputError.of(("run", "save_every"), every, allowed)
     count = max(math.ceil((end - start) / every - 1e-9), 1)
     times: Array = np.asarray(start + every * np.arange(count + 1), dtype=np.float64)
     times[-1] = end

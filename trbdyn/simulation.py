@@ -21,6 +21,7 @@ from trbdyn.run_options import Group, RunOptions
 from trbdyn.running import Callback, Run, output_times
 from trbdyn.scene import Scene
 from trbdyn.start import Equilibrium, StateView, ring_motion, start_state
+from trbdyn.validation import number_of
 
 if TYPE_CHECKING:
     from trbdyn.estimate import Estimate
@@ -97,7 +98,7 @@ class Simulation:
     equilibrium: Equilibrium
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
-        if abs(time) > MAX_TIME:
+        if not abs(time) <= MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
         try:
             return _core.Simulation(self._model, self._motion, time, vector, self.options.settings())
@@ -160,7 +161,7 @@ class Simulation:
             given, when = vector.vector, vector.time
         else:
             given, when = _numbers(vector), self._core.time
-        when = when if time is None else float(time)
+        when = when if time is None else number_of("time", time)
         core = self._open(when, given)
         self._count()
         self._core, self._begun, self._reached = core, when, when
@@ -250,7 +251,7 @@ class Simulation:
         return self._core.contacts(*self._place(vector, time))
 
     def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
-        when = self._core.time if time is None else float(time)
+        when = self._core.time if time is None else number_of("time", time)
         if vector is None:
             return when, self._core.state()
         given = _numbers(vector)
@@ -345,7 +346,7 @@ def _numbers(values: ArrayLike) -> Array:
     """
     try:
         return np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError.of("state", "given", f"must be a vector of numbers: {error}") from None
 
 
