@@ -254,7 +254,7 @@ def check_free(output: Path, replaced: str | None, *, overwrite: bool) -> None:
         if not os.path.lexists(place):
             continue
         regular = place.is_file() and not place.is_symlink()
-        if not regular or not place.read_bytes()[: len(MAGIC)] in (MAGIC, b""):
+        if not regular or place.read_bytes()[: len(MAGIC)] not in (MAGIC, b""):
             raise FileError(f"{place}: this is not a checkpoint, and a run of that name would replace it")
         owner = run_id_of(place)
         if not overwrite and (owner is None or owner != replaced):

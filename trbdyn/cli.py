@@ -115,9 +115,9 @@ def _parser() -> argparse.ArgumentParser:
 
     parser = _Parser(prog="trbdyn", description="Dynamics of tapered roller bearings.")
     parser.add_argument("--version", action="version", version=f"trbdyn {__version__}")
-    common = argparse.ArgumentParser(add_help=False)
+    common = _Parser(add_help=False)
     common.add_argument("--debug", action="store_true", help="show where an error arose")
-    length = argparse.ArgumentParser(add_help=False)
+    length = _Parser(add_help=False)
     length.add_argument("--revolutions", type=float, metavar="N", help="turns of the shaft")
     length.add_argument("--accuracy", choices=("fast", "standard", "reference"), help="preset of the tolerances")
     length.add_argument("--quiet", action="store_true", help="no progress bar, no summary")

@@ -35,7 +35,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
 from weakref import WeakSet
@@ -229,7 +228,9 @@ class ResultWriter:
         with self._guard("cannot be written"):
             replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
-                self._begin(scene, {"segment": segment, "first_record": first_record}, meta, geometry, compression, replaced)
+                self._begin(
+                    scene, {"segment": segment, "first_record": first_record}, meta, geometry, compression, replaced
+                )
             finally:
                 if replaced is not None:
                     replaced.close()
@@ -245,7 +246,8 @@ class ResultWriter:
         replaced: BinaryIO | None,
     ) -> None:
         """Make every object of the file in a draft, which then takes its place."""
-        draft, stream = create_draft(self.path, self.run_id)
+        # segments of one run that are begun at the same time must not share a draft
+        draft, stream = create_draft(self.path, uuid.uuid4().hex)
         try:
             self._lock = lock(stream)
             self._file = h5py.File(draft, "w", libver=LIBVER)
@@ -367,7 +369,7 @@ class ResultWriter:
         raise FileError(f"{self.path}: the result file {what}")
 
     def _forget(self) -> None:
-        """In a forked child: the file is the parent's. What HDF5 still writes goes to nobody, and the lock is left to the parent."""
+        """In a forked child: the file is the parent's. What HDF5 still writes goes nowhere, the lock stays with the parent."""
         if not self._file:
             return
         nowhere = os.memfd_create("trbdyn") if hasattr(os, "memfd_create") else os.open(os.devnull, os.O_RDWR)

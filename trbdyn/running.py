@@ -67,7 +67,8 @@ class Run:
     def write_to(self, output: Path, segment: int = 0, run_id: str | None = None, *, overwrite: bool = False) -> None:
         """Write records to a file, and checkpoints beside it if there is a schedule.
 
-        A run without a name is a new one. If it replaces the file of an older run, it removes that run's segments and checkpoints.
+        A run without a name is a new one. If it replaces the file of an older run, it removes that run's segments and
+        checkpoints.
         """
         sim = self.sim
         path = output if segment == 0 else output.with_name(f"{output.stem}.part{segment}{output.suffix}")
@@ -185,7 +186,9 @@ class Run:
         finally:
             self.sim._running = False
         if self.writer is not None and self.process != os.getpid():
-            raise FileError(f"{self.output}: the result file belongs to the process that was forked; this one cannot go on")
+            raise FileError(
+                f"{self.output}: the result file belongs to the process that was forked; this one cannot go on"
+            )
         return ended
 
     def _keep(self, records: Array) -> None:
@@ -327,7 +330,9 @@ def output_times(start: float, end: float, every: float) -> Array:
         If there would be too many.
     """
     if (end - start) / every > MOST_RECORDS:
-        allowed = f"must be at least {(end - start) / MOST_RECORDS:.3g}, for at most {MOST_RECORDS} records in this run (s)"
+        allowed = (
+            f"must be at least {(end - start) / MOST_RECORDS:.3g}, for at most {MOST_RECORDS} records in this run (s)"
+        )
         raise InputError.of(("run", "save_every"), every, allowed)
     count = max(math.ceil((end - start) / every - 1e-9), 1)
     times: Array = np.asarray(start + every * np.arange(count + 1), dtype=np.float64)

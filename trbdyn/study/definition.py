@@ -15,10 +15,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from trbdyn.errors import FileError, InputError, Path, join_path
+from trbdyn.errors import InputError, Path, join_path
+from trbdyn.own_files import file_path
 from trbdyn.run_options import RunOptions
 from trbdyn.scene import Scene
-from trbdyn.own_files import file_path
 from trbdyn.toml_case import TABLES, case_from_dict, find_case, read_tables, shipped_cases
 from trbdyn.validation import Model
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import numbers
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any
@@ -16,6 +15,7 @@ from trbdyn.run_options import RunOptions
 from trbdyn.scene import Scene
 from trbdyn.study.definition import Axis, Base, Case, Overrides, Study, label, plain
 from trbdyn.toml_case import TABLES
+from trbdyn.validation import number_of
 
 
 def _case(base: Base, parameters: Mapping[str, Any], overrides: Overrides) -> Case:
@@ -239,11 +239,13 @@ def _draws(path: str, entry: Any, count: int, seed: int) -> list[Any]:
         low, high, scale = entry["low"], entry["high"], entry.get("scale", "linear")
     else:
         if isinstance(entry, str) or not isinstance(entry, Sequence) or len(entry) != 2:
-            raise InputError.of(path, entry, "must be a range (low, high), or a table of low, high and scale, or of choice")
+            raise InputError.of(
+                path, entry, "must be a range (low, high), or a table of low, high and scale, or of choice"
+            )
         low, high = entry
         scale = "linear"
     for end in (low, high):
-        if isinstance(end, bool) or not isinstance(end, numbers.Real) or not abs(end) < 1e300:
+        if not abs(number_of(path, end)) < 1e300:
             raise InputError.of(path, end, "must be a finite number")
     if not isinstance(scale, str):
         raise InputError.of((path, "scale"), scale, "must be 'linear' or 'log'")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -124,12 +124,29 @@ def save(data: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
         if variable.dtype.kind in "iu" and variable.size and np.abs(variable.values).max() > limit:
             written[name] = written[name].astype(float)
     try:
+        written = _renamed(written, lambda text: text.encode().decode("latin-1"))
         content = bytes(written.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
         write_whole(target, content, overwrite=True)
     except (OSError, ValueError, TypeError) as error:
         why = getattr(error, "strerror", None) or error
         raise FileError(f"{target}: the dataset cannot be written: {why}") from error
     return target
+
+
+def _renamed(data: xarray.Dataset, change: Callable[[str], str]) -> xarray.Dataset:
+    """The dataset with other names of variables and dimensions: netCDF keeps them as UTF-8, SciPy takes them for Latin-1."""
+    names = {str(name): change(str(name)) for name in {*data.variables, *data.dims}}
+    out = data.rename({name: new for name, new in names.items() if name != new})
+    for part in (out, *out.variables.values()):
+        part.attrs = {key: change(value) if isinstance(value, str) else value for key, value in part.attrs.items()}
+    return out
+
+
+def _from_utf8(text: str) -> str:
+    try:
+        return text.encode("latin-1").decode()
+    except UnicodeError:
+        return text
 
 
 def load(path: str | os.PathLike[str]) -> xarray.Dataset:
@@ -143,6 +160,6 @@ def load(path: str | os.PathLike[str]) -> xarray.Dataset:
     import xarray
 
     try:
-        return xarray.load_dataset(path, engine="scipy")
+        return _renamed(xarray.load_dataset(path, engine="scipy"), _from_utf8)
     except (OSError, ValueError, TypeError) as error:
         raise FileError(f"{path}: the dataset cannot be read: {error}") from error

@@ -76,7 +76,9 @@ def run(
     study = study if isinstance(study, Study) else of_scenes(study, options)
     place = None if folder is None else folder_path(folder, "folder")
     if place is not None and (place / DATASET).exists() and not (place / INDEX).exists():
-        raise FileError(f"{place / DATASET}: belongs to no study of this folder, and would be replaced; give another folder")
+        raise FileError(
+            f"{place / DATASET}: belongs to no study of this folder, and would be replaced; give another folder"
+        )
     index, functions = Index(place), dict(observables or {})
     waiting = {case.fingerprint: case for case in study.cases}
     if resume:
