@@ -423,3 +423,10 @@ def test_builds_with_fast_math_are_refused(tmp_path: Path, flags: str) -> None:
 def test_every_error_here_is_the_packages_own() -> None:
     assert issubclass(InputError, TrbError)
     assert issubclass(FileError, TrbError)
+
+
+def test_a_pipe_that_nobody_writes_to_is_an_empty_case(tmp_path: Path) -> None:
+    pipe = tmp_path / "case.toml"
+    os.mkfifo(pipe)
+    with pytest.raises(InputError, match="bearing : is required"):
+        load_case(pipe)
