@@ -26,6 +26,8 @@ WARN: Final = 0.01
 """Residual of the energy over the energy turned over in a window, above which a run warns."""
 STOP: Final = 0.1
 """The same, above which a run ends."""
+DISSIPATING: Final = 0.3
+"""Share of losses in the energy turned over above which missing energy ends a run, too."""
 WINDOWS: Final = 20
 """Windows of a run, at most."""
 STORED_SHARE: Final = 1e-3
@@ -121,16 +123,17 @@ class Watch:
             return None
         what = "was made by the integration" if missing < 0.0 else "got lost in the integration"
         text = (
-            f"from {self._since:.6g} s to {time:.6g} s the energy does not add up: {100.0 * off:.2g} % of what was turned over {what}; "
-            "losses, slip and forces there may be wrong by as much"
+            f"from {self._since:.6g} s to {time:.6g} s the energy does not add up: "
+            f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
         )
-        # where nothing else takes energy, contact vibrations that the steps do not resolve lose theirs: it is said, but ends no run
-        wrong = not off <= STOP and (missing < 0.0 or abs(missing) > STOP * max(abs(lost), 0.3 * scale))
+        # where little else takes energy, vibrations that the steps do not resolve lose theirs: it is said, and ends no run
+        wrong = not off <= STOP and (missing < 0.0 or lost > DISSIPATING * scale)
         if not wrong:
             self._say(text + "; try accuracy='reference', or smaller tolerances", "energy")
             return None
         self._say(text, "energy")
-        return f"ended at {time:.6g} s: {text}. Try accuracy='reference' or smaller tolerances, or when_wrong='go_on' to go on all the same"
+        advice = "Try accuracy='reference' or smaller tolerances, or when_wrong='go_on' to go on all the same"
+        return f"ended at {time:.6g} s: {text}. {advice}"
 
     def _look_at_steps(self) -> str | None:
         sim = self._sim
@@ -153,14 +156,18 @@ class Watch:
         self._small_steps += int(taken)
         if self._small_steps < SMALL_STEPS_WARN:
             return None
-        text = f"near {time:.6g} s the steps are {mean:.1g} s long: a millisecond of bearing time takes {1e-3 / max(mean, 1e-300):.1g} steps"
+        count = 1e-3 / max(mean, 1e-300)
+        text = (
+            f"near {time:.6g} s the steps are {mean:.1g} s long: a millisecond of bearing time takes {count:.1g} steps"
+        )
         self._say(text, "steps")
         if self._small_steps < SMALL_STEPS_STOP:
             return None
-        return (
-            f"ended at {time:.6g} s: {text}. Look for clearances, stiffnesses or friction that are far from usual there, try normal "
-            "damping (effects.damping) or larger tolerances, or when_wrong='go_on' to go on all the same"
+        advice = (
+            "Look for clearances, stiffnesses or friction that are far from usual there, try normal damping (effects.damping) "
+            "or larger tolerances, or when_wrong='go_on' to go on all the same"
         )
+        return f"ended at {time:.6g} s: {text}. {advice}"
 
     def _say(self, text: str, kind: str) -> None:
         """A warning in the result, and the first of its kind on the screen."""

@@ -1,8 +1,9 @@
 """Runs a random scene for a bounded number of steps and judges it by what must hold whatever it is.
 
-A run is *right* if its energy adds up and its losses, the speeds of its rollers and its cage's place agree with those of a much tighter run
-with every force exact, *warned* if the program itself said that it is not, *stopped* if it ended with an error of the package, and *refused*
-if no run was begun. It is *wrong* if none of this holds, and *hanging* if its steps became so small that it would not end.
+A run is *right* if its energy adds up and its losses and the speed of its rollers agree with those of a much tighter run with
+every force exact, *warned* if the program itself said that it is not, *stopped* if it ended with an error of the package, and
+*refused* if no run was begun. It is *wrong* if none of this holds, and *hanging* if its steps became so small that it would not
+end.
 """
 
 from __future__ import annotations
@@ -40,8 +41,6 @@ LOSS = 0.05
 """Largest difference of the loss from that of the tight run, of the larger of both."""
 SLIP = 0.02
 """Largest difference of the mean speed of the rollers from that of the tight run, over the kinematic speed."""
-ORBIT = 0.1
-"""Largest difference of the cage's place in the radial plane after the run, over the radial play, where paths can be compared."""
 
 
 @dataclass
@@ -110,8 +109,8 @@ def judge(table: Table) -> Verdict:
 
 
 def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
-    """Against the tight run. Bodies that hit each other go their own ways after some impacts: where the judged run is off, other runs show
-    by how much such a scene's losses and speeds differ that are all as good."""
+    """Against the tight run. Bodies that hit each other go their own ways after some impacts: where the judged run is off, other
+    tight runs show by how much such a scene's losses and speeds differ that are all as good."""
     scale = max(abs(run.loss), abs(tight.loss), 1e-3 * tight.turned_over, 1e-6 * tight.stored, 1e-9)
     loss = abs(run.loss - tight.loss) / scale
     speed = abs(run.roller_speed - tight.roller_speed)
