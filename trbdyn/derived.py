@@ -74,7 +74,8 @@ class Derived(ABC):
         orbit = self["roller_orbit_angle"]
         turns = int(abs(np.mean(orbit[-1] - orbit[0])) / (2.0 * np.pi))
         if turns < 4:
-            middle = self["time"].size // 2
+            # an average needs two records
+            middle = max(min(self["time"].size // 2, self["time"].size - 2), 0)
             return observables.Settling(middle, float(self["time"][middle]), False)
         signals = np.column_stack([self.whirl_radius, self.spacing_std])
         return observables.settling(self["time"], signals, min(turns, 50))

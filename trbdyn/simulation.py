@@ -7,20 +7,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
-from trbdyn.errors import InputError, StepError
+from trbdyn.errors import MISSING, InputError, Problem, StepError
 from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
 from trbdyn.motion import MAX_TIME
+from trbdyn.own_files import output_path
 from trbdyn.results import Result
 from trbdyn.run_options import Group, RunOptions
 from trbdyn.running import Callback, Run, output_times
 from trbdyn.scene import Scene
 from trbdyn.start import Equilibrium, StateView, ring_motion, start_state
+from trbdyn.validation import number_of
 
 if TYPE_CHECKING:
     from trbdyn.estimate import Estimate
@@ -88,6 +90,7 @@ class Simulation:
         self._model = build_model(scene, instruction_set)
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
+        self._running = False
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
         self._begin(scene.start.time, vector)
@@ -98,7 +101,7 @@ class Simulation:
     """Where a run has ended, inside the integrator's last step; None where the present state is the end of that step."""
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
-        if abs(time) > MAX_TIME:
+        if not abs(time) <= MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
         try:
             return _core.Simulation(self._model, self._motion, time, vector, self.options.settings())
@@ -170,13 +173,14 @@ class Simulation:
         Raises
         ------
         InputError
-            If it is not finite, not possible, or of the wrong length.
+            If it is not finite, not possible, or of the wrong length, or if it is set from the callback of a run.
         """
+        self._check_not_running("set_state")
         if isinstance(vector, State):
             given, when = vector.vector, vector.time
         else:
             given, when = _numbers(vector), self.time
-        when = when if time is None else float(time)
+        when = when if time is None else number_of("time", time)
         core = self._open(when, given)
         self._count()
         self._core, self._begun, self._reached, self._end = core, when, when, None
@@ -185,14 +189,36 @@ class Simulation:
         """An independent simulation at the same state; its integrator starts there."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
+        other._running = False
         other._totals, other._counted = {}, {}
         present = self.state
         other._begin(present.time, present.vector)
         other._reached = present.time
         return other
 
+    def __copy__(self) -> Self:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.copy()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a simulation cannot be pickled; keep its scene and its state, or use checkpoints")
+
+    def _check_not_running(self, what: str) -> None:
+        if self._running:
+            allowed = "must not be called while a run goes on; end the run first: let the callback give True"
+            raise InputError([Problem((what,), MISSING, allowed)])
+
     def restart(self) -> None:
-        """Start the integrator anew at the present state, as a checkpoint does."""
+        """Start the integrator anew at the present state, as a checkpoint does.
+
+        Raises
+        ------
+        InputError
+            If it is called from the callback of a run.
+        """
+        self._check_not_running("restart")
         self.set_state(self.state)
 
     def step(self) -> float:
@@ -202,7 +228,10 @@ class Simulation:
         ------
         StepError
             If the integrator cannot go on; the state stays the last good one.
+        InputError
+            If it is called from the callback of a run.
         """
+        self._check_not_running("step")
         try:
             self._reached = self._core.step()
             self._end = None
@@ -242,7 +271,7 @@ class Simulation:
         return self._core.contacts(*self._place(vector, time))
 
     def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
-        when = self.time if time is None else float(time)
+        when = self.time if time is None else number_of("time", time)
         if vector is None:
             return when, self.state.vector
         given = _numbers(vector)
@@ -273,6 +302,7 @@ class Simulation:
         progress: bool = False,
         callback: Callback | None = None,
         checkpoint_every: float | None = None,
+        overwrite: bool = False,
     ) -> Result:
         """Step on and keep records; output times never change the steps.
 
@@ -292,10 +322,12 @@ class Simulation:
             Show a progress bar.
         callback : callable, optional
             Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run too,
-            after the file is closed.
+            after the file is closed. It may look at the simulation, but not step, restart or set it.
         checkpoint_every : float, optional
             Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options. Together
             with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
+        overwrite : bool
+            Replace the file `output` if it is there, together with segments and checkpoints of the run that it holds.
 
         Returns
         -------
@@ -309,16 +341,18 @@ class Simulation:
         StepError
             If a step failed; its ``result`` holds everything up to the last good time.
         FileError
-            If the file cannot be written.
+            If the file cannot be written, or is there already.
         """
+        self._check_not_running("run")
+        path = None if output is None else output_path(output, overwrite=overwrite)
         changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration, "save_every": save_every}
         changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
         times = output_times(self._reached, options.end_time(self.scene.speed_rpm, self._reached), options.save_every)
         run = Run(self, options, times, callback)
-        if output is not None:
-            run.write_to(Path(output))
+        if path is not None:
+            run.write_to(path, overwrite=overwrite)
         return run.go(progress=progress)
 
 
@@ -332,7 +366,7 @@ def _numbers(values: ArrayLike) -> Array:
     """
     try:
         return np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError.of("state", "given", f"must be a vector of numbers: {error}") from None
 
 

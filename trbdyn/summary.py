@@ -18,6 +18,7 @@ import numpy as np
 
 from trbdyn import observables
 from trbdyn.errors import FileError
+from trbdyn.own_files import output_path, write_whole
 
 if TYPE_CHECKING:
     from trbdyn.results import Result
@@ -224,7 +225,7 @@ def clean(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def write_json(values: Mapping[str, Any], path: str | os.PathLike[str]) -> Path:
+def write_json(values: Mapping[str, Any], path: str | os.PathLike[str], *, overwrite: bool = True) -> Path:
     """Write a summary as JSON.
 
     Parameters
@@ -233,6 +234,8 @@ def write_json(values: Mapping[str, Any], path: str | os.PathLike[str]) -> Path:
         What `summary` gave.
     path : path-like
         File to write.
+    overwrite : bool
+        Replace a file that is there.
 
     Returns
     -------
@@ -244,10 +247,13 @@ def write_json(values: Mapping[str, Any], path: str | os.PathLike[str]) -> Path:
     FileError
         If the file cannot be written.
     """
+    target = output_path(path, overwrite=overwrite, field="summary")
     try:
-        Path(path).write_text(json.dumps(values, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_whole(target, (json.dumps(values, indent=2, allow_nan=False) + "\n").encode(), overwrite=overwrite)
+    except FileError:
+        raise
     except OSError as error:
-        raise FileError(f"{path}: the summary cannot be written: {error.strerror}") from error
+        raise FileError(f"{path}: the summary cannot be written: {error.strerror or error}") from error
     return Path(path)
 
 

@@ -76,7 +76,7 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   it->motion = s->motion;
   it->variant = variant;
   trb_integrator_set_tolerances(it);
-  return TRB_OK;
+  return trb_impacts_create(s->model, &it->impacts, message);
 }
 
 trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant,
@@ -114,6 +114,7 @@ void trb_simulation_free(trb_simulation *s)
   if (s == NULL) return;
   if (s->integrator.kind != NULL) s->integrator.kind->free(&s->integrator);
   free(s->integrator.y);
+  trb_impacts_free(&s->integrator.impacts);
   free(s->integrator.scale);
   free(s->integrator.relative);
   free(s->between);
@@ -131,6 +132,7 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
   memmove(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
   s->integrator.time = s->previous = time;
   trb_integrator_set_tolerances(&s->integrator);
+  trb_impacts_forget(s->model, &s->integrator.impacts);
   if (s->peaks != NULL) trb_peaks_begin(s->peaks, time, s->integrator.y, time, s->integrator.y);
   return s->integrator.kind->restart(&s->integrator, message);
 }

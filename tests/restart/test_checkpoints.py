@@ -129,7 +129,7 @@ def test_a_run_resumed_and_broken_again(broken: Path, reference: trb.Result) -> 
 
 def test_a_new_run_takes_the_place_of_an_old_one(broken: Path, reference: trb.Result) -> None:
     trb.resume(broken)
-    result = run(broken)
+    result = run(broken, overwrite=True)
     same(result, reference)
     assert [path.name for path in sorted(broken.parent.iterdir())] == ["run.h5"]
 
@@ -175,7 +175,7 @@ def test_without_a_good_checkpoint_nothing_is_touched(broken: Path, how: str) ->
     for path in (checkpoint_path(broken), previous_path(checkpoint_path(broken))):
         path.write_bytes(damage(path.read_bytes(), how))
     before = trb.load(broken).time
-    with pytest.raises(FileError, match=r"run\.checkpoint: .*; .*run\.checkpoint\.previous: "):
+    with pytest.raises(FileError, match=r"run\.h5\.checkpoint: .*; .*run\.h5\.checkpoint\.previous: "):
         trb.resume(broken)
     np.testing.assert_array_equal(trb.load(broken).time, before)
 
@@ -203,9 +203,11 @@ def test_a_checkpoint_of_another_run_is_refused(broken: Path, tmp_path: Path) ->
 def test_a_damaged_result_file_costs_its_own_records_alone(broken: Path, reference: trb.Result, share: float) -> None:
     data = broken.read_bytes()
     broken.write_bytes(data[: int(share * len(data))])
-    with pytest.warns(UserWarning, match="its records are lost"), pytest.raises(FileError, match="cannot be read"):
-        trb.resume(broken)
-    part = trb.load(broken.with_name("run.part1.h5"))
+    with pytest.warns(UserWarning, match="its records are lost"):
+        part = trb.resume(broken)
+    assert part.success
+    part = trb.load(broken.with_name("run.part1.h5") if share else broken)
+    assert share or "records of it are missing" in part.message
     np.testing.assert_array_equal(part.final_state, reference.final_state)
     np.testing.assert_array_equal(part.cage_position, reference.cage_position[-len(part) :])
 

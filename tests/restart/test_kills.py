@@ -109,7 +109,7 @@ def test_one_run_one_writer(tmp_path: Path) -> None:
         with pytest.raises(FileError, match="another run is writing it"):
             trb.resume(path)
         with pytest.raises(FileError, match="another run is writing it"):
-            trb.Simulation(runs.whirl()).run(duration=1e-3, output=path)
+            trb.Simulation(runs.whirl()).run(duration=1e-3, output=path, overwrite=True)
     finally:
         process.kill()
         process.communicate()
