@@ -166,7 +166,6 @@ class Run:
         while self.done < self.times.size:
             chunk = self.times[self.done : self.done + CHUNK_RECORDS]
             # a signal may come before the core's answer does: what is filled is seen by its finite times
-            self._keep_peaks(sim._core.time)  # where the callback has set a state
             self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
             before = clock.perf_counter()
             try:

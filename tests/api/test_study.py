@@ -409,7 +409,7 @@ class TestResume:
         assert same(records(folder / "a"), records(folder / "b"))
         names = [n for n in straight.variables if not str(n).startswith("wall") and n != "case"]
         for name in names:
-            assert np.array_equal(straight[name].values[list(order)], mixed[name].values), name
+            np.testing.assert_array_equal(straight[name].values[list(order)], mixed[name].values, err_msg=str(name))
 
 
 class TestDataset:
