@@ -127,7 +127,7 @@ class Watch:
             f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
         )
         # where little else takes energy, vibrations that the steps do not resolve lose theirs: it is said, and ends no run
-        wrong = not off <= STOP and (missing < 0.0 or lost > DISSIPATING * scale)
+        wrong = not math.isfinite(off) or (off > STOP and (missing < 0.0 or lost > DISSIPATING * scale))
         if not wrong:
             self._say(text + "; try accuracy='reference', or smaller tolerances", "energy")
             return None

@@ -29,8 +29,9 @@ def test_a_run_that_is_right_has_no_warnings(recwarn):
 
 def test_a_run_that_is_wrong_ends_and_says_so(tmp_path):
     path = tmp_path / "run.h5"
+    scene = scene_30310(500.0, 4930.0, 20_000.0)
     with pytest.warns(trb.RunWarning, match="the energy does not add up"):
-        result = trb.Simulation(scene_30310(200.0), **LOOSE).run(duration=0.05, output=path)
+        result = trb.Simulation(scene, **LOOSE).run(duration=0.03, output=path)
     assert not result.success
     assert "the energy does not add up" in result.message
     assert "when_wrong='go_on'" in result.message
@@ -40,8 +41,9 @@ def test_a_run_that_is_wrong_ends_and_says_so(tmp_path):
 
 
 def test_it_can_go_on_on_purpose():
+    scene = scene_30310(500.0, 4930.0, 20_000.0)
     with pytest.warns(trb.RunWarning):
-        result = trb.Simulation(scene_30310(200.0), when_wrong="go_on", **LOOSE).run(duration=0.01)
+        result = trb.Simulation(scene, when_wrong="go_on", **LOOSE).run(duration=0.03)
     assert result.success
     assert result.warnings
 
