@@ -111,11 +111,11 @@ def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
     assert not plt.get_fignums()
     some = plotting.all(whirling.select(["torque", "cage"]), tmp_path / "some")
     assert {file.stem for file in some} == {"cage_locus", "axial_motion", "tilt", "spectrum", "torque_split"}
-    whirling.scene.effects = SimpleNamespace(bodies="rollers")
+    whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers"}))
     assert not whirling.has_cage
     bare = plotting.all(whirling.select(["cage", "rollers", "pocket"]), tmp_path / "bare")
     assert [file.stem for file in bare] == ["spacing_angles"]
-    assert whirling.summary()["whirl_radius_over_cpr"] is None
+    assert whirling.summary()["orbit_radius_over_cpr"] is None
     assert plotting.conditions(whirling) == "stub: 3000 rpm, $F_a$ 4930 N"
 
 
