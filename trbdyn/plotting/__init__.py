@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trbdyn.errors import FileError, InputError, unknown_name
-from trbdyn.plotting.cage import axial_motion, cage_locus, spectrum, tilt, whirl_map, whirl_radius
+from trbdyn.plotting.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plotting.energy import energy_audit, power_split, torque_split
 from trbdyn.plotting.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
 from trbdyn.plotting.style import SAVE_DPI, STYLE
@@ -36,6 +36,7 @@ __all__ = [
     "energy_audit",
     "film_parameter",
     "make_folder",
+    "orbit_radius",
     "pocket_forces",
     "pocket_statistics",
     "power_split",
@@ -52,7 +53,7 @@ Picture = Callable[["Result"], Axes | Figure]
 
 PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
     "cage_locus": (cage_locus, ("cage",)),
-    "whirl_radius": (whirl_radius, ("cage", "rollers")),
+    "orbit_radius": (orbit_radius, ("cage", "rollers")),
     "axial_motion": (axial_motion, ("cage",)),
     "tilt": (tilt, ("cage",)),
     "spectrum": (spectrum, ("cage",)),
@@ -67,6 +68,8 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
 }
 """Pictures of one result, by name, and the groups that each needs."""
 
+_RENAMED: Final = {"whirl_radius": "orbit_radius"}
+
 
 def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None = None) -> Path:
     """Save a picture and close its figure.
@@ -78,7 +81,7 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     path : path-like
         File to write; its ending gives the format.
     title : str, optional
-        Title above the whole figure.
+        A line under the figure's own title, which names the quantity.
 
     Returns
     -------
@@ -95,7 +98,8 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     try:
         with plt.rc_context(STYLE):
             if title:
-                figure.suptitle(title, fontsize=10)
+                quantity = figure.get_suptitle()
+                figure.suptitle(f"{quantity}\n{title}" if quantity else title, fontsize=10)
             figure.savefig(path, dpi=SAVE_DPI)
     except (OSError, ValueError) as error:
         raise FileError(f"{path}: the picture cannot be written: {error}") from error
@@ -118,7 +122,7 @@ def all(
     only : iterable of str, optional
         Names of the pictures to draw, of those in `PICTURES`; all by default.
     title : str, optional
-        Title of every picture; by default bearing, speed and loads.
+        A line under the title of every picture, which names the quantity; by default bearing, speed and loads.
 
     Returns
     -------
@@ -136,7 +140,7 @@ def all(
         there = set(result.groups) - (set() if result.has_cage else {"cage", "pocket"})
         chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
     else:
-        chosen = list(only)
+        chosen = [_RENAMED.get(name, name) for name in only]
     for name in chosen:
         if name not in PICTURES:
             raise InputError.of("only", name, unknown_name(name, PICTURES))
