@@ -125,11 +125,9 @@ def energy_audit(result: Result, ax: Axes | None = None) -> Axes:
         }
         for index, (name, values) in enumerate(curves.items()):
             x, size = envelope(turned, np.abs(values))
-            look: dict[str, Any] = {
-                "color": (COLOURS[5], *COLOURS[:2], COLOURS[6])[index],
-                "linewidth": (4.0, 1.4, 1.0, 1.0)[index],
-            }
-            ax.plot(x[size > 0], size[size > 0], label=name, linestyle=LINES[(0, 1, 0, 0)[index]], **look)
+            colour, width = (COLOURS[5], COLOURS[0], COLOURS[1], COLOURS[6])[index], (4.0, 1.4, 1.0, 1.0)[index]
+            dashes = LINES[1] if index == 1 else "-"
+            ax.plot(x[size > 0], size[size > 0], label=name, color=colour, linewidth=width, linestyle=dashes)
         ax.set_yscale("log")
         ax.set(xlabel="shaft revolutions", ylabel="size since the start (J)", xlim=(turned[0], turned[-1]))
         legend(ax, ncols=2)

@@ -197,7 +197,7 @@ def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> Non
         line(ax, place, mean, index, f"{side} (mean {values.mean():.4g}{unit})")
         ax.fill_between(place, low, high, color=COLOURS[index], alpha=0.25, linewidth=0)
     ax.set(xlim=(0, 360), xticks=range(0, 361, 45))
-    ax.set_xlabel("place around the bearing from x towards y (deg); line: mean, band: 5 to 95 %")
+    ax.set_xlabel("place around the bearing from x towards y (deg)\nline: mean, band: 5 to 95 %")
 
 
 def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
