@@ -12,7 +12,7 @@ import os
 import sys
 import tomllib
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -97,7 +97,12 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
     run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
     run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
-    run.add_argument("--save-every", type=float, metavar="S", help="time between saved records (s)")
+    run.add_argument(
+        "--save-every",
+        type=float,
+        metavar="S",
+        help="time between records (s); default 1e-4, up to 1e-3 in long runs",
+    )
     run.add_argument(
         "--checkpoint-every", type=float, metavar="S", help="bearing time between checkpoints (s), to resume from"
     )
@@ -198,7 +203,8 @@ def _run(options: argparse.Namespace) -> int:
     if "duration" in changes and "revolutions" not in changes:
         changes["revolutions"] = None
     output = Path(options.output or f"{Path(options.case).stem}.h5")
-    result = _simulate(scene, run.replace(**changes), output, quiet=options.quiet)
+    given = run.model_fields_set | changes.keys()
+    result = _simulate(scene, run.replace(**changes), output, quiet=options.quiet, given=given)
     return _finish(result, output, options.summary, quiet=options.quiet)
 
 
@@ -217,7 +223,8 @@ def _resume(options: argparse.Namespace) -> int:
     return _finish(result, Path(options.file), options.summary, quiet=options.quiet)
 
 
-def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool) -> Result:
+def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool, given: Collection[str] = ()) -> Result:
+    """Run a case; what is not given of what to keep is chosen by the length of the run."""
     from trbdyn.run_options import RunOptions
     from trbdyn.simulation import Simulation
 
@@ -229,8 +236,8 @@ def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool) -> Re
     return Simulation(scene, **settings).run(
         revolutions=run.revolutions,
         duration=run.duration,
-        save_every=run.save_every,
-        save_groups=run.save_groups,
+        save_every=run.save_every if "save_every" in given else None,
+        save_groups=run.save_groups if "save_groups" in given else None,
         progress=not quiet,
         output=output,
     )
@@ -245,7 +252,7 @@ def _finish(result: Result, output: Path, summary_file: str | Path | None, *, qu
         summary.write_json(values, summary_file)
     if not quiet:
         print(summary.table(values))
-        print(f"\nrecords in {output}")
+        print(f"\n{len(result)} records in {output}: {result.meta.get('kept', '')}")
     if not result.success:
         print(f"trbdyn: {result.message}", file=sys.stderr)
     return DONE if result.success else FAILED
