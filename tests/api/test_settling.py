@@ -127,3 +127,34 @@ def test_the_slow_whirl_at_high_load_is_not_settled_in_a_second() -> None:
     assert 3.0 < answers[4930.0].creep_time < 6.0
     assert answers[1230.0].settled
     assert answers[1230.0].creep_time < 0.1
+
+
+def test_creep_time_of_any_scene() -> None:
+    """A number where the law holds, nan elsewhere; never a warning or an error."""
+    import warnings
+
+    from trbdyn.paper.creep import creep_time
+
+    known = [
+        scene_30310(),
+        scene_30310(2000.0, 4930.0, 5530.0),
+        scene_30310(3000.0, 1230.0, 3000.0),
+        scene_30310(gravity=(0.0, 0.0, 0.0)),
+        scene_30310(effects=trb.Effects.standard()),
+        trb.cases.scene_32216(-2000.0),
+    ]
+    unknown = [
+        scene_30310(0.0),
+        scene_30310(effects=trb.Effects.minimal()),
+        scene_30310(effects=trb.Effects.frictionless()),
+        scene_30310(effects=trb.Effects.paper().replace(bodies="rollers")),
+        scene_30310(trb.History.ramp(0.0, 1.0, 0.0, 3000.0)),
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for scene in known:
+            assert 1e-3 < creep_time(scene) < 100.0
+        for scene in unknown:
+            assert math.isnan(creep_time(scene))
+    light, heavy = (creep_time(scene_30310(3000.0, load)) for load in (1230.0, 4930.0))
+    assert light < 0.02 * heavy

@@ -7,6 +7,7 @@ again or take hours: of those `make` is asked whether it knows them. Commands th
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -174,3 +175,14 @@ def test_a_fresh_clone(tmp_path: Path) -> None:
     assert "installing" not in run("make install", clone)
     run("make test PYTEST='-k test_laws_api'", clone, timeout=1800.0)
     assert "skipped" not in run(f".venv/bin/pytest -q {PARTS}", clone)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
+def test_notebooks_show_their_outputs(path: Path) -> None:
+    """Read on a web page they show numbers and pictures; `make notebooks` writes them."""
+    cells = [cell for cell in json.loads(path.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
+    outputs = [output for cell in cells for output in cell["outputs"]]
+    assert all(cell["execution_count"] for cell in cells)
+    assert any("image/png" in output.get("data", {}) for output in outputs)
+    assert any(output["output_type"] == "stream" for output in outputs)
+    assert not any(output["output_type"] == "error" or output.get("name") == "stderr" for output in outputs)

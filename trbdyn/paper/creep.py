@@ -233,6 +233,8 @@ def creep_time(scene: Scene) -> float:
 
     T_c Z/(2 chi) over the larger of q Fn c^4 and c k^2/2, the terms of centrifugal force and weight in `growth_per_turn`
     (q = Cpc/Cpr, c = cos(gamma), k = q c). Both terms count, as they oppose each other: what is left of them is a difference.
+    Where rollers differ in load, v' is their mean, as each roller comes to every place of the loaded zone; none counts with more
+    than the drift at which it yields within a turn of the cage, chi = 2 Z/c.
 
     Parameters
     ----------
@@ -248,14 +250,19 @@ def creep_time(scene: Scene) -> float:
     if effects.bodies != "rollers_and_cage" or not effects.films or effects.traction != "muraki_kimura":
         return math.nan
     try:
-        found = creep(scene.replace(ring="held"))
+        with np.errstate(all="ignore"):  # rollers without load creep without bound
+            found = creep(scene.replace(ring="held"))
     except (TrbError, ArithmeticError):
         return math.nan
     bearing, cage = scene.bearing, scene.bearing.cage
+    if not cage.play_radial > 0.0 or not cage.play_circumferential > 0.0:
+        return math.nan
     c, q = math.cos(bar_lean(bearing)), cage.play_circumferential / cage.play_radial
-    per_force = cage.mass * found.cage_period * float(found.drift.mean()) / cage.play_circumferential
     orbit = 2.0 * math.pi / found.cage_period
     gravity = math.hypot(*(value_at(part, scene.start.time) for part in scene.gravity[:2])) if effects.gravity else 0.0
+    per_drift = cage.mass * found.cage_period / cage.play_circumferential
+    yielding = 2.0 * bearing.n_rollers / (c * per_drift * max(gravity, orbit**2 * cage.play_radial))
+    per_force = per_drift * float(np.mean(np.fmin(found.drift, yielding)))
     force = max(q * orbit**2 * cage.play_radial * c**4, 0.5 * c * (q * c) ** 2 * gravity)
     rate = 2.0 * per_force / bearing.n_rollers * force
     return found.cage_period / rate if rate > 0.0 else math.nan
