@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import textwrap
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -76,7 +77,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "rhs_evaluations": ("evaluations of the equations of motion", ""),
     "wall_s": ("wall time", "s"),
     "wall_s_per_revolution": ("wall time a revolution", "s"),
-    "torque_note": ("why the torques of the rings differ", ""),
+    "torque_note": ("Why the torques of the rings differ", ""),
     "power_split": ("power loss by mechanism", "W"),
     "torque_by_loss": ("the same as friction torque of the shaft", "N m"),
     "torque_split": ("forces on the inner ring that make this torque", "N m"),
@@ -286,14 +287,17 @@ def write_json(values: Mapping[str, Any], path: str | os.PathLike[str]) -> Path:
 
 
 def table(values: Mapping[str, Any]) -> str:
-    """A summary as a table for people: words, number, unit; entries that are None are left out."""
+    """A summary as a table for people: words, number, unit; entries that are None are left out, sentences follow the table."""
     rows: list[tuple[str, str, str]] = []
+    sentences = ""
     for name, (words, unit) in LABELS.items():
         value = values.get(name)
         if value is None or name in UNPRINTED:
             continue
         if name == "settling":
             rows.append(("settled", _settled_words(values), ""))
+        elif name == "torque_note":
+            sentences += "\n\n" + textwrap.fill(f"{words}: {value}", 100)
         elif isinstance(value, Mapping):
             rows.append((words, "", ""))
             rows.extend(
@@ -302,7 +306,7 @@ def table(values: Mapping[str, Any]) -> str:
         else:
             rows.append((words, _number(value), unit))
     width = max(len(words) for words, _, _ in rows)
-    return "\n".join(f"{words:<{width}}  {number} {unit}".rstrip() for words, number, unit in rows)
+    return "\n".join(f"{words:<{width}}  {number} {unit}".rstrip() for words, number, unit in rows) + sentences
 
 
 def _settled_words(values: Mapping[str, Any]) -> str:
