@@ -117,21 +117,31 @@ def test_commands(command: str, root: Path) -> None:
     if command.startswith("make "):
         # where make would install first, it would put the copy in place of the checkout
         assert "pip" not in run(command.replace("make ", "make -n "), root), "run make install first"
+    if " run " in command:
+        forget(root)
     if " resume " in command or " plot " in command or " info " in command:
         write_run(root)
     run(command, root)
 
 
+def forget(root: Path) -> None:
+    """Results of commands before: a new run does not replace them."""
+    for place in (*root.glob("*.h5"), *root.glob("*.checkpoint*")):
+        place.unlink()
+
+
 def write_run(root: Path) -> None:
     """A run.h5 with its checkpoint, for the commands that read one, whichever test comes first."""
     if not (root / "run.checkpoint").exists():
-        run(".venv/bin/python -m trbdyn run rig_30310 -o run.h5 --revolutions 2 --checkpoint-every 0.01 --quiet", root)
+        run(".venv/bin/python -m trbdyn run rig_30310 -o run.h5 --revolutions 2 --checkpoint-every 0.01 --overwrite --quiet", root)
 
 
 @pytest.mark.parametrize("sample", blocks("python"))
 def test_samples(sample: str, root: Path) -> None:
+    forget(root)
     (root / "sample.py").write_text(sample, encoding="utf-8")
     run(".venv/bin/python sample.py", root)
+    forget(root)
     run(f".venv/bin/python - <<'END'\n{sample}\nEND", root)
 
 

@@ -252,7 +252,7 @@ def motion_settling(
     t, turned = np.asarray(time, dtype=float), np.asarray(roller_angle, dtype=float)
     spread = np.asarray(spacing, dtype=float)
     turns = float(abs(turned[-1] - turned[0])) / (2.0 * np.pi) if t.size else 0.0
-    middle = t.size // 2
+    middle = max(min(t.size // 2, t.size - 2), 0)  # averages need two records
     if turns < 4.0:
         return MotionSettling(
             "unknown", middle, float(t[middle]), math.nan, f"only {turns:.2g} turns of the cage", creep_time
