@@ -133,7 +133,10 @@ def forget(root: Path) -> None:
 def write_run(root: Path) -> None:
     """A run.h5 with its checkpoint, for the commands that read one, whichever test comes first."""
     if not (root / "run.checkpoint").exists():
-        run(".venv/bin/python -m trbdyn run rig_30310 -o run.h5 --revolutions 2 --checkpoint-every 0.01 --overwrite --quiet", root)
+        run(
+            ".venv/bin/python -m trbdyn run rig_30310 -o run.h5 --revolutions 2 --checkpoint-every 0.01 --overwrite --quiet",
+            root,
+        )
 
 
 @pytest.mark.parametrize("sample", blocks("python"))
