@@ -1,9 +1,10 @@
 """What a run keeps if nobody says so: every quantity at short intervals for short runs, less of it for long ones.
 
-A record of all quantities of a bearing with 12 rollers takes 5 kB. The default is a record every 0.1 ms with all groups, up to
-20 000 records. Longer runs keep as many at longer intervals, but not longer than 1 ms or a twentieth of a turn of the shaft, so
-that orbits can still be read; from 0.5 ms their files are compressed. Beyond 100 000 records the groups contacts and pocket
-are left out, which make more than half of a record. What is given explicitly is kept as it is given.
+A record of all quantities of a bearing with 12 rollers takes 10 kB, half of it the group peaks. The default is a record every
+0.1 ms with all groups, up to 5000 records. Longer runs keep as many at longer intervals, but not longer than 1 ms or a twentieth
+of a turn of the shaft, so that orbits can still be read; peaks are those of all steps at any interval. From 0.5 ms the files are
+compressed. Beyond 20 000 records the groups contacts and pocket are left out; the peaks and means of their loads are in the
+group peaks. What is given explicitly is kept as it is given.
 """
 
 from __future__ import annotations
@@ -16,13 +17,13 @@ from trbdyn.run_options import GROUPS, Group
 
 SHORTEST: Final = 1e-4
 """Default interval of records (s)."""
-RECORDS: Final = 20_000
+RECORDS: Final = 5_000
 """Records up to which a run keeps them at the shortest interval."""
 LONGEST: Final = 1e-3
 """Longest default interval (s)."""
 OF_A_TURN: Final = 0.05
 """Longest default interval in turns of the shaft at its highest speed."""
-MANY: Final = 100_000
+MANY: Final = 20_000
 """Records beyond which the groups `DETAILS` are left out by default."""
 DETAILS: Final[tuple[Group, ...]] = ("contacts", "pocket")
 COMPRESSED: Final = 5e-4

@@ -314,10 +314,10 @@ class Simulation:
         duration : float, optional
             How far to go (s); one of both must be given.
         save_every : float, optional
-            Time between records (s). By default 1e-4 s up to 20 000 records, in longer runs longer intervals up to 1e-3 s, but
+            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3 s, but
             not longer than a twentieth of a turn of the shaft (`trbdyn.keeping`); ``result.meta["kept"]`` says what was kept.
         save_groups : sequence of str, optional
-            Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 100 000 records.
+            Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
         output : path-like, optional
             HDF5 file to write while running; without it records stay in memory.
         progress : bool

@@ -18,10 +18,10 @@ from trbdyn.run_options import GROUPS
     ("length", "speed", "every"),
     [
         (0.01, 3000.0, 1e-4),
-        (2.0, 3000.0, 1e-4),
-        (2.1, 3000.0, 2e-4),
-        (10.0, 3000.0, 5e-4),
-        (40.0, 3000.0, 1e-3),
+        (0.5, 3000.0, 1e-4),
+        (0.51, 3000.0, 2e-4),
+        (2.5, 3000.0, 5e-4),
+        (10.0, 3000.0, 1e-3),
         (4000.0, 3000.0, 1e-3),
         (40.0, 6000.0, 5e-4),
         (40.0, 30000.0, 1e-4),
@@ -35,8 +35,8 @@ def test_interval(length: float, speed: Any, every: float) -> None:
 
 
 def test_groups_of_very_long_runs() -> None:
-    short = keeping.kept_by_default(100.0, 3000.0, None, None)
-    long = keeping.kept_by_default(101.0, 3000.0, None, None)
+    short = keeping.kept_by_default(20.0, 3000.0, None, None)
+    long = keeping.kept_by_default(21.0, 3000.0, None, None)
     assert short["save_groups"] == GROUPS
     assert set(GROUPS) - set(long["save_groups"]) == {"contacts", "pocket"}
     assert keeping.kept_by_default(1e4, 3000.0, 1e-4, None) == {"save_every": 1e-4, "save_groups": GROUPS}
