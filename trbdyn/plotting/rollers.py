@@ -72,8 +72,8 @@ def _face_name(result: Result, slot: int) -> str:
 def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: float | None = 12.0) -> Figure:
     """Normal forces between rollers and cage over the turns of the shaft: a panel for each face, a row for each pocket.
 
-    The colour is the largest recorded force within a short stretch of time (the colour bar says how long), in a logarithmic
-    scale: so an impact of some tens of microseconds is seen as well as a force that lasts. White: not touched.
+    The colour is the largest force within a short stretch of time (the colour bar says how long), in a logarithmic scale; of all
+    steps where the group peaks was recorded, else of the records. So an impact of some tens of microseconds is seen as well as a force that lasts. White: not touched.
 
     Parameters
     ----------
@@ -90,7 +90,8 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
     """
     need_cage(result)
     shown = last_turns(result, last)
-    force, turned = shown["pocket_force"], revolutions(shown)
+    force = shown["pocket_force_peak" if "pocket_force_peak" in shown else "pocket_force"]
+    turned = revolutions(shown)
     count, slots = force.shape[1:]
     chosen = list(range(count)) if pockets is None else list(pockets)
     for pocket in chosen:
