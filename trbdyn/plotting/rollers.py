@@ -73,7 +73,8 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
     """Normal forces between rollers and cage over the turns of the shaft: a panel for each face, a row for each pocket.
 
     The colour is the largest force within a short stretch of time (the colour bar says how long), in a logarithmic scale; of all
-    steps where the group peaks was recorded, else of the records. So an impact of some tens of microseconds is seen as well as a force that lasts. White: not touched.
+    steps where the group peaks was recorded, else of the records. So an impact of some tens of microseconds is seen as well as a
+    force that lasts. White: not touched.
 
     Parameters
     ----------
