@@ -410,8 +410,7 @@ class TestResume:
         assert same(records(folder / "a"), records(folder / "b"))
         names = [n for n in straight.variables if not str(n).startswith("wall") and n != "case"]
         for name in names:
-            one, other = straight[name].values[list(order)], mixed[name].values
-            assert np.array_equal(one, other, equal_nan=one.dtype.kind == "f"), name
+            np.testing.assert_array_equal(straight[name].values[list(order)], mixed[name].values, err_msg=str(name))
 
 
 class TestDataset:
