@@ -291,7 +291,7 @@ class Result(Derived):
 
     @property
     def settled(self) -> Result:
-        """The result after settling; the second half of the run if it has not settled."""
+        """The result after the transient, the second half of the run at least; `settling` says whether it has settled there."""
         return self.window(self.settling().time)
 
     @property

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn import _core, checkpoint
+from trbdyn import _core, checkpoint, keeping
 from trbdyn import fields as field_table
 from trbdyn import peaks as peak_table
 from trbdyn.checkpoint import Checkpoint
@@ -101,6 +101,7 @@ class Run:
             groups=self.options.save_groups,
             meta=self._meta(),
             geometry=asdict(sim.scene.bearing.geometry),
+            compression=keeping.compression(self.options.save_every),
             run_id=run_id,
             segment=segment,
             first_record=self.done,
@@ -271,6 +272,7 @@ class Run:
             "sundials_version": _core.sundials_version(),
             "core_version": _core.version(),
             "settings": settings,
+            "kept": keeping.said(self.options.save_every, self.options.save_groups),
             "notes": self.notes,
         }
 
