@@ -205,4 +205,4 @@ def test_the_module_runs_as_a_program() -> None:
     assert "Traceback" not in done.stderr
     done = subprocess.run([sys.executable, "-m", "trbdyn"], capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert "usage" in done.stderr
+    assert "--help" in done.stderr
