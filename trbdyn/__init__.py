@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from trbdyn.results import Result, load
     from trbdyn.resuming import resume
     from trbdyn.run_options import RunOptions
-    from trbdyn.scene import Scene, Start
+    from trbdyn.scene import RotatingLoad, Scene, Start
     from trbdyn.simulation import Simulation
     from trbdyn.toml_case import load_case
 
@@ -51,6 +51,7 @@ _NAMES = {
     "LoadError": "trbdyn.errors",
     "Lubricant": "trbdyn.lubricants",
     "Result": "trbdyn.results",
+    "RotatingLoad": "trbdyn.scene",
     "RunOptions": "trbdyn.run_options",
     "Scene": "trbdyn.scene",
     "Simulation": "trbdyn.simulation",
@@ -71,6 +72,7 @@ __all__ = [
     "LoadError",
     "Lubricant",
     "Result",
+    "RotatingLoad",
     "RunOptions",
     "Scene",
     "Simulation",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,7 @@ from trbdyn.effects import Effects
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.geometry import Geometry
 from trbdyn.lubricants import Lubricant, vg100
-from trbdyn.motion import History, knot_table, knot_times, value_at
+from trbdyn.motion import History, knot_table, value_at
 
 if TYPE_CHECKING:
     from trbdyn.bearing import Bearing
@@ -294,68 +294,53 @@ class RingLoad:
 def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
     """What acts on the inner ring at a time (s)."""
     radial, direction = value_at(scene.radial_load, time), math.radians(value_at(scene.radial_direction_deg, time))
-    placed = scene.displacement is not None
-    shift = (
-        [value_at(quantity, time) for quantity in scene.displacement] if scene.displacement is not None else [0.0] * 3
-    )
-    moments = (scene.moment_x, scene.moment_y)
+    force = np.array([radial * math.cos(direction), radial * math.sin(direction), -value_at(scene.axial_load, time)])
+    if scene.rotating_load is not None:
+        size, turned = value_at(scene.rotating_load.load, time), scene.rotating_load_angle(time)
+        force[:2] += size * np.array([math.cos(turned), math.sin(turned)])
+    places = scene.displacement or (None, None, None)
+    moments = scene.moments
     turns = (value_at(scene.misalignment_x, time), value_at(scene.misalignment_y, time))
     return RingLoad(
-        force=np.array([radial * math.cos(direction), radial * math.sin(direction), -value_at(scene.axial_load, time)]),
+        force=force,
         moment=np.array([0.0 if moment is None else value_at(moment, time) for moment in moments]),
-        fixed=np.array([float(placed)] * 3 + [float(moment is None) for moment in moments]),
-        displacement=np.array([*shift, *turns]),
+        fixed=np.array([float(held) for held in scene.ring_is_placed]),
+        displacement=np.array([*(0.0 if place is None else value_at(place, time) for place in places), *turns]),
         shaft_speed=value_at(scene.speed_rpm, time) * math.pi / 30.0,
         gravity=np.array([value_at(quantity, time) for quantity in _gravity(scene)]),
     )
 
 
-def equilibrium_times(scene: Scene, parts: int = 8) -> FloatArray:
-    """Times at which the ring's equilibrium is needed (s), shape (N,), ascending.
-
-    Only 0 if the ring is held. If it follows its load: every knot of what acts on it, and `parts` - 1 times evenly
-    between two knots.
-    """
-    if scene.ring == "held":
-        return np.zeros(1)
-    knots = knot_times(scene.ring_quantities())
-    fractions = np.arange(parts) / parts
-    inside = (knots[:-1, None] + np.diff(knots)[:, None] * fractions).ravel()
-    return np.append(inside, knots[-1])
-
-
-def motion_table(scene: Scene, times: FloatArray, displacements: FloatArray) -> FloatArray:
+def motion_table(scene: Scene, path: Sequence[float | History]) -> FloatArray:
     """Prescribed motion of the inner ring, as the core takes it.
 
     Parameters
     ----------
     scene : Scene
         The scene.
-    times : ndarray, shape (N,)
-        Times of the equilibria (s), `equilibrium_times`.
-    displacements : ndarray, shape (N, 5)
-        Displacement (m) and rotation (rad) of the ring at each of them. What the scene prescribes is taken from the
-        scene instead.
+    path : sequence of float or History, length 5
+        Displacement (m) and rotation (rad) of the ring that were found by equilibria. What the scene prescribes is
+        taken from the scene instead.
 
     Returns
     -------
     ndarray, shape (K, 19)
-        Knot time, then value and slope of each channel of `_core.motion_table()`. The ring's path between two
-        equilibria is a monotone cubic.
+        Knot time, then value and slope of each channel of `_core.motion_table()`; the last `scene.period` repeats.
     """
     from trbdyn import _core
 
-    found = [_path(times, column) for column in np.asarray(displacements, dtype=np.float64).T]
-    shift = list(scene.displacement) if scene.displacement is not None else found[:3]
-    turn_x = scene.misalignment_x if scene.moment_x is None else found[3]
-    turn_y = scene.misalignment_y if scene.moment_y is None else found[4]
+    given = [*(scene.displacement or (None, None, None)), scene.misalignment_x, scene.misalignment_y]
+    ring = [
+        path[axis] if place is None or not held else place
+        for axis, (place, held) in enumerate(zip(given, scene.ring_is_placed, strict=True))
+    ]
     gravity = _gravity(scene)
     channels: dict[str, float | History] = {
-        "displacement_x": shift[0],
-        "displacement_y": shift[1],
-        "displacement_z": shift[2],
-        "rotation_x": turn_x,
-        "rotation_y": turn_y,
+        "displacement_x": ring[0],
+        "displacement_y": ring[1],
+        "displacement_z": ring[2],
+        "rotation_x": ring[3],
+        "rotation_y": ring[4],
         "shaft_speed": _scaled(scene.speed_rpm, math.pi / 30.0),
         "gravity_x": gravity[0],
         "gravity_y": gravity[1],
@@ -364,18 +349,18 @@ def motion_table(scene: Scene, times: FloatArray, displacements: FloatArray) -> 
     names = [name for name, _, _ in _core.motion_table()]
     if set(names) != set(channels):
         raise RuntimeError(f"the core's table of motion and the scene differ in {sorted(set(names) ^ set(channels))}")
-    return knot_table([channels[name] for name in names])
+    return knot_table([channels[name] for name in names], scene.start.time, scene.settled, scene.period)
 
 
 def _gravity(scene: Scene) -> tuple[float | History, float | History, float | History]:
     return scene.gravity if scene.effects.gravity else (0.0, 0.0, 0.0)
 
 
-def _path(times: FloatArray, values: FloatArray) -> float | History:
-    return float(values[0]) if len(values) == 1 else History.table(times, values)
-
-
 def _scaled(quantity: float | History, factor: float) -> float | History:
-    if isinstance(quantity, History):
-        return quantity.replace(values=tuple(factor * value for value in quantity.values))
-    return factor * quantity
+    if not isinstance(quantity, History):
+        return factor * quantity
+    slopes = quantity.slopes
+    return quantity.replace(
+        values=tuple(factor * value for value in quantity.values),
+        slopes=None if slopes is None else tuple(factor * slope for slope in slopes),
+    )

@@ -172,7 +172,7 @@ class Run:
             options=self.options.to_dict(),
             instruction_set=sim.instruction_set,
             build=checkpoint.build_digest(),
-            motion=checkpoint.digest_of(sim._motion),
+            motion=checkpoint.digest_of(sim._motion.table),
             start=float(self.times[0]),
             end=float(self.times[-1]),
             time=sim.time,

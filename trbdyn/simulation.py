@@ -37,10 +37,13 @@ class State:
         Time (s).
     vector : ndarray, shape (n_state,)
         The core's state vector.
+    shaft_angle : float, optional
+        Angle of the shaft (rad).
     """
 
     time: float
     vector: Array
+    shaft_angle: float | None = None
 
 
 def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
@@ -97,8 +100,11 @@ class Simulation:
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if abs(time) > MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
+        first = self.scene.start.time
+        if time < first and len(self._motion.table) > 1:
+            raise InputError.of("time", time, f"must be >= {first:g}, the start: histories are known from there on (s)")
         try:
-            return _core.Simulation(self._model, self._motion, time, vector, self.options.settings())
+            return self._motion.open(self._model, time, vector, self.options.settings())
         except ValueError as error:
             raise InputError.of("state", "given", str(error)) from None
 
@@ -132,7 +138,8 @@ class Simulation:
     @property
     def state(self) -> State:
         """A copy of the present state."""
-        return State(self._core.time, self._core.state())
+        time = self._core.time
+        return State(time, self._core.state(), self.scene.start_shaft_angle + self.scene.shaft_turn(time))
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
