@@ -8,6 +8,7 @@ takes about a millisecond each. The slope at an interval's ends is that of the q
 from __future__ import annotations
 
 import bisect
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
@@ -109,7 +110,7 @@ class _Search:
             bar_format="{desc} {percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s [{elapsed}<{remaining}]",
         ) as bar:
             pieces: list[_Piece] = []
-            for low, high in zip(starts[:-1], starts[1:], strict=True):
+            for low, high in itertools.pairwise(starts):
                 pieces += self.refine(float(low), float(high), bar)
             pieces = self._joined(pieces)
         return self._histories(pieces)
@@ -121,7 +122,7 @@ class _Search:
             knots = np.unique(np.append(knots, self.settled))
         times = [knots[:1]]
         total = 0.0
-        for low, high in zip(knots[:-1], knots[1:], strict=True):
+        for low, high in itertools.pairwise(knots):
             parts = max(2, math.ceil(self._turn(float(low), float(high)) / LARGEST_TURN_DEG))
             total += parts
             if total > MOST_INTERVALS:

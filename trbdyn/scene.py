@@ -328,7 +328,9 @@ class Scene(Model):
             span = speed.times[-1] - speed.times[0]
             turned = rotating.turns * speed.integral(speed.times[0], speed.times[-1]) / 60.0
             if abs(turned - round(turned)) > 1e-9:
-                limit = f"must turn a whole number of times in a period of speed_rpm ({span:g} s), not {turned:.9g} times"
+                limit = (
+                    f"must turn a whole number of times in a period of speed_rpm ({span:g} s), not {turned:.9g} times"
+                )
                 raise InputError.of(("rotating_load", "turns"), rotating.turns, limit)
             return {}
         final = speed.values[-1] if isinstance(speed, History) else speed
@@ -378,10 +380,8 @@ class Scene(Model):
                 )
         if self.displacement is not None:
             limit = self.bearing.roller.diameter
-            for place, quantity in enumerate(self.displacement):
-                if quantity is None:
-                    continue
-                shift = max(values_of(quantity), key=abs)
+            for place, given in enumerate(self.displacement):
+                shift = 0.0 if given is None else max(values_of(given), key=abs)
                 if abs(shift) > limit:
                     raise InputError.of(("displacement", place), shift, f"must be from {-limit:g} to {limit:g} (m)")
 
@@ -393,7 +393,9 @@ class Scene(Model):
         for name, load in loads:
             _check_sign(name, load)
         if z and any(values_of(self.axial_load)):
-            raise InputError.of("axial_load", self.axial_load, "must be 0 where displacement gives the axial position (N)")
+            raise InputError.of(
+                "axial_load", self.axial_load, "must be 0 where displacement gives the axial position (N)"
+            )
         turning = self.rotating_load
         if (x or y) and any(values_of(self.radial_load)):
             limit = "must be 0 where displacement gives a radial position; set those entries None (N)"
@@ -435,7 +437,9 @@ class Scene(Model):
                 raise InputError.of("radial_load", radial, limit)
             largest = radial + value_at(turning, time)
             if largest >= most:
-                limit = f"must be < {most - radial:.6g}{when}: with radial_load up to axial_load / tan(cup half angle) (N)"
+                limit = (
+                    f"must be < {most - radial:.6g}{when}: with radial_load up to axial_load / tan(cup half angle) (N)"
+                )
                 raise InputError.of(("rotating_load", "load"), largest - radial, limit)
 
     def _check_planar(self) -> None:

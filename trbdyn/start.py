@@ -22,7 +22,7 @@ from trbdyn.flatten import (
     ring_load,
     scene_entries,
 )
-from trbdyn.motion import is_constant, value_at
+from trbdyn.motion import History, is_constant, value_at
 
 if TYPE_CHECKING:
     from trbdyn import _core
@@ -141,7 +141,6 @@ class EquilibriumSolver:
             iterations=found["iterations"],
         )
 
-
     def _pushed(self, load: RingLoad) -> Array:
         """A guess of the ring's place: where its axial position is given with play, pushed to the side by its load."""
         place, push = load.displacement.copy(), float(np.hypot(*load.force[:2]))
@@ -174,13 +173,13 @@ def _why_not(scene: Scene, time: float, said: str) -> str:
     """Why there is no equilibrium, as far as it can be told."""
     changes = any(not is_constant(quantity) for quantity in scene.ring_quantities().values())
     when = f" at {time:.6g} s" if changes or scene.rotating_load is not None else ""
-    load, (x, y, z, *_) = ring_load(scene, time), scene.ring_is_placed
+    load, z = ring_load(scene, time), scene.ring_is_placed[2]
     axial, radial, speed = -load.force[2], float(np.hypot(*load.force[:2])), value_at(scene.speed_rpm, time)
     if z:
         place = load.displacement[2]
         return (
             f"no equilibrium{when} with the ring held at z = {place:g} m under a radial load of {radial:g} N: "
-            f"{'move it further towards -z, so that rollers and rings touch' if place >= 0.0 else 'the load is too large'}; {said}"
+            f"{'move it towards -z, so that rollers and rings touch' if place >= 0.0 else 'the load is too large'}; {said}"
         )
     least = least_axial_load(scene, time) if scene.effects.back_rib else 0.0
     if axial < least:
@@ -274,7 +273,9 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
 
     even, angles, time = nominal_angles(scene), start_angles(scene), scene.start.time
     at_start = EquilibriumSolver(model, scene, even).solve(time)
-    path = find_path(scene, EquilibriumSolver(_normal_contacts(scene), scene, even), at_start) if scene.ring == "follows" else list(at_start.displacement)
+    path: list[float | History] = list(at_start.displacement)
+    if scene.ring == "follows":
+        path = find_path(scene, EquilibriumSolver(_normal_contacts(scene), scene, even), at_start)
     table = motion_table(scene, path)
     motion = RingMotion(table, (scene.period or 0.0) if len(table) > 1 else 0.0, time, scene.start_shaft_angle)
     if not np.array_equal(angles, even):

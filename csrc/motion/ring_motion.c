@@ -57,7 +57,8 @@ trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *mes
   const int     last = motion->n - 1;
   const double *end = row_of(motion, last);
   int           tail = last - 1;
-  if (!(period > 0.0) || last < 1) return trb_fail(message, TRB_ERR_INPUT, "motion: period = %g s: must be > 0, with at least two knots", period);
+  if (!(period > 0.0) || last < 1)
+    return trb_fail(message, TRB_ERR_INPUT, "motion: period = %g s: must be > 0, with at least two knots", period);
   while (tail > 0 && end[0] - knot(motion, tail) < period * (1.0 - TRB_SAME_TIME)) tail--;
   if (fabs(end[0] - knot(motion, tail) - period) > TRB_SAME_TIME * period)
     return trb_fail(message, TRB_ERR_INPUT, "motion: period = %g s: there must be a knot this long before the last one", period);

@@ -24,7 +24,7 @@ void       trb_motion_free(trb_motion *motion);
  * values and slopes. */
 trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *message);
 /* Sets where the shaft's angle is counted from: it is `angle` at `time`. Without it the angle is zero at the first knot. */
-void       trb_motion_set_angle(trb_motion *motion, double time, double angle);
+void trb_motion_set_angle(trb_motion *motion, double time, double angle);
 
 /* Whether speed, ring or gravity change at a time. */
 int trb_motion_under_way(const trb_motion *motion, double time);
