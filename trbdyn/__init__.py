@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from trbdyn.bearing import Bearing
     from trbdyn.effects import Effects
     from trbdyn.errors import FileError, InputError, LoadError, StepError, TrbError
-    from trbdyn.lubricants import Lubricant
+    from trbdyn.lubricants import Lubricant, Oil
     from trbdyn.motion import History
     from trbdyn.results import Result, load
     from trbdyn.resuming import resume
@@ -50,6 +50,7 @@ _NAMES = {
     "InputError": "trbdyn.errors",
     "LoadError": "trbdyn.errors",
     "Lubricant": "trbdyn.lubricants",
+    "Oil": "trbdyn.lubricants",
     "Result": "trbdyn.results",
     "RotatingLoad": "trbdyn.scene",
     "RunOptions": "trbdyn.run_options",
@@ -71,6 +72,7 @@ __all__ = [
     "InputError",
     "LoadError",
     "Lubricant",
+    "Oil",
     "Result",
     "RotatingLoad",
     "RunOptions",

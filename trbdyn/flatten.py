@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from trbdyn.effects import Effects
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.geometry import Geometry
-from trbdyn.lubricants import Lubricant, vg100
+from trbdyn.lubricants import Dicke, Lubricant, vg100
 from trbdyn.motion import History, knot_table, value_at
 
 if TYPE_CHECKING:
@@ -95,6 +95,7 @@ def bearing_entries(bearing: Bearing) -> Entries:
 
 def lubricant_entries(lubricant: Lubricant) -> Entries:
     """Numbers of a lubricant, by their names in the core's table; paths start at the lubricant."""
+    dicke = lubricant.dicke or Dicke()
     return {
         "viscosity": Entry(("viscosity",), lubricant.viscosity),
         "pressure_coefficient": Entry(("pressure_coefficient",), lubricant.pressure_coefficient),
@@ -102,10 +103,10 @@ def lubricant_entries(lubricant: Lubricant) -> Entries:
         "conductivity": Entry(("conductivity",), lubricant.conductivity),
         "temperature": Entry(("temperature_c",), lubricant.temperature_c),
         "viscosity_law": Entry(("pressure_law",), PRESSURE_LAWS[lubricant.pressure_law]),
-        "dicke_a": Entry(("dicke", "a"), lubricant.dicke.a),
-        "dicke_b": Entry(("dicke", "b"), lubricant.dicke.b),
-        "dicke_c": Entry(("dicke", "c"), lubricant.dicke.c),
-        "dicke_d": Entry(("dicke", "d"), lubricant.dicke.d),
+        "dicke_a": Entry(("dicke", "a"), dicke.a),
+        "dicke_b": Entry(("dicke", "b"), dicke.b),
+        "dicke_c": Entry(("dicke", "c"), dicke.c),
+        "dicke_d": Entry(("dicke", "d"), dicke.d),
         "viscosity_exponent_cap": Entry(("viscosity_exponent_cap",), lubricant.viscosity_exponent_cap),
         "eyring_stress": Entry(("eyring_stress",), lubricant.eyring_stress),
         "shear_modulus_floor": Entry(("shear_modulus_floor",), lubricant.shear_modulus_floor),

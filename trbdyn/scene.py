@@ -287,7 +287,7 @@ class Scene(Model):
         start = self.start.time
         if isinstance(self.speed_rpm, History):
             return self.speed_rpm.integral(start, time) * math.pi / 30.0
-        return self.speed_rpm * (time - start) * math.pi / 30.0
+        return self.speed_rpm * math.pi / 30.0 * (time - start)
 
     @property
     def start_shaft_angle(self) -> float:

@@ -231,13 +231,14 @@ class RingMotion:
         After the last knot the last part of the table, this long, repeats (s); 0: everything stays.
     start : float
         Time of the start (s).
-    shaft_angle : float
-        Angle of the shaft at the start (rad).
+    angle_time, shaft_angle : float
+        A time (s), and the angle of the shaft then (rad).
     """
 
     table: Array
     period: float
     start: float
+    angle_time: float
     shaft_angle: float
 
     def open(
@@ -253,7 +254,7 @@ class RingMotion:
             vector,
             settings,
             period=self.period,
-            angle_time=self.start,
+            angle_time=self.angle_time,
             angle=self.shaft_angle,
         )
 
@@ -277,7 +278,16 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
     if scene.ring == "follows":
         path = find_path(scene, EquilibriumSolver(_normal_contacts(scene), scene, even), at_start)
     table = motion_table(scene, path)
-    motion = RingMotion(table, (scene.period or 0.0) if len(table) > 1 else 0.0, time, scene.start_shaft_angle)
+    moves = len(table) > 1
+    # a saved state of a shaft at constant speed: its angle is counted from t = 0, without any rounding
+    from_zero = not moves and scene.start.kind == "state" and scene.start.shaft_angle is None
+    motion = RingMotion(
+        table=table,
+        period=(scene.period or 0.0) if moves else 0.0,
+        start=time,
+        angle_time=0.0 if from_zero else time,
+        shaft_angle=0.0 if from_zero else scene.start_shaft_angle,
+    )
     if not np.array_equal(angles, even):
         at_start = EquilibriumSolver(model, scene, angles).solve(time, displacement=at_start.displacement)
     return motion, at_start
@@ -287,7 +297,8 @@ def _normal_contacts(scene: Scene) -> _core.Model:
     """The scene's model without friction and films, which act on nothing at rest and take most of the time."""
     from trbdyn import _core
 
-    quiet = {"lubrication": "full_film", "traction": "none", "thermal": False, "rolling_resistance": False}
+    quiet = {"lubrication": "full_film", "traction": "none", "thermal": False}
+    quiet |= {"rolling_resistance": False, "rolling_pressure_force": False}
     entries = {**scene_entries(scene), **effects_entries(scene.effects.replace(**quiet))}
     return _core.Model(block_of(entries), diameter_deviation(scene), face_rows(scene))
 

@@ -96,6 +96,7 @@ class TestLubricant:
         slope = math.log(vg100(60.001).viscosity / vg100(59.999).viscosity) / 0.002
         assert oil.temperature_coefficient == pytest.approx(-slope, rel=1e-6)
         law, bar = oil.dicke, 6000.0
+        assert law is not None
         pressed = oil.viscosity * math.exp(bar / (law.a + law.b * 60 + (law.c + law.d * 60) * bar))
         assert pressed == pytest.approx(397.0, abs=1.0)
         assert oil.viscosity * math.exp(1.97e-8 * 6e8) == pytest.approx(4703.0, rel=2e-3)

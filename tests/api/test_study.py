@@ -112,8 +112,11 @@ class TestOverrides:
 
     def test_an_oil_at_another_temperature_is_another_oil(self) -> None:
         base = Base.of(trb.cases.scene_30310(), OPTIONS)
+        scene, _ = base.build({"lubricant.temperature_c": 80.0})
+        assert scene.lubricant == trb.lubricants.vg100(80.0)
+        numbers = trb.lubricants.vg100().replace(viscosity=0.05)
         with pytest.raises(InputError, match="viscosities"):
-            base.build({"lubricant.temperature_c": 80.0})
+            Base.of(trb.cases.scene_30310(lubricant=numbers), OPTIONS).build({"lubricant.temperature_c": 80.0})
         scene, _ = base.build({"lubricant.oil": "vg100", "lubricant.temperature_c": 80.0})
         assert scene.lubricant == trb.lubricants.vg100(80.0)
         scene, _ = Base.of("rig_30310").build({"lubricant.temperature_c": 80.0})
