@@ -22,7 +22,7 @@ from trbdyn.lubricants import Dicke, Lubricant, vg100
 from trbdyn.motion import History, knot_table, value_at
 
 if TYPE_CHECKING:
-    from trbdyn.bearing import Bearing
+    from trbdyn.bearing import Bearing, Material
     from trbdyn.pocket import Face
     from trbdyn.scene import Scene
 
@@ -81,8 +81,9 @@ def bearing_entries(bearing: Bearing) -> Entries:
         "front_rib_clearance": Entry(("ribs", "front_clearance"), ribs.front_clearance),
         "front_rib_low": Entry(("ribs", "front_low"), ribs.front_low),
         "front_rib_high": Entry(("ribs", "front_high"), ribs.front_high),
-        "youngs_modulus": Entry(("material", "youngs_modulus"), bearing.material.youngs_modulus),
-        "poisson_ratio": Entry(("material", "poisson_ratio"), bearing.material.poisson_ratio),
+        **_material("", ("material",), bearing.material),
+        **_material("roller_", ("roller", "material") if roller.material else ("material",), bearing.roller_material),
+        **_material("cage_", ("cage", "material") if cage.material else ("material",), bearing.cage_material),
         "roughness_raceway": Entry(("roughness", "raceway"), bearing.roughness.raceway),
         "roughness_rib": Entry(("roughness", "rib"), bearing.roughness.rib),
         "cage_mass": Entry(("cage", "mass"), cage.mass),
@@ -90,6 +91,12 @@ def bearing_entries(bearing: Bearing) -> Entries:
         "cage_inertia_transverse": Entry(("cage", "inertia_transverse"), cage.inertia_transverse),
         "cage_offset": Entry(("cage", "offset"), cage.offset),
         "cage_rail_offset": Entry(("cage", "rail_offset"), cage.rail_offset),
+    }
+
+
+def _material(prefix: str, path: Path, material: Material) -> Entries:
+    return {
+        f"{prefix}{name}": Entry((*path, name), getattr(material, name)) for name in ("youngs_modulus", "poisson_ratio")
     }
 
 

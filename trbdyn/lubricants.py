@@ -15,7 +15,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Self
 from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from trbdyn.errors import InputError
-from trbdyn.validation import Model, Number, as_number, unit
+from trbdyn.validation import Model, Number, split_paths, as_number, unit
 
 _ROELANDS_VISCOSITY = 6.31e-5
 _HIGHEST_PRESSURE = 1e10
@@ -370,8 +370,8 @@ class Lubricant(Model):
                 values.pop(name, None)
         return values
 
-    def replace(self, **changes: Any) -> Self:
-        """A copy with some fields changed, validated again.
+    def replace(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Self:
+        """A copy with some fields changed, validated again; `changes` by path as for every model.
 
         With an `oil` a change of `temperature_c` changes everything that follows from it. A change of what follows from the
         oil (viscosity, pressure_coefficient, temperature_coefficient, density) gives a lubricant by numbers, without oil.
@@ -382,28 +382,29 @@ class Lubricant(Model):
             If a name is unknown or a value not allowed, or the numbers of a lubricant without oil do not belong to the new
             temperature.
         """
-        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        new = {**(self._changed(split_paths(changes)) if changes is not None else {}), **fields}
+        own = {name: getattr(self, name) for name in type(self).model_fields}
         derived = (*_OF_THE_OIL, "name")
-        if changes.get("oil") is not None:
+        if new.get("oil") is not None:
             for name in (*derived, "dicke", "pressure_law", "conductivity", "eyring_stress"):
-                fields.pop(name)
-        elif self.oil is not None and "oil" not in changes:
-            if any(name in changes for name in _OF_THE_OIL):
-                if "temperature_c" in changes:
-                    moved = self.replace(temperature_c=changes["temperature_c"])
-                    fields = {name: getattr(moved, name) for name in fields}
-                fields |= {"oil": None, "name": f"{fields['name']}, changed"}
+                own.pop(name)
+        elif self.oil is not None and "oil" not in new:
+            if any(name in new for name in _OF_THE_OIL):
+                if "temperature_c" in new:
+                    moved = self.replace(temperature_c=new["temperature_c"])
+                    own = {name: getattr(moved, name) for name in own}
+                own |= {"oil": None, "name": f"{own['name']}, changed"}
             else:
                 for name in derived:
-                    fields.pop(name)
-        elif self.oil is None and changes.get("temperature_c", self.temperature_c) != self.temperature_c:
-            if "viscosity" not in changes:
+                    own.pop(name)
+        elif self.oil is None and new.get("temperature_c", self.temperature_c) != self.temperature_c:
+            if "viscosity" not in new:
                 limit = (
                     f"must come with viscosity, pressure_coefficient and temperature_coefficient: those given belong to "
                     f"{self.temperature_c:g} C; or give an oil, which knows them at every temperature (C)"
                 )
-                raise InputError.of("temperature_c", changes["temperature_c"], limit)
-        return type(self)(**{**fields, **changes})
+                raise InputError.of("temperature_c", new["temperature_c"], limit)
+        return type(self)(**{**own, **new})
 
     @property
     def kinematic_viscosity(self) -> float:

@@ -127,7 +127,7 @@ def bearing_from_table(table: Table) -> Bearing:
     """
     path = ("bearing",)
     _check_names(table, {*Bearing.model_fields, "case"}, path)
-    base = _choose(table, "case", BEARINGS, path)().to_dict() if "case" in table else {}
+    base = _choose(table, "case", BEARINGS, path)().inputs() if "case" in table else {}
     values = _merged(base, _without(table, "case"))
     cage = values.get("cage")
     if not isinstance(cage, dict) or not _has_shapes(cage):

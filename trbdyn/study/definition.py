@@ -57,7 +57,8 @@ class Base:
         elif isinstance(base, Scene):
             values = base.to_dict()
             own = {name: values.pop(name) for name in ("bearing", "lubricant", "effects", "start")}
-            made = cls({**own, "scene": values}, whole=True)
+            # what was assumed follows the bearing's size in every case
+            made = cls({**own, "bearing": base.bearing.inputs(), "scene": values}, whole=True)
         elif isinstance(base, Mapping):
             made = cls(dict(base))
         else:
