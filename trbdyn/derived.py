@@ -187,9 +187,20 @@ class Derived(ABC):
     def _starting(self, prefix: str) -> dict[str, Array]:
         return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}
 
+    def _needs(self, group: str, what: str) -> None:
+        if group not in {field.group for field in self.fields}:
+            raise InputError.of(what, "not saved", f"needs the group '{group}': put it into save_groups")
+
     @property
     def torque_split(self) -> dict[str, float]:
-        """Mean share of each source in the shaft's friction torque, N m."""
+        """Mean share of each source in the shaft's friction torque, N m.
+
+        Raises
+        ------
+        InputError
+            If the group 'torque' was not saved.
+        """
+        self._needs("torque", "torque_split")
         return observables.torque_split(self._starting("inner_torque_"))
 
     @property

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from trbdyn import _core, checkpoint
 from trbdyn import fields as field_table
 from trbdyn.checkpoint import Checkpoint
-from trbdyn.errors import FileError, StepError
+from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.motion import History
 from trbdyn.result_file import ResultWriter, reason
 from trbdyn.results import Result, load
@@ -34,6 +34,8 @@ Callback = Callable[["Simulation"], bool | None]
 
 CHUNK_RECORDS = 256
 """Records between looks at signals, callbacks and the file."""
+MOST_RECORDS = 10_000_000
+"""Most records of a run: 30 to 60 GB."""
 CHUNK_STEPS = 4000
 """Steps between looks at signals: about a tenth of a second."""
 
@@ -51,7 +53,7 @@ class Run:
         self.times = times
         self.callback = callback
         self.done = done
-        self.notes: list[str] = []
+        self.notes: list[str] = list(sim.warnings)
         self.kept: list[Array] = []
         self.filling: Array | None = None
         self.writer: ResultWriter | None = None
@@ -252,8 +254,18 @@ class Run:
 
 
 def output_times(start: float, end: float, every: float) -> Array:
-    """Times of the records (s): every so often, and at the end."""
-    count = max(math.ceil((end - start) / every - 1e-9), 1)
+    """Times of the records (s): every so often, and at the end.
+
+    Raises
+    ------
+    InputError
+        If these are more records than anybody can keep.
+    """
+    wanted = (end - start) / every
+    if wanted > MOST_RECORDS:
+        limit = f"must be >= {(end - start) / MOST_RECORDS:.3g} for {end - start:g} s: {MOST_RECORDS:.0e} records at most (s)"
+        raise InputError.of(("run", "save_every"), every, limit)
+    count = max(math.ceil(wanted - 1e-9), 1)
     times: Array = np.asarray(start + every * np.arange(count + 1), dtype=np.float64)
     times[-1] = end
     return times

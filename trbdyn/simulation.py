@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,7 @@ from trbdyn.results import Result
 from trbdyn.run_options import Group, RunOptions
 from trbdyn.running import Callback, Run, output_times
 from trbdyn.scene import Scene
+from trbdyn.plausible import UnusualInput, unusual
 from trbdyn.start import Equilibrium, StateView, ring_motion, start_state
 
 if TYPE_CHECKING:
@@ -82,6 +84,11 @@ class Simulation:
         If the scene or an option cannot be used.
     LoadError
         If the bearing cannot carry the load.
+
+    Warns
+    -----
+    UnusualInput
+        Where numbers are allowed but can hardly be meant; the texts are kept in `warnings` and in the result's notes.
     """
 
     def __init__(self, scene: Scene, *, accuracy: str = "standard", instruction_set: str = "", **options: Any) -> None:
@@ -90,12 +97,16 @@ class Simulation:
         self._model = build_model(scene, instruction_set)
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
+        self.warnings = unusual(scene, self.equilibrium)
+        for text in self.warnings:
+            warnings.warn(text, UnusualInput, stacklevel=2)
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
         self._begin(scene.start.time, vector)
         self._reached = scene.start.time
 
     equilibrium: Equilibrium
+    warnings: tuple[str, ...]
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if abs(time) > MAX_TIME:
@@ -305,8 +316,19 @@ class Simulation:
         times = output_times(self._reached, options.end_time(self.scene.speed_rpm, self._reached), options.save_every)
         run = Run(self, options, times, callback)
         if output is not None:
+            _check_output(Path(output))
             run.write_to(Path(output))
         return run.go(progress=progress)
+
+
+_OTHER_FORMATS = frozenset((".csv", ".txt", ".json", ".toml", ".npy", ".npz", ".mat", ".xlsx", ".parquet", ".png", ".gif", ".nc"))
+
+
+def _check_output(path: Path) -> None:
+    """Records are written as HDF5: a name that says something else would mislead."""
+    if path.suffix.lower() in _OTHER_FORMATS:
+        limit = f"must end in .h5 or .hdf5: records are written as HDF5, not as {path.suffix}"
+        raise InputError.of("output", str(path), limit)
 
 
 def _numbers(values: ArrayLike) -> Array:
