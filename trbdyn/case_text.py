@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 WIDTH: Final = 118
 
 _HEADS: Final = {
-    "bearing": "The bearing. Numbers marked 'assumed' may be left out: they then follow the bearing's size.",
+    "bearing": "The bearing. Lines marked 'assumed' give what follows from the bearing's size; write your own number there where you know it.",
     "lubricant": "The oil at its temperature.",
     "effects": "What is simulated: switches and choices.",
     "scene": "Speed, loads, and what the ring does. A quantity that changes in time is a table { times = [...], values = [...] }.",
@@ -93,8 +93,8 @@ def _lines(model: Model, values: dict[str, Any], skip: set[str], prefix: str, as
             continue
         text = texts.get(key, "")
         if path in assumed:
-            text = f"{text} [assumed]".strip()
-        if value is None or value == []:
+            lines.append(f"# {path} = {_toml(value)}  # assumed")
+        elif value is None or value == []:
             lines.append(f"# {path} =")
         else:
             lines.append(f"{path} = {_toml(value)}")
