@@ -85,7 +85,9 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     """
     across, along = size["diameter"] / RIG["diameter"], size["effective_length"] / RIG["effective_length"]
     pitch = size["pitch_diameter"] / RIG["pitch_diameter"]
-    total = size.get("total_length", size["effective_length"] + (RIG["total_length"] - RIG["effective_length"]) * across)
+    total = size.get(
+        "total_length", size["effective_length"] + (RIG["total_length"] - RIG["effective_length"]) * across
+    )
     made: dict[str, dict[str, float]] = {
         section: {name: RIG[name] * across for name in names} for section, names in _WITH_DIAMETER.items()
     }

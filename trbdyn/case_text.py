@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 WIDTH: Final = 118
 
 _HEADS: Final = {
-    "bearing": "The bearing. Lines marked 'assumed' give what follows from the bearing's size; write your own number there where you know it.",
+    "bearing": "The bearing. Lines marked 'assumed' give what follows from its size; write your own number there.",
     "lubricant": "The oil at its temperature.",
     "effects": "What is simulated: switches and choices.",
-    "scene": "Speed, loads, and what the ring does. A quantity that changes in time is a table { times = [...], values = [...] }.",
+    "scene": "Speed, loads, and what the ring does. What changes in time is a table { times = [...], values = [...] }.",
     "start": "How the run starts.",
     "run": "How long to run, how accurately, and what to keep.",
 }

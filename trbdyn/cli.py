@@ -139,10 +139,14 @@ def _parser() -> argparse.ArgumentParser:
     add_paper_parser(commands, [common])
 
     cases = commands.add_parser("cases", parents=[common], help="list the cases that ship with the package")
-    cases.add_argument("--print", dest="name", metavar="NAME", help="print this case with every number and what it means")
+    cases.add_argument(
+        "--print", dest="name", metavar="NAME", help="print this case with every number and what it means"
+    )
     cases.set_defaults(command=_cases)
 
-    new = commands.add_parser("new", parents=[common], help="write a case with every number, to change for your own bearing")
+    new = commands.add_parser(
+        "new", parents=[common], help="write a case with every number, to change for your own bearing"
+    )
     new.add_argument("file", metavar="FILE", help="a TOML file that does not exist yet")
     new.add_argument("--case", default="rig_30310", metavar="NAME", help="the case to begin with (default: rig_30310)")
     new.set_defaults(command=_new)

@@ -15,7 +15,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Self
 from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from trbdyn.errors import InputError
-from trbdyn.validation import Model, Number, split_paths, as_number, unit
+from trbdyn.validation import Model, Number, as_number, split_paths, unit
 
 _ROELANDS_VISCOSITY = 6.31e-5
 _HIGHEST_PRESSURE = 1e10
@@ -397,14 +397,17 @@ class Lubricant(Model):
             else:
                 for name in derived:
                     own.pop(name)
-        elif self.oil is None and new.get("temperature_c", self.temperature_c) != self.temperature_c:
-            if "viscosity" not in new:
-                limit = (
-                    f"must come with viscosity, pressure_coefficient and temperature_coefficient: those given belong to "
-                    f"{self.temperature_c:g} C; or give an oil, which knows them at every temperature (C)"
-                )
-                raise InputError.of("temperature_c", new["temperature_c"], limit)
+        elif self._moved_without_viscosity(new):
+            limit = (
+                f"must come with viscosity, pressure_coefficient and temperature_coefficient: those given belong to "
+                f"{self.temperature_c:g} C; or give an oil, which knows them at every temperature (C)"
+            )
+            raise InputError.of("temperature_c", new["temperature_c"], limit)
         return type(self)(**{**own, **new})
+
+    def _moved_without_viscosity(self, new: Mapping[str, Any]) -> bool:
+        moved = new.get("temperature_c", self.temperature_c) != self.temperature_c
+        return self.oil is None and moved and "viscosity" not in new
 
     @property
     def kinematic_viscosity(self) -> float:

@@ -16,11 +16,11 @@ from trbdyn import _core
 from trbdyn.errors import InputError, StepError
 from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
 from trbdyn.motion import MAX_TIME
+from trbdyn.plausible import UnusualInput, unusual
 from trbdyn.results import Result
 from trbdyn.run_options import Group, RunOptions
 from trbdyn.running import Callback, Run, output_times
 from trbdyn.scene import Scene
-from trbdyn.plausible import UnusualInput, unusual
 from trbdyn.start import Equilibrium, StateView, ring_motion, start_state
 
 if TYPE_CHECKING:
@@ -321,7 +321,9 @@ class Simulation:
         return run.go(progress=progress)
 
 
-_OTHER_FORMATS = frozenset((".csv", ".txt", ".json", ".toml", ".npy", ".npz", ".mat", ".xlsx", ".parquet", ".png", ".gif", ".nc"))
+_OTHER_FORMATS = frozenset(
+    (".csv", ".txt", ".json", ".toml", ".npy", ".npz", ".mat", ".xlsx", ".parquet", ".png", ".gif", ".nc")
+)
 
 
 def _check_output(path: Path) -> None:

@@ -13,7 +13,6 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, 
 
 from trbdyn.errors import InputError, Path, from_validation_error, join_path, unknown_name
 
-
 _PART = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 
@@ -42,7 +41,9 @@ def _changed_value(before: Any, changes: Mapping[Path, Any]) -> Any:
         for path, new in changes.items():
             place = path[0]
             if not isinstance(place, int) or place >= len(entries):
-                raise InputError.of(path, new, f"must name one of the {len(entries)} entries, [0] to [{len(entries) - 1}]")
+                raise InputError.of(
+                    path, new, f"must name one of the {len(entries)} entries, [0] to [{len(entries) - 1}]"
+                )
             entries[place] = _changed_value(entries[place], {path[1:]: new})
         return tuple(entries)
     limit = "has nothing below it: it is not given" if before is None else f"has nothing below it: it is {before!r}"

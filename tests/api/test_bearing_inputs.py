@@ -1,4 +1,4 @@
-"""A bearing from few numbers: what is not given follows its size, and is listed; materials per body; changes by path; cases as text."""
+"""A bearing from few numbers: what is not given follows its size, and is listed; materials per body; cases as text."""
 
 from __future__ import annotations
 
@@ -55,10 +55,24 @@ def test_assumed_numbers_follow_the_size_exactly() -> None:
     small, factor = catalogue("31310"), 1.7
     large = small.replace(
         pitch_diameter=factor * small.pitch_diameter,
-        roller=small.roller.replace(diameter=factor * small.roller.diameter, effective_length=factor * small.roller.effective_length),
+        roller=small.roller.replace(
+            diameter=factor * small.roller.diameter, effective_length=factor * small.roller.effective_length
+        ),
     )
     powers = {"mass": 3, "inertia_axial": 5, "inertia_transverse": 5, "load": 2, "end_stiffness": 0.5}
-    same = {"density", "sphere_ratio", "youngs_modulus", "poisson_ratio", "raceway", "rib", "kind", "k1", "k2", "zm", "offset"}
+    same = {
+        "density",
+        "sphere_ratio",
+        "youngs_modulus",
+        "poisson_ratio",
+        "raceway",
+        "rib",
+        "kind",
+        "k1",
+        "k2",
+        "zm",
+        "offset",
+    }
     assert large.assumed.keys() == small.assumed.keys()
     assert len(small.assumed) > 25
     for path, value in small.assumed.items():
@@ -73,8 +87,20 @@ def test_assumed_numbers_follow_the_size_exactly() -> None:
 def test_shipped_bearings_keep_their_numbers() -> None:
     rig, other = trb.cases.rig_30310(), trb.cases.bearing_32216()
     old = {
-        "ribs": {"edge_low": 0.3e-3, "edge_high": 3.5e-3, "front_clearance": 0.2e-3, "front_low": 0.3e-3, "front_high": 2e-3},
-        "cage": {"play_axial": 0.4e-3, "rail_offset": 12e-3, "bar_width": 3e-3, "wall_inner": 1.5e-3, "wall_outer": 4.5e-3},
+        "ribs": {
+            "edge_low": 0.3e-3,
+            "edge_high": 3.5e-3,
+            "front_clearance": 0.2e-3,
+            "front_low": 0.3e-3,
+            "front_high": 2e-3,
+        },
+        "cage": {
+            "play_axial": 0.4e-3,
+            "rail_offset": 12e-3,
+            "bar_width": 3e-3,
+            "wall_inner": 1.5e-3,
+            "wall_outer": 4.5e-3,
+        },
     }
     for section, numbers in old.items():
         for name, value in numbers.items():
@@ -108,12 +134,17 @@ def test_given_numbers_stay_and_assumed_ones_follow() -> None:
     assert larger.cage.bar_width == 1e-3
     assert larger.cage.wall_half_width == pytest.approx(bearing.cage.wall_half_width * 7.2 / 6.8)
     built = trb.study.grid(
-        trb.Scene(bearing, speed_rpm=100.0, axial_load=4e3), {"bearing.roller.diameter": [7.2e-3]}, trb.RunOptions(revolutions=1)
+        trb.Scene(bearing, speed_rpm=100.0, axial_load=4e3),
+        {"bearing.roller.diameter": [7.2e-3]},
+        trb.RunOptions(revolutions=1),
     )
     scene = built.cases[0].scene
     assert scene is not None
     assert scene.bearing.cage.wall_half_width == larger.cage.wall_half_width
-    tables = {"bearing": {"case": "30310", "roller": {"diameter": 12e-3}}, "scene": {"speed_rpm": 100.0, "axial_load": 4e3}}
+    tables = {
+        "bearing": {"case": "30310", "roller": {"diameter": 12e-3}},
+        "scene": {"speed_rpm": 100.0, "axial_load": 4e3},
+    }
     assert case_from_dict(tables)[0].bearing.cage.bar_width == pytest.approx(3e-3 * 12 / 14)
 
 
@@ -122,7 +153,10 @@ def test_given_numbers_stay_and_assumed_ones_follow() -> None:
     [
         (lambda: Bearing(n_rollers=12, cup_half_angle_deg=13.0, pitch_diameter=0.08), "bearing.roller"),
         (lambda: catalogue("32008", cage={"mass": -1.0}), "bearing.cage.mass"),
-        (lambda: catalogue("32008", ribs=Ribs(contact_height=1e-3, edge_low=0.9e-3, edge_high=0.95e-3)), "ribs.contact_height"),
+        (
+            lambda: catalogue("32008", ribs=Ribs(contact_height=1e-3, edge_low=0.9e-3, edge_high=0.95e-3)),
+            "ribs.contact_height",
+        ),
         (lambda: catalogue("32008", ribs={"edge_lo": 1e-3}), "bearing.ribs.edge_lo"),
         (lambda: catalogue("32008").replace({"roller.profile.lod": 1.0}), "roller.profile.lod"),
         (lambda: catalogue("32008").replace({"cage.mass": "1"}), "cage.mass"),
@@ -137,7 +171,9 @@ def test_mistakes_name_the_field(make: Any, field: str) -> None:
 
 def test_changes_by_path() -> None:
     scene = trb.cases.scene_30310()
-    changed = scene.replace({"bearing.cage.mass": 0.1, "bearing.roller.profile.load": 900.0, "gravity[1]": 0.0}, speed_rpm=500.0)
+    changed = scene.replace(
+        {"bearing.cage.mass": 0.1, "bearing.roller.profile.load": 900.0, "gravity[1]": 0.0}, speed_rpm=500.0
+    )
     assert (changed.bearing.cage.mass, changed.bearing.roller.profile.load) == (0.1, 900.0)
     assert (changed.gravity, changed.speed_rpm) == ((0.0, 0.0, 0.0), 500.0)
     assert scene.replace({"lubricant.temperature_c": 90.0}).lubricant == trb.lubricants.vg100(90.0)
@@ -211,7 +247,15 @@ def test_case_as_text(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert case_from_dict(tomllib.loads(text)) == (scene, run)
     assert case_text(scene, run) in text
     for section in (trb.Bearing, trb.Roller, trb.Cage, trb.Ribs, trb.Effects, trb.Start, trb.RunOptions):
-        for field in set(section.model_fields) - {"roller", "cage", "ribs", "material", "roughness", "profile", "friction"}:
+        for field in set(section.model_fields) - {
+            "roller",
+            "cage",
+            "ribs",
+            "material",
+            "roughness",
+            "profile",
+            "friction",
+        }:
             assert re.search(rf"^(# )?([\w.]+\.)?{field} =", text, re.MULTILINE), field
     assumed = re.findall(r"^# ([\w.]+) = .*  # assumed$", text, re.MULTILINE)
     assert set(assumed) == set(scene.bearing.assumed)
@@ -232,6 +276,18 @@ def test_new_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_names_of_parts_are_exported() -> None:
-    for name in ("Roller", "Ribs", "Cage", "Profile", "Pocket", "Face", "Material", "Roughness", "Scatter", "Oil", "RotatingLoad"):
+    for name in (
+        "Roller",
+        "Ribs",
+        "Cage",
+        "Profile",
+        "Pocket",
+        "Face",
+        "Material",
+        "Roughness",
+        "Scatter",
+        "Oil",
+        "RotatingLoad",
+    ):
         assert name in trb.__all__
         assert getattr(trb, name).__doc__

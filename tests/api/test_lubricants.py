@@ -39,7 +39,9 @@ def test_temperature_is_always_applied(name: str) -> None:
 
 
 def test_study_and_toml_change_the_temperature() -> None:
-    study = trb.study.grid(trb.cases.scene_30310(), {"lubricant.temperature_c": [60.0, 90.0]}, trb.RunOptions(revolutions=1))
+    study = trb.study.grid(
+        trb.cases.scene_30310(), {"lubricant.temperature_c": [60.0, 90.0]}, trb.RunOptions(revolutions=1)
+    )
     assert [case.scene.lubricant for case in study.cases if case.scene] == [vg100(60.0), vg100(90.0)]
     tables = {
         "bearing": {"case": "30310"},
@@ -58,9 +60,11 @@ def test_one_pressure_law_in_films_and_traction(name: str, temperature: float) -
     slope = math.log(float(contact_viscosity(oil, np.array(1e3))) / oil.viscosity) / 1e3
     assert slope == pytest.approx(oil.pressure_coefficient, rel=1e-4)
     step = 0.01
-    beta = math.log(OILS[name](temperature - step).viscosity / OILS[name](temperature + step).viscosity) / (2 * step) if (
-        name in ("vg100", "fva3")
-    ) else oil.temperature_coefficient
+    beta = (
+        math.log(OILS[name](temperature - step).viscosity / OILS[name](temperature + step).viscosity) / (2 * step)
+        if (name in ("vg100", "fva3"))
+        else oil.temperature_coefficient
+    )
     assert oil.temperature_coefficient == pytest.approx(beta, rel=1e-5)
     core = {key: entry.value for key, entry in lubricant_entries(oil).items()}
     assert (core["viscosity"], core["pressure_coefficient"]) == (oil.viscosity, oil.pressure_coefficient)
@@ -85,7 +89,9 @@ def test_astm_d341_is_a_straight_line_in_its_chart() -> None:
         return math.log10(math.log10(nu + 0.7 + math.exp(-1.47 - 1.84 * nu - 0.51 * nu * nu)))
 
     for nu40, nu100 in ((68.0, 8.7), (460.0, 30.8), (3.0, 1.1), (1.2, 0.6)):
-        points = [(math.log10(t + 273.15), ordinate(astm_d341(t, nu40, nu100))) for t in (-20.0, 40.0, 70.0, 100.0, 130.0)]
+        points = [
+            (math.log10(t + 273.15), ordinate(astm_d341(t, nu40, nu100))) for t in (-20.0, 40.0, 70.0, 100.0, 130.0)
+        ]
         slope = (points[3][1] - points[1][1]) / (points[3][0] - points[1][0])
         for x, y in points:
             assert y == pytest.approx(points[1][1] + slope * (x - points[1][0]), abs=2e-4)
@@ -124,12 +130,20 @@ def test_own_numbers_have_no_law_of_another_oil() -> None:
     ("make", "field", "says"),
     [
         (lambda: Lubricant(**OWN).replace(temperature_c=90.0), "temperature_c", "those given belong to 60 C"),
-        (lambda: Lubricant(**OWN, dicke=Dicke()), "lubricant.pressure_coefficient", "must be 1.973e-08, the slope of its Dicke"),
+        (
+            lambda: Lubricant(**OWN, dicke=Dicke()),
+            "lubricant.pressure_coefficient",
+            "must be 1.973e-08, the slope of its Dicke",
+        ),
         (lambda: Lubricant(**OWN, pressure_law="dicke"), "lubricant.pressure_law", "needs its measured constants"),
         (lambda: Lubricant(oil="vg68", temperature_c=60.0, viscosity=0.05), "lubricant.viscosity", "must be left out"),
         (lambda: Lubricant(oil="vg69", temperature_c=60.0), "lubricant.oil", "'vg68'"),
         (lambda: Lubricant(oil="vg68", temperature_c=300.0), "lubricant.temperature_c", "between -40 and 200"),
-        (lambda: vg100(60.0).replace(pressure_coefficient=1e-8), "lubricant.pressure_coefficient", "slope of its Dicke"),
+        (
+            lambda: vg100(60.0).replace(pressure_coefficient=1e-8),
+            "lubricant.pressure_coefficient",
+            "slope of its Dicke",
+        ),
         (lambda: Oil(nu40=68.0), "oil.nu100", "must be given"),
         (lambda: Oil(nu40=68.0, nu100=68.0), "oil.nu100", "must be < nu40"),
         (lambda: Lubricant(oil={"nu40": 68.0, "nu100": -1.0}), "lubricant.oil.nu100", "must be >="),

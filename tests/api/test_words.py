@@ -23,7 +23,10 @@ def short(sim: Simulation, **options: Any) -> trb.Result:
     ("changes", "says"),
     [
         ({"axial_load": 5e6}, r"2\d.* GPa under axial_load = 5e\+06 N"),
-        ({"bearing.cage.play_radial": 5e-3, "bearing.cage.play_circumferential": 3e-3}, "play_radial = 0.005 m is more than a tenth"),
+        (
+            {"bearing.cage.play_radial": 5e-3, "bearing.cage.play_circumferential": 3e-3},
+            "play_radial = 0.005 m is more than a tenth",
+        ),
         ({"gravity": (0.0, -1.0, 0.0)}, "an acceleration and not a direction"),
         ({"effects": Effects.minimal(), "radial_load": 1000.0}, "effects.planar = true with radial_load"),
     ],
@@ -40,12 +43,27 @@ def test_what_can_hardly_be_meant_is_said_and_kept(changes: dict[str, Any], says
 def test_usual_scenes_are_quiet() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", UnusualInput)
-        for scene in (scene_30310(), trb.cases.scene_32216(), scene_30310(gravity=(0.0, 0.0, 0.0)), scene_30310(1000.0, 30e3)):
+        for scene in (
+            scene_30310(),
+            trb.cases.scene_32216(),
+            scene_30310(gravity=(0.0, 0.0, 0.0)),
+            scene_30310(1000.0, 30e3),
+        ):
             assert Simulation(scene).warnings == ()
 
 
 def test_warning_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["run", "rig_30310", "--duration", "2e-4", "--quiet", "-o", str(tmp_path / "run.h5"), "--set", "scene.gravity=[0,-1,0]"]
+    words = [
+        "run",
+        "rig_30310",
+        "--duration",
+        "2e-4",
+        "--quiet",
+        "-o",
+        str(tmp_path / "run.h5"),
+        "--set",
+        "scene.gravity=[0,-1,0]",
+    ]
     assert main(words) == 0
     assert "trbdyn: warning: gravity = (0, -1, 0) m/s2" in capsys.readouterr().err
 
@@ -74,10 +92,10 @@ def test_output_of_another_kind(name: str, tmp_path: Path) -> None:
 def test_fields_that_a_result_has_not() -> None:
     result = short(Simulation(scene_30310(), accuracy="fast"), save_groups=["time", "cage"])
     with pytest.raises(InputError, match="needs the group 'torque'"):
-        result.torque_split
+        _ = result.torque_split
     with pytest.raises(InputError, match="belongs to the group 'ring', which save_groups left out"):
         result["ring_force"]
     with pytest.raises(AttributeError, match="did you mean 'cage_position'"):
-        result.cage_positon
-    with pytest.raises(InputError, match="did you mean .*whirl_radius"):
+        _ = result.cage_positon
+    with pytest.raises(InputError, match=r"did you mean .*whirl_radius"):
         result["whirl_radiu"]

@@ -55,7 +55,13 @@ def test_every_quantity_is_a_number(changes: dict[str, Any]) -> None:
 
 def test_dicke_beyond_its_pole() -> None:
     """Below -14.7 C the constants of FVA3 give a viscosity that is infinite at a finite pressure: 0.45 GPa at -80 C."""
-    oil = {"viscosity": 1.0, "pressure_coefficient": 2e-8, "temperature_coefficient": 0.04, "temperature_c": -80.0, "dicke": Dicke()}
+    oil = {
+        "viscosity": 1.0,
+        "pressure_coefficient": 2e-8,
+        "temperature_coefficient": 0.04,
+        "temperature_c": -80.0,
+        "dicke": Dicke(),
+    }
     try:
         scene = cases.scene_30310(300.0, lubricant=Lubricant(**oil))
     except InputError:

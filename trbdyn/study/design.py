@@ -37,7 +37,9 @@ def _are_sets(values: Any) -> bool:
 
 def _axis(name: str, values: Any) -> Axis:
     if isinstance(values, str) or not isinstance(values, Iterable):
-        raise InputError.of(name, values, f"must be a sequence of values, for instance [{values!r}], or a mapping of labels")
+        raise InputError.of(
+            name, values, f"must be a sequence of values, for instance [{values!r}], or a mapping of labels"
+        )
     is_path = name.split(".")[0].split("[")[0] in TABLES and not _are_sets(values)
     if isinstance(values, Mapping):
         labels = tuple(values)
