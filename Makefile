@@ -38,7 +38,7 @@ export MPLBACKEND := Agg
 .NOTPARALLEL:
 
 demo: install
-	$(PY) -m trbdyn demo -o demo
+	$(PY) -m trbdyn demo -o demo --overwrite
 
 test: install $(VENV)/.test
 	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore

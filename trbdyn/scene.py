@@ -124,8 +124,11 @@ class Start(Model):
             Angle of the shaft at that time (rad), for instance `Simulation.state.shaft_angle`; by default what the shaft
             has turned by since t = 0. It must be given where the saved run itself did not start at t = 0.
         """
-        numbers = tuple(np.asarray(vector, dtype=np.float64).ravel().tolist())
-        return cls(kind="state", state_vector=numbers, time=time, shaft_angle=shaft_angle)
+        try:
+            numbers = np.asarray(vector, dtype=np.float64).ravel().tolist()
+        except (TypeError, ValueError, OverflowError):
+            raise InputError.of(("start", "state_vector"), vector, "must be a vector of numbers") from None
+        return cls(kind="state", state_vector=tuple(numbers), time=time, shaft_angle=shaft_angle)
 
 
 class RotatingLoad(Model):

@@ -66,7 +66,10 @@ def as_number(value: object) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise ValueError("must be a number")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError("must be a number below 1.8e308") from None
 
 
 def as_whole_number(value: object) -> int:
@@ -79,7 +82,24 @@ def as_whole_number(value: object) -> int:
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise ValueError("must be a whole number")
-    return int(value)
+    whole = int(value)
+    if abs(whole) >= 2**63:
+        raise ValueError("must be a whole number of less than 64 bits")
+    return whole
+
+
+def number_of(name: str, value: object) -> float:
+    """An argument that must be a real number, as float; it may be infinite or not a number.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    try:
+        return as_number(value)
+    except ValueError as error:
+        raise InputError.of(name, value, str(error)) from None
 
 
 Number = Annotated[float, BeforeValidator(as_number)]
@@ -210,8 +230,11 @@ class Model(BaseModel):
         """
         try:
             values = json.loads(text)
-        except ValueError as error:
-            raise InputError.of("json", text[:40], f"must be JSON text: {error}") from None
+        except RecursionError:
+            raise InputError.of("json", text[:40], "must be JSON text that is not nested so deeply") from None
+        except (ValueError, TypeError) as error:
+            found = text[:40] if isinstance(text, str | bytes) else text
+            raise InputError.of("json", found, f"must be JSON text: {error}") from None
         return cls.from_dict(values)
 
     @property

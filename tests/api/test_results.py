@@ -376,7 +376,7 @@ def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic:
     path = write(tmp_path / "run.h5", synthetic, stub_scene)
     loaded = load(path)
     time_before = loaded.time
-    write(path, synthetic, stub_scene)
+    write(path, synthetic, stub_scene, overwrite=True)
     assert loaded.time is time_before
     with pytest.raises(FileError, match="replaced"):
         loaded.cage_position  # noqa: B018

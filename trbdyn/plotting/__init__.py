@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trbdyn.errors import FileError, InputError, unknown_name
+from trbdyn.own_files import folder_path
 from trbdyn.plotting.cage import axial_motion, cage_locus, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plotting.energy import energy_audit, power_split, torque_split
 from trbdyn.plotting.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
@@ -67,6 +68,9 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
 }
 """Pictures of one result, by name, and the groups that each needs."""
 
+SPECTRUM_RECORDS: Final = 8
+"""Fewest records of a spectrum."""
+
 
 def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None = None) -> Path:
     """Save a picture and close its figure.
@@ -90,8 +94,9 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     FileError
         If the file cannot be written.
     """
-    figure = picture if isinstance(picture, Figure) else picture.get_figure(root=True)
-    assert figure is not None
+    figure = picture.figure
+    while not isinstance(figure, Figure):
+        figure = figure.figure
     try:
         with plt.rc_context(STYLE):
             if title:
@@ -137,11 +142,14 @@ def all(
         chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
     else:
         chosen = list(only)
+    if only is None and len(result) < SPECTRUM_RECORDS:
+        chosen = [name for name in chosen if name != "spectrum"]
     for name in chosen:
         if name not in PICTURES:
             raise InputError.of("only", name, unknown_name(name, PICTURES))
-    if len(result) < 2:
-        raise InputError.of("result", len(result), "must have at least two records to draw")
+    least = SPECTRUM_RECORDS if "spectrum" in chosen else 2
+    if len(result) < least:
+        raise InputError.of("result", len(result), f"must have at least {least} records to draw this")
     folder = make_folder(folder)
     heading = conditions(result) if title is None else title
     return [save(PICTURES[name][0](result), folder / f"{name}.png", heading) for name in chosen]
@@ -165,6 +173,7 @@ def make_folder(folder: str | os.PathLike[str]) -> Path:
     FileError
         If it cannot be made.
     """
+    folder = folder_path(folder, "folder")
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
