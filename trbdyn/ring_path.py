@@ -29,8 +29,11 @@ PATH_TOLERANCE: Final = 3e-10
 """Largest distance of the ring's path from its equilibria (m); at half the pitch diameter for rotations. About 0.6 N of
 radial force in a bearing of the 30310's size."""
 
-_TESTED_TOLERANCE = PATH_TOLERANCE / 1.5
+_TESTED_TOLERANCE = 0.5 * PATH_TOLERANCE
 """Tolerance at the quarters of an interval (m): elsewhere in it the distance may be a little larger."""
+
+_JOINT_TOLERANCE = PATH_TOLERANCE / 6.0
+"""What the common slope of two intervals may add in each of them (m)."""
 
 LARGEST_TURN_DEG: Final = 60.0
 """Bound of how far a load's direction may turn (deg) between two times at which the equilibrium is tested first."""
@@ -217,7 +220,7 @@ class _Search:
                     if other is not None:
                         # the cubic of a slope of one has its largest value at a third: 4/27 of the length
                         off = max(off, float(np.max(0.5 * np.abs(other - own) * self.scale)) * length * 4 / 27)
-                if off <= PATH_TOLERANCE:
+                if off <= _JOINT_TOLERANCE:
                     result.append(piece)
                     continue
                 middle = piece.begin + length * 2 / 4
