@@ -108,6 +108,8 @@ def _inline(model: Model) -> bool:
 
 
 def _toml(value: Any) -> str:
+    if value is None:
+        return '"free"'
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
 from trbdyn.bearing import Bearing
 from trbdyn.effects import Effects
@@ -199,7 +199,7 @@ class Scene(Model):
         A radial load that rotates; needs ``ring = 'follows'``.
     displacement : tuple of float, History or None, shape (3,), optional
         Position of the inner ring along x, y, z (m), in place of loads. Where an entry is None, the load along it decides:
-        ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts.
+        ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts. TOML writes 'free' for None.
     lubricant : Lubricant
         The oil.
     effects : Effects
@@ -242,6 +242,13 @@ class Scene(Model):
 
     def __hash__(self) -> int:
         return hash(self.fingerprint)
+
+    @field_validator("displacement", mode="before")
+    @classmethod
+    def _free_entries(cls, given: Any) -> Any:
+        if not isinstance(given, list | tuple):
+            return given
+        return tuple(None if isinstance(entry, str) and entry == "free" else entry for entry in given)
 
     @property
     def moments(self) -> tuple[float | History | None, float | History | None]:

@@ -261,6 +261,15 @@ def test_case_as_text(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert set(assumed) == set(scene.bearing.assumed)
 
 
+def test_displacement_with_loads_as_text() -> None:
+    scene = trb.cases.scene_30310(
+        500.0, 0.0, 800.0, displacement=(None, None, -1e-5), rotating_load=trb.RotatingLoad(30.0), ring="follows"
+    )
+    text = case_text(scene, trb.RunOptions(revolutions=1))
+    assert 'displacement = ["free", "free", -1e-05]' in text
+    assert case_from_dict(tomllib.loads(text))[0] == scene
+
+
 def test_new_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "my.toml"
     assert main(["new", str(path)]) == 0
