@@ -99,6 +99,7 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     turned = mass / RIG["mass"] * pitch**2
     made["cage"] |= {name: RIG[name] * turned for name in ("inertia_axial", "inertia_transverse")}
     end = _small_end_radius({**size, "total_length": total})
+    end = end if end > 0.0 else math.inf  # a roller beyond the apex: told by the core
     made["cage"] |= {
         "mass": mass,
         "rail_offset": RIG["rail_offset"] * along,
@@ -147,23 +148,23 @@ def with_assumed(values: Mapping[str, Any]) -> Values:
     made: Mapping[str, Mapping[str, float]] = {} if size is None else scaled(size)
     problems: list[Problem] = []
 
-    def build(kind: type[Model], section: str, extra: Values) -> Model | None:
+    def build(kind: type[Model], section: str, extra: Values, raw: Any) -> Any:
         numbers = {**made.get(section, {}), **stored[section], **given[section], **extra}
         try:
             model = kind(**numbers)
         except InputError as error:
+            if isinstance(raw, Mapping):
+                return numbers  # told with everything else that is wrong, as the fields of the bearing are checked
             problems.extend(error.under(tuple(section.split("."))).problems)
-            return None
+            return raw
         object.__setattr__(model, "__pydantic_fields_set__", {*given[section], *extra})
         return model
 
-    own = build(parts.Profile, "roller.profile", {})
+    own = build(parts.Profile, "roller.profile", {}, given["roller"].get("profile", {}))
     for section in _SECTIONS:
         given[section].pop("profile", None)
-        extra = {"profile": own} if section == "roller" and own is not None else {}
-        model = build(kinds[section], section, extra)
-        if model is not None:
-            found[section] = model
+        extra = {"profile": own} if section == "roller" else {}
+        found[section] = build(kinds[section], section, extra, found.get(section, {}))
     if problems:
         raise InputError(problems)
     return found
