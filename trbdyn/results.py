@@ -167,7 +167,7 @@ class Result(Derived):
         every = {field.name: field.group for field in field_table.table()}
         saved = f"saved groups: {', '.join(self.groups)}"
         if name in every:
-            return f"was not saved: it belongs to the group '{every[name]}', which save_groups left out; {saved}"
+            return f"was not recorded: it belongs to the group '{every[name]}', which save_groups left out; {saved}"
         derived = [entry for entry in super().__dir__() if not entry.startswith("_")]
         near = difflib.get_close_matches(str(name), [*every, *derived], n=3)
         hint = f"did you mean {' or '.join(repr(entry) for entry in near)}? " if near else ""
