@@ -77,7 +77,7 @@ def test_lean_of_bars_names_the_plays() -> None:
 
 def test_too_many_records() -> None:
     """It ended in a MemoryError."""
-    with pytest.raises(InputError, match="records at most") as caught:
+    with pytest.raises(InputError, match="records in this run") as caught:
         Simulation(scene_30310(), accuracy="fast").run(duration=1.0, save_every=1e-12)
     assert caught.value.field == "run.save_every"
 
