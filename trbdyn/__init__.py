@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from trbdyn import plotting as plot
     from trbdyn.bearing import Bearing, Cage, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.effects import Effects
-    from trbdyn.errors import FileError, InputError, LoadError, StepError, TrbError
+    from trbdyn.errors import FileError, InputError, LoadError, RunWarning, StepError, TrbError
     from trbdyn.lubricants import Lubricant, Oil
     from trbdyn.motion import History
     from trbdyn.pocket import Face, OtherPocket, Pocket
@@ -64,6 +64,7 @@ _NAMES = {
     "RotatingLoad": "trbdyn.scene",
     "Roughness": "trbdyn.bearing",
     "RunOptions": "trbdyn.run_options",
+    "RunWarning": "trbdyn.errors",
     "Scatter": "trbdyn.bearing",
     "Scene": "trbdyn.scene",
     "Simulation": "trbdyn.simulation",
@@ -96,6 +97,7 @@ __all__ = [
     "RotatingLoad",
     "Roughness",
     "RunOptions",
+    "RunWarning",
     "Scatter",
     "Scene",
     "Simulation",
