@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,8 @@ class Profile(Model):
         Design load Q of the logarithmic profile (N); by default the one of the 30310 rig times diameter and length of the
         roller over those of the rig, that is at the same pressure.
     """
+
+    _assumed: ClassVar[bool] = True
 
     kind: Literal["logarithmic", "crowned", "straight"] = "logarithmic"
     crown_radius: Annotated[Number, unit("m", ge=1e-3, le=1e9)] = 100.0
@@ -75,6 +77,8 @@ class Material(Model):
     poisson_ratio : float
         Poisson's ratio (1).
     """
+
+    _assumed: ClassVar[bool] = True
 
     youngs_modulus: Annotated[Number, unit("Pa", ge=1e8, le=1e13)] = 206e9
     poisson_ratio: Annotated[Number, unit("1", ge=0, le=0.4999)] = 0.3
@@ -148,6 +152,8 @@ class Roller(Model):
         Elasticity of the rollers; that of the bearing by default.
     """
 
+    _assumed: ClassVar[bool] = True
+
     diameter: Length
     effective_length: Length
     total_length: Length = RIG["total_length"]
@@ -187,6 +193,8 @@ class Ribs(Model):
     front_low, front_high : float
         Heights of the front rib's edges (m); by default 0.3/14 and 2/14 of the roller's diameter.
     """
+
+    _assumed: ClassVar[bool] = True
 
     contact_height: Length = RIG["contact_height"]
     edge_low: Gap = RIG["edge_low"]
@@ -245,6 +253,8 @@ class Cage(Model):
         Elasticity of its faces; that of the bearing by default.
     """
 
+    _assumed: ClassVar[bool] = True
+
     mass: Annotated[Number, unit("kg", gt=0)] = RIG["mass"]
     inertia_axial: Annotated[Number, unit("kg m2", gt=0)] = RIG["inertia_axial"]
     inertia_transverse: Annotated[Number, unit("kg m2", gt=0)] = RIG["inertia_transverse"]
@@ -286,6 +296,8 @@ class Roughness(Model):
     rib : float
         Roller end and back-face rib (m).
     """
+
+    _assumed: ClassVar[bool] = True
 
     raceway: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.16e-6
     rib: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.24e-6

@@ -161,6 +161,8 @@ class Model(BaseModel, metaclass=_Listed):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
     _root: ClassVar[str | None] = None
+    _assumed: ClassVar[bool] = False
+    """Whether fields that were not given are assumed by the model that this one belongs to, anew after each change."""
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
@@ -216,7 +218,8 @@ class Model(BaseModel, metaclass=_Listed):
         """
         if changes is not None:
             fields = {**self._changed(split_paths(changes)), **fields}
-        return type(self)(**{**{name: getattr(self, name) for name in self.model_fields_set}, **fields})
+        kept = self.model_fields_set if self._assumed else type(self).model_fields
+        return type(self)(**{**{name: getattr(self, name) for name in kept}, **fields})
 
     def _changed(self, changes: Mapping[Path, Any]) -> dict[str, Any]:
         """New values of the fields that changes by path lead to."""
