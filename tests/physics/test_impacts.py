@@ -12,6 +12,8 @@ from trbdyn.cases import rig_30310
 
 START = 1e-4
 """Axial place of the cage from which gaps are counted (m)."""
+LOST = {"fast": 0.1, "standard": 0.03, "reference": 0.03}
+"""Share of the speed that a preset may lose more than an exact run."""
 GAP = 2e-6
 """Gap of the large end's wall at the start (m)."""
 
@@ -53,7 +55,7 @@ def test_no_preset_makes_energy_in_a_hit(mass, preset):
     """What is missing in a fast hit has gone into the rollers: a run at a ten-thousandth of the tolerances misses it, too."""
     for speed in (3e-4, 1e-3, 3e-3, 1e-2, 1e-1):
         exact, found = _exact(mass, speed), restitution(mass, speed, accuracy=preset)
-        assert exact - 0.04 <= found <= 1.01, f"{1e3 * speed:g} mm/s: {found:.3f}, exact {exact:.3f}"
+        assert exact - LOST[preset] <= found <= 1.01, f"{1e3 * speed:g} mm/s: {found:.3f}, exact {exact:.3f}"
 
 
 @cache
