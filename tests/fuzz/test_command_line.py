@@ -38,7 +38,16 @@ SETS = [
 
 VALUES = st.one_of(st.sampled_from(ODD), st.text(max_size=6))
 OPTIONS = {
-    "run": ["-o", "--output", "--duration", "--revolutions", "--save-every", "--checkpoint-every", "--accuracy", "--summary"],
+    "run": [
+        "-o",
+        "--output",
+        "--duration",
+        "--revolutions",
+        "--save-every",
+        "--checkpoint-every",
+        "--accuracy",
+        "--summary",
+    ],
     "resume": ["--instruction-set", "--summary"],
     "plot": ["-o", "--only"],
     "info": [],
@@ -92,7 +101,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
     def short(self: running.Run, *rest: Any, **named: Any) -> None:
         begin(self, *rest, **named)
-        self.callback = lambda sim: True
+        self.callback = self.callback or (lambda sim: True)
 
     patch.setattr(running.Run, "__init__", short)
     patch.setattr(running, "CHUNK_STEPS", 3)
@@ -162,7 +171,11 @@ def test_every_change_of_a_case(prepared: Path, command: str, change: str) -> No
 @pytest.mark.parametrize("value", ODD)
 def test_every_odd_value_in_every_place(prepared: Path, value: str) -> None:
     for command, options in OPTIONS.items():
-        given = [] if command in ("demo", "paper", "cases") else ["run.h5" if command in ("plot", "resume") else "rig_30310"]
+        given = (
+            []
+            if command in ("demo", "paper", "cases")
+            else ["run.h5" if command in ("plot", "resume") else "rig_30310"]
+        )
         if given and value != "rig_30310":
             check([command, value])
         for option in options if command != "demo" else ["--revolutions"]:

@@ -1,4 +1,4 @@
-"""Inputs that once ended in an exception of Python, or took the memory of the machine: each is one of the package's own errors."""
+"""Inputs that Python itself would refuse, or that would take the machine's memory: each is one of the package's own errors."""
 
 from __future__ import annotations
 
@@ -154,7 +154,9 @@ def test_a_scene_of_nested_values() -> None:
 )
 def test_tables_of_a_study(tmp_path: Path, text: str) -> None:
     path = tmp_path / "study.toml"
-    path.write_text(f'[bearing]\ncase = "30310"\n[scene]\nspeed_rpm = 1000\naxial_load = 3000\n[run]\nduration = 1e-4\n[study]\n{text}\n')
+    path.write_text(
+        f'[bearing]\ncase = "30310"\n[scene]\nspeed_rpm = 1000\naxial_load = 3000\n[run]\nduration = 1e-4\n[study]\n{text}\n'
+    )
     with pytest.raises((InputError, FileError)) as found:
         study.load_study(path)
     assert str(found.value)
@@ -164,7 +166,10 @@ def test_a_study_whose_names_are_long(tmp_path: Path) -> None:
     """A letter of Chinese takes three bytes of the 255 of a file's name."""
     word = "保持架质量" * 18
     made = study.grid(
-        scene_30310(), {word: {word: {"scene.speed_rpm": 2000.0}}}, RunOptions(duration=2e-4, save_every=1e-5), name=word
+        scene_30310(),
+        {word: {word: {"scene.speed_rpm": 2000.0}}},
+        RunOptions(duration=2e-4, save_every=1e-5),
+        name=word,
     )
     data = study.run(made, tmp_path / "study", executor="serial")
     assert data.status.values.tolist() == ["done"]
@@ -410,7 +415,7 @@ def test_builds_with_fast_math_are_refused(tmp_path: Path, flags: str) -> None:
     if cmake is None:
         pytest.skip("needs CMake")
     (tmp_path / "CMakeLists.txt").write_text(
-        f'cmake_minimum_required(VERSION 3.20)\nproject(p LANGUAGES C)\nset(CMAKE_BUILD_TYPE Release)\n'
+        f"cmake_minimum_required(VERSION 3.20)\nproject(p LANGUAGES C)\nset(CMAKE_BUILD_TYPE Release)\n"
         f'include("{CSRC}/cmake/TrbFlags.cmake")\n'
     )
     words = [cmake, "-S", str(tmp_path), "-B", str(tmp_path / "build"), f"-DCMAKE_C_FLAGS={flags}"]

@@ -401,7 +401,7 @@ def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
     path.unlink()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     words = [sys.executable, "-P", "-c", RESUME, str(path)]
-    pipes: dict[str, Any] = {name: subprocess.PIPE for name in ("stdin", "stdout", "stderr")}
+    pipes: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
     both = [subprocess.Popen(words, **pipes, env=environment, text=True) for _ in range(2)]
     for process in both:
         assert process.stdout.readline() == "ready\n"
