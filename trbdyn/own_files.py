@@ -1,8 +1,8 @@
 """Files that a run makes, replaces and removes: its own ones, and nobody else's.
 
-A file that is about to appear is written under a draft's name first. The draft's name holds the name of the run, and it is created
-exclusively: nothing that is there already is opened, truncated or followed. It then takes its name in one step. A file that lies
-there is replaced only where the caller says so.
+A file that is about to appear is written under a draft's name first. The draft is created exclusively: nothing that is there
+already is opened, truncated or followed. It then takes its name in one step. A file that lies there is replaced only where the
+caller says so.
 """
 
 from __future__ import annotations

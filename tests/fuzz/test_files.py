@@ -200,7 +200,7 @@ def test_devices_pipes_and_folders_are_refused_at_once(tmp_path: Path) -> None:
     kind = stat.S_IFMT(device.stat().st_mode)
     for place in (pipe, folder, device, "/dev/zero"):
         for overwrite in (False, True):
-            with pytest.raises(FileError, match="not a regular file|is a folder"):
+            with pytest.raises(FileError, match=r"not a regular file|is a folder"):
                 run(place, overwrite=overwrite)
     assert stat.S_IFMT(device.stat().st_mode) == kind
     assert names(tmp_path) == ["folder.h5", "pipe.h5"]

@@ -1,4 +1,4 @@
-"""Every number that reaches the core acts: it is changed, and a force, a film, a coefficient or a rate follows as its law says."""
+"""Every number that reaches the core acts: it is changed, and a force, a film or a coefficient follows as its law says."""
 
 from __future__ import annotations
 

@@ -137,7 +137,8 @@ def _renamed(data: xarray.Dataset, change: Callable[[str], str]) -> xarray.Datas
     """The dataset with other names of variables and dimensions: netCDF keeps them as UTF-8, SciPy takes them for Latin-1."""
     names = {str(name): change(str(name)) for name in {*data.variables, *data.dims}}
     out = data.rename({name: new for name, new in names.items() if name != new})
-    for part in (out, *out.variables.values()):
+    parts: list[Any] = [out, *out.variables.values()]
+    for part in parts:
         part.attrs = {key: change(value) if isinstance(value, str) else value for key, value in part.attrs.items()}
     return out
 
