@@ -4,9 +4,10 @@ A run with a schedule (`checkpoint_every`) starts its integrator anew at the fir
 time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps as one
 that was never interrupted: to the last bit, on the same build and instruction set.
 
-The file ``run.h5.checkpoint`` beside ``run.h5``, format version 1: a line that names the format and its version; the SHA-256 of
-all that follows; a line of JSON; the state vector as little-endian float64. It is written under another name, synchronised to
-the disk and then renamed; the one before it stays as ``run.h5.checkpoint.previous``. Nothing in it is executed.
+The file ``run.h5.checkpoint`` beside ``run.h5``, format version 2: a line that names the format and its version; the SHA-256 of
+all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under another
+name, synchronised to the disk and then renamed; the one before it stays as ``run.h5.checkpoint.previous``. Nothing in it is
+executed.
 
 A checkpoint names its run. Only files that name the same run are replaced or removed.
 """
@@ -32,10 +33,14 @@ from trbdyn.own_files import create_draft, set_aside
 Array = NDArray[np.float64]
 
 MAGIC = b"trbdyn-checkpoint"
-VERSION = 1
+VERSION = 2
 
 LARGEST = 64 << 20
 """Size of a file beyond which it is no checkpoint (bytes)."""
+
+
+_NUMBERS = ("state", "peaks")
+"""What is written as numbers, after the line of JSON."""
 
 
 def build_digest() -> str:
@@ -82,6 +87,8 @@ class Checkpoint:
         Wall time of stepping by then (s).
     state : ndarray, shape (n_state,)
         The state vector.
+    peaks : ndarray
+        Peaks so far, as the core saves them; empty if the run keeps none.
     """
 
     run_id: str
@@ -99,11 +106,14 @@ class Checkpoint:
     counters: dict[str, int]
     stepping_s: float
     state: Array = field(repr=False)
+    peaks: Array = field(repr=False)
 
     def to_bytes(self) -> bytes:
         """The file's content."""
-        head = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "state"}
-        body = json.dumps(head, allow_nan=False).encode() + b"\n" + self.state.astype("<f8").tobytes()
+        head = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name not in _NUMBERS}
+        head["n_state"] = self.state.size
+        numbers = np.concatenate([self.state, self.peaks]).astype("<f8").tobytes()
+        body = json.dumps(head, allow_nan=False).encode() + b"\n" + numbers
         return b"%s %d\n%s\n" % (MAGIC, VERSION, hashlib.sha256(body).hexdigest().encode()) + body
 
     @classmethod
@@ -130,7 +140,10 @@ class Checkpoint:
         values = json.loads(head)
         if not isinstance(values, dict):
             raise ValueError("its table of values is missing")
-        values["state"] = np.frombuffer(numbers, dtype="<f8").astype(np.float64)
+        vector, length = np.frombuffer(numbers, dtype="<f8").astype(np.float64), values.pop("n_state", None)
+        if not isinstance(length, int) or not 0 < length <= vector.size:
+            raise ValueError("the state vector is cut short")
+        values["state"], values["peaks"] = vector[:length], vector[length:]
         names = {entry.name for entry in fields(cls)}
         if values.keys() != names:
             raise ValueError(f"entries missing or unknown: {', '.join(sorted(values.keys() ^ names))}")
@@ -156,6 +169,8 @@ class Checkpoint:
             raise ValueError("its times are not in order")
         if self.done < 0 or not np.isfinite(self.state).all():
             raise ValueError("its state is not finite")
+        if np.isnan(self.peaks).any():
+            raise ValueError("its peaks are not numbers")
 
 
 def next_time(after: float, every: float | None) -> float:

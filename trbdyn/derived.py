@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from trbdyn import observables
 from trbdyn.errors import InputError
 from trbdyn.fields import Field
+from trbdyn.peaks import Peaks
 
 if TYPE_CHECKING:
     from trbdyn.scene import Scene
@@ -58,6 +59,11 @@ class Derived(ABC):
     @abstractmethod
     def geometry(self) -> dict[str, float]:
         """Derived geometry of the bearing, SI."""
+
+    @property
+    @abstractmethod
+    def peaks(self) -> Peaks:
+        """Extremes, means and impacts of all steps."""
 
     def settling(self) -> observables.Settling:
         """When the cage's whirl radius and the spread of the rollers' spacing have settled (see `observables.settling`).
@@ -182,8 +188,14 @@ class Derived(ABC):
         return observables.kinematic_slip(np.abs(self["roller_spin_speed"]), np.abs(self["shaft_speed"]), ratio)
 
     def pocket_statistics(self, threshold: float = 0.0) -> observables.PocketStatistics:
-        """Peak, 95th percentile, mean and duty of the force on each face of each pocket (forces above `threshold`, N)."""
-        return observables.pocket_statistics(self["pocket_force"], threshold)
+        """Peak, 95th percentile, mean and duty of the force on each face of each pocket (forces above `threshold`, N).
+
+        With the group 'peaks', peak and mean are those of all steps and not of the records.
+        """
+        found = observables.pocket_statistics(self["pocket_force"], threshold)
+        if not any(field.group == "peaks" for field in self.fields):
+            return found
+        return replace(found, peak=self.peaks["pocket_force_peak"], mean=self.peaks["pocket_force_mean"])
 
     def _starting(self, prefix: str) -> dict[str, Array]:
         return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}

@@ -151,7 +151,7 @@ def estimate(
         steps=round(length * rates["steps"]),
         evaluations=round(length * rates["rhs_evaluations"]),
         records=records,
-        memory_mb=8e-6 * records * sum(value.size for value in sim.record().values()),
+        memory_mb=8e-6 * records * (sim._model.record_length + sim._model.peak_length),
         **found,
     )
 

@@ -11,6 +11,8 @@ Schema ``trbdyn-result``, version 1:
 - ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters`` and ``final_time``; empty until the run
   has ended
 - ``/final_state``: the state vector at ``final_time``; empty until then
+- ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then; missing if
+  no peaks are kept
 
 A file is data: nothing in it is executed, and links or storage that lead out of the file are refused.
 
@@ -66,6 +68,9 @@ FLUSH_BYTES = 8 << 20
 SPARE_BYTES = 1 << 20
 """Room for HDF5's own bookkeeping that is made sure of before a write."""
 
+PEAKS = "peaks"
+"""The group of fields that are peaks of each record's interval."""
+
 JSON_ATTRIBUTES = ("geometry", "meta")
 
 LIBVER = ("v110", "v110")
@@ -96,6 +101,8 @@ class RunInfo:
         Derived geometry of the bearing, SI.
     meta : dict
         Versions, instruction set and settings.
+    peaks : mapping of str to ndarray
+        Peaks of the whole run (`trbdyn.peaks`); empty if none are known.
     """
 
     scene: dict[str, Any]
@@ -107,6 +114,7 @@ class RunInfo:
     final_state: Array | None = None
     geometry: dict[str, float] = field(default_factory=dict)
     meta: dict[str, Any] = field(default_factory=dict)
+    peaks: Mapping[str, Array] = field(default_factory=dict)
 
 
 def _plain(value: Any) -> Any:
@@ -284,8 +292,12 @@ class ResultWriter:
         self._file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
         self._file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
         group = self._file.create_group("fields")
+        peaks = self._file.create_group("peaks")
         for index, entry in enumerate(self._fields):
             shape = self._places[entry.name][1]
+            if entry.group == PEAKS:
+                whole = peaks.create_dataset(entry.name, (0, *shape), "f8", maxshape=(1, *shape), chunks=(1, *shape))
+                self._describe(whole, entry, index)
             dataset = group.create_dataset(
                 entry.name,
                 shape=(0, *shape),
@@ -295,9 +307,12 @@ class ResultWriter:
                 compression=compression,
                 shuffle=compression is not None,
             )
-            attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
-            attributes["dims"] = " ".join(("time", *entry.dims))
-            dataset.attrs.update({name: _stored(value) for name, value in attributes.items()} | {"index": index})
+            self._describe(dataset, entry, index)
+
+    def _describe(self, dataset: h5py.Dataset, entry: Field, index: int) -> None:
+        attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
+        attributes["dims"] = " ".join(("time", *entry.dims))
+        dataset.attrs.update({name: _stored(value) for name, value in attributes.items()} | {"index": index})
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:
@@ -418,6 +433,7 @@ class ResultWriter:
         counters: Mapping[str, int],
         final_time: float,
         final_state: ArrayLike | None,
+        peaks: Mapping[str, Array] | None = None,
     ) -> None:
         """Write how the run ended, and close the file.
 
@@ -435,6 +451,8 @@ class ResultWriter:
             Time of the final state, s.
         final_state : array_like or None, shape (n_state,)
             The last good state.
+        peaks : mapping of str to ndarray, optional
+            Peaks of the whole run.
 
         Raises
         ------
@@ -446,6 +464,9 @@ class ResultWriter:
             self._reserve(SPARE_BYTES)
             if final_state is not None:
                 self._put("final_state", np.asarray(final_state, dtype=float))
+            for name, values in (peaks or {}).items():
+                self._file["peaks"][name].resize(1, axis=0)
+                self._file["peaks"][name][0] = values
             ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
             ending |= {"stats": dict(stats), "counters": dict(counters)}
             self._put("ending", np.frombuffer(_json(ending).encode(), dtype="u1"))

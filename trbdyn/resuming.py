@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable
 from pathlib import Path
 
-from trbdyn import checkpoint
+from trbdyn import _core, checkpoint
 from trbdyn.checkpoint import Checkpoint
 from trbdyn.errors import FileError, InputError
 from trbdyn.hdf5_marks import mend, take_lock
@@ -154,7 +154,9 @@ def _revive(
                 "the ring's equilibrium differs in rounding on this machine: results may differ from the uninterrupted run"
             )
         sim._begin(found.time, found.state)
-    except InputError as error:
+        if found.peaks.size:
+            sim._core.restore_peaks(found.peaks)
+    except (InputError, _core.CoreInputError) as error:
         raise FileError(f"{where}: the checkpoint cannot be used: {error}") from error
     sim._totals, sim._counted = dict(found.statistics), dict(found.counters)
     return sim, options

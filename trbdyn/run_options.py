@@ -10,7 +10,7 @@ from trbdyn.errors import InputError
 from trbdyn.motion import MAX_TIME, History
 from trbdyn.validation import Length, Model, Number, Whole, unit
 
-Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy"]
+Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy", "peaks"]
 GROUPS: Final[tuple[Group, ...]] = (
     "time",
     "cage",
@@ -21,6 +21,7 @@ GROUPS: Final[tuple[Group, ...]] = (
     "torque",
     "power",
     "energy",
+    "peaks",
 )
 
 
@@ -71,7 +72,9 @@ class RunOptions(Model):
     save_every : float
         Time between saved records (s).
     save_groups : sequence of str
-        Groups of quantities to save; 'time' is always among them.
+        Groups of quantities to save; 'time' is always among them. With 'peaks' the core looks at all loads at the end of every
+        step and keeps their extremes, means and impacts over each record's interval and the whole run; without it that costs
+        nothing.
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances, `ACCURACY`.
     integrator : {'bdf', 'erk'}

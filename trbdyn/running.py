@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from trbdyn import _core, checkpoint
 from trbdyn import fields as field_table
+from trbdyn import peaks as peak_table
 from trbdyn.checkpoint import Checkpoint
 from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.motion import History
@@ -63,6 +64,20 @@ class Run:
         self.process = os.getpid()
         self.began = clock.perf_counter()
         self.spent = 0.0
+        self.fields = field_table.table()
+        self.layout = list(sim._model.record_layout())
+        self.with_peaks = peak_table.GROUP in options.save_groups
+        if self.with_peaks:
+            self.fields += peak_table.table()
+            self.layout += [
+                (name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()
+            ]
+
+    def _keep_peaks(self, since: float) -> None:
+        """From a time of the last step on, if the run wants them and does not keep them yet."""
+        core = self.sim._core
+        if self.with_peaks and core.row_length == self.sim._model.record_length:
+            core.begin_peaks(since)
 
     def write_to(self, output: Path, segment: int = 0, run_id: str | None = None, *, overwrite: bool = False) -> None:
         """Write records to a file, and checkpoints beside it if there is a schedule.
@@ -79,8 +94,8 @@ class Run:
         self.writer = ResultWriter(
             path,
             scene=sim.scene,
-            layout=sim._model.record_layout(),
-            fields=field_table.table(),
+            layout=self.layout,
+            fields=self.fields,
             groups=self.options.save_groups,
             meta=self._meta(),
             geometry=asdict(sim.scene.bearing.geometry),
@@ -100,8 +115,10 @@ class Run:
             if scheduled:
                 checkpoint.clear(output)
                 if sim._core.time == sim._begun:
+                    self._keep_peaks(float(self.times[0]))
                     self._write_checkpoint()
         except OSError as error:
+            sim._core.end_peaks()
             self.writer.close()
             raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
 
@@ -140,11 +157,14 @@ class Run:
     def _loop(self, bar: Any) -> str | None:
         """Until all records are filled; what ended the run before, or None."""
         sim, every = self.sim, self.options.checkpoint_every
+        sim._end = None
+        self._keep_peaks(float(self.times[0]))
         due = checkpoint.next_time(sim._begun, every)
         while self.done < self.times.size:
             chunk = self.times[self.done : self.done + CHUNK_RECORDS]
             # a signal may come before the core's answer does: what is filled is seen by its finite times
-            self.filling = records = np.full((chunk.size, sim._model.record_length), np.nan)
+            self._keep_peaks(sim._core.time)  # where the callback has set a state
+            self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
             before = clock.perf_counter()
             try:
                 rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due)
@@ -157,7 +177,10 @@ class Run:
             self._keep(records[:rows])
             # the records up to here are made with the past that the integrator is about to forget
             if sim.time >= due and self.done < self.times.size and self.times[self.done] > sim.time:
+                peaks = sim._core.save_peaks()
                 sim._begin_again()
+                if peaks.size:
+                    sim._core.restore_peaks(peaks)
                 due = checkpoint.next_time(sim.time, every)
                 self._write_checkpoint()
             bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
@@ -223,11 +246,13 @@ class Run:
             counters=sim._counted,
             stepping_s=self.spent,
             state=sim._core.state(),
+            peaks=sim._core.save_peaks(),
         )
         checkpoint.write(checkpoint.checkpoint_path(self.output), found)
 
     def _abandon(self) -> None:
         """Leave a result file that cannot be written as it is: the records in it can be read, a checkpoint goes on from there."""
+        self.sim._core.end_peaks()
         if self.writer is not None:
             with contextlib.suppress(FileError):
                 self.writer.close()
@@ -273,11 +298,18 @@ class Run:
         }
 
     def _finish(self, success: bool, message: str) -> Result:
-        sim, ended = self.sim, self.sim.state
-        if not success:
+        sim = self.sim
+        if success:
+            sim._stand_at(float(self.times[-1]))
+        else:
             # what stopped between two records goes on from where it stands
-            sim._reached = ended.time
+            sim._reached, sim._end = sim._core.time, None
+        ended = sim.state
+        row = sim._core.whole_peaks(ended.time)
+        peaks = peak_table.from_row(row, sim._model.peak_layout()) if row.size else {}
+        sim._core.end_peaks()
         how: dict[str, Any] = {
+            "peaks": peaks,
             "success": success,
             "message": message,
             "stats": self._stats(),
@@ -291,10 +323,12 @@ class Run:
             if success:
                 checkpoint.remove(self.output, self.writer.run_id)
             return self._written()
-        records = np.concatenate(self.kept) if self.kept else np.empty((0, sim._model.record_length))
+        width = max(at + int(np.prod(shape)) for _, at, shape in self.layout)
+        records = np.concatenate(self.kept) if self.kept else np.empty((0, width))
         return Result.from_records(
             records,
-            sim._model.record_layout(),
+            self.layout,
+            fields=self.fields,
             scene=sim.scene,
             geometry=asdict(sim.scene.bearing.geometry),
             meta=self._meta(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -96,6 +97,8 @@ class Simulation:
         self._reached = scene.start.time
 
     equilibrium: Equilibrium
+    _end: State | None
+    """Where a run has ended, inside the integrator's last step; None where the present state is the end of that step."""
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if not abs(time) <= MAX_TIME:
@@ -109,6 +112,16 @@ class Simulation:
         """A new integrator, which knows nothing of the past: as in a new process."""
         self._core = self._open(time, vector)
         self._begun = time
+        self._end = None
+
+    def _stand_at(self, time: float) -> None:
+        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there.
+        Where a callback has gone on after that instant, or has set a state, the present state is that one.
+        """
+        self._end = None
+        if time != self._core.time:
+            with contextlib.suppress(_core.CoreInputError):
+                self._end = State(time, self._core.state_at(time))
 
     def _begin_again(self) -> None:
         """A new integrator where the present one is; what was counted stays."""
@@ -124,8 +137,12 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """End of the last step (s)."""
-        return self._core.time
+        """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
+
+        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the run's end;
+        the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the whole run.
+        """
+        return self._core.time if self._end is None else self._end.time
 
     @property
     def instruction_set(self) -> str:
@@ -134,12 +151,14 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """A copy of the present state."""
+        """A copy of the present state, at `time`."""
+        if self._end is not None:
+            return State(self._end.time, self._end.vector.copy())
         return State(self._core.time, self._core.state())
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
-        return StateView(self._model, self._core.state() if vector is None else vector)
+        return StateView(self._model, self.state.vector if vector is None else vector)
 
     def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
         """Go on from another state; the integrator starts anew.
@@ -160,11 +179,11 @@ class Simulation:
         if isinstance(vector, State):
             given, when = vector.vector, vector.time
         else:
-            given, when = _numbers(vector), self._core.time
+            given, when = _numbers(vector), self.time
         when = when if time is None else number_of("time", time)
         core = self._open(when, given)
         self._count()
-        self._core, self._begun, self._reached = core, when, when
+        self._core, self._begun, self._reached, self._end = core, when, when, None
 
     def copy(self) -> Self:
         """An independent simulation at the same state; its integrator starts there."""
@@ -172,8 +191,9 @@ class Simulation:
         other.__dict__.update(self.__dict__)
         other._running = False
         other._totals, other._counted = {}, {}
-        other._begin(self._core.time, self._core.state())
-        other._reached = self._core.time
+        present = self.state
+        other._begin(present.time, present.vector)
+        other._reached = present.time
         return other
 
     def __copy__(self) -> Self:
@@ -199,11 +219,10 @@ class Simulation:
             If it is called from the callback of a run.
         """
         self._check_not_running("restart")
-        self._begin_again()
-        self._reached = self._core.time
+        self.set_state(self.state)
 
     def step(self) -> float:
-        """One step of the integrator; gives the new time (s).
+        """One step of the integrator, from the end of its last one; gives the new time (s).
 
         Raises
         ------
@@ -215,6 +234,7 @@ class Simulation:
         self._check_not_running("step")
         try:
             self._reached = self._core.step()
+            self._end = None
         except _core.CoreStepError as error:
             raise StepError(str(error), time=self._core.time) from None
         return self._reached
@@ -251,9 +271,9 @@ class Simulation:
         return self._core.contacts(*self._place(vector, time))
 
     def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
-        when = self._core.time if time is None else number_of("time", time)
+        when = self.time if time is None else number_of("time", time)
         if vector is None:
-            return when, self._core.state()
+            return when, self.state.vector
         given = _numbers(vector)
         if given.shape != (self._model.n_state,):
             raise InputError.of(

@@ -20,7 +20,7 @@ from trbdyn.errors import FileError
 from trbdyn.fields import Field
 from trbdyn.hdf5_marks import open_to_read
 from trbdyn.own_files import file_path
-from trbdyn.result_file import FLUSH_BYTES, JSON_ATTRIBUTES, SCHEMA, SCHEMA_VERSION, RunInfo, reason
+from trbdyn.result_file import FLUSH_BYTES, JSON_ATTRIBUTES, PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason
 
 Array = NDArray[np.float64]
 
@@ -174,6 +174,7 @@ class FileSource:
         stats, counters = (_table(self._ending.get(key, {})) for key in ("stats", "counters"))
         meta |= {key: _text(attributes[key]) for key in ("trbdyn_version", "created")}
         meta |= {key: int(attributes[key]) for key in ("schema_version", "segment")}
+        peaks = self._read_peaks(file) if self.finished else {}
         message, final_time = str(self._ending.get("message", "")), float(self._ending.get("final_time", np.nan))
         state = np.asarray(_own(file, "final_state", h5py.Dataset)[()], dtype=float)
         if not self.finished:
@@ -191,7 +192,23 @@ class FileSource:
             final_state=state if self.finished and state.size else None,
             geometry=geometry,
             meta=meta,
+            peaks=peaks,
         )
+
+    def _read_peaks(self, file: h5py.File) -> dict[str, Array]:
+        """Peaks of the whole run; none in files of runs that kept none."""
+        found: dict[str, Array] = {}
+        if "peaks" not in file:
+            return found
+        group = _own(file, "peaks", h5py.Group)
+        for name in (entry.name for entry in self.fields if entry.group == PEAKS):
+            dataset = _own(group, name, h5py.Dataset)
+            shape = file["fields"][name].shape[1:]
+            if dataset.dtype != np.float64 or dataset.shape not in ((0, *shape), (1, *shape)):
+                raise FileError(f"{self.path}: the dataset of {name!r} is damaged ({dataset.dtype}, {dataset.shape})")
+            if dataset.shape[0] == 1:
+                found[name] = np.asarray(dataset[0], dtype=float)
+        return found
 
     def read(self, name: str) -> Array:
         """All records of one field, shape (n_records, ...); read once and kept.

@@ -49,17 +49,22 @@ LABELS: dict[str, tuple[str, str]] = {
     "lean_mean": ("tilt to the side of the cage's displacement, mean", "rad"),
     "spacing_std_deg": ("roller spacing, deviation", "deg"),
     "pocket_force_p95": ("pocket force, 95 % in contact", "N"),
-    "pocket_force_peak": ("pocket force, peak", "N"),
+    "pocket_force_peak": ("pocket force, largest at any step", "N"),
+    "pocket_impacts": ("impacts in the pockets", ""),
+    "pocket_impulse_peak": ("largest impulse of one impact", "N s"),
     "pocket_duty": ("share of time that a pocket is touched", ""),
     "outer_load_mean": ("load a roller, outer raceway", "N"),
     "inner_load_mean": ("load a roller, inner raceway", "N"),
     "rib_load_mean": ("load a roller, back-face rib", "N"),
-    "outer_pressure_max": ("largest pressure, outer raceway", "Pa"),
-    "inner_pressure_max": ("largest pressure, inner raceway", "Pa"),
-    "rib_pressure_max": ("largest pressure, rib", "Pa"),
+    "outer_pressure_max": ("largest pressure at any step, outer raceway", "Pa"),
+    "inner_pressure_max": ("largest pressure at any step, inner raceway", "Pa"),
+    "rib_pressure_max": ("largest pressure at any step, rib", "Pa"),
     "film_parameter_outer": ("film parameter, outer raceway", ""),
     "film_parameter_inner": ("film parameter, inner raceway", ""),
     "film_parameter_rib": ("film parameter, rib", ""),
+    "film_parameter_outer_min": ("smallest film parameter, outer raceway", ""),
+    "film_parameter_inner_min": ("smallest film parameter, inner raceway", ""),
+    "film_parameter_rib_min": ("smallest film parameter, rib", ""),
     "skew_rms": ("roller skew, rms", "rad"),
     "torque": ("friction torque of the shaft", "N m"),
     "torque_outer": ("friction torque on the outer ring", "N m"),
@@ -112,12 +117,15 @@ def _motion(result: Result) -> dict[str, Any]:
         "rollers": _rollers,
         "pocket": _pocket,
         "contacts": _contacts,
+        "peaks": _peaks,
         "torque": _torque,
         "power": _power,
     }
     for group, part in parts.items():
         if group in groups and (result.has_cage or group not in ("cage", "pocket")):
             out |= part(window)
+    if not result.has_cage:
+        out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
     if "energy" in groups:
         audit = result.energy_audit
         out |= {"energy_closure": audit.closure, "energy_residual": audit.residual}
@@ -158,7 +166,6 @@ def _pocket(window: Result) -> dict[str, Any]:
     touched = force[force > 0]
     return {
         "pocket_force_p95": np.percentile(touched, 95.0) if touched.size else 0.0,
-        "pocket_force_peak": force.max(),
         "pocket_duty": (force > 0).any(axis=2).mean(),
     }
 
@@ -171,10 +178,22 @@ def _loaded_mean(values: Any, load: Any) -> float:
 
 def _contacts(window: Result) -> dict[str, Any]:
     out: dict[str, Any] = {f"{side}_load_mean": window[f"{side}_load"].mean() for side in ("outer", "inner", "rib")}
-    out |= {f"{side}_pressure_max": window[f"{side}_pressure"].max() for side in ("outer", "inner", "rib")}
     return out | {
         f"film_parameter_{side}": _loaded_mean(window[f"{side}_film_parameter"], window[f"{side}_load"])
         for side in ("outer", "inner", "rib")
+    }
+
+
+def _peaks(window: Result) -> dict[str, Any]:
+    """Extremes at the ends of all steps in the window, and time integrals between them; not those of the records."""
+    peaks, sides = window.peaks, ("outer", "inner", "rib")
+    out: dict[str, Any] = {f"{side}_load_mean": peaks[f"{side}_load_mean"].mean() for side in sides}
+    out |= {f"{side}_pressure_max": peaks[f"{side}_pressure_peak"].max() for side in sides}
+    out |= {f"film_parameter_{side}_min": np.fmin.reduce(peaks[f"{side}_film_parameter_min"]) for side in sides}
+    return out | {
+        "pocket_force_peak": peaks["pocket_force_peak"].max(),
+        "pocket_impacts": int(peaks["pocket_impacts"].sum()),
+        "pocket_impulse_peak": peaks["pocket_impulse_peak"].max(),
     }
 
 

@@ -21,6 +21,9 @@ typedef enum trb_power {
   TRB_N_POWERS
 } trb_power;
 
+/* Contacts of a roller with the rings, by how its motion changes their interference. */
+typedef enum trb_margin { TRB_MARGIN_RACES, TRB_MARGIN_RIB, TRB_MARGIN_FRONT_RIB, TRB_N_MARGINS } trb_margin;
+
 /* Share of the torque that the rollers put on the inner ring about its axis. */
 typedef enum trb_torque { TRB_TORQUE_TRACTION, TRB_TORQUE_ROLLING, TRB_TORQUE_RIB, TRB_TORQUE_FRONT_RIB, TRB_N_TORQUES } trb_torque;
 
@@ -53,6 +56,9 @@ typedef struct trb_counters {
 #undef TRB_COUNTER_MEMBER
 } trb_counters;
 
+/* Margin where there is no such contact, m. */
+#define TRB_NO_CONTACT 1e30
+
 typedef struct trb_roller_load {
   trb_vec3 force;                 /* on the roller, in its cylindrical frame, N */
   trb_vec3 moment;                /* on the roller about its centre of mass, N m */
@@ -63,6 +69,7 @@ typedef struct trb_roller_load {
   trb_vec3 cage_force;            /* on the cage, in R, N */
   trb_vec3 cage_moment;           /* on the cage about its centre of mass, N m */
   double   elastic;               /* J */
+  double   margin[TRB_N_MARGINS]; /* of raceways and ribs: least distance of a contact from its onset or end, m */
   double   torque[TRB_N_TORQUES]; /* on the inner ring about its axis, N m */
   double   power[TRB_N_POWERS];   /* lost, W */
 } trb_roller_load;
@@ -110,7 +117,7 @@ typedef struct trb_detail {
   trb_point_detail *front_rib;           /* n_rollers */
   double           *pocket_force;        /* [roller][slot], N */
   double           *pocket_friction;     /* [roller][slot], N */
-  double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m */
+  double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
 } trb_detail;
 
 /* Scratch of one thread. */
@@ -155,8 +162,8 @@ typedef struct trb_pocket_gaps {
 
 static inline int trb_pocket_clear(const trb_pocket_gaps *gaps) { return gaps->of[TRB_GAP_FLANK] > 0.0 && gaps->of[TRB_GAP_ENDS] > 0.0; }
 
-/* What one roller and its pocket do to each other. The load is written only where they may touch, or with a detail, and so are slopes, if
- * they are wanted. */
+/* What one roller and its pocket do to each other. The load is written only where they may touch, or with a detail that wants
+ * interferences, and so are slopes, if they are wanted. A detail's forces are added to. */
 trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
                                       trb_pocket_slopes *slopes, trb_detail *detail);
 

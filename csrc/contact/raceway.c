@@ -1,4 +1,5 @@
 /* Rollers on both raceways: hands tiles of contacts to the kernel and adds what comes back. */
+#include <math.h>
 #include <string.h>
 
 #include "contact/kernels.h"
@@ -20,6 +21,7 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
 
 static void add_output(const trb_race_output *out, int race, trb_roller_load *load)
 {
+  load->margin[TRB_MARGIN_RACES] = trb_min(load->margin[TRB_MARGIN_RACES], fabs(out->depth));
   load->force = trb_add(load->force, out->force);
   load->moment = trb_add(load->moment, out->moment);
   load->elastic += out->elastic;
@@ -37,6 +39,14 @@ static void add_output(const trb_race_output *out, int race, trb_roller_load *lo
   load->torque[TRB_TORQUE_TRACTION] += out->torque_traction;
   load->torque[TRB_TORQUE_ROLLING] += out->torque_rolling;
   load->power[TRB_POWER_TRACTION_INNER] += out->power_traction;
+}
+
+void trb_contact_raceway_of(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, trb_race_output *output)
+{
+  trb_instant one = *at;
+  one.chosen = &roller;
+  const trb_race_input input = race_input(m, &one, race);
+  trb_kernel_variants[work->variant].raceway(m, &input, 1, work->lanes, &work->counters, output);
 }
 
 /* Lane fields of the tile's loaded contacts, in the order in which the kernel packed them. */

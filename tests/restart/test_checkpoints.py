@@ -59,8 +59,10 @@ def same(result: trb.Result, reference: trb.Result) -> None:
     assert result.success, result.message
     assert reference.final_state is not None
     np.testing.assert_array_equal(result.final_state, reference.final_state)
-    for name in ("time", "cage_position", "roller_position", "work_shaft"):
+    for name in ("time", "cage_position", "roller_position", "work_shaft", "pocket_force_peak", "pocket_impulse_peak"):
         np.testing.assert_array_equal(result[name], reference[name])
+    for name in reference.peaks:
+        np.testing.assert_array_equal(result.peaks[name], reference.peaks[name], err_msg=name)
 
 
 @pytest.mark.parametrize("save_every", [7e-6, 3.3e-5, 1e-3, 1.0])
@@ -69,6 +71,8 @@ def test_output_times_change_no_bit(reference: trb.Result, save_every: float) ->
     np.testing.assert_array_equal(other.final_state, reference.final_state)
     assert other.stats["steps"] == reference.stats["steps"]
     assert other.stats["restarts"] == reference.stats["restarts"] == 1 + int(0.02 / EVERY)
+    for name in reference.peaks:
+        np.testing.assert_array_equal(other.peaks[name], reference.peaks[name], err_msg=name)
 
 
 @pytest.mark.parametrize("integrator", ["bdf", "erk"])
@@ -264,6 +268,7 @@ def test_another_build_is_said(broken: Path, reference: trb.Result) -> None:
         {"state": np.zeros(3)},
         {"state": np.full(10_000, 1e300)},
         {"done": 10**9},
+        {"peaks": np.zeros(3)},
     ],
 )
 def test_checkpoints_that_say_what_cannot_be_are_refused(broken: Path, changes: dict[str, Any]) -> None:
@@ -274,7 +279,14 @@ def test_checkpoints_that_say_what_cannot_be_are_refused(broken: Path, changes: 
 
 @pytest.mark.parametrize(
     "changes",
-    [{"time": "now"}, {"done": -1}, {"done": True}, {"start": 1.0, "end": 0.0}, {"state": np.array([np.nan])}],
+    [
+        {"time": "now"},
+        {"done": -1},
+        {"done": True},
+        {"start": 1.0, "end": 0.0},
+        {"state": np.array([np.nan])},
+        {"peaks": np.array([np.nan])},
+    ],
 )
 def test_checkpoints_of_wrong_kinds_fall_back(broken: Path, reference: trb.Result, changes: dict[str, Any]) -> None:
     path = checkpoint_path(broken)
@@ -289,7 +301,7 @@ def test_the_file_is_small_and_readable(broken: Path) -> None:
     data = checkpoint_path(broken).read_bytes()
     assert len(data) < 100_000
     name, _, head = data.split(b"\n")[:3]
-    assert name == b"trbdyn-checkpoint 1"
+    assert name == b"trbdyn-checkpoint 2"
     values = json.loads(head)
     assert values["instruction_set"] in _core.instruction_sets()
     assert values["model"] == scene().fingerprint
