@@ -1,7 +1,7 @@
 """Thousands of random scenes, judged; failures are shrunk to small scenes and kept.
 
-    python tests/adversary/adversary.py --count 1000             a number of scenes
-    python tests/adversary/adversary.py --minutes 20             for a time
+python tests/adversary/adversary.py --count 1000             a number of scenes
+python tests/adversary/adversary.py --minutes 20             for a time
 """
 
 from __future__ import annotations
@@ -107,7 +107,9 @@ def main() -> int:
         for verdict in bad:
             small = shrink(verdict["table"], verdict["status"])
             path = FOUND / f"{verdict['kind']}_{verdict['seed']}.json"
-            path.write_text(json.dumps({"status": verdict["status"], "broken": verdict["broken"], "scene": small}, indent=1) + "\n")
+            path.write_text(
+                json.dumps({"status": verdict["status"], "broken": verdict["broken"], "scene": small}, indent=1) + "\n"
+            )
             print(f"kept {path.name}: {small}")
     return 1 if bad else 0
 
@@ -115,7 +117,9 @@ def main() -> int:
 def say(verdict: dict[str, Any]) -> None:
     said = {name: value for name, value in verdict["table"].items() if ORDINARY.get(name) != value}
     text = {name: f"{value:.4g}" if isinstance(value, float) else value for name, value in said.items()}
-    print(f"{verdict['status']}: {verdict['kind']} {verdict['seed']}: {'; '.join(verdict['broken'])}; {text}", flush=True)
+    print(
+        f"{verdict['status']}: {verdict['kind']} {verdict['seed']}: {'; '.join(verdict['broken'])}; {text}", flush=True
+    )
 
 
 def report(verdicts: list[dict[str, Any]], seconds: float) -> None:

@@ -112,7 +112,9 @@ def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
     if loss <= LOSS and speed <= SLIP:
         return
     others = [
-        bounded_run(trb.Simulation(scene, accuracy="reference", rings_share=0.0, **changed), run.time, MOST_REFERENCE_STEPS)
+        bounded_run(
+            trb.Simulation(scene, accuracy="reference", rings_share=0.0, **changed), run.time, MOST_REFERENCE_STEPS
+        )
         for changed in ({"rtol": 5e-5}, {"rtol": 2e-4})
     ]
     good = [other for other in (tight, *others) if other.status == "done"]
@@ -189,5 +191,7 @@ def _stored(record: dict[str, Array]) -> float:
 
 def _turned_over(before: dict[str, Array], now: dict[str, Array]) -> float:
     """Energy that changed hands between two records."""
-    names = [name for name in now if name.startswith(("loss_", "work_")) or name in ("kinetic_energy", "elastic_energy")]
+    names = [
+        name for name in now if name.startswith(("loss_", "work_")) or name in ("kinetic_energy", "elastic_energy")
+    ]
     return float(sum(abs(float(now[name]) - float(before[name])) for name in names))

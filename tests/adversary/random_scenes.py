@@ -107,9 +107,15 @@ def wide(rng: np.random.Generator) -> Table:
         if rng.random() < 0.12:
             table[name] = draw()
     if rng.random() < 0.12:
-        table |= {"end_speed_rpm": table["speed_rpm"] * float(rng.uniform(-1.0, 2.0)), "history_s": _log(rng, 1e-4, 2e-2)}
+        table |= {
+            "end_speed_rpm": table["speed_rpm"] * float(rng.uniform(-1.0, 2.0)),
+            "history_s": _log(rng, 1e-4, 2e-2),
+        }
     elif rng.random() < 0.08 and table.get("displacement_x") is None:
-        table |= {"end_axial_load": table["axial_load"] * float(rng.uniform(0.7, 2.0)), "history_s": _log(rng, 1e-3, 2e-2)}
+        table |= {
+            "end_axial_load": table["axial_load"] * float(rng.uniform(0.7, 2.0)),
+            "history_s": _log(rng, 1e-3, 2e-2),
+        }
     return table
 
 

@@ -81,7 +81,7 @@ def test_every_average_is_that_of_the_window(late: tuple[Any, Result, NDArray[np
     for side in ("outer", "inner", "rib"):
         load, film = column(f"{side}_load"), column(f"{side}_film_parameter")
         assert values[f"{side}_load_mean"] == pytest.approx(load.mean())
-        assert values[f"{side}_pressure_max"] == column(f"{side}_pressure").max()
+        assert values[f"{side}_pressure_max"] is None, "extremes are those of the steps, not of the records"
         weighted = float((film * load).sum() / load.sum())
         assert values[f"film_parameter_{side}"] == pytest.approx(weighted)
         assert weighted < 0.6 * film.mean(), "the plain mean is another one"
@@ -89,7 +89,6 @@ def test_every_average_is_that_of_the_window(late: tuple[Any, Result, NDArray[np
     assert values["skew_rms"] > 1.05 * abs(column("roller_skew").mean())
     force = column("pocket_force")
     assert values["pocket_force_p95"] == pytest.approx(np.percentile(force[force > 0.0], 95.0))
-    assert values["pocket_force_peak"] == force.max()
     assert values["pocket_duty"] == pytest.approx((force.max(axis=2) > 0.0).mean())
     assert values["torque"] == pytest.approx(column("inner_torque").mean())
     assert values["torque_outer"] == pytest.approx(1.6)

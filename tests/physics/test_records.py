@@ -143,7 +143,7 @@ def sums(kit: SimpleNamespace, sim: Simulation, vector: Array, found: dict[str, 
         ..., np.newaxis
     ] * sliding
     resistance = np.where(load > 0.0, found["raceway_rolling"][1] / np.linalg.norm(mean, axis=-1), 0.0)
-    centre = [*displacement[:3], 0.0, 0.0, scene.bearing.geometry.centre_plane]
+    centre = np.add(displacement[:3], (0.0, 0.0, scene.bearing.geometry.centre_plane))
     for name, force in (("traction", drag), ("rolling", -resistance[..., np.newaxis] * mean)):
         moments = [
             t.apply(np.cross(p - t.inv().apply(centre), f).sum(axis=0))
