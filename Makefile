@@ -5,6 +5,7 @@
 #   make lint       style, types, rules of the C sources (make format rewrites the style)
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
+#   make notebooks  the notebooks run and keep their outputs
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=60 SEED=1 MORE=1)
@@ -35,7 +36,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: demo test lint format bench stability fuzz sanitize mutate install clean distclean
+.PHONY: demo test lint format bench stability notebooks fuzz sanitize mutate install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -66,6 +67,9 @@ bench: install $(VENV)/.test
 stability: install $(VENV)/.test
 	@mkdir -p build
 	$(PY) tests/stability/stability.py --json build/stability.json $(SCENES)
+
+notebooks: install $(VENV)/.test
+	$(PY) -m pytest notebooks --nbmake --overwrite
 
 fuzz: $(VENV)/.tools
 	SECONDS_EACH=$(or $(SECONDS),60) .ci/fuzz

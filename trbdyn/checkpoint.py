@@ -89,6 +89,8 @@ class Checkpoint:
         The state vector.
     peaks : ndarray
         Peaks so far, as the core saves them; empty if the run keeps none.
+    warnings : list of str
+        What the watch over the run has found by then.
     """
 
     run_id: str
@@ -107,6 +109,7 @@ class Checkpoint:
     stepping_s: float
     state: Array = field(repr=False)
     peaks: Array = field(repr=False)
+    warnings: list[str] = field(default_factory=list)
 
     def to_bytes(self) -> bytes:
         """The file's content."""
@@ -169,6 +172,8 @@ class Checkpoint:
             raise ValueError("its times are not in order")
         if self.done < 0 or not np.isfinite(self.state).all():
             raise ValueError("its state is not finite")
+        if not isinstance(self.warnings, list) or not all(isinstance(text, str) for text in self.warnings):
+            raise ValueError("its warnings are not texts")
         if np.isnan(self.peaks).any():
             raise ValueError("its peaks are not numbers")
 

@@ -13,7 +13,7 @@ import os
 import sys
 import tomllib
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NoReturn
@@ -127,7 +127,12 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
     run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
     run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
-    run.add_argument("--save-every", type=float, metavar="S", help="time between saved records (s)")
+    run.add_argument(
+        "--save-every",
+        type=float,
+        metavar="S",
+        help="time between records (s); default 1e-4, up to 1e-3 in long runs",
+    )
     run.add_argument(
         "--checkpoint-every", type=float, metavar="S", help="bearing time between checkpoints (s), to resume from"
     )
@@ -232,7 +237,10 @@ def _run(options: argparse.Namespace) -> int:
     name = f"{Path(options.case).stem}.h5" if options.output is None else options.output
     output = output_path(name, overwrite=options.overwrite)
     _check_summary(options.summary, output, overwrite=options.overwrite)
-    result = _simulate(scene, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite)
+    given = run.model_fields_set | changes.keys()
+    result = _simulate(
+        scene, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite, given=given
+    )
     return _finish(result, output, options.summary, quiet=options.quiet)
 
 
@@ -263,7 +271,10 @@ def _resume(options: argparse.Namespace) -> int:
     return _finish(result, Path(options.file), options.summary, quiet=options.quiet)
 
 
-def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool, overwrite: bool) -> Result:
+def _simulate(
+    scene: Scene, run: RunOptions, output: Path, *, quiet: bool, overwrite: bool, given: Collection[str] = ()
+) -> Result:
+    """Run a case; what is not given of what to keep is chosen by the length of the run."""
     from trbdyn.run_options import RunOptions
     from trbdyn.simulation import Simulation
 
@@ -275,8 +286,8 @@ def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool, overw
     return Simulation(scene, **settings).run(
         revolutions=run.revolutions,
         duration=run.duration,
-        save_every=run.save_every,
-        save_groups=run.save_groups,
+        save_every=run.save_every if "save_every" in given else None,
+        save_groups=run.save_groups if "save_groups" in given else None,
         progress=not quiet,
         output=output,
         overwrite=overwrite,
@@ -292,7 +303,7 @@ def _finish(result: Result, output: Path, summary_file: str | Path | None, *, qu
         summary.write_json(values, summary_file)
     if not quiet:
         print(summary.table(values))
-        print(f"\nrecords in {output}")
+        print(f"\n{len(result)} records in {output}: {result.meta.get('kept', '')}")
     if not result.success:
         print(f"trbdyn: {one_line(result.message)}", file=sys.stderr)
     return DONE if result.success else FAILED

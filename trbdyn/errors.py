@@ -120,6 +120,10 @@ class FileError(TrbError, OSError):
     """A file that cannot be read or written as asked."""
 
 
+class RunWarning(UserWarning):
+    """A run is doubtful: its energy does not add up, or its steps lead nowhere. `Result.warnings` keeps what was said."""
+
+
 class StepError(TrbError):
     """A time step that failed.
 

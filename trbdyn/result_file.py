@@ -8,7 +8,7 @@ Schema ``trbdyn-result``, version 1:
 - ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
 - ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
   ``kind``, ``dims`` and ``index`` (its place in the record)
-- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters`` and ``final_time``; empty until the run
+- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and ``final_time``; empty until the run
   has ended
 - ``/final_state``: the state vector at ``final_time``; empty until then
 - ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then; missing if
@@ -93,6 +93,8 @@ class RunInfo:
         Solver statistics: steps, rhs_evaluations, wall_s and others.
     counters : dict
         Evaluations of each effect.
+    warnings : tuple of str
+        What the watch over the run found, see `trbdyn.watch`.
     final_time : float
         Time of the final state, s.
     final_state : ndarray or None
@@ -110,6 +112,7 @@ class RunInfo:
     message: str = ""
     stats: dict[str, Any] = field(default_factory=dict)
     counters: dict[str, int] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
     final_time: float = float("nan")
     final_state: Array | None = None
     geometry: dict[str, float] = field(default_factory=dict)
@@ -434,6 +437,7 @@ class ResultWriter:
         final_time: float,
         final_state: ArrayLike | None,
         peaks: Mapping[str, Array] | None = None,
+        warnings: Sequence[str] = (),
     ) -> None:
         """Write how the run ended, and close the file.
 
@@ -453,6 +457,8 @@ class ResultWriter:
             The last good state.
         peaks : mapping of str to ndarray, optional
             Peaks of the whole run.
+        warnings : sequence of str
+            What the watch over the run found.
 
         Raises
         ------
@@ -468,7 +474,7 @@ class ResultWriter:
                 self._file["peaks"][name].resize(1, axis=0)
                 self._file["peaks"][name][0] = values
             ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
-            ending |= {"stats": dict(stats), "counters": dict(counters)}
+            ending |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
             self._put("ending", np.frombuffer(_json(ending).encode(), dtype="u1"))
         self.close()
 

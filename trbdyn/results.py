@@ -51,6 +51,8 @@ class Result(Derived):
         How it ended, in a sentence.
     stats : dict
         Solver statistics: steps, rhs_evaluations, wall_s and others.
+    warnings : tuple of str
+        What the watch over the run found: energy that does not add up, steps that lead nowhere (`trbdyn.watch`).
     counters : dict of str to int
         How often the core evaluated each effect; zero for effects that are off.
     geometry : dict of str to float
@@ -86,6 +88,7 @@ class Result(Derived):
         meta: Mapping[str, Any] | None = None,
         groups: Sequence[str] | None = None,
         fields: Sequence[Field] | None = None,
+        warnings: Sequence[str] = (),
         peaks: Mapping[str, Array] | None = None,
     ) -> Self:
         """A result from full records in memory.
@@ -104,6 +107,8 @@ class Result(Derived):
             Groups of fields to keep; all by default, and then the arrays are views into `records`.
         fields : sequence of Field, optional
             The table that describes the fields; the core's by default.
+        warnings : sequence of str
+            What the watch over the run found.
         peaks : mapping of str to ndarray, optional
             Peaks of the whole run.
 
@@ -136,6 +141,7 @@ class Result(Derived):
             message=message,
             stats=dict(stats),
             counters=dict(counters),
+            warnings=tuple(warnings),
             final_time=float(final_time),
             final_state=None if final_state is None else np.array(final_state, dtype=float),
             geometry=dict(geometry),
@@ -189,6 +195,10 @@ class Result(Derived):
     @property
     def counters(self) -> dict[str, int]:
         return self._info.counters
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        return self._info.warnings
 
     @property
     def geometry(self) -> dict[str, float]:
@@ -281,7 +291,7 @@ class Result(Derived):
 
     @property
     def settled(self) -> Result:
-        """The result after settling; the second half of the run if it has not settled."""
+        """The result after the transient, the second half of the run at least; `settling` says whether it has settled there."""
         return self.window(self.settling().time)
 
     @property

@@ -87,7 +87,7 @@ def resume(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint cannot be used: it has too many records"
             )
         run = Run(sim, options, times, callback, found.done)
-        run.notes, run.spent = notes, found.stepping_s
+        run.notes, run.spent, run.doubts = notes, found.stepping_s, list(found.warnings)
         # the first segment is written again where there is none; one that cannot be read may still hold something
         empty = output.exists() and output.stat().st_size == 0
         segment = 0 if empty or not output.exists() else 1 + max(segment_paths(output), default=0)

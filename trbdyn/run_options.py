@@ -93,6 +93,9 @@ class RunOptions(Model):
         Bearing time between checkpoints (s): the integrator starts anew at the first step's end at or after each multiple
         of it, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
         from them.
+    when_wrong : {'stop', 'go_on'}
+        What to do with a run whose energy is off by more than a tenth, or whose steps lead nowhere (`trbdyn.watch`): end it with
+        ``success=False``, or go on with a warning.
     """
 
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None
@@ -111,6 +114,7 @@ class RunOptions(Model):
     first_step: Annotated[Number, unit("s", ge=0)] = 0.0
     rings_share: Annotated[Number, unit("1", ge=0, le=1)] | None = None
     checkpoint_every: Annotated[Number, unit("s", ge=1e-9)] | None = None
+    when_wrong: Literal["stop", "go_on"] = "stop"
 
     _root: ClassVar[str | None] = "run"
 

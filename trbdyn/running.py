@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn import _core, checkpoint
+from trbdyn import _core, checkpoint, keeping
 from trbdyn import fields as field_table
 from trbdyn import peaks as peak_table
 from trbdyn.checkpoint import Checkpoint
@@ -27,6 +27,7 @@ from trbdyn.result_file import ResultWriter, reason
 from trbdyn.results import Result, load
 from trbdyn.run_options import RunOptions
 from trbdyn.sources import FileSource, segment_paths
+from trbdyn.watch import Watch
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -56,6 +57,7 @@ class Run:
         self.callback = callback
         self.done = done
         self.notes: list[str] = []
+        self.doubts: list[str] = []
         self.kept: list[Array] = []
         self.filling: Array | None = None
         self.writer: ResultWriter | None = None
@@ -99,6 +101,7 @@ class Run:
             groups=self.options.save_groups,
             meta=self._meta(),
             geometry=asdict(sim.scene.bearing.geometry),
+            compression=keeping.compression(self.options.save_every),
             run_id=run_id,
             segment=segment,
             first_record=self.done,
@@ -160,10 +163,10 @@ class Run:
         sim._end = None
         self._keep_peaks(float(self.times[0]))
         due = checkpoint.next_time(sim._begun, every)
+        watch = Watch(sim, float(self.times[-1]), self.doubts, going_on=self.options.when_wrong == "go_on")
         while self.done < self.times.size:
             chunk = self.times[self.done : self.done + CHUNK_RECORDS]
             # a signal may come before the core's answer does: what is filled is seen by its finite times
-            self._keep_peaks(sim._core.time)  # where the callback has set a state
             self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
             before = clock.perf_counter()
             try:
@@ -182,13 +185,17 @@ class Run:
                 if peaks.size:
                     sim._core.restore_peaks(peaks)
                 due = checkpoint.next_time(sim.time, every)
+                watch.renew()
                 self._write_checkpoint()
+            doubt = watch.look(final=self.done >= self.times.size)
             bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
             if sim.scene.effects.bodies == "rollers" and rows:
                 _check_apart(sim, records[:rows])
             ended = self._call_back()
             if self.interrupted:
                 raise KeyboardInterrupt
+            if doubt is not None:
+                return doubt
             if ended:
                 return f"ended by the callback at {sim.time:.6g} s"
         return None
@@ -247,6 +254,7 @@ class Run:
             stepping_s=self.spent,
             state=sim._core.state(),
             peaks=sim._core.save_peaks(),
+            warnings=list(self.doubts),
         )
         checkpoint.write(checkpoint.checkpoint_path(self.output), found)
 
@@ -264,6 +272,7 @@ class Run:
             "sundials_version": _core.sundials_version(),
             "core_version": _core.version(),
             "settings": settings,
+            "kept": keeping.said(self.options.save_every, self.options.save_groups),
             "notes": self.notes,
         }
 
@@ -314,6 +323,7 @@ class Run:
             "message": message,
             "stats": self._stats(),
             "counters": sim.counters,
+            "warnings": self.doubts,
             "final_time": ended.time,
             "final_state": ended.vector,
         }

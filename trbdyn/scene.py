@@ -130,7 +130,7 @@ class Scene(Model):
     lubricant : Lubricant
         The oil.
     effects : Effects
-        Switches and choices.
+        Switches and choices; `Effects.standard` by default.
     start : Start
         How a run starts.
     ring : {'held', 'follows'}

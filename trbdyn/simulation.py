@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from trbdyn import _core
 from trbdyn.errors import MISSING, InputError, Problem, StepError
 from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
+from trbdyn.keeping import kept_by_default
 from trbdyn.motion import MAX_TIME
 from trbdyn.own_files import output_path
 from trbdyn.results import Result
@@ -240,7 +241,7 @@ class Simulation:
         return self._reached
 
     def estimate(
-        self, *, revolutions: float | None = None, duration: float | None = None, save_every: float = 1e-4
+        self, *, revolutions: float | None = None, duration: float | None = None, save_every: float | None = None
     ) -> Estimate:
         """Expected wall time and error of a run from here, by a short probe of a copy; see `trbdyn.estimate.estimate`."""
         from trbdyn.estimate import estimate
@@ -296,7 +297,7 @@ class Simulation:
         *,
         revolutions: float | None = None,
         duration: float | None = None,
-        save_every: float = 1e-4,
+        save_every: float | None = None,
         save_groups: Sequence[Group] | None = None,
         output: str | Path | None = None,
         progress: bool = False,
@@ -312,10 +313,11 @@ class Simulation:
             How far to go, in turns of the shaft.
         duration : float, optional
             How far to go (s); one of both must be given.
-        save_every : float
-            Time between records (s).
+        save_every : float, optional
+            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3 s, but
+            not longer than a twentieth of a turn of the shaft (`trbdyn.keeping`); ``result.meta["kept"]`` says what was kept.
         save_groups : sequence of str, optional
-            Groups of quantities to keep; all by default.
+            Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
         output : path-like, optional
             HDF5 file to write while running; without it records stay in memory.
         progress : bool
@@ -345,11 +347,15 @@ class Simulation:
         """
         self._check_not_running("run")
         path = None if output is None else output_path(output, overwrite=overwrite)
-        changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration, "save_every": save_every}
+        changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
+        changes |= {} if save_every is None else {"save_every": save_every}
         changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
-        times = output_times(self._reached, options.end_time(self.scene.speed_rpm, self._reached), options.save_every)
+        end = options.end_time(self.scene.speed_rpm, self._reached)
+        kept = kept_by_default(end - self._reached, self.scene.speed_rpm, save_every, save_groups)
+        options = options.replace(**kept)
+        times = output_times(self._reached, end, options.save_every)
         run = Run(self, options, times, callback)
         if path is not None:
             run.write_to(path, overwrite=overwrite)

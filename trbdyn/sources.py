@@ -188,6 +188,7 @@ class FileSource:
             message=message,
             stats=stats,
             counters=counters,
+            warnings=_texts(self._ending.get("warnings")),
             final_time=final_time,
             final_state=state if self.finished and state.size else None,
             geometry=geometry,
@@ -351,3 +352,8 @@ def _check_stored(file: str, name: str, *datasets: h5py.Dataset) -> None:
 
 def _text(value: Any) -> str:
     return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def _texts(value: object) -> tuple[str, ...]:
+    """A list of sentences; nothing where a file holds anything else."""
+    return tuple(str(text) for text in value) if isinstance(value, list) else ()

@@ -225,7 +225,7 @@ def _lubricant(table: Table) -> Lubricant:
 def _effects(table: Table) -> Effects:
     path = ("effects",)
     _check_names(table, {*Effects.model_fields, "preset"}, path)
-    preset = _choose({"preset": "paper", **table}, "preset", PRESETS, path)
+    preset = _choose({"preset": "standard", **table}, "preset", PRESETS, path)
     return _build(Effects, _merged(preset().to_dict(), _without(table, "preset")), path)
 
 

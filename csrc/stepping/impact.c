@@ -12,7 +12,7 @@
 #include "laws/line_contact.h"
 
 /* Share of an impact's speed and interference that a step may be wrong by; least factor; steps ahead in which a gap may close. */
-static const double share = 0.02, least_factor = 0.02, ahead = 3.0;
+static const double share = 0.01, least_factor = 0.02, ahead = 3.0;
 
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {

@@ -1,4 +1,4 @@
-"""Random scenes over the whole admitted space, each from a seed; a scene is a flat table, so that it can be written down and shrunk."""
+"""Random scenes over the whole admitted space, each from a seed. A scene is a flat table, so that it can be kept and shrunk."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ SCALED = ("play_radial", "play_circumferential", "play_axial")
 
 
 def usual(rng: np.random.Generator) -> Table:
-    """A scene that engineers run: shipped bearings at 1 to 20 000 rpm, 0.5 to 32 kN, oil at 10 to 110 C, two presets of effects."""
+    """A scene of practice: shipped bearings at 1 to 20 000 rpm, 0.5 to 32 kN, oil at 10 to 110 C, two presets of effects."""
     table = {
         "bearing": _one_of(rng, "30310", "32216"),
         "speed_rpm": _log(rng, 1.0, 2e4),

@@ -187,33 +187,6 @@ def test_a_run_that_ends_early_has_its_peaks() -> None:
     np.testing.assert_array_equal(result.peaks["pocket_force_peak"], reference.peaks["pocket_force_peak"])
 
 
-def test_a_state_set_within_a_run_begins_peaks_again() -> None:
-    sim, done = Simulation(whirling()), []
-
-    def push(now: Simulation) -> None:
-        if not done and now.time > 0.0:
-            done.append(now.time)
-            now.set_state(now.state)
-
-    result = sim.run(duration=0.15, save_every=1e-3, callback=push)
-    assert done
-    assert done[0] < 0.15
-    assert result.success
-    assert (result.peaks["skew_peak_time"] >= done[0]).all()
-
-
-def test_a_callback_that_goes_beyond_the_end_keeps_its_state(kit: SimpleNamespace) -> None:
-    def on(now: Simulation) -> None:
-        for _ in range(50):
-            now.step()
-
-    sim = kit.simulate(Effects.paper())
-    result = sim.run(duration=1e-3, callback=on)
-    assert result.success
-    assert sim.time == sim._core.time > 1e-3
-    np.testing.assert_array_equal(sim.state.vector, sim._core.state())
-
-
 def test_what_users_read_after_a_run_is_at_its_end(kit: SimpleNamespace) -> None:
     """The integrator's last step reaches beyond; what is read does not, and the next run goes on as if nothing had been read."""
     end = 1.23456e-3

@@ -116,6 +116,10 @@ C_TOKEN = re.compile(
 CALL = re.compile(r"^[ \t]+[\w.\->\[\]]+(?: = | \+= | -= |\()[^;{}=]*;$", re.M)
 
 
+LOOKS = re.compile(r"linewidth|alpha|figsize|fontsize|pad=|zorder|ncols|markersize|shrink|margins|xytext|height=|offset")
+"""Lines that say how a picture looks, not what it shows."""
+
+
 @dataclass(frozen=True)
 class Fault:
     """One change of one source."""
@@ -170,6 +174,8 @@ def faults_of_python(text: str) -> Iterator[tuple[int, str, str]]:
         if token.string in ("def", "class", "import", "from", "@"):
             signature = token.end[0]
         if token.start[0] == signature or token.line.lstrip().startswith(("def ", "from ", "import ", "@", "class ")):
+            continue
+        if LOOKS.search(token.line):
             continue
         at = starts[token.start[0] - 1] + token.start[1]
         binary = before.type in (tokenize.NAME, tokenize.NUMBER) or before.string in (")", "]")
@@ -321,6 +327,7 @@ def run_pytest(names: list[str], writing: int) -> int:
                 os.write(writing, b"import fails")
 
     os.chdir(TREE)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
     nothing = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(nothing, stream)

@@ -9,7 +9,7 @@ by the whirling start itself and with rollers off their places by +-3e-4 rad at 
 from __future__ import annotations
 
 import trbdyn as trb
-from trbdyn.paper.growth import whirl_amplitude
+from trbdyn.observables import whirl_amplitude
 from trbdyn.paper.points import Condition, Point
 
 

@@ -94,7 +94,7 @@ def test_a_schedule_is_a_part_of_the_run(reference: trb.Result) -> None:
     other = run(checkpoint_every=None)
     assert other.stats["restarts"] == 1
     assert (other.final_state != reference.final_state).any()
-    np.testing.assert_allclose(other.whirl_radius.mean(), reference.whirl_radius.mean(), rtol=0.02)
+    np.testing.assert_allclose(other.orbit_radius.mean(), reference.orbit_radius.mean(), rtol=0.02)
 
 
 def test_times_of_the_schedule() -> None:

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.own_files import folder_path
-from trbdyn.plotting.cage import axial_motion, cage_locus, spectrum, tilt, whirl_map, whirl_radius
+from trbdyn.plotting.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plotting.energy import energy_audit, power_split, torque_split
 from trbdyn.plotting.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
 from trbdyn.plotting.style import SAVE_DPI, STYLE
@@ -37,6 +37,7 @@ __all__ = [
     "energy_audit",
     "film_parameter",
     "make_folder",
+    "orbit_radius",
     "pocket_forces",
     "pocket_statistics",
     "power_split",
@@ -53,7 +54,7 @@ Picture = Callable[["Result"], Axes | Figure]
 
 PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
     "cage_locus": (cage_locus, ("cage",)),
-    "whirl_radius": (whirl_radius, ("cage", "rollers")),
+    "orbit_radius": (orbit_radius, ("cage", "rollers")),
     "axial_motion": (axial_motion, ("cage",)),
     "tilt": (tilt, ("cage",)),
     "spectrum": (spectrum, ("cage",)),
@@ -67,6 +68,8 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
     "energy_audit": (energy_audit, ("energy",)),
 }
 """Pictures of one result, by name, and the groups that each needs."""
+
+_RENAMED: Final = {"whirl_radius": "orbit_radius"}
 
 SPECTRUM_RECORDS: Final = 8
 """Fewest records of a spectrum."""
@@ -82,7 +85,7 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     path : path-like
         File to write; its ending gives the format.
     title : str, optional
-        Title above the whole figure.
+        A line under the figure's own title, which names the quantity.
 
     Returns
     -------
@@ -100,7 +103,8 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     try:
         with plt.rc_context(STYLE):
             if title:
-                figure.suptitle(title, fontsize=10)
+                quantity = figure.get_suptitle()
+                figure.suptitle(f"{quantity}\n{title}" if quantity else title, fontsize=10)
             figure.savefig(path, dpi=SAVE_DPI)
     except (OSError, ValueError) as error:
         raise FileError(f"{path}: the picture cannot be written: {error}") from error
@@ -123,7 +127,7 @@ def all(
     only : iterable of str, optional
         Names of the pictures to draw, of those in `PICTURES`; all by default.
     title : str, optional
-        Title of every picture; by default bearing, speed and loads.
+        A line under the title of every picture, which names the quantity; by default bearing, speed and loads.
 
     Returns
     -------
@@ -141,7 +145,7 @@ def all(
         there = set(result.groups) - (set() if result.has_cage else {"cage", "pocket"})
         chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
     else:
-        chosen = list(only)
+        chosen = [_RENAMED.get(name, name) for name in only]
     if only is None and len(result) < SPECTRUM_RECORDS:
         chosen = [name for name in chosen if name != "spectrum"]
     for name in chosen:

@@ -14,9 +14,9 @@ DONE, FAILED = 0, 1
 
 COLUMNS: Final = (
     "status",
-    "settled",
+    "settling",
     "cage_motion",
-    "whirl_radius_over_cpr",
+    "orbit_radius_over_cpr",
     "whirl_ratio",
     "pocket_force_p95",
     "torque",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -65,10 +66,35 @@ def _texts(values: Sequence[str]) -> NDArray[Any]:
 
 def _coordinates(study: Study, dims: tuple[str, ...]) -> dict[str, Any]:
     if study.axes:
-        return {axis.name: (axis.name, _column(list(axis.labels)), {"path": axis.path}) for axis in study.axes}
+        return {axis.name: (axis.name, _column(list(axis.labels)), _about_path(axis.path)) for axis in study.axes}
     names = dict.fromkeys(key for case in study.cases for key in case.parameters)
-    columns = {name: ("case", _column([case.parameters.get(name) for case in study.cases])) for name in names}
+    columns = {
+        name: ("case", _column([case.parameters.get(name) for case in study.cases]), _about_path(name))
+        for name in names
+    }
     return {"case": np.arange(len(study)), **{n if n != "case" else "case_": c for n, c in columns.items()}}
+
+
+def _about_path(path: str) -> dict[str, str]:
+    """Attributes of the values at a dotted path of a case: the path, and the unit where the field has one."""
+    unit = unit_of(path)
+    return {"path": path} | ({"long_name": path, "units": unit} if unit else {})
+
+
+def unit_of(path: str) -> str:
+    """Unit of the field at a dotted path, for instance "kg" for ``bearing.cage.mass``; empty where it is no field with a unit."""
+    from trbdyn.run_options import RunOptions
+    from trbdyn.scene import Scene
+
+    table, *parts = re.sub(r"\[\d+\]", "", path).split(".")
+    owner: Any = RunOptions if table == "run" else Scene
+    for name in parts if table in ("scene", "run") else [table, *parts]:
+        fields = getattr(owner, "model_fields", {})
+        if name not in fields:
+            return ""
+        found, owner = fields[name], fields[name].annotation
+    extra = found.json_schema_extra if parts else None
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
 def _column(values: Sequence[Any]) -> NDArray[Any]:
@@ -104,7 +130,7 @@ def _attributes(name: str) -> dict[str, str]:
     from trbdyn.summary import LABELS
 
     for label, (words, unit) in LABELS.items():
-        if name == label or (name.startswith(f"{label}_") and label.endswith("_split")):
+        if name == label or (name.startswith(f"{label}_") and label.endswith(("_split", "_by_loss"))):
             return {"long_name": words.strip() or label, "units": unit or "1"}
     return {}
 
