@@ -8,6 +8,7 @@
 #   make notebooks  the notebooks run and keep their outputs
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
+#   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=60 SEED=1 MORE=1)
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -35,7 +36,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: demo test lint format bench stability notebooks fuzz sanitize install clean distclean
+.PHONY: demo test lint format bench stability notebooks fuzz sanitize mutate install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -72,6 +73,9 @@ notebooks: install $(VENV)/.test
 
 fuzz: $(VENV)/.tools
 	SECONDS_EACH=$(or $(SECONDS),60) .ci/fuzz
+
+mutate: install
+	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),60) --seed $(or $(SEED),1) $(if $(MORE),--more)
 
 install: build/.package
 

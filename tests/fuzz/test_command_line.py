@@ -101,7 +101,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
     def short(self: running.Run, *rest: Any, **named: Any) -> None:
         begin(self, *rest, **named)
-        self.callback = lambda sim: True
+        self.callback = self.callback or (lambda sim: True)
 
     patch.setattr(running.Run, "__init__", short)
     patch.setattr(running, "CHUNK_STEPS", 3)
