@@ -116,7 +116,9 @@ C_TOKEN = re.compile(
 CALL = re.compile(r"^[ \t]+[\w.\->\[\]]+(?: = | \+= | -= |\()[^;{}=]*;$", re.M)
 
 
-LOOKS = re.compile(r"linewidth|alpha|figsize|fontsize|pad=|zorder|ncols|markersize|shrink|margins|xytext|height=|offset")
+LOOKS = re.compile(
+    r"linewidth|alpha|figsize|fontsize|pad=|zorder|ncols|markersize|shrink|margins|xytext|height=|offset"
+)
 """Lines that say how a picture looks, not what it shows."""
 
 
