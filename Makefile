@@ -6,6 +6,7 @@
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
 #   make notebooks  the notebooks run and keep their outputs
+#   make adversary  random scenes for a time, each judged; failures are shrunk and kept (MINUTES=20, SEED=0)
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=60 SEED=1 MORE=1)
@@ -36,7 +37,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: demo test lint format bench stability notebooks fuzz sanitize mutate install clean distclean
+.PHONY: demo test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -73,6 +74,9 @@ notebooks: install $(VENV)/.test
 
 fuzz: $(VENV)/.tools
 	SECONDS_EACH=$(or $(SECONDS),60) .ci/fuzz
+
+adversary: install
+	$(PY) tests/adversary/adversary.py --minutes $(or $(MINUTES),20) --seed $(or $(SEED),0) --keep --json build/adversary.json
 
 mutate: install
 	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),60) --seed $(or $(SEED),1) $(if $(MORE),--more)

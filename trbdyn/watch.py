@@ -1,9 +1,9 @@
 """A watch over a run: whether its energy adds up, and whether its steps lead anywhere.
 
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
-in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run. A window whose
-energy is off by more than `WARN` of what was turned over in it gives a warning; one in which more than `STOP` was made, or
-is missing beside the losses, ends the run: its losses, slip and forces would be wrong by as much.
+in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
+whole run. A window whose energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more
+than `STOP` was made, or is missing beside the losses, ends the run: its losses, slip and forces would be wrong by as much.
 """
 
 from __future__ import annotations
@@ -66,9 +66,9 @@ class Watch:
         self._going_on = going_on
         self._suppressed = 0
         self._said: set[str] = set()
-        self._last = self._window = self._energies()
-        self._turned_over = 0.0
-        self._since = sim._core.time
+        self._first = self._last = self._window = self._energies()
+        self._turned_over = self._turned_over_in_all = 0.0
+        self._begin = self._since = sim._core.time
         self._steps, self._small_steps, self._small_since = self._counted(), 0, self._since
         self._repeated = self._repeats()
 
@@ -83,12 +83,16 @@ class Watch:
         reason = self._look_at_steps()
         now = self._energies()
         for name in now:
-            self._turned_over += 0.5 * abs(now[name] - self._last[name])
+            exchanged = 0.5 * abs(now[name] - self._last[name])
+            self._turned_over += exchanged
+            self._turned_over_in_all += exchanged
         self._last = now
         time = self._sim._core.time
         if (final and time > self._since) or time - self._since >= self._length:
-            reason = self._judge(now, time) or reason
+            reason = self._judge(self._window, self._since, now, time, self._turned_over) or reason
             self._window, self._since, self._turned_over = now, time, 0.0
+        if final and time > self._begin:
+            reason = self._judge(self._first, self._begin, now, time, self._turned_over_in_all) or reason
         return None if self._going_on else reason
 
     def renew(self) -> None:
@@ -111,19 +115,21 @@ class Watch:
         statistics = self._sim._core.statistics()
         return float(statistics["error_failures"] + statistics["nonlinear_failures"])
 
-    def _judge(self, now: dict[str, float], time: float) -> str | None:
-        change = {name: now[name] - self._window[name] for name in now}
+    def _judge(
+        self, then: dict[str, float], since: float, now: dict[str, float], time: float, turned_over: float
+    ) -> str | None:
+        change = {name: now[name] - then[name] for name in now}
         put_in = sum(value for name, value in change.items() if name.startswith("work_"))
         lost = sum(value for name, value in change.items() if name.startswith("loss_"))
         missing = put_in - lost - change["kinetic_energy"] - change["elastic_energy"]
         stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
-        scale = max(self._turned_over, STORED_SHARE * stored, LEAST_ENERGY)
+        scale = max(turned_over, STORED_SHARE * stored, LEAST_ENERGY)
         off = abs(missing) / scale
         if math.isfinite(off) and off <= WARN:
             return None
         what = "was made by the integration" if missing < 0.0 else "got lost in the integration"
         text = (
-            f"from {self._since:.6g} s to {time:.6g} s the energy does not add up: "
+            f"from {since:.6g} s to {time:.6g} s the energy does not add up: "
             f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
         )
         # where little else takes energy, vibrations that the steps do not resolve lose theirs: it is said, and ends no run

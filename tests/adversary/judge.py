@@ -1,7 +1,7 @@
 """Runs a random scene for a bounded number of steps and judges it by what must hold whatever it is.
 
 A run is *right* if its energy adds up and its losses and the speed of its rollers agree with those of a much tighter run with
-every force exact, *warned* if the program itself said that it is not, *stopped* if it ended with an error of the package, and
+every force exact, *warned* if the program itself said that it is not, *stopped* if the program ended it and said why, and
 *refused* if no run was begun. It is *wrong* if none of this holds, and *hanging* if its steps became so small that it would not
 end.
 """
@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 MOST_STEPS = 6000
 """Steps of the judged run; the others run over the same time."""
 MOST_REFERENCE_STEPS = 60_000
+MOST_STEPS_UNTIL_STOP = 250_000
+"""Steps of a run that seems to hang, within which the program has to end it."""
 PATIENCE_S = 60.0
 """Processor time after which a run is given up."""
 SMALLEST_STEP = 2e-8
@@ -95,7 +97,14 @@ def judge(table: Table) -> Verdict:
         verdict.status, verdict.broken = "stopped", [run.message]
         return verdict
     if run.mean_step < SMALLEST_STEP and run.time < duration:
-        verdict.status, verdict.broken = "hanging", [f"mean step {run.mean_step:.2g} s after {run.steps} steps"]
+        verdict.run = run = bounded_run(
+            trb.Simulation(scene, accuracy=sim.options.accuracy), duration, MOST_STEPS_UNTIL_STOP
+        )
+        if run.status != "ended" and run.mean_step < SMALLEST_STEP:
+            verdict.status, verdict.broken = "hanging", [f"mean step {run.mean_step:.2g} s after {run.steps} steps"]
+            return verdict
+    if run.status == "ended":
+        verdict.status, verdict.broken = "stopped", [run.message]
         return verdict
     if not run.closure <= CLOSURE:
         verdict.broken.append(f"closure {run.closure:.2g}")
@@ -138,7 +147,7 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
     first = sim.record()
     begin, turned, last = sim.time, 0.0, first
     found: list[str] = []
-    watch = Watch(sim, begin + duration, found, going_on=True) if Watch is not None else None
+    watch = Watch(sim, begin + duration, found) if Watch is not None else None
     looks = np.linspace(0.0, duration, 17)[1:] + begin
     began, half = clock.process_time(), (begin, 0)
     try:
@@ -146,14 +155,14 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
             while sim.time < look and run.steps < most_steps:
                 sim.step()
                 run.steps += 1
+                if run.steps % 4000 == 0 and _look(watch, run):
+                    most_steps = run.steps
                 if run.steps == most_steps // 2:
                     half = (sim.time, run.steps)
                 if run.steps % 256 == 0 and clock.process_time() - began > PATIENCE_S:
                     most_steps = run.steps
-            if watch is not None:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore")
-                    watch.look(final=run.steps >= most_steps or look == looks[-1])
+            if _look(watch, run, final=run.steps >= most_steps or look == looks[-1]):
+                most_steps = run.steps
             now = sim.record()
             turned += 0.5 * _turned_over(last, now)
             last = now
@@ -176,6 +185,18 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
     if "cage_position" in last:
         run.cage = (float(last["cage_position"][0]), float(last["cage_position"][1]))
     return run
+
+
+def _look(watch: Any, run: Run, *, final: bool = False) -> bool:
+    """What the program's own watch says now; whether it ends the run."""
+    if watch is None:
+        return False
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        reason = watch.look(final=final)
+    if reason is not None:
+        run.status, run.message = "ended", reason
+    return reason is not None
 
 
 def _duration(scene: trb.Scene) -> float:
