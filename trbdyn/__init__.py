@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from trbdyn.scene import Scene, Start
     from trbdyn.simulation import Simulation
     from trbdyn.toml_case import load_case
+    from trbdyn.viewer import view
 
 _MODULES = {
     "animation": "trbdyn.animation",
@@ -60,6 +61,7 @@ _NAMES = {
     "load": "trbdyn.results",
     "load_case": "trbdyn.toml_case",
     "resume": "trbdyn.resuming",
+    "view": "trbdyn.viewer",
 }
 
 __all__ = [
@@ -90,6 +92,7 @@ __all__ = [
     "pocket_shapes",
     "resume",
     "study",
+    "view",
 ]
 
 try:

@@ -1,7 +1,7 @@
 """The command line: run cases, draw pictures, look into files and cases.
 
-Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that cannot be used;
-130 stopped by Ctrl-C outside of a run.
+Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that
+cannot be used; 130 stopped by Ctrl-C outside of a run.
 """
 
 from __future__ import annotations
@@ -133,7 +133,9 @@ def _parser() -> argparse.ArgumentParser:
 
     from trbdyn.paper.command import add_paper_parser
     from trbdyn.study.command import add_sweep_parser
+    from trbdyn.viewer.command import add_view_parser
 
+    add_view_parser(commands, [common])
     add_sweep_parser(commands, [common])
     add_paper_parser(commands, [common])
 
