@@ -22,17 +22,16 @@ BENCH  ?= $(filter-out common,$(basename $(notdir $(wildcard benchmarks/*.py))))
 VENV    := .venv
 PY      := $(VENV)/bin/python
 PIP     := $(PY) -m pip --disable-pip-version-check
-SOURCES := $(shell find csrc trbdyn -type f -not -path '*/__pycache__/*')
+SOURCES := $(shell find csrc -type f)
 TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws bearing contact motion stepping python))
 STYLED  := $(wildcard csrc/*/*.[ch])
 # Python tests that together run nearly every line of the C sources; the leak tests count a memory that sanitizers keep
 SANITIZED := $(addprefix tests/,laws/test_in_contacts.py laws/test_extremes.py laws/test_oracles.py api/test_laws_api.py geometry \
   api/test_simulation.py api/test_pockets.py physics/test_looking.py physics/test_contacts.py physics/test_effects.py \
   fuzz/test_bad_input.py restart/test_checkpoints.py convergence/test_determinism.py)
+PACKAGES := 'import sysconfig; print(sysconfig.get_path("platlib"))'
 DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=ON
 
-# -P and PYTHONSAFEPATH: import the installed package, not the source folder of the same name, which has no compiled core
-export PYTHONSAFEPATH := 1
 export MPLBACKEND := Agg
 
 .PHONY: demo test lint format bench stability fuzz sanitize install clean distclean
@@ -41,7 +40,7 @@ export MPLBACKEND := Agg
 demo: install
 	$(PY) -m trbdyn demo -o demo
 
-test: install
+test: install $(VENV)/.test
 	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
 	$(PY) -m pytest tests notebooks --nbmake $(if $(SLOW),-m "slow or not slow") $(PYTEST)
 
@@ -58,12 +57,12 @@ format: $(VENV)/.lint
 	$(PY) -m ruff format .
 	$(VENV)/bin/clang-format -i $(STYLED)
 
-bench: install
+bench: install $(VENV)/.test
 	@mkdir -p build/bench
 	@set -e; for name in $(BENCH); do echo "== $$name"; \
-	  PYTHONSAFEPATH= $(PY) benchmarks/$$name.py $(if $(QUICK),--quick) --json build/bench/$$name.json; done
+	  $(PY) benchmarks/$$name.py $(if $(QUICK),--quick) --json build/bench/$$name.json; done
 
-stability: install
+stability: install $(VENV)/.test
 	@mkdir -p build
 	$(PY) tests/stability/stability.py --json build/stability.json $(SCENES)
 
@@ -72,14 +71,19 @@ fuzz: $(VENV)/.tools
 
 install: build/.package
 
-sanitize: $(VENV)/.tools
+# In an environment of its own, which finds the sanitized package and the other packages of .venv, but not its editable install;
+# -P: without the folder of the sources before them.
+sanitize: $(VENV)/.test
 	$(PIP) -q install --no-build-isolation --no-deps --upgrade --target build/sanitize/site \
 	  -C build-dir=build/sanitize/package -C cmake.define.TRB_WERROR=OFF \
 	  -C cmake.define.TRB_BUILD_TESTS=ON -C cmake.define.TRB_SANITIZE=ON -C cmake.build-type=RelWithDebInfo .
 	$(VENV)/bin/ctest --test-dir build/sanitize/package --output-on-failure --no-tests=ignore
-	LD_PRELOAD="$$($${CC:-cc} -print-file-name=libasan.so) $$($${CC:-cc} -print-file-name=libubsan.so)" \
-	  ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=build/sanitize/site \
-	  $(PY) -m pytest -p no:cacheprovider $(SANITIZED) $(PYTEST)
+	$(PY) -m venv --without-pip build/sanitize/venv
+	printf '%s\n' "$(CURDIR)/build/sanitize/site" "$$($(PY) -c $(PACKAGES))" \
+	  >"$$(build/sanitize/venv/bin/python -c $(PACKAGES))/sanitized.pth"
+	export LD_PRELOAD="$$($${CC:-cc} -print-file-name=libasan.so) $$($${CC:-cc} -print-file-name=libubsan.so)" ASAN_OPTIONS=detect_leaks=0; \
+	  build/sanitize/venv/bin/python -P -c 'import trbdyn._core as core; assert "/build/sanitize/site/" in core.__file__, core' && \
+	  build/sanitize/venv/bin/python -P -m pytest -p no:cacheprovider $(SANITIZED) $(PYTEST)
 
 clean:
 	rm -rf build demo .pytest_cache .mypy_cache .ruff_cache
@@ -88,25 +92,34 @@ clean:
 distclean: clean
 	rm -rf $(VENV)
 
-# the environment: build tools, what the package needs, what its tests need
+# the environment: build tools and what the package needs; then what its tests and benchmarks need
 $(VENV)/.tools: pyproject.toml .ci/system .ci/requirements.py
 	@PYTHON=$(PYTHON) .ci/system
 	@test -x $(PY) || { echo "making $(VENV)"; $(PYTHON) -m venv $(VENV); }
 	@echo "installing what the package needs"
 	@mkdir -p build
-	@$(PY) .ci/requirements.py build dependencies test >build/requirements.txt
+	@$(PY) .ci/requirements.py build dependencies >build/requirements.txt
 	@$(PIP) -q install -r build/requirements.txt
 	@touch $@
 
-$(VENV)/.lint: $(VENV)/.tools
+$(VENV)/.test: $(VENV)/.tools
+	@echo "installing what the tests need"
+	@mkdir -p build
+	@$(PY) .ci/requirements.py test >build/requirements-test.txt
+	@$(PIP) -q install -r build/requirements-test.txt
+	@touch $@
+
+$(VENV)/.lint: $(VENV)/.test
+	@mkdir -p build
 	@$(PY) .ci/requirements.py lint >build/requirements-lint.txt
 	@$(PIP) -q install -r build/requirements-lint.txt
 	@touch $@
 
-# the package; build/package stays, so that only what changed is compiled again
+# The package as an editable install: .venv imports the Python sources of trbdyn/ and finds the compiled core beside its other packages,
+# from any folder. build/package stays, so that only what changed is compiled again.
 build/.package: $(VENV)/.tools $(SOURCES)
 	@echo "building the package"
 	@mkdir -p build
-	@$(PIP) -q install --no-build-isolation --no-deps --force-reinstall -C build-dir=build/package $(DEFINES) .
+	@$(PIP) -q install --no-build-isolation --no-deps --force-reinstall -C build-dir=build/package $(DEFINES) -e .
 	@cat build/package/sundials.txt
 	@touch $@

@@ -102,6 +102,8 @@ except importlib.metadata.PackageNotFoundError:
 
 
 def __getattr__(name: str) -> Any:
+    if name == "_core":
+        return _load_core()
     if name in _MODULES:
         value = importlib.import_module(_MODULES[name])
     elif name in _NAMES:
@@ -110,6 +112,20 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'trbdyn' has no attribute {name!r}")
     globals()[name] = value
     return value
+
+
+def _load_core() -> Any:
+    """The compiled core; an error that says what to do where it is missing, as in sources that nobody built."""
+    try:
+        return importlib.import_module("trbdyn._core")
+    except ModuleNotFoundError as error:
+        if error.name != "trbdyn._core":
+            raise
+        raise ImportError(
+            f"the compiled core of trbdyn (trbdyn._core) is not in {__path__[0]}: these are its sources, not an installed "
+            "package. In a checkout, run `make install` (or `pip install -e .`) and use .venv/bin/python; "
+            "if trbdyn is installed elsewhere, start Python in another folder."
+        ) from None
 
 
 def __dir__() -> list[str]:

@@ -90,7 +90,10 @@ enum { N_PAIRS = (int)(sizeof trb_contact_pairs / sizeof trb_contact_pairs[0]) }
 
 static void clear(const trb_instant *at, trb_roller_load *loads)
 {
-  for (int k = 0; k < at->n; k++) memset(&loads[at->chosen[k]], 0, sizeof *loads);
+  for (int k = 0; k < at->n; k++) {
+    memset(&loads[at->chosen[k]], 0, sizeof *loads);
+    for (int i = 0; i < TRB_N_MARGINS; i++) loads[at->chosen[k]].margin[i] = TRB_NO_CONTACT;
+  }
 }
 
 void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)

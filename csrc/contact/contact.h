@@ -21,6 +21,9 @@ typedef enum trb_power {
   TRB_N_POWERS
 } trb_power;
 
+/* Contacts of a roller with the rings, by how its motion changes their interference. */
+typedef enum trb_margin { TRB_MARGIN_RACES, TRB_MARGIN_RIB, TRB_MARGIN_FRONT_RIB, TRB_N_MARGINS } trb_margin;
+
 /* Share of the torque that the rollers put on the inner ring about its axis. */
 typedef enum trb_torque { TRB_TORQUE_TRACTION, TRB_TORQUE_ROLLING, TRB_TORQUE_RIB, TRB_TORQUE_FRONT_RIB, TRB_N_TORQUES } trb_torque;
 
@@ -53,6 +56,9 @@ typedef struct trb_counters {
 #undef TRB_COUNTER_MEMBER
 } trb_counters;
 
+/* Margin where there is no such contact, m. */
+#define TRB_NO_CONTACT 1e30
+
 typedef struct trb_roller_load {
   trb_vec3 force;                 /* on the roller, in its cylindrical frame, N */
   trb_vec3 moment;                /* on the roller about its centre of mass, N m */
@@ -63,6 +69,7 @@ typedef struct trb_roller_load {
   trb_vec3 cage_force;            /* on the cage, in R, N */
   trb_vec3 cage_moment;           /* on the cage about its centre of mass, N m */
   double   elastic;               /* J */
+  double   margin[TRB_N_MARGINS]; /* of raceways and ribs: least distance of a contact from its onset or end, m */
   double   torque[TRB_N_TORQUES]; /* on the inner ring about its axis, N m */
   double   power[TRB_N_POWERS];   /* lost, W */
 } trb_roller_load;

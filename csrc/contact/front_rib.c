@@ -19,6 +19,7 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   const double        d = trb_dot(trb_sub(centre, end), a) + m->front_rib_radius[edge] * lean;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
+  load->margin[TRB_MARGIN_FRONT_RIB] = trb_min(load->margin[TRB_MARGIN_FRONT_RIB], fabs(d));
   if (!(d > 0.0)) return;
   counters->front_rib_contacts++;
   const trb_vec3  point = trb_axpy(centre, m->front_rib_radius[edge] / lean, across), arm = trb_sub(point, r->x),

@@ -85,7 +85,8 @@ typedef struct trb_race_output {
   trb_vec3 ring_force, ring_moment;         /* on the race, about ring->centre */
   double   torque_traction, torque_rolling; /* on the race, about its axis */
   double   elastic, power_traction, power_rolling, power_pressure, power_damping;
-  int      loaded; /* 0: no interference, all zero */
+  double   depth;  /* largest interference, m; negative: the gap */
+  int      loaded; /* 0: no interference, all forces are zero */
 } trb_race_output;
 
 typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,

@@ -1,4 +1,5 @@
 /* Rollers on both raceways: hands tiles of contacts to the kernel and adds what comes back. */
+#include <math.h>
 #include <string.h>
 
 #include "contact/kernels.h"
@@ -20,6 +21,7 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
 
 static void add_output(const trb_race_output *out, int race, trb_roller_load *load)
 {
+  load->margin[TRB_MARGIN_RACES] = trb_min(load->margin[TRB_MARGIN_RACES], fabs(out->depth));
   load->force = trb_add(load->force, out->force);
   load->moment = trb_add(load->moment, out->moment);
   load->elastic += out->elastic;

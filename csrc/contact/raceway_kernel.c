@@ -223,7 +223,8 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   for (int c = 0; c < n_inputs; c++) {
     outputs[c] = (trb_race_output){0};
     /* a contact without interference leaves its lanes to the next */
-    if (pass_geometry(&inputs[c], n, l, n_loaded * n) > 0.0) loaded[n_loaded++] = c;
+    outputs[c].depth = pass_geometry(&inputs[c], n, l, n_loaded * n);
+    if (outputs[c].depth > 0.0) loaded[n_loaded++] = c;
     else counters->raceway_culled++;
   }
   const int           all = n_loaded * n;

@@ -52,6 +52,7 @@ void trb_contact_rib(const trb_model *m, const trb_instant *at, trb_workspace *w
     const trb_race_output *out = &outputs[k];
     trb_roller_load       *load = &loads[j];
     if (detail != NULL) fill_detail(m, &at->inner[j], k, work->lanes, out, &detail->rib[j]);
+    load->margin[TRB_MARGIN_RIB] = trb_min(load->margin[TRB_MARGIN_RIB], fabs(out->depth));
     if (!out->loaded) continue;
     load->force = trb_add(load->force, out->force);
     load->moment = trb_add(load->moment, out->moment);

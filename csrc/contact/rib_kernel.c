@@ -110,7 +110,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_instant *at, trb_lanes *l, tr
   counters->rib_tests += n;
   int touching = 0;
   for (int j = 0; j < n; j++) touching += l->interference[j] > 0.0;
-  for (int j = 0; j < n; j++) outputs[j] = (trb_race_output){0};
+  for (int j = 0; j < n; j++) outputs[j] = (trb_race_output){.depth = l->interference[j]};
   if (touching == 0) return;
   counters->rib_contacts += touching;
   pass_load(m, all, l);

@@ -18,7 +18,11 @@
   X(rings_share,    0.1,   0,     1,    "share of the step's tolerance that forces of raceways and ribs may be off between exact evaluations") \
   X(jacobian_every, 51,    1,     1e6,  "most steps between evaluations of the pockets' part of the Jacobian") \
   X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \
-  X(newton_share,   0.1,   1e-6,  1,    "share of the step's tolerance to which Newton's method converges") \
+  X(newton_share,   0.1,   1e-6,  1,    "share of the step's tolerance to which the equations of a step must hold") \
+  X(newton_iterations, 6,  2,     12,   "most iterations of Newton's method before it is given up") \
+  X(margin_share,   0.5,   0,     0.9,  "share of a contact's distance from its onset or end that a tangent may be followed for") \
+  X(slip_share,     1e-3,  0,     0.1,  "share of the mean rolling speed that a roller may slip away while a tangent is followed") \
+  X(slow_share,     10,    1e-3,  1e6,  "absolute tolerances of velocities are at most this times rtol times the mean rolling speed") \
   X(max_step,       1e-3,  1e-12, 1e3,  "largest step, s") \
   X(first_step,     0,     0,     1,    "first step, s; 0: chosen by the integrator") \
   X(smallest_step,  1e-17, 0,     1,    "smallest step, s: below it the run stops with an error")
@@ -98,6 +102,9 @@ struct trb_integrator {
 extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk;
 extern const trb_integrator_kind *const trb_integrator_kinds[];
 extern const int                        trb_n_integrator_kinds;
+
+/* Tolerances of every entry at the present time. */
+void trb_integrator_set_tolerances(trb_integrator *it);
 
 /* Right-hand side with a finite check: 0, or 1 if a rate is not finite: BDF then tries a smaller step, the explicit method stops with
  * an error. */

@@ -6,30 +6,33 @@
 #include "stepping/arrow_solver.h"
 #include "stepping/integrator.h"
 #include "stepping/jacobian.h"
+#include "stepping/newton.h"
 #include "stepping/sundials_context.h"
 #include "stepping/vectors.h"
 
 typedef struct bdf {
-  trb_sundials    sundials;
-  void           *memory;
-  N_Vector        y;       /* over it->y */
-  N_Vector        scratch; /* of its own */
-  SUNMatrix       matrix;
-  SUNLinearSolver solver;
-  trb_jacobian   *jacobian;
-  trb_statistics  before;    /* totals up to the last restart */
-  double          smallest;  /* smallest step, s */
-  double          filled_at; /* end of the last step when the Jacobian was last evaluated, s */
-  int             uses;      /* Jacobians that the rings' part has served since it was evaluated */
+  trb_sundials       sundials;
+  void              *memory;
+  N_Vector           y;       /* over it->y */
+  N_Vector           scratch; /* of its own */
+  SUNMatrix          matrix;
+  SUNLinearSolver    solver;
+  SUNNonlinearSolver newton;
+  trb_jacobian      *jacobian;
+  trb_statistics     before;    /* totals up to the last restart */
+  double             smallest;  /* smallest step, s */
+  double             filled_at; /* end of the last step when the Jacobian was last evaluated, s */
+  int                uses;      /* Jacobians that the rings' part has served since it was evaluated */
 } bdf;
 
 static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
 {
   trb_integrator           *it = data;
   bdf                      *self = it->self;
-  const trb_tangent_measure measure = {it->relative, it->scale, self->solver->content, it->settings.rings_share};
-  double                   *to = N_VGetArrayPointer(out);
-  if (!(measure.share > 0.0)) return trb_integrator_rates(it, time, N_VGetArrayPointer(y), to);
+  const trb_tangent_measure measure = {
+      it->relative, it->scale, self->solver->content, it->settings.rings_share, it->settings.margin_share, it->settings.slip_share};
+  double *to = N_VGetArrayPointer(out);
+  if (!(measure.share > 0.0) || trb_newton_troubled(self->newton)) return trb_integrator_rates(it, time, N_VGetArrayPointer(y), to);
   trb_tangents_derivative(self->jacobian->tangents, it->dynamics, &measure, time, N_VGetArrayPointer(y), to);
   return trb_integrator_finite(it, to) ? 0 : 1;
 }
@@ -87,6 +90,7 @@ static trb_status configure(trb_integrator *it, trb_message *message)
   CHECK(CVodeInit(self->memory, rates, it->time, self->y));
   CHECK(CVodeSetUserData(self->memory, it));
   CHECK(CVodeWFtolerances(self->memory, weights));
+  CHECK(CVodeSetNonlinearSolver(self->memory, self->newton));
   CHECK(CVodeSetLinearSolver(self->memory, self->solver, self->matrix));
   CHECK(CVodeSetLinSysFn(self->memory, linear_system));
   CHECK(CVodeSetMaxOrd(self->memory, (int)it->settings.max_order));
@@ -115,8 +119,9 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
   self->matrix = trb_arrow_matrix(m->n_rollers, with_cage, self->sundials.context);
   self->solver = trb_arrow_linear_solver(m->n_rollers, it->dynamics->work->variant, self->sundials.context);
+  self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->y, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
-  if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->memory)
+  if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   trb_vector_use(self->y, it->dynamics->work->variant);
   trb_sundials_quiet_cvode(&self->sundials, self->memory);
@@ -129,6 +134,7 @@ static void bdf_free(trb_integrator *it)
   bdf *self = it->self;
   if (self == NULL) return;
   if (self->memory != NULL) CVodeFree(&self->memory);
+  if (self->newton != NULL) (void)SUNNonlinSolFree(self->newton);
   if (self->solver != NULL) (void)SUNLinSolFree(self->solver);
   if (self->matrix != NULL) SUNMatDestroy(self->matrix);
   if (self->scratch != NULL) N_VDestroy(self->scratch);
@@ -174,6 +180,7 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   self->filled_at = -INFINITY;
   self->uses = 0;
   trb_tangents_forget(self->jacobian->tangents);
+  trb_newton_forget(self->newton);
   ((trb_arrow_factors *)self->solver->content)->gamma = 0.0;
   CHECK(CVodeReInit(self->memory, it->time, self->y));
   return TRB_OK;

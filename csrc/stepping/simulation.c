@@ -59,19 +59,6 @@ static const trb_integrator_kind *find_kind(const char *name)
   return NULL;
 }
 
-/* Quadratures are integrated along, but do not control the step. */
-static void fill_tolerances(trb_integrator *it)
-{
-  const trb_settings *s = &it->settings;
-  const double        scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, s->atol_velocity, s->atol_spin, 1e30};
-  const double        relative[TRB_N_TOLERANCES] = {0.0, 0.0, s->rtol, s->rtol, 0.0};
-  for (int i = 0; i < it->n; i++) {
-    const trb_tolerance kind = trb_state_tolerance(it->dynamics->model, i);
-    it->scale[i] = scale[kind];
-    it->relative[i] = relative[kind];
-  }
-}
-
 static trb_status open_parts(trb_simulation *s, const char *variant, trb_message *message)
 {
   trb_integrator *it = &s->integrator;
@@ -88,7 +75,7 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   it->dynamics = s->dynamics;
   it->motion = s->motion;
   it->variant = variant;
-  fill_tolerances(it);
+  trb_integrator_set_tolerances(it);
   return TRB_OK;
 }
 
@@ -142,6 +129,7 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
   if (status != TRB_OK) return status;
   memmove(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
   s->integrator.time = s->previous = time;
+  trb_integrator_set_tolerances(&s->integrator);
   return s->integrator.kind->restart(&s->integrator, message);
 }
 
@@ -150,6 +138,7 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
   trb_integrator *it = &s->integrator;
   const double    from = it->time;
   memcpy(s->between, it->y, (size_t)it->n * sizeof(double));
+  if (s->motion->n > 1) trb_integrator_set_tolerances(it);
   const trb_status status = it->kind->step(it, message);
   if (status == TRB_OK) {
     s->previous = from;

@@ -44,6 +44,7 @@ trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
+  t->arms = trb_margin_arms_of(m);
   set_bounds(t);
   *tangents = t;
   return TRB_OK;
@@ -97,6 +98,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   for (int j = 0; j < m->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
+    memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
     memcpy(r->origin, y + trb_state_roller(j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
   }
@@ -137,14 +139,13 @@ static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const doub
   r->per[TRB_TANGENT_TURN] = 1.0 / turn_unit;
 }
 
-/* An error in the rates as one of the step: through the integrator's linear system, in tolerances. */
-static double step_error(const trb_tangent *r, const trb_tangent_measure *measure, int roller, const double *error)
+/* What an error in the rates lacks in a step of the integrator, in tolerances: the same measure by which Newton's method tests its
+ * equations. */
+static double step_error(const trb_tangent *r, const trb_tangent_measure *measure, const double *error)
 {
-  const trb_arrow_factor_block *g = &measure->factors->rollers[roller];
-  double                        state[TRB_NP] = {0}, sum = 0.0;
-  for (int c = 0; c < TRB_NR; c++)
-    for (int i = 0; i < TRB_NP; i++) state[i] += g->inverse[c][i] * measure->factors->gamma * error[c];
-  for (int i = 0; i < TRB_NR; i++) sum += state[i] * r->per[i] * state[i] * r->per[i];
+  const double gamma = measure->factors->gamma;
+  double       sum = 0.0;
+  for (int i = 0; i < TRB_NR; i++) sum += gamma * error[i] * r->per[i] * (gamma * error[i] * r->per[i]);
   return sqrt(sum);
 }
 
@@ -161,7 +162,8 @@ static double power_error(const double *flow, const double *error)
 
 /* An exact flow becomes the origin: slopes corrected along the step (Broyden 1965, Math. Comp. 19, 577, with the tolerances' metric), reach
  * set by the error that was found. */
-static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *y, double turn, const double *flow)
+static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *y, double turn, const double *flow,
+                  const double *margin)
 {
   trb_tangent             *r = &t->rollers[roller];
   const trb_block_kernels *kernels = measure->factors->kernels;
@@ -172,7 +174,7 @@ static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measur
     double direction[TRB_TANGENT_IN];
     kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->anything, error);
     for (int i = 0; i < TRB_TANGENT_OUT; i++) error[i] = flow[i] - error[i];
-    const double in_state = step_error(r, measure, roller, error), in_power = power_error(flow, error) / power_share;
+    const double in_state = step_error(r, measure, error), in_power = power_error(flow, error) / power_share;
     const double factor = caution / sqrt(trb_max(in_state / measure->share, in_power) + 1e-300);
     r->reach = trb_clamp(length * trb_clamp(factor, decline, growth), least_reach, largest_reach);
     for (int c = 0; c < TRB_TANGENT_IN; c++) direction[c] = step[c] * r->per[c] * r->per[c] / (length * length);
@@ -181,6 +183,7 @@ static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measur
   } else {
     r->reach = first_reach;
   }
+  memcpy(r->margin, margin, sizeof r->margin);
   memcpy(r->value, flow, sizeof r->value);
   memcpy(r->origin, y, TRB_NR * sizeof *y);
   r->origin[TRB_TANGENT_TURN] = turn;
@@ -201,8 +204,19 @@ static void evaluate_far(trb_tangents *t, trb_dynamics *d, const trb_tangent_mea
     const int j = t->far[k];
     trb_dynamics_roller_flow(d, j, &d->loads[j], t->flows[j]);
     if (t->beyond[j] && t->has_slopes && measure->factors->gamma > 0.0)
-      learn(t, j, measure, y + trb_state_roller(j), d->drive.frame_angle, t->flows[j]);
+      learn(t, j, measure, y + trb_state_roller(j), d->drive.frame_angle, t->flows[j], d->loads[j].margin);
   }
+}
+
+/* Whether a roller has slipped away from its origin by no more than a share of the mean rolling speed. */
+static int slips_little(const trb_dynamics *d, double share, const double *step)
+{
+  const trb_params *p = &d->model->params;
+  const double      radius = 0.5 * p->roller_diameter, speed = radius * fabs(d->model->geometry.roller_spin_ratio * d->drive.shaft_speed);
+  const double      slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
+                           radius * fabs(step[TRB_ROLLER_omega_a]) +
+                           p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
+  return slid <= share * trb_max(speed, p->speed_floor);
 }
 
 void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,
@@ -223,10 +237,11 @@ void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent
   d->work->counters.force_evaluations++;
   for (int j = 0; j < m->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
-    double       step[TRB_TANGENT_IN];
+    double       step[TRB_TANGENT_IN] = {0};
     const double distance2 =
         r->known ? kernels->step_from(r->origin, r->per, y + trb_state_roller(j), d->drive.frame_angle, step) : (double)INFINITY;
-    t->beyond[j] = !(distance2 <= r->reach * r->reach);
+    t->beyond[j] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step) ||
+                   !trb_margin_holds(&t->arms, &d->drive, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
     t->touching[j] = !trb_dynamics_clear(d, j, y);
     r->served += !t->beyond[j];
     const int follows = !t->beyond[j] && (r->usual >= enough || r->served > enough_now);

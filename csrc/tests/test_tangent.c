@@ -32,8 +32,11 @@ static void close_bench(bench *b)
   trb_model_free(b->model);
 }
 
+/* Factor of the bounds that lets a tangent be followed anywhere. */
+#define ANYWHERE 1e9
+
 /* The linear system of a vanishing step, whose inverse is one: an error in rates is gamma times that in the state. */
-static int open_bench(bench *b, const trb_params *params, double share)
+static int open_bench(bench *b, const trb_params *params, double share, double bounds)
 {
   static const double tolerance[TRB_N_TOLERANCES] = {3e-10, 3e-8, 1e-4, 1e-2, 1e30};
   const double        speed = 100.0 * TRB_PI;
@@ -53,7 +56,7 @@ static int open_bench(bench *b, const trb_params *params, double share)
     b->scale[i] = tolerance[trb_state_tolerance(b->model, i)];
     b->relative[i] = 0.0;
   }
-  b->measure = (trb_tangent_measure){b->relative, b->scale, b->factors, share};
+  b->measure = (trb_tangent_measure){b->relative, b->scale, b->factors, share, 0.5 * bounds, 1e-3 * bounds};
   memcpy(b->moved, b->y, sizeof b->moved);
   trb_dynamics_pose(b->d, 0.0, b->y);
   trb_tangents_differentiate(b->tangents, b->d, b->y, b->moved);
@@ -91,7 +94,7 @@ static void test_origin(const trb_params *params)
 {
   bench  b;
   double found[MOST], exact[MOST];
-  if (!open_bench(&b, params, 0.05)) return;
+  if (!open_bench(&b, params, 0.05, ANYWHERE)) return;
   /* the first evaluation is exact and becomes the origin, the second follows the tangents from it */
   for (int k = 0; k < 2; k++) {
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
@@ -107,7 +110,7 @@ static void test_order(const trb_params *params)
 {
   bench  b;
   double y[MOST], found[MOST], exact[MOST], off[2], lost[2];
-  if (!open_bench(&b, params, 1.0)) return;
+  if (!open_bench(&b, params, 1.0, ANYWHERE)) return;
   for (int k = 0; k < 2; k++) {
     trb_tangents_differentiate(b.tangents, b.d, b.y, b.moved);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
@@ -136,7 +139,7 @@ static void test_learning(const trb_params *params)
 {
   bench  b;
   double y[MOST], before[MOST], found[MOST], exact[MOST];
-  if (!open_bench(&b, params, 0.05)) return;
+  if (!open_bench(&b, params, 0.05, ANYWHERE)) return;
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, before);
   place(&b, 300.0, y);
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
@@ -158,7 +161,7 @@ static void test_reach(const trb_params *params)
   double       y[MOST], found[MOST], exact[MOST], largest = 0.0;
   long long    followed = 0;
   int          wide = 0;
-  if (!open_bench(&b, params, share)) return;
+  if (!open_bench(&b, params, share, ANYWHERE)) return;
   for (int k = 0; k < 4000; k++) {
     place(&b, 40.0 * sin(0.01 * k) * sin(0.0037 * k), y);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
@@ -177,12 +180,34 @@ static void test_reach(const trb_params *params)
   close_bench(&b);
 }
 
+/* Whatever was learned: a tangent is not followed where a contact could begin or end, nor where a roller slips much. */
+static void test_bounds(const trb_params *params)
+{
+  bench  b;
+  double y[MOST], found[MOST];
+  if (!open_bench(&b, params, 1.0, 1.0)) return;
+  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
+  for (int k = 0; k < 2; k++) {
+    for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = b.tangents->rollers[i].usual = 1e9;
+    const long long before = b.d->work->counters.tangent_rollers;
+    const int       j = 3 + k;
+    const double    margin = fmin(b.tangents->rollers[j].margin[TRB_MARGIN_RACES], b.tangents->rollers[j].margin[TRB_MARGIN_RIB]);
+    const double    rolling = 0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI;
+    memcpy(y, b.y, sizeof y);
+    y[trb_state_roller(j) + (k == 0 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] += k == 0 ? 0.51 * margin : 1.01e-3 * fabs(rolling);
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
+    CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - 1);
+    CHECK(b.tangents->beyond[j]);
+  }
+  close_bench(&b);
+}
+
 /* Between two knots of the motion everything is exact, to the bit; after them tangents begin anew. */
 static void test_under_way(const trb_params *params)
 {
   bench  b;
   double table[2][TRB_MOTION_COLUMNS] = {{0}}, found[MOST], exact[MOST];
-  if (!open_bench(&b, params, 1.0)) return;
+  if (!open_bench(&b, params, 1.0, ANYWHERE)) return;
   trb_motion_free(b.motion);
   for (int k = 0; k < 2; k++) {
     table[k][0] = k;
@@ -208,7 +233,7 @@ static void test_seldom(const trb_params *params)
   bench     b;
   double    y[MOST], found[MOST], exact[MOST];
   long long used = 0;
-  if (!open_bench(&b, params, 0.05)) return;
+  if (!open_bench(&b, params, 0.05, ANYWHERE)) return;
   for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].usual = 0.0;
   for (int k = 0; k < 400; k++) {
     place(&b, k % 2 == 0 ? 3e4 : -3e4, y);
@@ -231,7 +256,7 @@ static void test_not_finite(const trb_params *params)
 {
   bench  b;
   double y[MOST], found[MOST], exact[MOST];
-  if (!open_bench(&b, params, 0.05)) return;
+  if (!open_bench(&b, params, 0.05, ANYWHERE)) return;
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
   memcpy(y, b.y, sizeof y);
   y[trb_state_roller(2) + TRB_ROLLER_v_t] = NAN;
@@ -254,6 +279,7 @@ int main(void)
   test_order(&p);
   test_learning(&p);
   test_reach(&p);
+  test_bounds(&p);
   test_under_way(&p);
   test_seldom(&p);
   test_not_finite(&p);

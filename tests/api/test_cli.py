@@ -11,8 +11,6 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("trbdyn._core")
-
 from trbdyn.cli import main
 from trbdyn.errors import LoadError, StepError
 from trbdyn.result_file import ResultWriter

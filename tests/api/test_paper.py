@@ -15,8 +15,6 @@ import h5py
 import numpy as np
 import pytest
 
-pytest.importorskip("trbdyn._core")
-
 import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.errors import InputError

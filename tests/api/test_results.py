@@ -41,7 +41,8 @@ def test_the_header_has_all_fields(header_fields: list[tuple[str, ...]]) -> None
 
 
 def test_the_table_of_the_core_is_that_of_the_header(header_fields: list[tuple[str, ...]]) -> None:
-    core = pytest.importorskip("trbdyn._core")
+    from trbdyn import _core as core
+
     assert [tuple(row) for row in core.field_table()] == header_fields
     assert field_table.table()[0].name == "time"
 
@@ -180,7 +181,6 @@ def test_a_file_describes_itself(tmp_path: Path, synthetic: Any, stub_scene: Any
 
 
 def test_a_real_scene_survives_the_file(tmp_path: Path, synthetic: Any) -> None:
-    pytest.importorskip("trbdyn._core")
     from trbdyn.cases import scene_30310
     from trbdyn.pocket_shapes import drafted_pocket
     from trbdyn.scene import Start

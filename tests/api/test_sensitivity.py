@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("trbdyn._core")
 pytest.importorskip("xarray")
 pytest.importorskip("matplotlib")
 

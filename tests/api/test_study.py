@@ -17,8 +17,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-pytest.importorskip("trbdyn._core")
-
 import trbdyn as trb
 from trbdyn import study
 from trbdyn.cli import main

@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-pytest.importorskip("trbdyn._core")
-
 from trbdyn.paper.growth import FULL, growth_of, whirl_amplitude
 
 TURNS = np.arange(400) / 20.0

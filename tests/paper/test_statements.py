@@ -17,8 +17,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("trbdyn._core")
-
 from trbdyn.paper.movable import Pockets
 from trbdyn.paper.numbers import read_run
 from trbdyn.paper.points import Condition, Point, StartKind

@@ -1,0 +1,213 @@
+/* Newton's method with a test of the equations themselves.
+ *
+ * An implicit step solves y = a + gamma f(y). The usual test looks at the size of the last correction -M^-1 F, with F = y - a - gamma f(y) and
+ * M = 1 - gamma J. In a rolling contact M holds slopes of friction of 1e5 to 1e9 1/s: where the true slope is smaller than the one in M (a
+ * roller that slips, oil that yields), corrections are far below every tolerance although the equations are not fulfilled at all. Such a
+ * step is not one of the method; the error test does not see it, and the forces of the next steps make energy.
+ *
+ * Here a step is accepted only if F itself, before the last correction, is below the tolerance of Newton's method. F is what the step lacks in
+ * velocity because forces and accelerations do not balance. For forces that do not increase with speed, |error of y| <= |F| holds however
+ * stiff they are (Dahlquist 1979; Hairer and Wanner, Solving ODEs II, IV.12), so nothing else has to be known about J.
+ *
+ * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
+ * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and two
+ * points between which the plain method would jump for ever are left. */
+#include "stepping/newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Largest share of a correction that the next one may keep of it before it is prolonged no further: at most 1/(1 - most_kept) times. */
+static const double most_kept = 0.95;
+/* A correction that grows beyond this multiple of the first one diverges. */
+static const double divergence = 1e3;
+
+typedef struct newton {
+  SUNNonlinSolSysFn    residual;
+  SUNNonlinSolLSetupFn setup;
+  SUNNonlinSolLSolveFn solve;
+  N_Vector             delta;                   /* residual, then correction */
+  double              *taken;                   /* corrections taken in this step, one after the other */
+  double               square[TRB_NEWTON_MOST]; /* of their weighted norms */
+  int                  n, most;                 /* entries; iterations allowed */
+  int                  iterations, failures;    /* of the last solve */
+  int                  troubled;                /* whether the last solve failed */
+} newton;
+
+static SUNNonlinearSolver_Type type_of(SUNNonlinearSolver solver)
+{
+  (void)solver;
+  return SUNNONLINEARSOLVER_ROOTFIND;
+}
+
+static int initialize(SUNNonlinearSolver solver)
+{
+  (void)solver;
+  return 0;
+}
+
+static double product(int n, const double *a, const double *b, const double *weight)
+{
+  double sum = 0.0;
+  for (int i = 0; i < n; i++) sum += a[i] * weight[i] * (b[i] * weight[i]);
+  return sum;
+}
+
+/* Broyden's correction in place of the plain one; m: how many were taken before. Kept for the next. */
+static void improve(newton *self, int m, const double *weight, double *delta)
+{
+  const int n = self->n;
+  for (int j = 0; j < m; j++) {
+    const double *s = self->taken + (size_t)j * (size_t)n, kept = product(n, s, delta, weight) / self->square[j];
+    if (j + 1 < m) {
+      const double *next = s + n;
+      for (int i = 0; i < n; i++) delta[i] += kept * next[i];
+    } else {
+      const double scale = 1.0 / (1.0 - fmin(kept, most_kept));
+      for (int i = 0; i < n; i++) delta[i] *= scale;
+    }
+  }
+  memcpy(self->taken + (size_t)m * (size_t)n, delta, (size_t)n * sizeof *delta);
+  self->square[m] = product(n, delta, delta, weight);
+}
+
+static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
+{
+  double first = INFINITY;
+  for (int m = 0; m < self->most; m++) {
+    if (m > 0) {
+      const int flag = self->residual(correction, self->delta, memory);
+      if (flag != 0) return flag;
+    }
+    const double off = N_VWrmsNorm(self->delta, weights);
+    N_VScale(-1.0, self->delta, self->delta);
+    const int flag = self->solve(self->delta, memory);
+    if (flag != 0) return flag;
+    self->iterations++;
+    improve(self, m, N_VGetArrayPointer(weights), N_VGetArrayPointer(self->delta));
+    const double change = sqrt(self->square[m] / self->n);
+    N_VLinearSum(1.0, correction, 1.0, self->delta, correction);
+    if (off <= tolerance && change <= tolerance) return 0;
+    if (m == 0) first = change;
+    if (!(change <= divergence * first) || !(self->square[m] > 0.0)) return SUN_NLS_CONV_RECVR;
+  }
+  return SUN_NLS_CONV_RECVR;
+}
+static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction, N_Vector weights, sunrealtype tolerance, int setup,
+                 void *memory)
+{
+  newton *self = solver->content;
+  int     bad = 0, current = 0;
+  (void)start;
+  self->iterations = self->failures = 0;
+  for (;;) {
+    int flag = self->residual(correction, self->delta, memory);
+    if (flag != 0) return flag;
+    if (setup || bad) {
+      flag = self->setup(bad, &current, memory);
+      if (flag != 0) return flag;
+    }
+    flag = iterate(self, correction, weights, tolerance, memory);
+    if (flag == 0) self->troubled = 0;
+    if (flag <= 0) return flag;
+    self->failures++;
+    self->troubled = 1;
+    if (current) return flag;
+    bad = 1;
+    N_VConst(0.0, correction);
+  }
+}
+
+static int free_solver(SUNNonlinearSolver solver)
+{
+  if (solver == NULL) return 0;
+  newton *self = solver->content;
+  if (self != NULL) {
+    if (self->delta != NULL) N_VDestroy(self->delta);
+    free(self->taken);
+    free(self);
+  }
+  solver->content = NULL;
+  SUNNonlinSolFreeEmpty(solver);
+  return 0;
+}
+
+static int set_residual(SUNNonlinearSolver solver, SUNNonlinSolSysFn function)
+{
+  ((newton *)solver->content)->residual = function;
+  return 0;
+}
+
+static int set_setup(SUNNonlinearSolver solver, SUNNonlinSolLSetupFn function)
+{
+  ((newton *)solver->content)->setup = function;
+  return 0;
+}
+
+static int set_solve(SUNNonlinearSolver solver, SUNNonlinSolLSolveFn function)
+{
+  ((newton *)solver->content)->solve = function;
+  return 0;
+}
+
+static int set_test(SUNNonlinearSolver solver, SUNNonlinSolConvTestFn function, void *data)
+{
+  (void)solver;
+  (void)function;
+  (void)data;
+  return 0;
+}
+
+static int set_iterations(SUNNonlinearSolver solver, int n)
+{
+  (void)solver;
+  (void)n;
+  return 0;
+}
+
+static int get_iterations(SUNNonlinearSolver solver, long *n)
+{
+  *n = ((newton *)solver->content)->iterations;
+  return 0;
+}
+
+static int get_failures(SUNNonlinearSolver solver, long *n)
+{
+  *n = ((newton *)solver->content)->failures;
+  return 0;
+}
+
+int trb_newton_troubled(SUNNonlinearSolver solver) { return ((newton *)solver->content)->troubled; }
+
+void trb_newton_forget(SUNNonlinearSolver solver) { ((newton *)solver->content)->troubled = 0; }
+
+SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, SUNContext context)
+{
+  SUNNonlinearSolver solver = SUNNonlinSolNewEmpty(context);
+  if (solver == NULL) return NULL;
+  newton *self = calloc(1, sizeof *self);
+  solver->content = self;
+  if (self != NULL) {
+    self->n = (int)N_VGetLength(like);
+    self->most = max_iterations < TRB_NEWTON_MOST ? max_iterations : TRB_NEWTON_MOST;
+    self->delta = N_VClone(like);
+    self->taken = calloc((size_t)self->n * (size_t)self->most, sizeof(double));
+  }
+  if (self == NULL || self->delta == NULL || self->taken == NULL) {
+    (void)free_solver(solver);
+    return NULL;
+  }
+  solver->ops->gettype = type_of;
+  solver->ops->initialize = initialize;
+  solver->ops->solve = solve;
+  solver->ops->free = free_solver;
+  solver->ops->setsysfn = set_residual;
+  solver->ops->setlsetupfn = set_setup;
+  solver->ops->setlsolvefn = set_solve;
+  solver->ops->setctestfn = set_test;
+  solver->ops->setmaxiters = set_iterations;
+  solver->ops->getnumiters = get_iterations;
+  solver->ops->getnumconvfails = get_failures;
+  return solver;
+}

@@ -1,0 +1,84 @@
+/* Margins: where one is said to hold, no interference with a raceway or a rib has changed by more than its share. */
+#include "motion/margin.h"
+
+#include <stdlib.h>
+
+#include "check.h"
+#include "rig.h"
+
+enum { MOST = 512 };
+
+static unsigned long long seed = 11;
+
+/* Margins and elastic energy of a state's contacts with the rings. */
+static void look(trb_dynamics *d, double turn_time, const double *y, trb_roller_load *loads)
+{
+  trb_dynamics_pose(d, turn_time, y);
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_contact_rings_only(d->model, &at, d->work, loads);
+}
+
+/* A step of a roller's coordinates, of a size between nanometres and tens of micrometres. */
+static void disturb(const trb_model *m, double size, double *y)
+{
+  static const double unit[TRB_ROLLER_SIZE] = {1.0, 30.0, 1.0, 30.0, 30.0};
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int c = 0; c <= TRB_ROLLER_tilt; c++) y[trb_state_roller(j) + c] += size * unit[c] * rig_random(&seed);
+}
+
+/* Random states of a misaligned, displaced bearing, half of its rollers unloaded, and random steps from there. */
+static void walk(double aside, double lean, double *held, double *tightest)
+{
+  const trb_params params = rig_params();
+  trb_model       *m = rig_model(&params);
+  trb_motion      *motion;
+  trb_dynamics    *d;
+  double           y[MOST], moved[MOST], table[TRB_MOTION_COLUMNS] = {0};
+  trb_roller_load *before = calloc((size_t)m->n_rollers, sizeof *before), *after = calloc((size_t)m->n_rollers, sizeof *after);
+  const double     speed = 100.0 * TRB_PI, dz = rig_state(m, 3000.0, speed, y), share = 0.5;
+  table[1 + 2 * TRB_CHANNEL_displacement_x] = aside;
+  table[1 + 2 * TRB_CHANNEL_displacement_z] = dz;
+  table[1 + 2 * TRB_CHANNEL_rotation_y] = lean;
+  table[1 + 2 * TRB_CHANNEL_shaft_speed] = speed;
+  if (!CHECK(trb_motion_create(table, 1, &motion, NULL) == TRB_OK && trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  const trb_margin_arms arms = trb_margin_arms_of(m);
+  for (int k = 0; k < 3000; k++) {
+    memcpy(moved, y, sizeof y);
+    disturb(m, 2e-6, moved);
+    look(d, 0.0, moved, before);
+    double place[MOST];
+    memcpy(place, moved, sizeof place);
+    disturb(m, pow(10.0, -9.0 + 4.0 * fabs(rig_random(&seed))), moved);
+    const double turn = 1e-3 * rig_random(&seed);
+    look(d, turn / (m->geometry.cage_speed_ratio * speed), moved, after);
+    for (int j = 0; j < m->n_rollers; j++) {
+      double step[TRB_ROLLER_SIZE];
+      for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(j) + c] - place[trb_state_roller(j) + c];
+      if (!trb_margin_holds(&arms, &d->drive, before[j].margin, share, place + trb_state_roller(j), step, turn)) continue;
+      ++*held;
+      for (int i = 0; i < TRB_N_MARGINS; i++) {
+        const double change = fabs(after[j].margin[i] - before[j].margin[i]);
+        if (before[j].margin[i] == TRB_NO_CONTACT) continue;
+        CHECK(change <= share * before[j].margin[i] * (1.0 + 1e-9));
+        *tightest = fmax(*tightest, change / before[j].margin[i]);
+      }
+    }
+  }
+  free(before);
+  free(after);
+  trb_dynamics_free(d);
+  trb_motion_free(motion);
+  trb_model_free(m);
+}
+
+int main(void)
+{
+  double held = 0.0, tightest = 0.0;
+  walk(0.0, 0.0, &held, &tightest);
+  walk(40e-6, 0.0, &held, &tightest);
+  walk(20e-6, 1e-3, &held, &tightest);
+  /* the bound is used, and not so wide that it would always hold */
+  CHECK(held > 3000.0 && tightest > 0.25);
+  CHECK(tightest <= 0.5);
+  return check_report();
+}

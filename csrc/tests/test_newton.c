@@ -1,0 +1,103 @@
+/* Newton's method of a step: what it accepts fulfils the equations, also where the slopes it was given are wrong. */
+#include "stepping/newton.h"
+
+#include "check.h"
+#include "stepping/sundials_context.h"
+
+enum { N = 3 };
+
+/* y = a + gamma f(y) with friction that saturates: f = -strength tanh(y/width), entry by entry, and slopes taken at `guess`. */
+typedef struct problem {
+  double a[N], gamma, strength, width, guess[N], jump;
+  int    evaluations, setups;
+} problem;
+
+static double friction(const problem *p, double y) { return -p->strength * tanh(y / p->width) - (y > p->jump ? p->strength : 0.0); }
+
+static int residual(N_Vector y, N_Vector out, void *memory)
+{
+  problem *p = memory;
+  double  *to = N_VGetArrayPointer(out), *from = N_VGetArrayPointer(y);
+  p->evaluations++;
+  for (int i = 0; i < N; i++) to[i] = from[i] - p->a[i] - p->gamma * friction(p, from[i]);
+  return 0;
+}
+
+static int setup(int bad, int *current, void *memory)
+{
+  problem *p = memory;
+  (void)bad;
+  p->setups++;
+  *current = 1;
+  return 0;
+}
+
+static int solve(N_Vector b, void *memory)
+{
+  const problem *p = memory;
+  double        *x = N_VGetArrayPointer(b);
+  for (int i = 0; i < N; i++) {
+    const double c = cosh(p->guess[i] / p->width);
+    x[i] /= 1.0 + p->gamma * p->strength / (p->width * c * c);
+  }
+  return 0;
+}
+
+/* Solves from zero; gives the largest residual of what was accepted, or -1. */
+static double run(problem *p, trb_sundials *s, double *found)
+{
+  double             zero[N] = {0}, off[N];
+  N_Vector           y = trb_sundials_vector(s, N, found), start = trb_sundials_vector(s, N, zero), weights = N_VClone(y),
+                     out = trb_sundials_vector(s, N, off);
+  SUNNonlinearSolver newton = trb_newton_solver(8, y, s->context);
+  double             largest = -1.0;
+  N_VConst(0.0, y);
+  N_VConst(1.0, weights);
+  CHECK(SUNNonlinSolSetSysFn(newton, residual) == 0 && SUNNonlinSolSetLSetupFn(newton, setup) == 0 &&
+        SUNNonlinSolSetLSolveFn(newton, solve) == 0);
+  const int flag = SUNNonlinSolSolve(newton, start, y, weights, 1e-6, 1, p);
+  CHECK(trb_newton_troubled(newton) == (flag != 0));
+  if (flag == 0) {
+    residual(y, out, p);
+    largest = N_VMaxNorm(out);
+  }
+  trb_newton_forget(newton);
+  CHECK(!trb_newton_troubled(newton));
+  (void)SUNNonlinSolFree(newton);
+  N_VDestroy(y);
+  N_VDestroy(start);
+  N_VDestroy(weights);
+  N_VDestroy(out);
+  return largest;
+}
+
+int main(void)
+{
+  trb_sundials s;
+  double       y[N];
+  if (!CHECK(trb_sundials_open(&s, NULL) == TRB_OK)) return check_report();
+
+  /* linear: two evaluations, one to solve and one to see that it is solved */
+  problem      linear = {.a = {1e-4, 2e-4, -1e-4}, .gamma = 1.0, .strength = 10.0, .width = 1e3, .jump = INFINITY};
+  const double off = run(&linear, &s, y);
+  CHECK(off >= 0.0 && off < 1e-9);
+  CHECK(linear.evaluations <= 3);
+
+  /* friction that has yielded, slopes of friction that has not: corrections are a thousandth of the tolerance from the first on, and the
+   * solution is 1e3 tolerances away */
+  problem      yielded = {.a = {1.0, 0.9, 0.8}, .gamma = 1.0, .strength = 0.5, .width = 1e-10, .jump = INFINITY};
+  const double found = run(&yielded, &s, y);
+  CHECK(found < 0.0 || found < 1e-5);
+
+  /* moderately wrong slopes: found, not given up */
+  problem      wrong = {.a = {1e-2, 2e-2, 3e-2}, .gamma = 1.0, .strength = 2e-2, .width = 2e-2, .jump = INFINITY};
+  const double near = run(&wrong, &s, y);
+  CHECK(near >= 0.0 && near < 1e-5);
+  for (int i = 0; i < N; i++) CHECK_NEAR(y[i], wrong.a[i] + friction(&wrong, y[i]), 1e-5);
+
+  /* between two branches there is nothing: it says so */
+  problem none = {.a = {0.5, 0.5, 0.5}, .gamma = 1.0, .strength = 0.3, .width = 1e3, .jump = 0.4};
+  CHECK(run(&none, &s, y) < 0.0);
+  trb_sundials_close(&s);
+  return check_report();
+}

@@ -1,0 +1,176 @@
+"""The README is true: every command and sample runs as written, from the checkout's root, without environment variables.
+
+The root is a copy of the checkout's files whose `.venv` is the environment that runs these tests, so that nothing is written
+into the checkout. Commands that run the tests, the checks of style, sanitizers, fuzzing or all benchmarks would run this file
+again or take hours: of those `make` is asked whether it knows them. Commands that take minutes are marked slow.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+COMMAND = re.compile(r"`((?:\.venv/bin/|\.ci/|make |pip |python3? )[^`]*)`")
+
+WHOLE = {
+    "make test",
+    "make lint",
+    "make bench",
+    "make stability",
+    "make fuzz",
+    "make sanitize",
+    ".ci/run",
+    ".venv/bin/pytest",
+}
+INSTALLS = {"pip install .", "pip install -e ."}
+MINUTES = {".venv/bin/python benchmarks/work_precision.py", ".venv/bin/python benchmarks/peers.py --quick"}
+SHORTER = {".venv/bin/python benchmarks/work_precision.py": " --quick"}  # an option that the README names
+HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
+PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"
+
+pytestmark = pytest.mark.skipif(
+    not (ROOT / "Makefile").is_file(), reason="the Makefile is not part of a source distribution"
+)
+
+
+def blocks(language: str) -> list[str]:
+    return [body for name, body in FENCE.findall(TEXT) if name == language]
+
+
+def commands() -> list[str]:
+    """Commands of the shell blocks and of the text, each once, in the order of the README."""
+    lines = [line.partition("#")[0].strip() for body in blocks("sh") for line in body.splitlines()]
+    outside = FENCE.sub("", TEXT)
+    return list(dict.fromkeys([line for line in lines if line] + COMMAND.findall(outside)))
+
+
+def environment() -> dict[str, str]:
+    """The environment without what would help Python to find the package, and without what a make around the tests sets."""
+    return {name: value for name, value in os.environ.items() if not name.startswith(HELPFUL)}
+
+
+def run(command: str, root: Path, timeout: float = 300.0) -> str:
+    done = subprocess.run(
+        command, shell=True, cwd=root, env=environment(), capture_output=True, text=True, timeout=timeout, check=False
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
+    return done.stdout
+
+
+def copy_of_checkout(folder: Path) -> Path:
+    """The files of the checkout (not what was built), with the times that they have there."""
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    names = listed.stdout.splitlines()
+    if listed.returncode or not names:
+        pytest.skip("the files of the checkout are not known without git")
+    for name in names:
+        if (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, folder / name)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    folder = copy_of_checkout(tmp_path_factory.mktemp("readme"))
+    (folder / ".venv").symlink_to(sys.prefix, target_is_directory=True)
+    (folder / "build").mkdir()
+    if (ROOT / "build" / ".package").is_file():
+        shutil.copy2(ROOT / "build" / ".package", folder / "build" / ".package")
+    yield folder
+    (folder / ".venv").unlink()
+
+
+def test_the_readme_has_commands_and_samples() -> None:
+    assert len(commands()) > 12
+    assert len(blocks("python")) >= 1
+    assert set(commands()) >= MINUTES | INSTALLS
+
+
+@pytest.mark.parametrize("command", [command for command in commands() if command not in MINUTES | INSTALLS])
+def test_commands(command: str, root: Path) -> None:
+    if command in WHOLE:
+        if command.startswith("make "):
+            run(command.replace("make ", "make -n "), root)
+        elif command == ".venv/bin/pytest":
+            assert "skipped" not in run(f"{command} -q {PARTS}", root)
+        else:
+            assert os.access(root / command, os.X_OK), command
+        return
+    if command.startswith("make "):
+        # where make would install first, it would put the copy in place of the checkout
+        assert "pip" not in run(command.replace("make ", "make -n "), root), "run make install first"
+    if " resume " in command or " plot " in command or " info " in command:
+        write_run(root)
+    run(command, root)
+
+
+def write_run(root: Path) -> None:
+    """A run.h5 with its checkpoint, for the commands that read one, whichever test comes first."""
+    if not (root / "run.checkpoint").exists():
+        run(".venv/bin/python -m trbdyn run rig_30310 -o run.h5 --revolutions 2 --checkpoint-every 0.01 --quiet", root)
+
+
+@pytest.mark.parametrize("sample", blocks("python"))
+def test_samples(sample: str, root: Path) -> None:
+    (root / "sample.py").write_text(sample, encoding="utf-8")
+    run(".venv/bin/python sample.py", root)
+    run(f".venv/bin/python - <<'END'\n{sample}\nEND", root)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", sorted(MINUTES))
+def test_commands_that_take_minutes(command: str, root: Path) -> None:
+    assert command in commands()
+    run(command + SHORTER.get(command, ""), root, timeout=1800.0)
+
+
+def test_missing_core_is_explained(tmp_path: Path) -> None:
+    """Sources that nobody built say what to do."""
+    shutil.copytree(ROOT / "trbdyn", tmp_path / "trbdyn", ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+    packages = [entry for entry in sys.path if entry.endswith("site-packages")]
+    code = f"import sys; sys.path += {packages!r}; from trbdyn import _core"
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", code], cwd=tmp_path, env=environment(), capture_output=True, text=True
+    )
+    assert done.returncode == 1
+    assert "make install" in done.stderr.splitlines()[-1]
+
+
+@pytest.mark.slow
+def test_a_fresh_clone(tmp_path: Path) -> None:
+    """Everything from nothing: environment, build, demo, run, sample, plain pytest; and the package in another environment."""
+    clone = copy_of_checkout(tmp_path)
+    run("make demo", clone, timeout=1800.0)
+    assert (clone / "demo" / "cage_locus.png").is_file()
+    installed = run(".venv/bin/python -m pip list --exclude-editable", clone)
+    assert "pytest" not in installed
+    assert "distributed" not in installed
+    for sample in blocks("python"):
+        run(f".venv/bin/python - <<'END'\n{sample}\nEND", clone)
+    for command in commands():
+        if "-m trbdyn run" in command:
+            run(command, clone)
+    for number, command in enumerate(sorted(INSTALLS)):
+        run(f"{sys.base_prefix}/bin/python3 -m venv other{number}", clone)
+        run(f"other{number}/bin/python -m {command} -q", clone, timeout=1800.0)
+        run(f"cd / && {clone}/other{number}/bin/python -m trbdyn cases", clone)
+    assert "installing" not in run("make install", clone)
+    run("make test PYTEST='-k test_laws_api'", clone, timeout=1800.0)
+    assert "skipped" not in run(f".venv/bin/pytest -q {PARTS}", clone)
