@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from trbdyn.errors import FileError, InputError, LoadError, StepError, TrbError
     from trbdyn.lubricants import Lubricant
     from trbdyn.motion import History
+    from trbdyn.reporting import report
     from trbdyn.results import Result, load
     from trbdyn.resuming import resume
     from trbdyn.run_options import RunOptions
@@ -60,6 +61,7 @@ _NAMES = {
     "TrbError": "trbdyn.errors",
     "load": "trbdyn.results",
     "load_case": "trbdyn.toml_case",
+    "report": "trbdyn.reporting",
     "resume": "trbdyn.resuming",
     "view": "trbdyn.viewer",
 }
@@ -90,6 +92,7 @@ __all__ = [
     "observables",
     "plot",
     "pocket_shapes",
+    "report",
     "resume",
     "study",
     "view",

@@ -132,9 +132,11 @@ def _parser() -> argparse.ArgumentParser:
     demo.set_defaults(command=_demo)
 
     from trbdyn.paper.command import add_paper_parser
+    from trbdyn.reporting.command import add_report_parser
     from trbdyn.study.command import add_sweep_parser
     from trbdyn.viewer.command import add_view_parser
 
+    add_report_parser(commands, [common])
     add_view_parser(commands, [common])
     add_sweep_parser(commands, [common])
     add_paper_parser(commands, [common])

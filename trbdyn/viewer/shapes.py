@@ -125,10 +125,10 @@ def shapes(bearing: Bearing, stations: ArrayLike) -> Shapes:
     flank = np.asarray(stations, dtype=float)
     faces = _faces(bearing)
     body, largest = _cage(bearing, faces)
-    outer = revolve(_cup(bearing), facets=4 * AROUND, start=CUT[1], stop=CUT[0] + 2.0 * np.pi, caps=True)
+    outer = revolve(cup_outline(bearing), facets=4 * AROUND, start=CUT[1], stop=CUT[0] + 2.0 * np.pi, caps=True)
     return Shapes(
         outer=outer,
-        inner=revolve(_cone(bearing), facets=4 * AROUND),
+        inner=revolve(cone_outline(bearing), facets=4 * AROUND),
         roller=_roller(bearing, flank),
         mark=_mark(bearing),
         cage=body,
@@ -244,7 +244,7 @@ def _on_race(bearing: Bearing, half_angle: float, station: float, height: float 
     return np.array([distance * sine + height * cosine, distance * cosine - height * sine - geometry.centre_plane])
 
 
-def _cup(bearing: Bearing) -> list[Array]:
+def cup_outline(bearing: Bearing) -> list[Array]:
     roller = bearing.roller
     half = 0.5 * roller.total_length
     small, large = (
@@ -254,7 +254,7 @@ def _cup(bearing: Bearing) -> list[Array]:
     return [small, large, np.array([outside, large[1]]), np.array([outside, small[1]])]
 
 
-def _cone(bearing: Bearing) -> list[Array]:
+def cone_outline(bearing: Bearing) -> list[Array]:
     geometry, roller, ribs = bearing.geometry, bearing.roller, bearing.ribs
     size, angle = roller.diameter, geometry.cone_half_angle
     front_station = geometry.small_end_station - ribs.front_clearance
@@ -389,7 +389,7 @@ def _cage(bearing: Bearing, faces: tuple[FaceMesh, ...]) -> tuple[Mesh, float]:
     exaggeration.
     """
     parts, largest = [], 200.0
-    count, bands = bearing.n_rollers, _rail_bands(bearing)
+    count, bands = bearing.n_rollers, rail_bands(bearing)
     ends = (bands[0][2], bands[1][2])
     by_pocket: dict[int, list[Face]] = {k: list(bearing.pocket_of(k).faces) for k in range(count)}
     meshes = {(face.pocket, face.name): face for face in faces}
@@ -460,7 +460,7 @@ def _plate(face: FaceMesh, thickness: float) -> Mesh:
     return flat_mesh(back, np.arange(back.shape[0]).reshape(-1, 3), np.broadcast_to(face.shift, back.shape))
 
 
-def _rail_bands(bearing: Bearing) -> list[tuple[float, float, float, float, float]]:
+def rail_bands(bearing: Bearing) -> list[tuple[float, float, float, float, float]]:
     """Lowest n, highest n, stations of the near and the far side, shift along a: of the small- and the large-end
     rail.
     """
