@@ -169,7 +169,7 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
     touched = np.flatnonzero(statistics.peak.max(axis=0) > threshold).tolist()
     width = 2.0 * np.pi / count
     with plt.rc_context(STYLE):
-        ax = _polar(ax)
+        paper: Any = _polar(ax)
         for order, slot in enumerate(touched):
             bar = 0.8 * width / len(touched)
             place = width * np.arange(count) + bar * (order - 0.5 * (len(touched) - 1))
@@ -177,17 +177,20 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
             colour = COLOURS[order % len(COLOURS)]
             peak = statistics.peak[:, slot]
             p95 = np.where(peak > threshold, np.nan_to_num(statistics.p95[:, slot]), 0.0)
-            ax.bar(place, peak, bar, color=colour, alpha=0.35, linewidth=0)
-            ax.bar(place, p95, bar, color=colour, linewidth=0, label=name)
+            paper.bar(place, peak, bar, color=colour, alpha=0.35, linewidth=0)
+            paper.bar(place, p95, bar, color=colour, linewidth=0, label=name)
         every = max(1, count // 24)
-        ax.set_thetagrids(np.degrees(width * np.arange(0, count, every)), [str(k + 1) for k in range(0, count, every)])
-        ax.set_title("Force in each pocket (N): peak (light) and 95 % while touched (dark)", pad=14)
+        paper.set_thetagrids(
+            np.degrees(width * np.arange(0, count, every)), [str(k + 1) for k in range(0, count, every)]
+        )
+        paper.set_title("Force in each pocket (N): peak (light) and 95 % while touched (dark)", pad=14)
         if touched:
-            ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)
+            paper.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)
         else:
-            ax.text(0.5, 0.5, "no pocket was touched", transform=ax.transAxes, ha="center")
-            ax.set_yticks([])
-    return ax
+            paper.text(0.5, 0.5, "no pocket was touched", transform=paper.transAxes, ha="center")
+            paper.set_yticks([])
+    found: Axes = paper
+    return found
 
 
 _MAPS: Final[dict[str, tuple[str, str, float, str]]] = {

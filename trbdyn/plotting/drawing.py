@@ -98,20 +98,21 @@ def _dimensions(bearing: Bearing, ax: Axes) -> None:
     mid = _placed(bearing, np.array([(0.0, 0.0)]))[0]
     half, size = 0.5 * roller.effective_length, 0.5 * roller.diameter
 
-    def measure(start: Array, stop: Array, words: str, shift: tuple[float, float], **options: Any) -> None:
-        ax.annotate(
-            "", stop, start, arrowprops={"arrowstyle": "<->", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}, zorder=6
-        )
-        middle = 0.5 * (np.asarray(start) + np.asarray(stop))
-        ax.annotate(words, middle, shift, textcoords="offset points", fontsize=9, zorder=7, **options)
+    box: dict[str, Any] = {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85}}
 
-    box = {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85}}
+    def measure(ends: Array, words: str, shift: tuple[float, float], align: str = "left") -> None:
+        look = {"arrowstyle": "<->", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+        start, stop = ((float(z), float(r)) for z, r in ends)
+        ax.annotate("", stop, start, arrowprops=look, zorder=6)
+        middle = (0.5 * (start[0] + stop[0]), 0.5 * (start[1] + stop[1]))
+        ax.annotate(words, middle, shift, textcoords="offset points", fontsize=9, zorder=7, ha=align, **box)
+
     diameter = _placed(bearing, np.array([(0.0, -size), (0.0, size)]))
-    measure(*diameter, f"Dwe {1e3 * roller.diameter:.4g}", (4, -3), **box)
+    measure(diameter, f"Dwe {1e3 * roller.diameter:.4g}", (4, -3))
     above = 1.35 * size
     length = _placed(bearing, np.array([(-half, above), (half, above)]))
-    measure(*length, f"Lwe {1e3 * roller.effective_length:.4g}", (0, 7), ha="center", **box)
-    measure(np.array([mid[0], 0.0]), mid, f"Dpw/2 {5e2 * bearing.pitch_diameter:.5g}", (5, -20), **box)
+    measure(length, f"Lwe {1e3 * roller.effective_length:.4g}", (0, 7), "center")
+    measure(np.array([[mid[0], 0.0], mid]), f"Dpw/2 {5e2 * bearing.pitch_diameter:.5g}", (5, -20))
     lines = [
         f"Z = {bearing.n_rollers} rollers",
         f"cup half angle {bearing.cup_half_angle_deg:.4g}°",

@@ -79,7 +79,15 @@ def poincare(result: Result, ax: Axes | None = None, once_per: Literal["cage", "
     with canvas(ax, (5.4, 4.8)) as ax:
         keep = max(1, len(path) // 20000)
         ax.plot(*path[::keep].T, color="#CCCCCC", linewidth=0.4, zorder=1, label="whole path")
-        dots = ax.scatter(*points.T, c=np.arange(len(points)), cmap=sequence(), s=14, zorder=3, label=f"once a {words}")
+        dots = ax.scatter(
+            points[:, 0],
+            points[:, 1],
+            c=np.arange(len(points)),
+            cmap=sequence(),
+            s=14,
+            zorder=3,
+            label=f"once a {words}",
+        )
         ax.figure.colorbar(dots, ax=ax, shrink=0.8, pad=0.02).set_label(f"number of the {words}")
         ax.add_patch(Circle((0, 0), 1.0, fill=False, linewidth=1.1))
         reach = 1.08 * max(1.0, float(np.abs(path).max()))

@@ -17,10 +17,10 @@ MEANINGS: Final[dict[str, str]] = {
     "cage_speed_ratio_kinematic": "The same if all rollers rolled without slip.",
     "cage_slip": "How much slower than pure rolling the roller set goes round.",
     "cage_motion": "Stable: the centre stays at a place. Circling: it goes round in one sense. Unstable: neither.",
-    "whirl_radius_over_cpr": "Mean distance of the cage's centre from the bearing axis, over the radial play: 1 is the play used up.",
+    "whirl_radius_over_cpr": "Mean distance of the cage's centre from the axis over the radial play; 1: the play is used up.",
     "whirl_radius_over_cpr_p05": "Below this for 5 % of the time.",
     "whirl_radius_over_cpr_p95": "Below this for 95 % of the time.",
-    "orbit_radius_over_cpr": "Distance of the cage's centre from its own mean place, rms: small if it hangs still beside the axis.",
+    "orbit_radius_over_cpr": "Rms distance of the cage's centre from its mean place: small if it hangs still.",
     "whirl_ratio": "Orbits of the cage's centre for each turn of the cage; 1 is the usual whirl with the cage's rotation.",
     "whirl_frequency": "Orbits of the cage's centre in a second; negative: against the rotation.",
     "whirl_coherence": "1: the centre goes round steadily in one sense; 0: it does not.",
@@ -57,7 +57,7 @@ MEANINGS: Final[dict[str, str]] = {
 """A sentence for each entry of `trbdyn.summary.LABELS`; an entry without one is shown without."""
 
 CAPTIONS: Final[dict[str, str]] = {
-    "cage_locus": "Path of the cage's centre. The outer circle is the radial play Cpr: a path along it is a whirl that uses up the play.",
+    "cage_locus": "Path of the cage's centre. The outer circle is the radial play Cpr; a whirl along it uses up the play.",
     "whirl_radius": "Distance of the cage's centre from the bearing axis over time, and from where averages are taken.",
     "axial_motion": "Place of the cage between the roller ends: 0 is against the large ends.",
     "tilt": "Tilt of the cage's axis over the last turns.",

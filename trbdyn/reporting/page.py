@@ -6,6 +6,7 @@ import base64
 import html
 import io
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.reporting.inputs import Row, rows
@@ -91,7 +92,9 @@ def _verdict(result: Result, numbers: dict[str, Any], listed: list[Row], name: s
     estimated, assumed = (sum(row.mark == mark for row in listed) for mark in ("estimated", "assumed"))
     notes = "".join(f"<li>{_safe(text)}</li>" for text in warnings(result, numbers, estimated, assumed))
     of = f" of {_safe(name)}" if name else ""
-    return f"<h2>Verdict{of}</h2>\n<div class='cards'>{cards}</div>\n<h3>Before you rely on it</h3><ul class='warnings'>{notes}</ul>"
+    return f"<h2>Verdict{of}</h2>\n<div class='cards'>{cards}</div>" + (
+        f"\n<h3>Before you rely on it</h3><ul class='warnings'>{notes}</ul>"
+    )
 
 
 def _differences(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
@@ -100,8 +103,9 @@ def _differences(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
     if not paths:
         return "<h2>What differs</h2><p>All inputs of the two scenes are equal.</p>"
     body = "".join(
-        f"<tr><td>{_safe(path)}</td><td class='n'>{_safe(_value(tables[0], path))}</td><td class='n'>{_safe(_value(tables[1], path))}</td>"
-        f"<td class='u'>{_safe((tables[0].get(path) or tables[1][path]).unit)}</td></tr>"
+        f"<tr><td>{_safe(path)}</td>"
+        + "".join(f"<td class='n'>{_safe(_value(table, path))}</td>" for table in tables)
+        + f"<td class='u'>{_safe((tables[0].get(path) or tables[1][path]).unit)}</td></tr>"
         for path in paths
     )
     heads = "".join(f"<th>{_safe(name)}</th>" for name in names)
@@ -121,19 +125,11 @@ def _simulated(results: Sequence[Result], names: Sequence[str]) -> str:
     for number in chosen:
         of = f"{names[number]}: " if len(chosen) > 1 else ""
         bearing = bearings[number]
-        figures.append(
-            _figure(
-                lambda bearing=bearing: bearing_drawing(bearing),
-                f"{of}the bearing in section, from its inputs; dashed parts are not simulated.",
-            )
-        )  # type: ignore[misc]
+        caption = f"{of}The bearing in section, from its inputs; dashed parts are not simulated."
+        figures.append(_figure(partial(bearing_drawing, bearing), caption))
         if results[number].has_cage:
-            figures.append(
-                _figure(
-                    lambda bearing=bearing: pocket_drawing(bearing),
-                    f"{of}a pocket of the cage with its roller and the gaps of its faces.",
-                )  # type: ignore[misc]
-            )
+            caption = f"{of}A pocket of the cage with its roller, and the gaps of its faces."
+            figures.append(_figure(partial(pocket_drawing, bearing), caption))
     return f"<h2>What was simulated</h2><div class='pictures'>{''.join(figures)}</div>"
 
 
@@ -177,14 +173,15 @@ def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[
     for name in chosen:
         caption = CAPTIONS.get(name, name.replace("_", " "))
         if len(results) == 1:
-            out.append(_figure(lambda name=name: PICTURES[name][0](results[0]), caption))  # type: ignore[misc]
+            out.append(_figure(partial(PICTURES[name][0], results[0]), caption))
             continue
         images = "".join(
-            f"<img alt='{_safe(label)}' src='{image(lambda name=name, result=result: PICTURES[name][0](result))}'>"  # type: ignore[misc]
+            f"<img alt='{_safe(label)}' src='{image(partial(PICTURES[name][0], result))}'>"
             for result, label in zip(results, names, strict=True)
         )
         out.append(
-            f"<figure class='pair'>{images}<figcaption>{_safe(caption)} Left: {_safe(names[0])}; right: {_safe(names[1])}.</figcaption></figure>"
+            f"<figure class='pair'>{images}<figcaption>{_safe(caption)} Left: {_safe(names[0])}; right: {_safe(names[1])}."
+            "</figcaption></figure>"
         )
     return f"<h2>Pictures</h2><div class='pictures'>{''.join(out)}</div>"
 
@@ -227,14 +224,19 @@ def _inputs(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
     tables = []
     for listed, name in zip(inputs, names, strict=True):
         body = "".join(
-            f"<tr class='{row.mark}'><td>{_safe(row.path)}</td><td class='n'>{_safe(row.value)}</td><td class='u'>{_safe(row.unit)}</td>"
+            f"<tr class='{row.mark}'><td>{_safe(row.path)}</td><td class='n'>{_safe(row.value)}</td>"
+            f"<td class='u'>{_safe(row.unit)}</td>"
             f"<td class='mark'>{row.mark}</td><td>{_safe(row.text)}</td></tr>"
             for row in listed
         )
         of = f" of {_safe(name)}" if len(inputs) > 1 else ""
         tables.append(
-            f"<details open><summary>All inputs{of}</summary><table><tr><th>input</th><th>value</th><th>unit</th><th></th><th>what it is</th></tr>"
+            f"<details open><summary>All inputs{of}</summary><table>"
+            "<tr><th>input</th><th>value</th><th>unit</th><th></th><th>what it is</th></tr>"
             f"{body}</table></details>"
         )
-    note = "<p>Marked as <b>assumed</b>: no source gives the value, it is the package's default. Marked as <b>estimated</b>: derived from the catalogue's numbers.</p>"
+    note = (
+        "<p>Marked as <b>assumed</b>: no source gives the value, it is the package's default. "
+        "Marked as <b>estimated</b>: derived from the catalogue's numbers.</p>"
+    )
     return f"<h2>Inputs</h2>{note}{''.join(tables)}"

@@ -103,8 +103,8 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
         grade,
         "Hits on the cage",
         f"The hardest recorded force between a roller and its pocket is {peak:.3g} N, {compared}; while they touch, 95 % of the "
-        f"forces stay below {numbers['pocket_force_p95']:.3g} N. A pocket is touched {100.0 * numbers['pocket_duty']:.2g} % of the "
-        "time.",
+        f"forces stay below {numbers['pocket_force_p95']:.3g} N. A pocket is touched "
+        f"{100.0 * numbers['pocket_duty']:.2g} % of the time.",
     )
 
 
@@ -214,7 +214,8 @@ def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: i
     out = [str(note) for note in result.meta.get("notes") or ()]
     if estimated:
         out.append(
-            f"{estimated} inputs are estimated from the catalogue's numbers, see the table of inputs; trb.sensitivity tells which matter."
+            f"{estimated} inputs are estimated from the catalogue's numbers, see the table of inputs; trb.sensitivity tells "
+            "which of them matter."
         )
     if assumed:
         out.append(
