@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
     from trbdyn.toml_case import load_case
     from trbdyn.viewer import view
+    from trbdyn.what_matters import sensitivity
 
 _MODULES = {
     "animation": "trbdyn.animation",
@@ -63,6 +64,7 @@ _NAMES = {
     "load_case": "trbdyn.toml_case",
     "report": "trbdyn.reporting",
     "resume": "trbdyn.resuming",
+    "sensitivity": "trbdyn.what_matters",
     "view": "trbdyn.viewer",
 }
 
@@ -94,6 +96,7 @@ __all__ = [
     "pocket_shapes",
     "report",
     "resume",
+    "sensitivity",
     "study",
     "view",
 ]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from trbdyn.errors import InputError, Path, Problem
+from trbdyn.estimated import Estimated
 from trbdyn.geometry import Geometry
 from trbdyn.pocket import Face, OtherPocket, Pocket
 from trbdyn.validation import Gap, Length, Model, Number, Whole, unit
@@ -273,6 +274,8 @@ class Bearing(Model):
         Roughness of the contacts.
     name : str
         Name in titles and files.
+    estimates : sequence of Estimated
+        Inputs that were estimated when the bearing was made from catalogue numbers; see `assumed`.
 
     Raises
     ------
@@ -289,6 +292,106 @@ class Bearing(Model):
     material: Material = Material()
     roughness: Roughness = Roughness()
     name: Annotated[str, Field(min_length=1)] = "bearing"
+    estimates: tuple[Estimated, ...] = ()
+
+    @classmethod
+    def from_catalogue(
+        cls,
+        *,
+        bore: float,
+        outside: float,
+        width: float,
+        C: float,
+        e: float | None = None,
+        Y: float | None = None,
+        cup_width: float | None = None,
+        n_rollers: int | None = None,
+        roller_diameter: float | None = None,
+        roller_length: float | None = None,
+        pitch_diameter: float | None = None,
+        contact_angle_deg: float | None = None,
+        cage_mass: float | None = None,
+        name: str = "",
+    ) -> Bearing:
+        """A bearing from the numbers of a catalogue page; what is inside is estimated.
+
+        The angle of the cup follows from e or Y, the length of the rollers from the rating formula of ISO 281, the
+        rest from usual ratios. `assumed` lists every estimate with its band and source. Give what you know better.
+
+        Parameters
+        ----------
+        bore, outside, width : float
+            Boundary dimensions d, D and T (m).
+        C : float
+            Basic dynamic load rating (N).
+        e, Y : float, optional
+            Calculation factors; one of them, or the contact angle, must be given (1).
+        cup_width : float, optional
+            Width of the cup, often called C beside T and B (m).
+        n_rollers : int, optional
+            Z.
+        roller_diameter, roller_length, pitch_diameter : float, optional
+            Dwe, Lwe, Dpw (m).
+        contact_angle_deg : float, optional
+            Half angle of the cup (deg).
+        cage_mass : float, optional
+            Mass of the cage (kg).
+        name : str
+            Name; by default the boundary dimensions.
+
+        Returns
+        -------
+        Bearing
+
+        Raises
+        ------
+        InputError
+            If a number is not allowed, or no rollers that fit the dimensions come near this C.
+
+        Notes
+        -----
+        Sources: ISO 281:2007 (rating, e = 1.5 tan alpha, Y = 0.4 cot alpha); ISO 355 (proportions of the dimension
+        series).
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43,
+        name="32216")
+        >>> print(bearing.assumed[0])
+        cup_half_angle_deg = 15.99 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
+        """
+        from trbdyn.catalogue import bearing_from_catalogue
+
+        return bearing_from_catalogue(
+            bore=bore,
+            outside=outside,
+            width=width,
+            C=C,
+            e=e,
+            Y=Y,
+            cup_width=cup_width,
+            n_rollers=n_rollers,
+            roller_diameter=roller_diameter,
+            roller_length=roller_length,
+            pitch_diameter=pitch_diameter,
+            contact_angle_deg=contact_angle_deg,
+            cage_mass=cage_mass,
+            name=name,
+        )
+
+    @property
+    def assumed(self) -> tuple[Estimated, ...]:
+        """Inputs that are estimated, with their bands and sources; one that was changed since is no longer among
+        them.
+        """
+        return tuple(entry for entry in self.estimates if self._at(entry.path) == entry.value)
+
+    def _at(self, path: str) -> object:
+        value: object = self
+        for part in path.split("."):
+            value = getattr(value, part, None)
+        return value
 
     @cached_property
     def geometry(self) -> Geometry:
