@@ -27,7 +27,7 @@ class Profile(Model):
     Parameters
     ----------
     kind : {'logarithmic', 'crowned', 'straight'}
-        Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((|y| - a)/(k2 a) + 1)^2]} for |y| > a - k2 a with A = 2 k1 Q/(pi
+        Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((abs(y) - a)/(k2 a) + 1)^2]} for abs(y) > a - k2 a with A = 2 k1 Q/(pi
         L E'), a = L/2.
     crown_radius : float
         Radius of the arc of a crowned roller (m).

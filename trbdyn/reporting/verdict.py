@@ -42,6 +42,21 @@ def verdict(result: Result, numbers: dict[str, Any]) -> list[Sentence]:
     return [sentence for part in parts if (sentence := part(result, numbers)) is not None]
 
 
+def what_matters(result: Result, numbers: dict[str, Any]) -> list[str]:
+    """Three sentences: how the cage moves, how hard it is hit, what torque it costs; those that the recorded groups
+    allow.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+    numbers : dict
+        Its summary.
+    """
+    found = (part(result, numbers) for part in (_whirl, _hits, _torque))
+    return [f"{sentence[1]}. {sentence[2]}" for sentence in found if sentence is not None]
+
+
 def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     turns = f"{numbers['revolutions']:.4g} turns of the shaft ({numbers['duration']:.4g} s)"
     if not result.success:
