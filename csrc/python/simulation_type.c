@@ -433,9 +433,12 @@ static PyGetSetDef properties[] = {
 };
 
 static PyType_Slot slots[] = {
-    {Py_tp_dealloc, simulation_dealloc}, {Py_tp_doc, "One integration: model, prescribed motion, state, integrator."},
-    {Py_tp_methods, methods},            {Py_tp_getset, properties},
-    {Py_tp_new, simulation_new},         {0, NULL},
+    {Py_tp_dealloc, simulation_dealloc},
+    {Py_tp_doc, "One integration: model, prescribed motion, state, integrator."},
+    {Py_tp_methods, methods},
+    {Py_tp_getset, properties},
+    {Py_tp_new, simulation_new},
+    {0, NULL},
 };
 
 PyType_Spec trb_simulation_spec = {
