@@ -5,6 +5,7 @@
 #   make lint       style, types, rules of the C sources (make format rewrites the style)
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
+#   make notebooks  the notebooks run and keep their outputs
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make docs       the documentation site in build/docs; its code is run, warnings are errors
@@ -36,11 +37,11 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: demo docs wheels test lint format bench stability fuzz sanitize install clean distclean
+.PHONY: demo docs wheels test lint format bench stability notebooks fuzz sanitize install clean distclean
 .NOTPARALLEL:
 
 demo: install
-	$(PY) -m trbdyn demo -o demo
+	$(PY) -m trbdyn demo -o demo --overwrite
 
 docs: install $(VENV)/.docs
 	$(PY) -m sphinx -q -W --keep-going -b html -d build/docs-cache docs build/docs
@@ -74,6 +75,9 @@ bench: install $(VENV)/.test
 stability: install $(VENV)/.test
 	@mkdir -p build
 	$(PY) tests/stability/stability.py --json build/stability.json $(SCENES)
+
+notebooks: install $(VENV)/.test
+	$(PY) -m pytest notebooks --nbmake --overwrite
 
 fuzz: $(VENV)/.tools
 	SECONDS_EACH=$(or $(SECONDS),60) .ci/fuzz

@@ -48,7 +48,7 @@ COLUMNS = {
     "cpu_s_per_revolution_on": "s: processor time a revolution with this effect alone, rolling from equal spacing",
     "steps_per_revolution_off": "1: steps a revolution with all effects but this",
     "cage_speed_change": "1: what the effect adds to the turn of the cage over that of the shaft, over the value with all",
-    "whirl_radius_change": "1: change of the mean whirl radius over Cpr when the effect is added",
+    "whirl_radius_change": "1: change of the cage centre's mean distance from the bearing axis over Cpr when the effect is added",
     "torque_change": "1: what the effect adds to the shaft's mean torque, over the torque with all",
     "whirl_radius_half_width": "1: half the 95 % confidence interval of the whirl radius without the effect",
     "effects": "object: time_ratio_off, evaluations_off and share by effect",

@@ -50,7 +50,7 @@ COLUMNS = {
     "error_power": "1: deviation of the energy lost within the window over it, median over states",
     **{f"{name}_worst": "1: the same, worst state" for name in measure.QUANTITIES},
     "error_displacement": "1: deviation of the ring's axial place under load over its place: stiffness",
-    "whirl_radius": "1: mean radius of the cage's whirl over Cpr",
+    "whirl_radius": "1: mean distance of the cage's centre from the bearing axis over Cpr",
     "whirl_radius_half_width": "1: half the 95 % confidence interval",
     "torque": "N m: mean torque of the shaft",
     "torque_half_width": "N m: half the 95 % confidence interval",

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from trbdyn import plotting as plot
     from trbdyn.bearing import Bearing
     from trbdyn.effects import Effects
-    from trbdyn.errors import FileError, InputError, LoadError, StepError, TrbError
+    from trbdyn.errors import FileError, InputError, LoadError, RunWarning, StepError, TrbError
     from trbdyn.lubricants import Lubricant
     from trbdyn.motion import History
     from trbdyn.reporting import report
@@ -55,6 +55,7 @@ _NAMES = {
     "Lubricant": "trbdyn.lubricants",
     "Result": "trbdyn.results",
     "RunOptions": "trbdyn.run_options",
+    "RunWarning": "trbdyn.errors",
     "Scene": "trbdyn.scene",
     "Simulation": "trbdyn.simulation",
     "Start": "trbdyn.scene",
@@ -78,6 +79,7 @@ __all__ = [
     "Lubricant",
     "Result",
     "RunOptions",
+    "RunWarning",
     "Scene",
     "Simulation",
     "Start",

@@ -27,6 +27,10 @@ def field_table() -> list[tuple[str, str, str, str, str]]:
     """(name, group, kind, unit, text) of every recorded quantity, in order; kind is scalar, vec2, vec3, quaternion,
     roller, roller_vec3, roller_quat or pocket_face."""
 
+def peak_table() -> list[tuple[str, str, str, str, str, str]]:
+    """(name, group, kind, unit, text, how two intervals are joined) of every peak, in order; joined is largest, smallest, time
+    (of the extreme before it), mean or sum."""
+
 def geometry_table() -> list[tuple[str, str, str]]:
     """(name, unit, text) of every derived geometric quantity."""
 
@@ -62,6 +66,7 @@ class Model:
     n_slots: int
     n_state: int
     record_length: int
+    peak_length: int
     instruction_set: str
     def equilibrium(
         self, load: Array, fixed: Array, displacement: Array, shaft_speed: float, angles: Array
@@ -71,6 +76,8 @@ class Model:
         (Z, 3: r, z, tilt offsets), loads (Z, 3: outer, inner, rib), residual, iterations."""
     def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of every field of a record."""
+    def peak_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
+        """(name, offset, shape) of every field of a row of peaks."""
     def state_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of the parts of a state vector."""
 
@@ -83,13 +90,26 @@ class Simulation:
         """motion (K, 1 + 18): knot time, then value and slope of each channel. settings: integrator ('bdf', 'erk')
         and those of setting_table()."""
     time: float
+    row_length: int
     def run(self, times: Array, records: Array, max_steps: int, stop_after: float = ...) -> tuple[int, int]:
-        """Integrate until every time in `times` is passed, filling a row of `records` for each; stop after max_steps, or at
+        """Integrate until every time in `times` is passed, filling a row of `records` (a record, and after it the peaks since the
+        row before, if they are kept) for each; stop after max_steps, or at
         the first step's end at or after `stop_after`, once the records up to there are filled. Gives (rows filled, steps
         taken). Raises CoreStepError; what was filled stays. Releases the GIL."""
     def step(self) -> float:
         """One step of the integrator; gives the new time."""
     def state(self) -> Array: ...
+    def state_at(self, time: float) -> Array:
+        """The state at an instant of the last step."""
+    def begin_peaks(self, time: float) -> None:
+        """Keep peaks from an instant of the last step on."""
+    def end_peaks(self) -> None: ...
+    def save_peaks(self) -> Array:
+        """All that restore_peaks needs; empty if no peaks are kept."""
+    def restore_peaks(self, saved: Array) -> None:
+        """Go on with peaks that were saved at this time."""
+    def whole_peaks(self, time: float) -> Array:
+        """A row of peaks from their beginning to an instant of the last step; empty if none are kept."""
     def set_state(self, time: float, state: Array) -> None:
         """Restart the integrator at this state."""
     def restart(self) -> None:

@@ -4,9 +4,12 @@ A run with a schedule (`checkpoint_every`) starts its integrator anew at the fir
 time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps as one
 that was never interrupted: to the last bit, on the same build and instruction set.
 
-The file ``run.checkpoint`` beside ``run.h5``, format version 1: a line that names the format and its version; the SHA-256 of
-all that follows; a line of JSON; the state vector as little-endian float64. It is written under another name, synchronised to
-the disk and then renamed; the one before it stays as ``run.checkpoint.previous``. Nothing in it is executed.
+The file ``run.h5.checkpoint`` beside ``run.h5``, format version 2: a line that names the format and its version; the SHA-256 of
+all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under another
+name, synchronised to the disk and then renamed; the one before it stays as ``run.h5.checkpoint.previous``. Nothing in it is
+executed.
+
+A checkpoint names its run. Only files that name the same run are replaced or removed.
 """
 
 from __future__ import annotations
@@ -25,14 +28,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
 from trbdyn.errors import FileError, InputError
+from trbdyn.own_files import create_draft, set_aside
 
 Array = NDArray[np.float64]
 
 MAGIC = b"trbdyn-checkpoint"
-VERSION = 1
+VERSION = 2
 
 LARGEST = 64 << 20
 """Size of a file beyond which it is no checkpoint (bytes)."""
+
+
+_NUMBERS = ("state", "peaks")
+"""What is written as numbers, after the line of JSON."""
 
 
 def build_digest() -> str:
@@ -79,6 +87,10 @@ class Checkpoint:
         Wall time of stepping by then (s).
     state : ndarray, shape (n_state,)
         The state vector.
+    peaks : ndarray
+        Peaks so far, as the core saves them; empty if the run keeps none.
+    warnings : list of str
+        What the watch over the run has found by then.
     """
 
     run_id: str
@@ -96,11 +108,15 @@ class Checkpoint:
     counters: dict[str, int]
     stepping_s: float
     state: Array = field(repr=False)
+    peaks: Array = field(repr=False)
+    warnings: list[str] = field(default_factory=list)
 
     def to_bytes(self) -> bytes:
         """The file's content."""
-        head = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "state"}
-        body = json.dumps(head, allow_nan=False).encode() + b"\n" + self.state.astype("<f8").tobytes()
+        head = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name not in _NUMBERS}
+        head["n_state"] = self.state.size
+        numbers = np.concatenate([self.state, self.peaks]).astype("<f8").tobytes()
+        body = json.dumps(head, allow_nan=False).encode() + b"\n" + numbers
         return b"%s %d\n%s\n" % (MAGIC, VERSION, hashlib.sha256(body).hexdigest().encode()) + body
 
     @classmethod
@@ -127,7 +143,10 @@ class Checkpoint:
         values = json.loads(head)
         if not isinstance(values, dict):
             raise ValueError("its table of values is missing")
-        values["state"] = np.frombuffer(numbers, dtype="<f8").astype(np.float64)
+        vector, length = np.frombuffer(numbers, dtype="<f8").astype(np.float64), values.pop("n_state", None)
+        if not isinstance(length, int) or not 0 < length <= vector.size:
+            raise ValueError("the state vector is cut short")
+        values["state"], values["peaks"] = vector[:length], vector[length:]
         names = {entry.name for entry in fields(cls)}
         if values.keys() != names:
             raise ValueError(f"entries missing or unknown: {', '.join(sorted(values.keys() ^ names))}")
@@ -153,6 +172,10 @@ class Checkpoint:
             raise ValueError("its times are not in order")
         if self.done < 0 or not np.isfinite(self.state).all():
             raise ValueError("its state is not finite")
+        if not isinstance(self.warnings, list) or not all(isinstance(text, str) for text in self.warnings):
+            raise ValueError("its warnings are not texts")
+        if np.isnan(self.peaks).any():
+            raise ValueError("its peaks are not numbers")
 
 
 def next_time(after: float, every: float | None) -> float:
@@ -167,7 +190,8 @@ def next_time(after: float, every: float | None) -> float:
 
 def checkpoint_path(output: str | os.PathLike[str]) -> Path:
     """The checkpoint file of a run that writes to a result file."""
-    return Path(output).with_suffix(".checkpoint")
+    path = Path(output)
+    return path.with_name(path.name + ".checkpoint")
 
 
 def previous_path(path: Path) -> Path:
@@ -181,24 +205,91 @@ def write(path: Path, checkpoint: Checkpoint) -> None:
     Raises
     ------
     FileError
-        If it cannot be written; those that were there stay.
+        If it cannot be written, or that of another run lies there; those that were there stay.
     """
-    draft = path.with_name(f".{path.name}.new")
+    older = previous_path(path)
     try:
+        draft, stream = create_draft(path, checkpoint.run_id)
         try:
-            with draft.open("wb") as stream:
+            with stream:
                 stream.write(checkpoint.to_bytes())
                 stream.flush()
                 os.fsync(stream.fileno())
-        except OSError:
+            whole = _belongs(path, checkpoint.run_id)
+            # the older one is kept where the newer one is damaged
+            if whole and (_belongs(older, checkpoint.run_id) or not older.exists()):
+                os.replace(path, older)
+            os.replace(draft, path)
+        except BaseException:
             draft.unlink(missing_ok=True)
             raise
-        if path.exists():
-            os.replace(path, previous_path(path))
-        os.replace(draft, path)
         _sync_folder(path.parent)
+    except FileError:
+        raise
     except OSError as error:
         raise FileError(f"{path}: the checkpoint cannot be written: {error.strerror or error}") from error
+
+
+def _belongs(path: Path, run_id: str) -> bool:
+    """Whether a checkpoint of this run is at a path; a damaged file, which says nothing of its run, is moved aside.
+
+    Raises
+    ------
+    FileError
+        If it belongs to another run, or is no file.
+    """
+    if not os.path.lexists(path):
+        return False
+    if path.is_symlink() or not path.is_file():
+        raise FileError(f"{path}: the checkpoint cannot be written: something else has its name")
+    try:
+        found = read(path)
+    except FileError:
+        set_aside(path)
+        return False
+    if found.run_id != run_id:
+        raise FileError(f"{path}: the checkpoint cannot be written: that of another run lies there")
+    return True
+
+
+def check_free(output: Path, replaced: str | None, *, overwrite: bool) -> None:
+    """See that a new run with a schedule may write its checkpoints.
+
+    Parameters
+    ----------
+    output : Path
+        The new run's result file.
+    replaced : str, optional
+        Name of the run whose result it replaces.
+    overwrite : bool
+        Whether checkpoints of other runs may be replaced too.
+
+    Raises
+    ------
+    FileError
+        If a file lies there that must not be replaced.
+    """
+    path = checkpoint_path(output)
+    for place in (path, previous_path(path)):
+        if not os.path.lexists(place):
+            continue
+        regular = place.is_file() and not place.is_symlink()
+        if not regular or place.read_bytes()[: len(MAGIC)] not in (MAGIC, b""):
+            raise FileError(f"{place}: this is not a checkpoint, and a run of that name would replace it")
+        owner = run_id_of(place)
+        if not overwrite and (owner is None or owner != replaced):
+            raise FileError(
+                f"{place}: a checkpoint of another run lies there; resume that run, give another name, or overwrite=True "
+                "(--overwrite on the command line) to replace it"
+            )
+
+
+def run_id_of(path: Path) -> str | None:
+    """Name of the run that a checkpoint belongs to; None if it is missing or damaged."""
+    try:
+        return read(path).run_id
+    except FileError:
+        return None
 
 
 def _sync_folder(folder: Path) -> None:
@@ -209,10 +300,18 @@ def _sync_folder(folder: Path) -> None:
         os.close(handle)
 
 
-def remove(output: str | os.PathLike[str]) -> None:
-    """Remove the checkpoints of a run."""
+def remove(output: str | os.PathLike[str], run_id: str) -> None:
+    """Remove the checkpoints of a run; those of others, and files that do not say whose they are, stay."""
     path = checkpoint_path(output)
-    for place in (path, previous_path(path), path.with_name(f".{path.name}.new")):
+    for place in (path, previous_path(path)):
+        if run_id_of(place) == run_id:
+            place.unlink(missing_ok=True)
+
+
+def clear(output: Path) -> None:
+    """Remove every checkpoint that `check_free` has let pass."""
+    path = checkpoint_path(output)
+    for place in (path, previous_path(path)):
         place.unlink(missing_ok=True)
 
 
@@ -225,6 +324,8 @@ def read(path: Path) -> Checkpoint:
         If it is missing, damaged or of another kind; says why.
     """
     try:
+        if not path.is_file() and path.exists():
+            raise ValueError("it is not a regular file")
         with path.open("rb") as stream:
             data = stream.read(LARGEST + 1)
         if len(data) > LARGEST:

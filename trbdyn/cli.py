@@ -1,35 +1,37 @@
 """The command line: run cases, draw pictures, look into files and cases.
 
-Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that
-cannot be used; 130 stopped by Ctrl-C outside of a run.
+Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that cannot be used;
+3 a fault of trbdyn itself; 130 stopped by Ctrl-C outside of a run.
 """
 
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import os
 import sys
 import tomllib
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from trbdyn.errors import FileError, InputError, LoadError, TrbError
+from trbdyn.own_files import file_path, output_path
 
 if TYPE_CHECKING:
     from trbdyn.results import Result
     from trbdyn.run_options import RunOptions
     from trbdyn.scene import Scene
 
-DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+DONE, FAILED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
 
 DEMO_PICTURES: Final = ("cage_locus", "spacing_angles", "tilt", "pocket_forces")
 DEMO_REPORT: Final = (
     "cage_locus",
-    "whirl_radius",
+    "orbit_radius",
     "load_zone",
     "pressure_map",
     "film_map",
@@ -72,6 +74,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # names of files may hold any bytes
     options = _parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = options.command
     try:
@@ -86,23 +91,48 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("trbdyn: stopped", file=sys.stderr)
         return INTERRUPTED
+    except (OSError, MemoryError) as error:
+        return _report(error, BAD_INPUT, options.debug)
+    except Exception as error:
+        return _report(error, FAULT, options.debug)
 
 
-def _report(error: TrbError, code: int, debug: bool) -> int:
+def _report(error: Exception, code: int, debug: bool) -> int:
+    """Say what went wrong, one line a problem."""
     if debug:
         traceback.print_exception(error)
-    print(f"trbdyn: {error}", file=sys.stderr)
+    lines = [str(error)]
+    if isinstance(error, InputError):
+        lines = [problem.line(error.root) for problem in error.problems]
+    elif isinstance(error, MemoryError):
+        lines = [f"there is not enough memory {error}".strip()]
+    elif code == FAULT:
+        lines = [f"a fault of trbdyn itself, please report it: {type(error).__name__}: {error} (--debug shows where)"]
+    for line in lines:
+        print(f"trbdyn: {one_line(line)}", file=sys.stderr)
     return code
+
+
+def one_line(text: str) -> str:
+    """A text with everything escaped that would end a line or move a terminal's cursor."""
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(BAD_INPUT, f"{self.prog}: {one_line(message)} (--help shows what is allowed)\n")
 
 
 def _parser() -> argparse.ArgumentParser:
     from trbdyn import __version__
 
-    parser = argparse.ArgumentParser(prog="trbdyn", description="Dynamics of tapered roller bearings.")
+    parser = _Parser(prog="trbdyn", description="Dynamics of tapered roller bearings.")
     parser.add_argument("--version", action="version", version=f"trbdyn {__version__}")
-    common = argparse.ArgumentParser(add_help=False)
+    common = _Parser(add_help=False)
     common.add_argument("--debug", action="store_true", help="show where an error arose")
-    length = argparse.ArgumentParser(add_help=False)
+    length = _Parser(add_help=False)
     length.add_argument("--revolutions", type=float, metavar="N", help="turns of the shaft")
     length.add_argument("--accuracy", choices=("fast", "standard", "reference"), help="preset of the tolerances")
     length.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
@@ -112,11 +142,17 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
     run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
     run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
-    run.add_argument("--save-every", type=float, metavar="S", help="time between saved records (s)")
+    run.add_argument(
+        "--save-every",
+        type=float,
+        metavar="S",
+        help="time between records (s); default 1e-4, up to 1e-3 in long runs",
+    )
     run.add_argument(
         "--checkpoint-every", type=float, metavar="S", help="bearing time between checkpoints (s), to resume from"
     )
     run.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    run.add_argument("--overwrite", action="store_true", help="replace result and summary if they are there")
     _add_set(run)
     run.set_defaults(command=_run)
 
@@ -125,6 +161,7 @@ def _parser() -> argparse.ArgumentParser:
     resume.add_argument("--instruction-set", metavar="NAME", help="kernel variant, in place of the one it began with")
     resume.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
     resume.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    resume.add_argument("--overwrite", action="store_true", help="replace the summary if it is there")
     resume.set_defaults(command=_resume)
 
     plot = commands.add_parser("plot", parents=[common], help="draw a result's pictures")
@@ -144,6 +181,7 @@ def _parser() -> argparse.ArgumentParser:
         "demo", parents=[common, length], help="the 30310 at 3000 rpm and 4930 N, from a whirling start"
     )
     demo.add_argument("-o", "--output", metavar="FOLDER", default="demo", help="folder (default: demo)")
+    demo.add_argument("--overwrite", action="store_true", help="replace the run that is in the folder")
     demo.set_defaults(command=_demo)
 
     from trbdyn.paper.command import add_paper_parser
@@ -174,15 +212,12 @@ def _add_set(parser: argparse.ArgumentParser) -> None:
 
 def _load_case(name: str, changes: Sequence[str]) -> tuple[Scene, RunOptions]:
     """A case, with ``table.key=value`` changes put in."""
-    from trbdyn.toml_case import case_from_dict, find_case, load_case
+    from trbdyn.toml_case import case_from_dict, find_case, load_case, read_tables
 
     if not changes:
         return load_case(name)
-    path = Path(name) if Path(name).exists() else find_case(name)
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: {error}") from error
+    path = file_path(name, "case")
+    values = read_tables(path if path.exists() else find_case(name))
     for change in changes:
         key, equals, text = change.partition("=")
         *tables, last = key.strip().split(".")
@@ -203,6 +238,8 @@ def _toml_value(text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         return text.strip()
+    except (ValueError, RecursionError):
+        raise InputError.of("--set", text, "must be a TOML value that is not that long or deep") from None
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -216,9 +253,25 @@ def _run(options: argparse.Namespace) -> int:
         changes["duration"] = None
     if "duration" in changes and "revolutions" not in changes:
         changes["revolutions"] = None
-    output = Path(options.output or f"{Path(options.case).stem}.h5")
-    result = _simulate(scene, run.replace(**changes), output, quiet=options.quiet)
+    name = f"{Path(options.case).stem}.h5" if options.output is None else options.output
+    output = output_path(name, overwrite=options.overwrite)
+    _check_summary(options.summary, output, overwrite=options.overwrite)
+    given = run.model_fields_set | changes.keys()
+    result = _simulate(
+        scene, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite, given=given
+    )
     return _finish(result, output, options.summary, quiet=options.quiet)
+
+
+def _check_summary(summary_file: str | None, output: Path, *, overwrite: bool) -> None:
+    """See before a run that its summary can be written."""
+    if summary_file is None:
+        return
+    path = output_path(summary_file, overwrite=overwrite, field="summary")
+    if path.absolute() == output.absolute():
+        raise InputError.of("summary", summary_file, "must be another file than the result")
+    if not path.parent.is_dir():
+        raise FileError(f"{path}: cannot be written: there is no folder {path.parent}")
 
 
 def _resume(options: argparse.Namespace) -> int:
@@ -226,17 +279,21 @@ def _resume(options: argparse.Namespace) -> int:
 
     from trbdyn.resuming import resume
 
+    _check_summary(options.summary, file_path(options.file, "file"), overwrite=options.overwrite)
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)
         try:
             result = resume(options.file, instruction_set=options.instruction_set, progress=not options.quiet)
         finally:
             for note in notes:
-                print(f"trbdyn: {note.message}", file=sys.stderr)
+                print(f"trbdyn: {one_line(str(note.message))}", file=sys.stderr)
     return _finish(result, Path(options.file), options.summary, quiet=options.quiet)
 
 
-def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool) -> Result:
+def _simulate(
+    scene: Scene, run: RunOptions, output: Path, *, quiet: bool, overwrite: bool, given: Collection[str] = ()
+) -> Result:
+    """Run a case; what is not given of what to keep is chosen by the length of the run."""
     from trbdyn.run_options import RunOptions
     from trbdyn.simulation import Simulation
 
@@ -248,10 +305,11 @@ def _simulate(scene: Scene, run: RunOptions, output: Path, *, quiet: bool) -> Re
     return Simulation(scene, **settings).run(
         revolutions=run.revolutions,
         duration=run.duration,
-        save_every=run.save_every,
-        save_groups=run.save_groups,
+        save_every=run.save_every if "save_every" in given else None,
+        save_groups=run.save_groups if "save_groups" in given else None,
         progress=not quiet,
         output=output,
+        overwrite=overwrite,
     )
 
 
@@ -264,9 +322,9 @@ def _finish(result: Result, output: Path, summary_file: str | Path | None, *, qu
         summary.write_json(values, summary_file)
     if not quiet:
         print(summary.table(values))
-        print(f"\nrecords in {output}")
+        print(f"\n{len(result)} records in {output}: {result.meta.get('kept', '')}")
     if not result.success:
-        print(f"trbdyn: {result.message}", file=sys.stderr)
+        print(f"trbdyn: {one_line(result.message)}", file=sys.stderr)
     return DONE if result.success else FAILED
 
 
@@ -275,7 +333,7 @@ def _plot(options: argparse.Namespace) -> int:
     from trbdyn.results import load
 
     result = load(options.file)
-    folder = Path(options.output or f"{Path(options.file).with_suffix('')}_plots")
+    folder = Path(f"{Path(options.file).with_suffix('')}_plots" if options.output is None else options.output)
     written = plotting.all(result, folder, options.only)
     if options.animation:
         from trbdyn import animation
@@ -287,7 +345,7 @@ def _plot(options: argparse.Namespace) -> int:
 
 
 def _info(options: argparse.Namespace) -> int:
-    path = Path(options.file)
+    path = file_path(options.file, "file")
     if path.is_file() and path.suffix != ".toml":
         return _info_result(path, as_json=options.json)
     scene, run = _load_case(options.file, options.changes)
@@ -352,10 +410,11 @@ def _demo(options: argparse.Namespace) -> int:
     revolutions = 50.0 if options.revolutions is None else options.revolutions
     run = RunOptions(revolutions=revolutions, accuracy=options.accuracy or "standard")
     scene = scene_30310(3000.0, 4930.0, effects=Effects.paper(), start=Start.whirl(0.9))
+    run.end_time(scene.speed_rpm)
     folder = plotting.make_folder(options.output)
     if not options.quiet:
         print(DEMO_WORDS.format(turns=revolutions, folder=folder))
-    result = _simulate(scene, run, folder / "run.h5", quiet=options.quiet)
+    result = _simulate(scene, run, folder / "run.h5", quiet=options.quiet, overwrite=options.overwrite)
     plotting.all(result, folder, DEMO_PICTURES)
     numbers = result.summary()
     summary.write_json(numbers, folder / "summary.json")

@@ -120,6 +120,10 @@ class FileError(TrbError, OSError):
     """A file that cannot be read or written as asked."""
 
 
+class RunWarning(UserWarning):
+    """A run is doubtful: its energy does not add up, or its steps lead nowhere. `Result.warnings` keeps what was said."""
+
+
 class StepError(TrbError):
     """A time step that failed.
 
@@ -249,5 +253,8 @@ def _unit(where: Path, fields: Mapping[str, FieldInfo]) -> str:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):
+        text = "a whole number of thousands of digits" if isinstance(value, int) else f"a {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."

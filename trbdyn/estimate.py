@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
+from trbdyn.keeping import interval
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -109,7 +110,7 @@ def estimate(
     *,
     revolutions: float | None = None,
     duration: float | None = None,
-    save_every: float = 1e-4,
+    save_every: float | None = None,
     probe: float = PROBE,
 ) -> Estimate:
     """Expected wall time and error of a run from the present state.
@@ -123,8 +124,8 @@ def estimate(
         What would be run; it is left as it is.
     revolutions, duration : float, optional
         How far to go, in turns of the shaft or s; one of both must be given.
-    save_every : float
-        Time between records (s).
+    save_every : float, optional
+        Time between records (s); by default that of `Simulation.run`.
     probe : float
         Bearing time of the probe (s); not more than the run, and it ends early after `PATIENCE` seconds of wall time.
 
@@ -137,9 +138,11 @@ def estimate(
     """
     if not probe > 0.0:
         raise InputError.of("probe", probe, "must be > 0 (s)")
-    options = sim.options.replace(revolutions=revolutions, duration=duration, save_every=save_every)
+    changes = {"revolutions": revolutions, "duration": duration}
+    options = sim.options.replace(**changes if save_every is None else {**changes, "save_every": save_every})
     start = sim.time
     length = options.end_time(sim.scene.speed_rpm, start) - start
+    save_every = interval(length, sim.scene.speed_rpm) if save_every is None else save_every
     rates = _probe(sim, min(probe, length))
     records = max(math.ceil(length / save_every - 1e-9), 1) + 1
     wall = length * rates["wall"] + records * rates["record"]
@@ -151,7 +154,7 @@ def estimate(
         steps=round(length * rates["steps"]),
         evaluations=round(length * rates["rhs_evaluations"]),
         records=records,
-        memory_mb=8e-6 * records * sum(value.size for value in sim.record().values()),
+        memory_mb=8e-6 * records * (sim._model.record_length + sim._model.peak_length),
         **found,
     )
 

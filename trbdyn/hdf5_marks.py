@@ -17,6 +17,8 @@ from typing import Any, BinaryIO
 
 import h5py
 
+from trbdyn.own_files import is_same
+
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 SIZE = 48
 """Bytes of a superblock of version 3 with addresses of 8 bytes."""
@@ -27,14 +29,30 @@ _ALL_ONES = 0xFFFFFFFF
 
 
 def take_lock(path: Path) -> BinaryIO:
-    """An open file that no other process or writer can lock while it stays open.
+    """A file that is there, opened so that no other process or writer can lock it while it stays open.
 
     Raises
     ------
     OSError
         If another one holds it (errno EBUSY), or it cannot be opened.
     """
-    stream = path.open("ab")
+    # links are not followed, and what is no file cannot make it wait
+    flags = os.O_RDWR | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+    stream = lock(os.fdopen(os.open(path, flags), "r+b"))
+    if not is_same(path, stream):
+        stream.close()
+        raise _busy()
+    return stream
+
+
+def lock(stream: BinaryIO) -> BinaryIO:
+    """An open file, locked as by `take_lock`; closed if it cannot be.
+
+    Raises
+    ------
+    OSError
+        If another one holds it (errno EBUSY).
+    """
     command = getattr(fcntl, "F_OFD_SETLK", None)
     if command is None:
         return stream
@@ -45,9 +63,13 @@ def take_lock(path: Path) -> BinaryIO:
             return stream
         stream.close()
         if error.errno in (errno.EAGAIN, errno.EACCES):
-            raise OSError(errno.EBUSY, "another run is writing it") from None
+            raise _busy() from None
         raise
     return stream
+
+
+def _busy() -> OSError:
+    return OSError(errno.EBUSY, "another run is writing it")
 
 
 def is_locked(stream: BinaryIO) -> bool:

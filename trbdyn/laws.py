@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
 from trbdyn.errors import InputError
+from trbdyn.law_texts import docstring
 
 Law = Callable[..., Any]
 
@@ -47,8 +48,7 @@ def _make(name: str, arguments: str, text: str) -> Law:
 
     law.__name__ = law.__qualname__ = name
     law.__signature__ = signature  # type: ignore[attr-defined]
-    listed = ", ".join(signature.parameters)
-    law.__doc__ = f"{text}.\n\nParameters\n----------\n{listed} : array_like\n    SI units.\n"
+    law.__doc__ = docstring(name, list(signature.parameters), text)
     return law
 
 

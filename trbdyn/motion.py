@@ -7,7 +7,7 @@ constant outside its table.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Annotated, Any, Self
 
@@ -74,7 +74,7 @@ class History(Model):
     @classmethod
     def table(cls, times: Sequence[float] | FloatArray, values: Sequence[float] | FloatArray) -> Self:
         """A history through `values` at `times` (s)."""
-        return cls(times=tuple(times), values=tuple(values))
+        return cls(times=_listed("times", times), values=_listed("values", values))
 
     @classmethod
     def ramp(cls, start: float, end: float, before: float, after: float) -> Self:
@@ -106,11 +106,17 @@ class History(Model):
         return before + inside + after
 
 
+def _listed(name: str, values: object) -> tuple[Any, ...]:
+    if isinstance(values, str | bytes) or not isinstance(values, Iterable):
+        raise InputError.of(("history", name), values, "must be a sequence of numbers")
+    return tuple(values)
+
+
 def _as_quantity(value: object) -> float | History:
     if isinstance(value, History):
         return value
     if isinstance(value, Mapping):
-        return History(**value)
+        return History(**{str(key): entry for key, entry in value.items()})
     try:
         return as_number(value)
     except ValueError:

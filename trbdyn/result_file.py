@@ -8,9 +8,11 @@ Schema ``trbdyn-result``, version 1:
 - ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
 - ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
   ``kind``, ``dims`` and ``index`` (its place in the record)
-- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters`` and ``final_time``; empty until the run
+- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and ``final_time``; empty until the run
   has ended
 - ``/final_state``: the state vector at ``final_time``; empty until then
+- ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then; missing if
+  no peaks are kept
 
 A file is data: nothing in it is executed, and links or storage that lead out of the file are refused.
 
@@ -32,12 +34,12 @@ import shutil
 import time
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, BinaryIO, Self
+from weakref import WeakSet
 
 import h5py
 import numpy as np
@@ -46,7 +48,8 @@ from numpy.typing import ArrayLike, NDArray
 from trbdyn import fields as field_table
 from trbdyn.errors import FileError
 from trbdyn.fields import Field, Layout
-from trbdyn.hdf5_marks import take_lock
+from trbdyn.hdf5_marks import lock, take_lock
+from trbdyn.own_files import copy_content, create_draft, exists_already, is_same, output_path, put_in_place
 
 Array = NDArray[np.float64]
 
@@ -64,6 +67,9 @@ FLUSH_BYTES = 8 << 20
 
 SPARE_BYTES = 1 << 20
 """Room for HDF5's own bookkeeping that is made sure of before a write."""
+
+PEAKS = "peaks"
+"""The group of fields that are peaks of each record's interval."""
 
 JSON_ATTRIBUTES = ("geometry", "meta")
 
@@ -87,6 +93,8 @@ class RunInfo:
         Solver statistics: steps, rhs_evaluations, wall_s and others.
     counters : dict
         Evaluations of each effect.
+    warnings : tuple of str
+        What the watch over the run found, see `trbdyn.watch`.
     final_time : float
         Time of the final state, s.
     final_state : ndarray or None
@@ -95,6 +103,8 @@ class RunInfo:
         Derived geometry of the bearing, SI.
     meta : dict
         Versions, instruction set and settings.
+    peaks : mapping of str to ndarray
+        Peaks of the whole run (`trbdyn.peaks`); empty if none are known.
     """
 
     scene: dict[str, Any]
@@ -102,10 +112,12 @@ class RunInfo:
     message: str = ""
     stats: dict[str, Any] = field(default_factory=dict)
     counters: dict[str, int] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
     final_time: float = float("nan")
     final_state: Array | None = None
     geometry: dict[str, float] = field(default_factory=dict)
     meta: dict[str, Any] = field(default_factory=dict)
+    peaks: Mapping[str, Array] = field(default_factory=dict)
 
 
 def _plain(value: Any) -> Any:
@@ -132,6 +144,8 @@ def reason(error: BaseException) -> str:
         return "the file is cut short and cannot be read"
     if isinstance(error, OSError) and error.errno:
         return os.strerror(error.errno).lower()
+    if isinstance(error, MemoryError):
+        return "it takes more memory than there is"
     return text.splitlines()[0] if text else type(error).__name__
 
 
@@ -157,7 +171,7 @@ class ResultWriter:
     Parameters
     ----------
     path : path-like
-        File to write; an older one is replaced.
+        File to write.
     scene : Scene
         The scene; ``scene.to_dict()`` is stored.
     layout : sequence of (name, offset, shape)
@@ -178,19 +192,24 @@ class ResultWriter:
         Number of the segment.
     first_record : int
         Place of the segment's first record in the run.
+    overwrite : bool
+        Replace a file that is there.
 
     Raises
     ------
     FileError
-        If the file cannot be created.
+        If the file cannot be created, or is there and is not to be replaced.
     InputError
-        If a group is unknown.
+        If a group is unknown, or the path names no file.
 
     Notes
     -----
     Records are written and flushed when two seconds have gone by or 8 MB wait. A run that is killed leaves a file that holds
     everything up to the last flush. Room on the disk is made sure of before each write, so that a full disk is an error and
     leaves a readable file too. Use it as a context manager, or call `close`.
+
+    The file belongs to the process that made it: in a forked child the writer is closed, and nothing that the child does reaches
+    the file. If another program removes or replaces the file, the records are kept (see `flush`).
     """
 
     def __init__(
@@ -207,8 +226,9 @@ class ResultWriter:
         run_id: str | None = None,
         segment: int = 0,
         first_record: int = 0,
+        overwrite: bool = False,
     ) -> None:
-        self.path = Path(path)
+        self.path = output_path(path, overwrite=overwrite)
         self.run_id = run_id or uuid.uuid4().hex
         self.n_written = 0
         self._places = {name: (offset, tuple(shape)) for name, offset, shape in layout}
@@ -216,22 +236,46 @@ class ResultWriter:
         self._pending: list[Array] = []
         self._pending_bytes = 0
         self._last_flush = time.monotonic()
-        draft = self.path.with_name(f".{self.path.name}.new")
         with self._guard("cannot be written"):
-            if self.path.exists():
-                take_lock(self.path).close()
-            self._lock = take_lock(draft)
+            replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
-                self._file = h5py.File(draft, "w", libver=LIBVER)
-                head = {"run_id": self.run_id, "segment": segment, "first_record": first_record}
-                self._write_header(head, scene.to_dict(), dict(meta or {}), dict(geometry or {}), compression)
-                self._file.flush()
-                self._file.swmr_mode = True
-                os.replace(draft, self.path)
-            except BaseException:
-                self._lock.close()
-                draft.unlink(missing_ok=True)
-                raise
+                self._begin(
+                    scene, {"segment": segment, "first_record": first_record}, meta, geometry, compression, replaced
+                )
+            finally:
+                if replaced is not None:
+                    replaced.close()
+        _WRITERS.add(self)
+
+    def _begin(
+        self,
+        scene: Any,
+        place: dict[str, Any],
+        meta: Mapping[str, Any] | None,
+        geometry: Mapping[str, float] | None,
+        compression: str | None,
+        replaced: BinaryIO | None,
+    ) -> None:
+        """Make every object of the file in a draft, which then takes its place."""
+        # segments of one run that are begun at the same time must not share a draft
+        draft, stream = create_draft(self.path, uuid.uuid4().hex)
+        try:
+            self._lock = lock(stream)
+            self._file = h5py.File(draft, "w", libver=LIBVER)
+            head = {"run_id": self.run_id} | place
+            self._write_header(head, scene.to_dict(), dict(meta or {}), dict(geometry or {}), compression)
+            self._file.flush()
+            self._file.swmr_mode = True
+            try:
+                put_in_place(draft, self.path, replace=replaced is not None)
+            except FileExistsError:
+                raise exists_already(self.path) from None
+        except BaseException:
+            with suppress(AttributeError, OSError, RuntimeError):
+                self._file.close()
+            stream.close()
+            draft.unlink(missing_ok=True)
+            raise
 
     def _write_header(
         self,
@@ -251,8 +295,12 @@ class ResultWriter:
         self._file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
         self._file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
         group = self._file.create_group("fields")
+        peaks = self._file.create_group("peaks")
         for index, entry in enumerate(self._fields):
             shape = self._places[entry.name][1]
+            if entry.group == PEAKS:
+                whole = peaks.create_dataset(entry.name, (0, *shape), "f8", maxshape=(1, *shape), chunks=(1, *shape))
+                self._describe(whole, entry, index)
             dataset = group.create_dataset(
                 entry.name,
                 shape=(0, *shape),
@@ -262,15 +310,20 @@ class ResultWriter:
                 compression=compression,
                 shuffle=compression is not None,
             )
-            attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
-            attributes["dims"] = " ".join(("time", *entry.dims))
-            dataset.attrs.update({name: _stored(value) for name, value in attributes.items()} | {"index": index})
+            self._describe(dataset, entry, index)
+
+    def _describe(self, dataset: h5py.Dataset, entry: Field, index: int) -> None:
+        attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
+        attributes["dims"] = " ".join(("time", *entry.dims))
+        dataset.attrs.update({name: _stored(value) for name, value in attributes.items()} | {"index": index})
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:
         try:
             yield
-        except (OSError, RuntimeError) as error:
+        except FileError:
+            raise
+        except (OSError, RuntimeError, MemoryError) as error:
             raise FileError(f"{self.path}: the result file {what}: {reason(error)}") from error
 
     def append(self, records: ArrayLike) -> None:
@@ -300,7 +353,9 @@ class ResultWriter:
         Raises
         ------
         FileError
-            If the file cannot be written. What waited is lost then; what was written before stays readable.
+            If the file cannot be written. What waited is lost then; what was written before stays readable. Also if another
+            program has removed the file, which is then put back, or has put another one in its place, which is left alone: the
+            records are then in a file beside it. The message names it.
         """
         if not self._file:
             raise FileError(f"{self.path}: the result file is closed already")
@@ -312,6 +367,37 @@ class ResultWriter:
                 self._write(pending[0] if len(pending) == 1 else np.concatenate(pending))
             self._file.flush()
         self._last_flush = time.monotonic()
+        if not is_same(self.path, self._lock):
+            self._rescue()
+
+    def _rescue(self) -> None:
+        """Keep the records of a file that has lost its name, and say where they are."""
+        with self._guard("was removed or replaced while it was written, and cannot be put back"):
+            used = self._file.id.get_filesize()
+            self._file.close()
+            os.ftruncate(self._lock.fileno(), used)
+            kept, what = self.path, "was removed by another program; it is put back with the records so far"
+            try:
+                copy_content(self._lock, kept)
+            except FileExistsError:
+                kept = self.path.with_name(f"{self.path.stem}.{self.run_id[:12]}{self.path.suffix}")
+                copy_content(self._lock, kept)
+                what = f"was replaced by another program; the records so far are in {kept}"
+            self._lock.close()
+        raise FileError(f"{self.path}: the result file {what}")
+
+    def _forget(self) -> None:
+        """In a forked child: the file is the parent's. What HDF5 still writes goes nowhere, the lock stays with the parent."""
+        if not self._file:
+            return
+        nowhere = os.memfd_create("trbdyn") if hasattr(os, "memfd_create") else os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, self._file.id.get_vfd_handle(), inheritable=False)
+        os.dup2(nowhere, self._lock.fileno(), inheritable=False)
+        os.close(nowhere)
+        self._pending, self._pending_bytes = [], 0
+        with suppress(OSError, RuntimeError):
+            self._file.close()
+        self._lock.close()
 
     def sync(self) -> None:
         """Write what waits, and have the system put it on the disk.
@@ -350,6 +436,8 @@ class ResultWriter:
         counters: Mapping[str, int],
         final_time: float,
         final_state: ArrayLike | None,
+        peaks: Mapping[str, Array] | None = None,
+        warnings: Sequence[str] = (),
     ) -> None:
         """Write how the run ended, and close the file.
 
@@ -367,6 +455,10 @@ class ResultWriter:
             Time of the final state, s.
         final_state : array_like or None, shape (n_state,)
             The last good state.
+        peaks : mapping of str to ndarray, optional
+            Peaks of the whole run.
+        warnings : sequence of str
+            What the watch over the run found.
 
         Raises
         ------
@@ -378,8 +470,11 @@ class ResultWriter:
             self._reserve(SPARE_BYTES)
             if final_state is not None:
                 self._put("final_state", np.asarray(final_state, dtype=float))
+            for name, values in (peaks or {}).items():
+                self._file["peaks"][name].resize(1, axis=0)
+                self._file["peaks"][name][0] = values
             ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
-            ending |= {"stats": dict(stats), "counters": dict(counters)}
+            ending |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
             self._put("ending", np.frombuffer(_json(ending).encode(), dtype="u1"))
         self.close()
 
@@ -395,6 +490,10 @@ class ResultWriter:
         try:
             self.flush()
         finally:
+            self._close()
+
+    def _close(self) -> None:
+        if self._file:
             with self._guard("cannot be closed"):
                 used = self._file.id.get_filesize()
                 self._file.close()
@@ -408,3 +507,17 @@ class ResultWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+_WRITERS: WeakSet[ResultWriter] = WeakSet()
+"""Writers of this process."""
+
+
+def _forget_all() -> None:
+    for writer in list(_WRITERS):
+        writer._forget()
+    _WRITERS.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_all)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import fields as field_table
+from trbdyn import peaks as peak_table
 from trbdyn.derived import Derived
 from trbdyn.errors import FileError, InputError
 from trbdyn.fields import Field, Layout
+from trbdyn.peaks import Peaks
 from trbdyn.result_file import RunInfo
 from trbdyn.sources import MemorySource, Source, WindowSource, open_run
 
@@ -48,6 +51,8 @@ class Result(Derived):
         How it ended, in a sentence.
     stats : dict
         Solver statistics: steps, rhs_evaluations, wall_s and others.
+    warnings : tuple of str
+        What the watch over the run found: energy that does not add up, steps that lead nowhere (`trbdyn.watch`).
     counters : dict of str to int
         How often the core evaluated each effect; zero for effects that are off.
     geometry : dict of str to float
@@ -83,6 +88,8 @@ class Result(Derived):
         meta: Mapping[str, Any] | None = None,
         groups: Sequence[str] | None = None,
         fields: Sequence[Field] | None = None,
+        warnings: Sequence[str] = (),
+        peaks: Mapping[str, Array] | None = None,
     ) -> Self:
         """A result from full records in memory.
 
@@ -100,6 +107,10 @@ class Result(Derived):
             Groups of fields to keep; all by default, and then the arrays are views into `records`.
         fields : sequence of Field, optional
             The table that describes the fields; the core's by default.
+        warnings : sequence of str
+            What the watch over the run found.
+        peaks : mapping of str to ndarray, optional
+            Peaks of the whole run.
 
         Returns
         -------
@@ -130,10 +141,12 @@ class Result(Derived):
             message=message,
             stats=dict(stats),
             counters=dict(counters),
+            warnings=tuple(warnings),
             final_time=float(final_time),
             final_state=None if final_state is None else np.array(final_state, dtype=float),
             geometry=dict(geometry),
             meta=dict(meta or {}),
+            peaks=dict(peaks or {}),
         )
         return cls(MemorySource(kept, rows.shape[0], arrays), info, scene)
 
@@ -182,6 +195,10 @@ class Result(Derived):
     @property
     def counters(self) -> dict[str, int]:
         return self._info.counters
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        return self._info.warnings
 
     @property
     def geometry(self) -> dict[str, float]:
@@ -250,11 +267,31 @@ class Result(Derived):
         first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
         if last <= first:
             raise InputError.of("window", (start, stop), f"must hold a record; they reach to {self.final_time:g} s")
-        return Result(WindowSource(self._source, self.fields, int(first), int(last)), self._info, self._scene)
+        part = WindowSource(self._source, self.fields, int(first), int(last))
+        return Result(part, replace(self._info, peaks={}), self._scene)
+
+    @property
+    def peaks(self) -> Peaks:
+        """Extremes, means and impacts between the records too: of the whole run, or of a window's records.
+
+        ``result.peaks["pocket_force_peak"]`` is the largest force on each face of each pocket, ``result.pocket_force_peak`` the
+        largest since the record before, at each record.
+
+        Raises
+        ------
+        InputError
+            If the run was made without the group 'peaks'.
+        """
+        if self._info.peaks:
+            return Peaks(self._info.peaks)
+        kept = peak_table.names(self.fields)
+        if not kept or not len(self):
+            raise InputError.of("peaks", "asked for", "were not kept: the run was made without the group 'peaks'")
+        return peak_table.join(self["time"], {name: self[name] for name in kept})
 
     @property
     def settled(self) -> Result:
-        """The result after settling; the second half of the run if it has not settled."""
+        """The result after the transient, the second half of the run at least; `settling` says whether it has settled there."""
         return self.window(self.settling().time)
 
     @property

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable
 from pathlib import Path
 
-from trbdyn import checkpoint
+from trbdyn import _core, checkpoint
 from trbdyn.checkpoint import Checkpoint
 from trbdyn.errors import FileError, InputError
 from trbdyn.hdf5_marks import mend, take_lock
+from trbdyn.own_files import file_path
 from trbdyn.result_file import reason
 from trbdyn.results import Result, load
 from trbdyn.run_options import RunOptions
@@ -64,7 +66,8 @@ def resume(
     UserWarning
         If an older checkpoint had to be used, or results will not be bit-identical; ``result.meta["notes"]`` says so too.
     """
-    output = Path(path)
+    output = file_path(path, "path")
+    output = Path(os.path.realpath(output)) if output.is_symlink() else output
     notes: list[str] = []
 
     def tell(note: str) -> None:
@@ -84,31 +87,43 @@ def resume(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint cannot be used: it has too many records"
             )
         run = Run(sim, options, times, callback, found.done)
-        run.notes, run.spent = notes, found.stepping_s
-        # where nothing is lost by it, the first segment is made anew
-        anew = first is None and found.done == 0
-        segment = 0 if anew else 1 + max(segment_paths(output), default=0)
-        run.write_to(output, segment, found.run_id)
+        run.notes, run.spent, run.doubts = notes, found.stepping_s, list(found.warnings)
+        # the first segment is written again where there is none; one that cannot be read may still hold something
+        empty = output.exists() and output.stat().st_size == 0
+        segment = 0 if empty or not output.exists() else 1 + max(segment_paths(output), default=0)
+        run.write_to(output, segment, found.run_id, overwrite=empty)
         return run.go(progress=progress)
 
     if not output.exists():
+        found = checkpoint.read_last_good(output, lambda note: None)
+        if found.done:
+            tell(f"{output}: there is no such file; its records are lost, those from the checkpoint on will be written")
         return run_on(None)
     try:
         lock = take_lock(output)
     except OSError as error:
         raise FileError(f"{output}: cannot be resumed: {reason(error)}") from error
     with lock:
-        for segment in (output, *segment_paths(output).values()):
-            mend(segment)
-        if _is_complete(output):
-            return load(output)
         try:
             first = FileSource(output)
         except FileError as error:
             tell(f"{error}; its records are lost, those from the checkpoint on will be written")
-            first = None
-            lock.close()
+            if output.stat().st_size == 0:
+                lock.close()
+            return run_on(None)
+        for segment in (output, *segment_paths(output).values()):
+            if _belongs(segment, first.run_id):
+                mend(segment)
+        if _is_complete(output):
+            return load(output)
         return run_on(first)
+
+
+def _belongs(segment: Path, run_id: str) -> bool:
+    try:
+        return FileSource(segment).run_id == run_id
+    except FileError:
+        return False
 
 
 def _is_complete(output: Path) -> bool:
@@ -139,7 +154,9 @@ def _revive(
                 "the ring's equilibrium differs in rounding on this machine: results may differ from the uninterrupted run"
             )
         sim._begin(found.time, found.state)
-    except InputError as error:
+        if found.peaks.size:
+            sim._core.restore_peaks(found.peaks)
+    except (InputError, _core.CoreInputError) as error:
         raise FileError(f"{where}: the checkpoint cannot be used: {error}") from error
     sim._totals, sim._counted = dict(found.statistics), dict(found.counters)
     return sim, options

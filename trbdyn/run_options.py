@@ -7,10 +7,10 @@ from typing import Annotated, ClassVar, Final, Literal, Self
 from pydantic import Field, model_validator
 
 from trbdyn.errors import InputError
-from trbdyn.motion import History
+from trbdyn.motion import MAX_TIME, History
 from trbdyn.validation import Length, Model, Number, Whole, unit
 
-Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy"]
+Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy", "peaks"]
 GROUPS: Final[tuple[Group, ...]] = (
     "time",
     "cage",
@@ -21,6 +21,7 @@ GROUPS: Final[tuple[Group, ...]] = (
     "torque",
     "power",
     "energy",
+    "peaks",
 )
 
 
@@ -71,7 +72,9 @@ class RunOptions(Model):
     save_every : float
         Time between saved records (s).
     save_groups : sequence of str
-        Groups of quantities to save; 'time' is always among them.
+        Groups of quantities to save; 'time' is always among them. With 'peaks' the core looks at all loads at the end of every
+        step and keeps their extremes, means and impacts over each record's interval and the whole run; without it that costs
+        nothing.
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances, `ACCURACY`.
     integrator : {'bdf', 'erk'}
@@ -90,6 +93,9 @@ class RunOptions(Model):
         Bearing time between checkpoints (s): the integrator starts anew at the first step's end at or after each multiple
         of it, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
         from them.
+    when_wrong : {'stop', 'go_on'}
+        What to do with a run whose energy is off by more than a tenth, or whose steps lead nowhere (`trbdyn.watch`): end it with
+        ``success=False``, or go on with a warning.
     """
 
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None
@@ -108,6 +114,7 @@ class RunOptions(Model):
     first_step: Annotated[Number, unit("s", ge=0)] = 0.0
     rings_share: Annotated[Number, unit("1", ge=0, le=1)] | None = None
     checkpoint_every: Annotated[Number, unit("s", ge=1e-9)] | None = None
+    when_wrong: Literal["stop", "go_on"] = "stop"
 
     _root: ClassVar[str | None] = "run"
 
@@ -148,13 +155,19 @@ class RunOptions(Model):
         Raises
         ------
         InputError
-            If neither revolutions nor duration is given, or the shaft never turns that often.
+            If neither revolutions nor duration is given, the shaft never turns that often, or the run would end too late.
         """
         if self.duration is not None:
-            return start + self.duration
-        if self.revolutions is None:
+            field, value, unit, length = "duration", self.duration, " (s)", self.duration
+        elif self.revolutions is not None:
+            field, value, unit = "revolutions", self.revolutions, ""
+            length = _time_to_turn(self.revolutions, speed_rpm, start)
+        else:
             raise InputError.of(("run", "revolutions"), None, "must be given, or duration (s)")
-        return start + _time_to_turn(self.revolutions, speed_rpm, start)
+        if not start < start + length <= MAX_TIME:
+            allowed = f"must end the run after its start at {start:g} s, and not later than at {MAX_TIME:g} s{unit}"
+            raise InputError.of(("run", field), value, allowed)
+        return start + length
 
 
 def _time_to_turn(revolutions: float, speed_rpm: float | History, start: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import os
 import signal
 import threading
 import time as clock
@@ -16,15 +17,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn import _core, checkpoint
+from trbdyn import _core, checkpoint, keeping
 from trbdyn import fields as field_table
+from trbdyn import peaks as peak_table
 from trbdyn.checkpoint import Checkpoint
-from trbdyn.errors import FileError, StepError
+from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.motion import History
 from trbdyn.result_file import ResultWriter, reason
 from trbdyn.results import Result, load
 from trbdyn.run_options import RunOptions
-from trbdyn.sources import segment_paths
+from trbdyn.sources import FileSource, segment_paths
+from trbdyn.watch import Watch
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -34,6 +37,8 @@ Callback = Callable[["Simulation"], bool | None]
 
 CHUNK_RECORDS = 256
 """Records between looks at signals, callbacks and the file."""
+MOST_RECORDS = 50_000_000
+"""Most records of a run: their times alone take 400 MB."""
 CHUNK_STEPS = 4000
 """Steps between looks at signals: about a tenth of a second."""
 
@@ -52,41 +57,73 @@ class Run:
         self.callback = callback
         self.done = done
         self.notes: list[str] = []
+        self.doubts: list[str] = []
         self.kept: list[Array] = []
         self.filling: Array | None = None
         self.writer: ResultWriter | None = None
         self.output: Path | None = None
         self.interrupted: list[int] = []
+        self.process = os.getpid()
         self.began = clock.perf_counter()
         self.spent = 0.0
+        self.fields = field_table.table()
+        self.layout = list(sim._model.record_layout())
+        self.with_peaks = peak_table.GROUP in options.save_groups
+        if self.with_peaks:
+            self.fields += peak_table.table()
+            self.layout += [
+                (name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()
+            ]
 
-    def write_to(self, output: Path, segment: int = 0, run_id: str | None = None) -> None:
-        """Write records to a file, and checkpoints beside it if there is a schedule. A new run replaces an older one."""
+    def _keep_peaks(self, since: float) -> None:
+        """From a time of the last step on, if the run wants them and does not keep them yet."""
+        core = self.sim._core
+        if self.with_peaks and core.row_length == self.sim._model.record_length:
+            core.begin_peaks(since)
+
+    def write_to(self, output: Path, segment: int = 0, run_id: str | None = None, *, overwrite: bool = False) -> None:
+        """Write records to a file, and checkpoints beside it if there is a schedule.
+
+        A run without a name is a new one. If it replaces the file of an older run, it removes that run's segments and
+        checkpoints.
+        """
         sim = self.sim
         path = output if segment == 0 else output.with_name(f"{output.stem}.part{segment}{output.suffix}")
+        older = _own_segments(output) if run_id is None and overwrite else None
+        scheduled = self.options.checkpoint_every is not None
+        if run_id is None and scheduled:
+            checkpoint.check_free(output, older[0] if older else None, overwrite=overwrite)
         self.writer = ResultWriter(
             path,
             scene=sim.scene,
-            layout=sim._model.record_layout(),
-            fields=field_table.table(),
+            layout=self.layout,
+            fields=self.fields,
             groups=self.options.save_groups,
             meta=self._meta(),
             geometry=asdict(sim.scene.bearing.geometry),
+            compression=keeping.compression(self.options.save_every),
             run_id=run_id,
             segment=segment,
             first_record=self.done,
+            overwrite=overwrite,
         )
         self.output = output
-        if run_id is None:
-            try:
-                checkpoint.remove(output)
-                for older in segment_paths(output).values():
-                    older.unlink(missing_ok=True)
-                if self.options.checkpoint_every is not None and sim._core.time == sim._begun:
+        if run_id is not None:
+            return
+        try:
+            if older is not None:
+                checkpoint.remove(output, older[0])
+                for place in older[1]:
+                    place.unlink(missing_ok=True)
+            if scheduled:
+                checkpoint.clear(output)
+                if sim._core.time == sim._begun:
+                    self._keep_peaks(float(self.times[0]))
                     self._write_checkpoint()
-            except OSError as error:
-                self.writer.close()
-                raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
+        except OSError as error:
+            sim._core.end_peaks()
+            self.writer.close()
+            raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
 
     def go(self, *, progress: bool) -> Result:
         from tqdm import tqdm
@@ -105,6 +142,8 @@ class Run:
                 error.result = self._finish(False, str(error))
                 raise
             except KeyboardInterrupt:
+                if self.process != os.getpid():
+                    raise
                 if self.filling is not None:
                     self._keep(self.filling[: int(np.count_nonzero(np.isfinite(self.filling[:, 0])))])
                 return self._finish(False, f"stopped by the user at {sim.time:.6g} s")
@@ -112,6 +151,8 @@ class Run:
                 self._abandon()
                 raise
             except BaseException as error:
+                if self.process != os.getpid():
+                    raise
                 self._finish(False, f"ended by {type(error).__name__} at {sim.time:.6g} s: {error}")
                 raise
         return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
@@ -119,11 +160,14 @@ class Run:
     def _loop(self, bar: Any) -> str | None:
         """Until all records are filled; what ended the run before, or None."""
         sim, every = self.sim, self.options.checkpoint_every
+        sim._end = None
+        self._keep_peaks(float(self.times[0]))
         due = checkpoint.next_time(sim._begun, every)
+        watch = Watch(sim, float(self.times[-1]), self.doubts, going_on=self.options.when_wrong == "go_on")
         while self.done < self.times.size:
             chunk = self.times[self.done : self.done + CHUNK_RECORDS]
             # a signal may come before the core's answer does: what is filled is seen by its finite times
-            self.filling = records = np.full((chunk.size, sim._model.record_length), np.nan)
+            self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
             before = clock.perf_counter()
             try:
                 rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due)
@@ -136,18 +180,46 @@ class Run:
             self._keep(records[:rows])
             # the records up to here are made with the past that the integrator is about to forget
             if sim.time >= due and self.done < self.times.size and self.times[self.done] > sim.time:
+                peaks = sim._core.save_peaks()
                 sim._begin_again()
+                if peaks.size:
+                    sim._core.restore_peaks(peaks)
                 due = checkpoint.next_time(sim.time, every)
+                watch.renew()
                 self._write_checkpoint()
+            doubt = watch.look(final=self.done >= self.times.size)
             bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
             if sim.scene.effects.bodies == "rollers" and rows:
                 _check_apart(sim, records[:rows])
-            ended = self.callback is not None and self.callback(sim)
+            ended = self._call_back()
             if self.interrupted:
                 raise KeyboardInterrupt
+            if doubt is not None:
+                return doubt
             if ended:
                 return f"ended by the callback at {sim.time:.6g} s"
         return None
+
+    def _call_back(self) -> bool:
+        """What the callback answers. It may look at the simulation, but not move it.
+
+        Raises
+        ------
+        FileError
+            In a process that the callback has forked, if it comes back from there: the result file is its parent's.
+        """
+        if self.callback is None:
+            return False
+        self.sim._running = True
+        try:
+            ended = bool(self.callback(self.sim))
+        finally:
+            self.sim._running = False
+        if self.writer is not None and self.process != os.getpid():
+            raise FileError(
+                f"{self.output}: the result file belongs to the process that was forked; this one cannot go on"
+            )
+        return ended
 
     def _keep(self, records: Array) -> None:
         if not len(records):
@@ -181,11 +253,14 @@ class Run:
             counters=sim._counted,
             stepping_s=self.spent,
             state=sim._core.state(),
+            peaks=sim._core.save_peaks(),
+            warnings=list(self.doubts),
         )
         checkpoint.write(checkpoint.checkpoint_path(self.output), found)
 
     def _abandon(self) -> None:
         """Leave a result file that cannot be written as it is: the records in it can be read, a checkpoint goes on from there."""
+        self.sim._core.end_peaks()
         if self.writer is not None:
             with contextlib.suppress(FileError):
                 self.writer.close()
@@ -197,8 +272,19 @@ class Run:
             "sundials_version": _core.sundials_version(),
             "core_version": _core.version(),
             "settings": settings,
+            "kept": keeping.said(self.options.save_every, self.options.save_groups),
             "notes": self.notes,
         }
+
+    def _written(self) -> Result:
+        """The result as it is in the files; that of the last segment alone if the first one cannot be read."""
+        assert self.output is not None
+        assert self.writer is not None
+        if self.writer.path != self.output and _run_id(self.output) != self.writer.run_id:
+            return load(self.writer.path)
+        if _run_id(self.output) != self.writer.run_id:
+            raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
+        return load(self.output)
 
     def _stats(self) -> dict[str, Any]:
         """Solver statistics of the whole simulation, and the wall time of this run."""
@@ -221,15 +307,23 @@ class Run:
         }
 
     def _finish(self, success: bool, message: str) -> Result:
-        sim, ended = self.sim, self.sim.state
-        if not success:
+        sim = self.sim
+        if success:
+            sim._stand_at(float(self.times[-1]))
+        else:
             # what stopped between two records goes on from where it stands
-            sim._reached = ended.time
+            sim._reached, sim._end = sim._core.time, None
+        ended = sim.state
+        row = sim._core.whole_peaks(ended.time)
+        peaks = peak_table.from_row(row, sim._model.peak_layout()) if row.size else {}
+        sim._core.end_peaks()
         how: dict[str, Any] = {
+            "peaks": peaks,
             "success": success,
             "message": message,
             "stats": self._stats(),
             "counters": sim.counters,
+            "warnings": self.doubts,
             "final_time": ended.time,
             "final_state": ended.vector,
         }
@@ -237,12 +331,14 @@ class Run:
             assert self.output is not None
             self.writer.finish(**how)
             if success:
-                checkpoint.remove(self.output)
-            return load(self.output)
-        records = np.concatenate(self.kept) if self.kept else np.empty((0, sim._model.record_length))
+                checkpoint.remove(self.output, self.writer.run_id)
+            return self._written()
+        width = max(at + int(np.prod(shape)) for _, at, shape in self.layout)
+        records = np.concatenate(self.kept) if self.kept else np.empty((0, width))
         return Result.from_records(
             records,
-            sim._model.record_layout(),
+            self.layout,
+            fields=self.fields,
             scene=sim.scene,
             geometry=asdict(sim.scene.bearing.geometry),
             meta=self._meta(),
@@ -251,8 +347,37 @@ class Run:
         )
 
 
+def _own_segments(output: Path) -> tuple[str, list[Path]] | None:
+    """Name of the run whose result lies in a file, and the files of its later segments; None if there is no result."""
+    if not output.exists():
+        return None
+    try:
+        run_id = FileSource(output).run_id
+    except FileError:
+        return None
+    return run_id, [place for place in segment_paths(output).values() if _run_id(place) == run_id]
+
+
+def _run_id(path: Path) -> str | None:
+    try:
+        return FileSource(path).run_id
+    except FileError:
+        return None
+
+
 def output_times(start: float, end: float, every: float) -> Array:
-    """Times of the records (s): every so often, and at the end."""
+    """Times of the records (s): every so often, and at the end.
+
+    Raises
+    ------
+    InputError
+        If there would be too many.
+    """
+    if (end - start) / every > MOST_RECORDS:
+        allowed = (
+            f"must be at least {(end - start) / MOST_RECORDS:.3g}, for at most {MOST_RECORDS} records in this run (s)"
+        )
+        raise InputError.of(("run", "save_every"), every, allowed)
     count = max(math.ceil((end - start) / every - 1e-9), 1)
     times: Array = np.asarray(start + every * np.arange(count + 1), dtype=np.float64)
     times[-1] = end

@@ -96,7 +96,11 @@ class Start(Model):
     @classmethod
     def state(cls, vector: ArrayLike, *, time: float = 0.0) -> Self:
         """A saved state vector, shape (n_state,), and its time (s)."""
-        return cls(kind="state", state_vector=tuple(np.asarray(vector, dtype=np.float64).ravel().tolist()), time=time)
+        try:
+            numbers = np.asarray(vector, dtype=np.float64).ravel().tolist()
+        except (TypeError, ValueError, OverflowError):
+            raise InputError.of(("start", "state_vector"), vector, "must be a vector of numbers") from None
+        return cls(kind="state", state_vector=tuple(numbers), time=time)
 
 
 class Scene(Model):
@@ -126,7 +130,7 @@ class Scene(Model):
     lubricant : Lubricant
         The oil.
     effects : Effects
-        Switches and choices.
+        Switches and choices; `Effects.standard` by default.
     start : Start
         How a run starts.
     ring : {'held', 'follows'}

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
-from trbdyn.errors import InputError, StepError
+from trbdyn.errors import MISSING, InputError, Problem, StepError
 from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
+from trbdyn.keeping import kept_by_default
 from trbdyn.motion import MAX_TIME
+from trbdyn.own_files import output_path
 from trbdyn.results import Result
 from trbdyn.run_options import Group, RunOptions
 from trbdyn.running import Callback, Run, output_times
 from trbdyn.scene import Scene
 from trbdyn.start import Equilibrium, StateView, ring_motion, start_state
+from trbdyn.validation import number_of
 
 if TYPE_CHECKING:
     from trbdyn.estimate import Estimate
@@ -87,15 +91,18 @@ class Simulation:
         self._model = build_model(scene, instruction_set)
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
+        self._running = False
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
         self._begin(scene.start.time, vector)
         self._reached = scene.start.time
 
     equilibrium: Equilibrium
+    _end: State | None
+    """Where a run has ended, inside the integrator's last step; None where the present state is the end of that step."""
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
-        if abs(time) > MAX_TIME:
+        if not abs(time) <= MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
         try:
             return _core.Simulation(self._model, self._motion, time, vector, self.options.settings())
@@ -106,6 +113,16 @@ class Simulation:
         """A new integrator, which knows nothing of the past: as in a new process."""
         self._core = self._open(time, vector)
         self._begun = time
+        self._end = None
+
+    def _stand_at(self, time: float) -> None:
+        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there.
+        Where a callback has gone on after that instant, or has set a state, the present state is that one.
+        """
+        self._end = None
+        if time != self._core.time:
+            with contextlib.suppress(_core.CoreInputError):
+                self._end = State(time, self._core.state_at(time))
 
     def _begin_again(self) -> None:
         """A new integrator where the present one is; what was counted stays."""
@@ -121,8 +138,12 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """End of the last step (s)."""
-        return self._core.time
+        """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
+
+        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the run's end;
+        the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the whole run.
+        """
+        return self._core.time if self._end is None else self._end.time
 
     @property
     def instruction_set(self) -> str:
@@ -131,12 +152,14 @@ class Simulation:
 
     @property
     def state(self) -> State:
-        """A copy of the present state."""
+        """A copy of the present state, at `time`."""
+        if self._end is not None:
+            return State(self._end.time, self._end.vector.copy())
         return State(self._core.time, self._core.state())
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
-        return StateView(self._model, self._core.state() if vector is None else vector)
+        return StateView(self._model, self.state.vector if vector is None else vector)
 
     def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
         """Go on from another state; the integrator starts anew.
@@ -151,47 +174,74 @@ class Simulation:
         Raises
         ------
         InputError
-            If it is not finite, not possible, or of the wrong length.
+            If it is not finite, not possible, or of the wrong length, or if it is set from the callback of a run.
         """
+        self._check_not_running("set_state")
         if isinstance(vector, State):
             given, when = vector.vector, vector.time
         else:
-            given, when = _numbers(vector), self._core.time
-        when = when if time is None else float(time)
+            given, when = _numbers(vector), self.time
+        when = when if time is None else number_of("time", time)
         core = self._open(when, given)
         self._count()
-        self._core, self._begun, self._reached = core, when, when
+        self._core, self._begun, self._reached, self._end = core, when, when, None
 
     def copy(self) -> Self:
         """An independent simulation at the same state; its integrator starts there."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
+        other._running = False
         other._totals, other._counted = {}, {}
-        other._begin(self._core.time, self._core.state())
-        other._reached = self._core.time
+        present = self.state
+        other._begin(present.time, present.vector)
+        other._reached = present.time
         return other
 
+    def __copy__(self) -> Self:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.copy()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a simulation cannot be pickled; keep its scene and its state, or use checkpoints")
+
+    def _check_not_running(self, what: str) -> None:
+        if self._running:
+            allowed = "must not be called while a run goes on; end the run first: let the callback give True"
+            raise InputError([Problem((what,), MISSING, allowed)])
+
     def restart(self) -> None:
-        """Start the integrator anew at the present state, as a checkpoint does."""
-        self._begin_again()
-        self._reached = self._core.time
+        """Start the integrator anew at the present state, as a checkpoint does.
+
+        Raises
+        ------
+        InputError
+            If it is called from the callback of a run.
+        """
+        self._check_not_running("restart")
+        self.set_state(self.state)
 
     def step(self) -> float:
-        """One step of the integrator; gives the new time (s).
+        """One step of the integrator, from the end of its last one; gives the new time (s).
 
         Raises
         ------
         StepError
             If the integrator cannot go on; the state stays the last good one.
+        InputError
+            If it is called from the callback of a run.
         """
+        self._check_not_running("step")
         try:
             self._reached = self._core.step()
+            self._end = None
         except _core.CoreStepError as error:
             raise StepError(str(error), time=self._core.time) from None
         return self._reached
 
     def estimate(
-        self, *, revolutions: float | None = None, duration: float | None = None, save_every: float = 1e-4
+        self, *, revolutions: float | None = None, duration: float | None = None, save_every: float | None = None
     ) -> Estimate:
         """Expected wall time and error of a run from here, by a short probe of a copy; see `trbdyn.estimate.estimate`."""
         from trbdyn.estimate import estimate
@@ -222,9 +272,9 @@ class Simulation:
         return self._core.contacts(*self._place(vector, time))
 
     def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
-        when = self._core.time if time is None else float(time)
+        when = self.time if time is None else number_of("time", time)
         if vector is None:
-            return when, self._core.state()
+            return when, self.state.vector
         given = _numbers(vector)
         if given.shape != (self._model.n_state,):
             raise InputError.of(
@@ -247,12 +297,13 @@ class Simulation:
         *,
         revolutions: float | None = None,
         duration: float | None = None,
-        save_every: float = 1e-4,
+        save_every: float | None = None,
         save_groups: Sequence[Group] | None = None,
         output: str | Path | None = None,
         progress: bool = False,
         callback: Callback | None = None,
         checkpoint_every: float | None = None,
+        overwrite: bool = False,
     ) -> Result:
         """Step on and keep records; output times never change the steps.
 
@@ -262,20 +313,23 @@ class Simulation:
             How far to go, in turns of the shaft.
         duration : float, optional
             How far to go (s); one of both must be given.
-        save_every : float
-            Time between records (s).
+        save_every : float, optional
+            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3 s, but
+            not longer than a twentieth of a turn of the shaft (`trbdyn.keeping`); ``result.meta["kept"]`` says what was kept.
         save_groups : sequence of str, optional
-            Groups of quantities to keep; all by default.
+            Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
         output : path-like, optional
             HDF5 file to write while running; without it records stay in memory.
         progress : bool
             Show a progress bar.
         callback : callable, optional
             Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run too,
-            after the file is closed.
+            after the file is closed. It may look at the simulation, but not step, restart or set it.
         checkpoint_every : float, optional
             Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options. Together
             with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
+        overwrite : bool
+            Replace the file `output` if it is there, together with segments and checkpoints of the run that it holds.
 
         Returns
         -------
@@ -289,16 +343,22 @@ class Simulation:
         StepError
             If a step failed; its ``result`` holds everything up to the last good time.
         FileError
-            If the file cannot be written.
+            If the file cannot be written, or is there already.
         """
-        changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration, "save_every": save_every}
+        self._check_not_running("run")
+        path = None if output is None else output_path(output, overwrite=overwrite)
+        changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
+        changes |= {} if save_every is None else {"save_every": save_every}
         changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
-        times = output_times(self._reached, options.end_time(self.scene.speed_rpm, self._reached), options.save_every)
+        end = options.end_time(self.scene.speed_rpm, self._reached)
+        kept = kept_by_default(end - self._reached, self.scene.speed_rpm, save_every, save_groups)
+        options = options.replace(**kept)
+        times = output_times(self._reached, end, options.save_every)
         run = Run(self, options, times, callback)
-        if output is not None:
-            run.write_to(Path(output))
+        if path is not None:
+            run.write_to(path, overwrite=overwrite)
         return run.go(progress=progress)
 
 
@@ -312,7 +372,7 @@ def _numbers(values: ArrayLike) -> Array:
     """
     try:
         return np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError.of("state", "given", f"must be a vector of numbers: {error}") from None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,11 +19,25 @@ from numpy.typing import NDArray
 from trbdyn.errors import FileError
 from trbdyn.fields import Field
 from trbdyn.hdf5_marks import open_to_read
-from trbdyn.result_file import JSON_ATTRIBUTES, SCHEMA, SCHEMA_VERSION, RunInfo, reason
+from trbdyn.own_files import file_path
+from trbdyn.result_file import FLUSH_BYTES, JSON_ATTRIBUTES, PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason
 
 Array = NDArray[np.float64]
 
-_READ_ERRORS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError)
+_READ_ERRORS = (
+    OSError,
+    RuntimeError,
+    KeyError,
+    ValueError,
+    TypeError,
+    AttributeError,
+    OverflowError,
+    MemoryError,
+    RecursionError,
+)
+
+SMALL = 2 * FLUSH_BYTES
+"""Bytes that a file may claim beyond what it holds: a writer makes room for its records, then writes them."""
 
 
 class Source(Protocol):
@@ -102,7 +117,7 @@ class FileSource:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = Path(path)
+        self.path = file_path(path, "path")
         self._cache: dict[str, Array] = {}
         with self._open() as file:
             self._created = _text(file.attrs["created"])
@@ -149,6 +164,7 @@ class FileSource:
             if dataset.dtype != np.float64 or dataset.ndim != 1 + len(entry.dims):
                 raise FileError(f"{self.path}: the dataset of {name!r} is damaged ({dataset.dtype}, {dataset.shape})")
             found.append((int(dataset.attrs["index"]), entry, int(dataset.shape[0])))
+        _check_stored(str(self.path), "its fields together", *(file["fields"][entry.name] for _, entry, _ in found))
         found.sort(key=lambda row: row[0])
         return tuple(entry for _, entry, _ in found), [length for _, _, length in found]
 
@@ -158,6 +174,7 @@ class FileSource:
         stats, counters = (_table(self._ending.get(key, {})) for key in ("stats", "counters"))
         meta |= {key: _text(attributes[key]) for key in ("trbdyn_version", "created")}
         meta |= {key: int(attributes[key]) for key in ("schema_version", "segment")}
+        peaks = self._read_peaks(file) if self.finished else {}
         message, final_time = str(self._ending.get("message", "")), float(self._ending.get("final_time", np.nan))
         state = np.asarray(_own(file, "final_state", h5py.Dataset)[()], dtype=float)
         if not self.finished:
@@ -171,11 +188,28 @@ class FileSource:
             message=message,
             stats=stats,
             counters=counters,
+            warnings=_texts(self._ending.get("warnings")),
             final_time=final_time,
             final_state=state if self.finished and state.size else None,
             geometry=geometry,
             meta=meta,
+            peaks=peaks,
         )
+
+    def _read_peaks(self, file: h5py.File) -> dict[str, Array]:
+        """Peaks of the whole run; none in files of runs that kept none."""
+        found: dict[str, Array] = {}
+        if "peaks" not in file:
+            return found
+        group = _own(file, "peaks", h5py.Group)
+        for name in (entry.name for entry in self.fields if entry.group == PEAKS):
+            dataset = _own(group, name, h5py.Dataset)
+            shape = file["fields"][name].shape[1:]
+            if dataset.dtype != np.float64 or dataset.shape not in ((0, *shape), (1, *shape)):
+                raise FileError(f"{self.path}: the dataset of {name!r} is damaged ({dataset.dtype}, {dataset.shape})")
+            if dataset.shape[0] == 1:
+                found[name] = np.asarray(dataset[0], dtype=float)
+        return found
 
     def read(self, name: str) -> Array:
         """All records of one field, shape (n_records, ...); read once and kept.
@@ -241,7 +275,7 @@ def segment_paths(path: str | os.PathLike[str]) -> dict[int, Path]:
     found: dict[int, Path] = {}
     if first.parent.is_dir():
         for entry in first.parent.iterdir():
-            if match := pattern.fullmatch(entry.name):
+            if (match := pattern.fullmatch(entry.name)) and not entry.is_symlink() and entry.is_file():
                 found[int(match.group(1))] = entry
     return dict(sorted(found.items()))
 
@@ -260,6 +294,8 @@ def open_run(path: str | os.PathLike[str]) -> tuple[Source, RunInfo]:
         If a segment is missing, damaged, of another kind or of a later version.
     """
     first = FileSource(path)
+    if first.info.success and first.info.meta["segment"] == 0 and not first.first_record:
+        return first, first.info  # complete in one file
     segments = [first]
     for place in segment_paths(path).values():
         try:
@@ -268,12 +304,16 @@ def open_run(path: str | os.PathLike[str]) -> tuple[Source, RunInfo]:
             raise FileError(f"{error}; the other segments can be loaded one by one, by their own names") from error
         if segment.run_id == first.run_id:
             segments.append(segment)
+    lost = first.first_record if first.info.meta["segment"] == 0 else 0
     if len(segments) == 1:
-        return first, first.info
+        return first, _with_missing(first.info, lost)
     joined, info = JoinedSource(segments), segments[-1].info
-    if joined.missing:
-        info = replace(info, message=f"{info.message}; {joined.missing} records before the last segment are missing")
-    return joined, info
+    return joined, _with_missing(info, lost + joined.missing)
+
+
+def _with_missing(info: RunInfo, missing: int) -> RunInfo:
+    """What is known of a run, with what is missing of it said."""
+    return replace(info, message=f"{info.message}; {missing} records of it are missing") if missing else info
 
 
 def _table(value: Any) -> dict[str, Any]:
@@ -291,8 +331,29 @@ def _own(group: h5py.Group, name: str, kind: type) -> Any:
         raise FileError(f"{group.file.filename}: {name!r} is not what a result holds there")
     if isinstance(member, h5py.Dataset) and (member.external or member.is_virtual):
         raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
+    if isinstance(member, h5py.Dataset):
+        _check_stored(group.file.filename, repr(name), member)
     return member
+
+
+def _check_stored(file: str, name: str, *datasets: h5py.Dataset) -> None:
+    """A file must hold what it claims: values that were never written take no room in it, but much when they are read."""
+    claimed = stored = 0
+    for dataset in datasets:
+        size = dataset.dtype.itemsize
+        claimed += (dataset.size or 0) * size
+        packed = dataset.chunks is not None and dataset.compression is not None
+        stored += (
+            dataset.id.get_num_chunks() * math.prod(dataset.chunks) * size if packed else dataset.id.get_storage_size()
+        )
+    if claimed > SMALL + 2 * stored:
+        raise FileError(f"{file}: the file is damaged: {name} claims {claimed} bytes, but holds {stored}")
 
 
 def _text(value: Any) -> str:
     return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def _texts(value: object) -> tuple[str, ...]:
+    """A list of sentences; nothing where a file holds anything else."""
+    return tuple(str(text) for text in value) if isinstance(value, list) else ()

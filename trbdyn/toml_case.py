@@ -28,6 +28,7 @@ from trbdyn.effects import PRESETS, Effects
 from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
 from trbdyn.errors import Path as FieldPath
 from trbdyn.lubricants import OILS, Lubricant, vg100
+from trbdyn.own_files import file_path, read_text
 from trbdyn.pocket import Pocket
 from trbdyn.pocket_shapes import SHAPES
 from trbdyn.run_options import RunOptions
@@ -40,6 +41,8 @@ M = TypeVar("M", bound=Model)
 
 DATA: Final = Path(__file__).parent / "data"
 TABLES: Final = ("bearing", "lubricant", "effects", "scene", "start", "run")
+DEEPEST: Final = 40
+"""Most levels of tables and lists in a file; a case has eight."""
 _OWN_TABLES: Final = ("bearing", "lubricant", "effects", "start")
 
 
@@ -77,18 +80,42 @@ def load_case(path: str | Path) -> tuple[Scene, RunOptions]:
     InputError
         If a key is unknown or a value not allowed; the message names the full key.
     """
-    file = Path(path)
+    file = file_path(path, "case")
     if not file.exists() and str(path).removesuffix(".toml") in shipped_cases():
         file = find_case(str(path))
+    return case_from_dict(read_tables(file, f"; cases that ship with the package: {', '.join(shipped_cases())}"))
+
+
+def read_tables(file: Path, hint: str = "") -> Table:
+    """The tables of a TOML file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is no TOML; where it cannot be opened, `hint` is added to the message.
+    """
     try:
-        with file.open("rb") as stream:
-            values = tomllib.load(stream)
+        tables = tomllib.loads(read_text(file))
+        if _depth(tables) > DEEPEST:
+            raise RecursionError
+        return tables
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise FileError(f"{file}: {reason}; cases that ship with the package: {', '.join(shipped_cases())}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise FileError(f"{file}: {error.strerror or error}{hint}") from None
+    except RecursionError:
+        raise FileError(f"{file}: not a TOML file that can be used: its tables are nested too deeply") from None
+    except ValueError as error:
         raise FileError(f"{file}: not a TOML file: {error}") from None
-    return case_from_dict(values)
+
+
+def _depth(tables: Table) -> int:
+    """How deep tables and lists are nested."""
+    level: list[Any] = [tables]
+    depth = 0
+    while level:
+        depth += 1
+        inside = [entry for place in level for entry in (place.values() if isinstance(place, dict) else place)]
+        level = [entry for entry in inside if isinstance(entry, dict | list)]
+    return depth
 
 
 def case_from_dict(values: Mapping[str, Any]) -> tuple[Scene, RunOptions]:
@@ -198,7 +225,7 @@ def _lubricant(table: Table) -> Lubricant:
 def _effects(table: Table) -> Effects:
     path = ("effects",)
     _check_names(table, {*Effects.model_fields, "preset"}, path)
-    preset = _choose({"preset": "paper", **table}, "preset", PRESETS, path)
+    preset = _choose({"preset": "standard", **table}, "preset", PRESETS, path)
     return _build(Effects, _merged(preset().to_dict(), _without(table, "preset")), path)
 
 

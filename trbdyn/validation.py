@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
 import numbers
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, ValidationError
 
@@ -29,7 +30,10 @@ def as_number(value: object) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise ValueError("must be a number")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError("must be a number below 1.8e308") from None
 
 
 def as_whole_number(value: object) -> int:
@@ -42,7 +46,24 @@ def as_whole_number(value: object) -> int:
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise ValueError("must be a whole number")
-    return int(value)
+    whole = int(value)
+    if abs(whole) >= 2**63:
+        raise ValueError("must be a whole number of less than 64 bits")
+    return whole
+
+
+def number_of(name: str, value: object) -> float:
+    """An argument that must be a real number, as float; it may be infinite or not a number.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    try:
+        return as_number(value)
+    except ValueError as error:
+        raise InputError.of(name, value, str(error)) from None
 
 
 Number = Annotated[float, BeforeValidator(as_number)]
@@ -55,7 +76,46 @@ Ratio = Annotated[Number, unit("1", ge=0)]
 Vector3 = tuple[Number, Number, Number]
 
 
-class Model(BaseModel):
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
+
+class _Listed(ModelMetaclass):
+    """Lists a model's own names: what pydantic adds to every model is not for users, and would fill ``help`` with pages."""
+
+    def __dir__(cls) -> list[str]:
+        own = (base for base in cls.__mro__ if issubclass(base, Model))
+        names = {name for base in own for name in vars(base) if not name.startswith("_") and name not in _INTERNAL}
+        return sorted(names | set(getattr(cls, "model_fields", ())))
+
+
+_INTERNAL: Final = (
+    "model_config",
+    "model_copy",
+    "model_fields",
+    "model_computed_fields",
+    "model_post_init",
+    "model_validate",
+)
+
+
+class _Brief:
+    """Stands in a signature for a model as default."""
+
+    def __init__(self, model: object) -> None:
+        self._name = type(model).__name__
+
+    def __repr__(self) -> str:
+        return f"{self._name}(...)"
+
+
+def _brief(default: Any) -> Any:
+    return _Brief(default) if isinstance(default, BaseModel) else default
+
+
+class Model(BaseModel, metaclass=_Listed):
     """A frozen, validated set of named values.
 
     Every number must be finite, every name known; anything else raises `InputError`.
@@ -64,6 +124,17 @@ class Model(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
     _root: ClassVar[str | None] = None
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Shorten the signature that ``help`` shows: no types, which the docstring tells, and inner models by their names."""
+        super().__pydantic_init_subclass__(**options)
+        full = inspect.signature(cls)
+        parameters = [
+            entry.replace(annotation=inspect.Parameter.empty, default=_brief(entry.default))
+            for entry in full.parameters.values()
+        ]
+        cls.__signature__ = full.replace(parameters=parameters, return_annotation=inspect.Signature.empty)
 
     def __init__(self, /, **fields: Any) -> None:
         try:
@@ -148,8 +219,11 @@ class Model(BaseModel):
         """
         try:
             values = json.loads(text)
-        except ValueError as error:
-            raise InputError.of("json", text[:40], f"must be JSON text: {error}") from None
+        except RecursionError:
+            raise InputError.of("json", text[:40], "must be JSON text that is not nested so deeply") from None
+        except (ValueError, TypeError) as error:
+            found = text[:40] if isinstance(text, str | bytes) else text
+            raise InputError.of("json", found, f"must be JSON text: {error}") from None
         return cls.from_dict(values)
 
     @property

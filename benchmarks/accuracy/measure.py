@@ -237,7 +237,7 @@ def long_run(case: Case, settings: Settings, revolutions: float, scene: Scene | 
         sim = Simulation(at_state(case.scene if scene is None else scene, state), **settings)
         result = sim.run(revolutions=revolutions, save_every=2e-4)
         turn = result["shaft_angle"][-1] - result["shaft_angle"][0]
-        radius.append(float(result.whirl_radius.mean()) / result.clearances.radial if result.has_cage else np.nan)
+        radius.append(float(result.axis_distance.mean()) / result.clearances.radial if result.has_cage else np.nan)
         torque.append(float((result["work_shaft"][-1] - result["work_shaft"][0]) / turn))
         if result.has_cage:
             speed.append(float((result["cage_angle"][-1] - result["cage_angle"][0]) / turn))

@@ -81,6 +81,9 @@ static inline int trb_state_spin(const trb_model *m) { return trb_state_main_siz
 static inline int trb_state_quadrature(const trb_model *m) { return trb_state_spin(m) + m->n_rollers; }
 static inline int trb_state_size(const trb_model *m) { return trb_state_quadrature(m) + TRB_N_QUADRATURES; }
 
+/* Rollers of a state of this size. */
+static inline int trb_state_rollers(int size) { return (size - TRB_CAGE_SIZE - TRB_N_QUADRATURES) / (TRB_ROLLER_SIZE + 1); }
+
 /* Tolerance kind of every entry. */
 trb_tolerance trb_state_tolerance(const trb_model *m, int index);
 

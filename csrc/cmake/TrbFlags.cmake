@@ -1,5 +1,23 @@
 # The target trb_flags: warnings and sanitizers for our own sources. Flags of the fast kernels are in TrbKernels.cmake.
 
+# the core refuses values that are not finite, and its sums are ordered: arithmetic that assumes otherwise would accept NaN
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+set(CMAKE_REQUIRED_FLAGS "${CMAKE_C_FLAGS_${build_type}}")
+include(CheckCSourceCompiles)
+unset(TRB_EXACT_MATH CACHE) # the flags may have changed
+check_c_source_compiles("
+#if defined(__FAST_MATH__) || defined(_M_FP_FAST) || defined(__ASSOCIATIVE_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error fast math
+#endif
+int main(void) { return 0; }" TRB_EXACT_MATH)
+unset(CMAKE_REQUIRED_FLAGS)
+if(NOT TRB_EXACT_MATH)
+  set(flags "${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_${build_type}}")
+  message(FATAL_ERROR "the compiler's flags (${flags}) allow fast math, or the compiler does not work: "
+    "take away -ffast-math, -Ofast, -ffinite-math-only, -funsafe-math-optimizations or /fp:fast")
+endif()
+
 add_library(trb_flags INTERFACE)
 if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
   target_compile_options(trb_flags INTERFACE

@@ -117,7 +117,7 @@ typedef struct trb_detail {
   trb_point_detail *front_rib;           /* n_rollers */
   double           *pocket_force;        /* [roller][slot], N */
   double           *pocket_friction;     /* [roller][slot], N */
-  double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m */
+  double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
 } trb_detail;
 
 /* Scratch of one thread. */
@@ -162,8 +162,8 @@ typedef struct trb_pocket_gaps {
 
 static inline int trb_pocket_clear(const trb_pocket_gaps *gaps) { return gaps->of[TRB_GAP_FLANK] > 0.0 && gaps->of[TRB_GAP_ENDS] > 0.0; }
 
-/* What one roller and its pocket do to each other. The load is written only where they may touch, or with a detail, and so are slopes, if
- * they are wanted. */
+/* What one roller and its pocket do to each other. The load is written only where they may touch, or with a detail that wants
+ * interferences, and so are slopes, if they are wanted. A detail's forces are added to. */
 trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
                                       trb_pocket_slopes *slopes, trb_detail *detail);
 

@@ -265,6 +265,7 @@ static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f,
   const int slot = roller * m->n_slots + f->slot;
   detail->pocket_force[slot] += sums->force;
   detail->pocket_friction[slot] += sums->friction;
+  if (detail->pocket_interference == NULL) return;
   detail->pocket_interference[slot] = trb_max(detail->pocket_interference[slot], sums->deepest);
 }
 
@@ -281,7 +282,7 @@ trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at,
   const trb_roller_pose *r = &at->rollers[roller];
   const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
   const trb_pocket_gaps  far = {{INFINITY, INFINITY}};
-  const int              exact = detail != NULL;
+  const int              exact = detail != NULL && detail->pocket_interference != NULL;
   pocket_view            p;
   trb_pocket_gaps        gaps = far;
   view_places(m, r, at->cage, roller, &p);
@@ -305,7 +306,7 @@ trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at,
     }
     const pocket_sums sums = face_forces(m, f, &p, roller, exact, counters, load);
     note_gap(&gaps, f, f->part == TRB_PART_FLANK ? least : -sums.deepest);
-    if (exact) add_detail(m, roller, f, &sums, detail);
+    if (detail != NULL) add_detail(m, roller, f, &sums, detail);
   }
   load->force = trb_from_frame(&p.axes, p.force);
   load->moment = trb_from_frame(&p.axes, p.moment);

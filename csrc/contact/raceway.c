@@ -41,6 +41,14 @@ static void add_output(const trb_race_output *out, int race, trb_roller_load *lo
   load->power[TRB_POWER_TRACTION_INNER] += out->power_traction;
 }
 
+void trb_contact_raceway_of(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, trb_race_output *output)
+{
+  trb_instant one = *at;
+  one.chosen = &roller;
+  const trb_race_input input = race_input(m, &one, race);
+  trb_kernel_variants[work->variant].raceway(m, &input, 1, work->lanes, &work->counters, output);
+}
+
 /* Lane fields of the tile's loaded contacts, in the order in which the kernel packed them. */
 static void copy_detail(const trb_model *m, const int *chosen, const trb_lanes *lanes, const trb_race_output *outputs, int first, int n,
                         trb_detail *detail)

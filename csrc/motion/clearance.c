@@ -62,6 +62,17 @@ void trb_clearance_set(const trb_model *m, trb_clearance *c, const trb_pocket_ga
   memcpy(c->cage, y_cage, sizeof c->cage);
 }
 
+double trb_clearance_left(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_cage)
+{
+  double left[TRB_N_GAPS];
+  for (int g = 0; g < TRB_N_GAPS; g++) {
+    left[g] = c->gaps.of[g];
+    for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++) left[g] -= arms[g].roller[i] * fabs(y_roller[i] - c->roller[i]);
+    for (int i = 0; i < TRB_CLEARANCE_CAGE; i++) left[g] -= arms[g].cage[i] * fabs(y_cage[i] - c->cage[i]);
+  }
+  return fmin(left[TRB_GAP_FLANK], left[TRB_GAP_ENDS]);
+}
+
 int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_cage)
 {
   double moved[TRB_N_GAPS] = {0};

@@ -28,5 +28,7 @@ void trb_clearance_arms_of(const trb_model *m, trb_clearance_arms *arms);
 void trb_clearance_set(const trb_model *m, trb_clearance *c, const trb_pocket_gaps *gaps, const double *y_roller, const double *y_cage);
 /* Whether the roller is proven not to touch its pocket. */
 int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_cage);
+/* What is left of the gap at least, m; not above 0: the roller may touch. */
+double trb_clearance_left(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_cage);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "contact/kernels.h"
 #include "motion/equilibrium.h"
+#include "motion/peaks.h"
 #include "motion/record.h"
 
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
@@ -60,6 +61,7 @@ static PyObject *get_number(PyObject *self, void *closure)
   if (strcmp(name, "n_rollers") == 0) return PyLong_FromLong(m->n_rollers);
   if (strcmp(name, "n_slots") == 0) return PyLong_FromLong(m->n_slots);
   if (strcmp(name, "n_state") == 0) return PyLong_FromLong(trb_state_size(m));
+  if (strcmp(name, "peak_length") == 0) return PyLong_FromLong(trb_peak_offset(m, TRB_N_PEAK_FIELDS));
   return PyLong_FromLong(trb_record_offset(m, TRB_N_FIELDS));
 }
 
@@ -84,6 +86,21 @@ static PyObject *record_layout(PyObject *self, PyObject *none)
     int       shape[2];
     const int n = trb_field_shape(m, trb_field_table[i].kind, shape);
     PyObject *row = Py_BuildValue("(siN)", trb_field_table[i].name, trb_record_offset(m, i), shape_tuple(n, shape));
+    if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
+    Py_XDECREF(row);
+  }
+  return list;
+}
+
+static PyObject *peak_layout(PyObject *self, PyObject *none)
+{
+  const trb_model *m = ((model_object *)self)->model;
+  PyObject        *list = PyList_New(0);
+  (void)none;
+  for (int i = 0; list != NULL && i < TRB_N_PEAK_FIELDS; i++) {
+    int       shape[2];
+    const int n = trb_field_shape(m, trb_peak_kind(&trb_peak_field_table[i]), shape);
+    PyObject *row = Py_BuildValue("(siN)", trb_peak_field_table[i].name, trb_peak_offset(m, i), shape_tuple(n, shape));
     if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
     Py_XDECREF(row);
   }
@@ -172,6 +189,7 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 
 static PyMethodDef methods[] = {
     {"record_layout", record_layout, METH_NOARGS, "(name, offset, shape) of every field of a record."},
+    {"peak_layout", peak_layout, METH_NOARGS, "(name, offset, shape) of every field of a row of peaks."},
     {"state_layout", state_layout, METH_NOARGS, "(name, offset, shape) of the parts of a state vector."},
     {"equilibrium", (PyCFunction)(void (*)(void))equilibrium, METH_VARARGS | METH_KEYWORDS, "Static equilibrium at speed."},
     {NULL, NULL, 0, NULL},
@@ -182,6 +200,7 @@ static PyGetSetDef properties[] = {
     {"n_slots", get_number, NULL, "most faces in a pocket", "n_slots"},
     {"n_state", get_number, NULL, "length of a state vector", "n_state"},
     {"record_length", get_number, NULL, "length of a record", "record_length"},
+    {"peak_length", get_number, NULL, "length of a row of peaks", "peak_length"},
     {"instruction_set", get_variant, NULL, "kernel variant in use", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };

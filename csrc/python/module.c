@@ -6,6 +6,7 @@
 
 #include "contact/kernels.h"
 #include "laws/table.h"
+#include "motion/peaks.h"
 #include "motion/record.h"
 #include "stepping/integrator.h"
 #include "stepping/sundials_context.h"
@@ -114,6 +115,9 @@ TABLE(face_table, LENGTH(face_columns), "(siss)", face_columns[i].name, face_col
 TABLE(motion_table, LENGTH(channels), "(sss)", channels[i].name, channels[i].unit, channels[i].text)
 TABLE(field_table, TRB_N_FIELDS, "(sssss)", trb_field_table[i].name, trb_field_table[i].group, trb_field_kind_name(trb_field_table[i].kind),
       trb_field_table[i].unit, trb_field_table[i].text)
+TABLE(peak_table, TRB_N_PEAK_FIELDS, "(ssssss)", trb_peak_field_table[i].name, "peaks",
+      trb_field_kind_name(trb_peak_kind(&trb_peak_field_table[i])), trb_peak_field_table[i].unit, trb_peak_field_table[i].text,
+      trb_peak_joined(&trb_peak_field_table[i]))
 TABLE(geometry_table, TRB_N_GEOMETRY, "(sss)", trb_geometry_table[i].name, trb_geometry_table[i].unit, trb_geometry_table[i].text)
 TABLE(quadrature_table, LENGTH(quadratures), "s", quadratures[i])
 TABLE(counter_table, LENGTH(counters), "(ss)", counters[i].name, counters[i].text)
@@ -198,6 +202,7 @@ static PyMethodDef functions[] = {
     {"face_table", face_table, METH_NOARGS, "(name, count, unit, text) of the columns of a pocket face."},
     {"motion_table", motion_table, METH_NOARGS, "(name, unit, text) of the channels of prescribed motion."},
     {"field_table", field_table, METH_NOARGS, "(name, group, kind, unit, text) of every recorded quantity."},
+    {"peak_table", peak_table, METH_NOARGS, "(name, group, kind, unit, text, how two intervals are joined) of every peak."},
     {"geometry_table", geometry_table, METH_NOARGS, "(name, unit, text) of the derived geometry."},
     {"quadrature_table", quadrature_table, METH_NOARGS, "Names of the energy quadratures."},
     {"counter_table", counter_table, METH_NOARGS, "(name, text) of the evaluation counters."},

@@ -155,7 +155,7 @@ static PyObject *run(PyObject *object, PyObject *args)
   if (!PyArg_ParseTuple(args, "OO!l|d", &times_object, &PyArray_Type, &records, &max_steps, &stop_after)) return NULL;
   PyArrayObject *times = trb_array(times_object, 1, "times");
   if (times == NULL) return NULL;
-  const int length = trb_record_offset(model_of(self), TRB_N_FIELDS);
+  const int length = trb_simulation_row(self->simulation);
   if (PyArray_TYPE(records) != NPY_DOUBLE || PyArray_NDIM(records) != 2 || !PyArray_IS_C_CONTIGUOUS(records) ||
       !PyArray_ISWRITEABLE(records) || PyArray_DIM(records, 0) < PyArray_DIM(times, 0) || PyArray_DIM(records, 1) != length) {
     PyErr_Format(PyExc_ValueError, "records: must be a writable C-contiguous float64 array with a row of %d a time", length);
@@ -407,16 +407,105 @@ static PyObject *statistics(PyObject *object, PyObject *none)
   return out;
 }
 
+static PyObject *state_at(PyObject *object, PyObject *value)
+{
+  simulation_object *self = (simulation_object *)object;
+  const double       time = PyFloat_AsDouble(value);
+  trb_message        message = {TRB_OK, ""};
+  trb_status         status = TRB_OK;
+  if ((time == -1.0 && PyErr_Occurred()) || enter(self, 0) != 0) return NULL;
+  PyObject *out = trb_vector(NULL, self->simulation->integrator.n);
+  if (out != NULL) status = trb_simulation_state_at(self->simulation, time, PyArray_DATA((PyArrayObject *)out), &message);
+  leave(self, 0);
+  if (status == TRB_OK) return out;
+  Py_DECREF(out);
+  return trb_raise(status, &message);
+}
+
+static PyObject *begin_peaks(PyObject *object, PyObject *value)
+{
+  simulation_object *self = (simulation_object *)object;
+  const double       time = PyFloat_AsDouble(value);
+  trb_message        message = {TRB_OK, ""};
+  if ((time == -1.0 && PyErr_Occurred()) || enter(self, 0) != 0) return NULL;
+  const trb_status status = trb_simulation_begin_peaks(self->simulation, time, &message);
+  leave(self, 0);
+  if (status != TRB_OK) return trb_raise(status, &message);
+  Py_RETURN_NONE;
+}
+
+static PyObject *end_peaks(PyObject *object, PyObject *none)
+{
+  simulation_object *self = (simulation_object *)object;
+  (void)none;
+  if (enter(self, 0) != 0) return NULL;
+  trb_simulation_end_peaks(self->simulation);
+  leave(self, 0);
+  Py_RETURN_NONE;
+}
+
+static PyObject *save_peaks(PyObject *object, PyObject *none)
+{
+  simulation_object *self = (simulation_object *)object;
+  (void)none;
+  if (enter(self, 0) != 0) return NULL;
+  const trb_peaks *peaks = self->simulation->peaks;
+  PyObject        *out = trb_vector(NULL, peaks != NULL ? trb_peaks_length(peaks) : 0);
+  if (out != NULL && peaks != NULL) trb_peaks_save(peaks, PyArray_DATA((PyArrayObject *)out));
+  leave(self, 0);
+  return out;
+}
+
+static PyObject *restore_peaks(PyObject *object, PyObject *values)
+{
+  simulation_object *self = (simulation_object *)object;
+  trb_message        message = {TRB_OK, ""};
+  PyArrayObject     *array = trb_array(values, 1, "peaks");
+  if (array == NULL || enter(self, 0) != 0) {
+    Py_XDECREF(array);
+    return NULL;
+  }
+  const trb_status status = trb_simulation_restore_peaks(self->simulation, PyArray_DATA(array), (int)PyArray_DIM(array, 0), &message);
+  leave(self, 0);
+  Py_DECREF(array);
+  if (status != TRB_OK) return trb_raise(status, &message);
+  Py_RETURN_NONE;
+}
+
+static PyObject *whole_peaks(PyObject *object, PyObject *value)
+{
+  simulation_object *self = (simulation_object *)object;
+  const double       time = PyFloat_AsDouble(value);
+  if ((time == -1.0 && PyErr_Occurred()) || enter(self, 0) != 0) return NULL;
+  const trb_peaks *peaks = self->simulation->peaks;
+  PyObject        *out = trb_vector(NULL, peaks != NULL ? trb_peak_offset(model_of(self), TRB_N_PEAK_FIELDS) : 0);
+  if (out != NULL && peaks != NULL) trb_peaks_whole(peaks, time, PyArray_DATA((PyArrayObject *)out));
+  leave(self, 0);
+  return out;
+}
+
 static PyObject *get_time(PyObject *object, void *closure)
 {
   (void)closure;
   return PyFloat_FromDouble(((simulation_object *)object)->simulation->integrator.time);
 }
 
+static PyObject *get_row_length(PyObject *object, void *closure)
+{
+  (void)closure;
+  return PyLong_FromLong(trb_simulation_row(((simulation_object *)object)->simulation));
+}
+
 static PyMethodDef methods[] = {
-    {"run", run, METH_VARARGS, "run(times, records, max_steps, stop_after=inf): integrate, a record a time; gives (rows, steps)."},
+    {"run", run, METH_VARARGS, "run(times, records, max_steps, stop_after=inf): integrate, a row a time; gives (rows, steps)."},
     {"step", step, METH_NOARGS, "One step of the integrator; gives the new time."},
     {"state", state, METH_NOARGS, "A copy of the state."},
+    {"state_at", state_at, METH_O, "state_at(time): the state at an instant of the last step."},
+    {"begin_peaks", begin_peaks, METH_O, "begin_peaks(time): keep peaks from an instant of the last step on."},
+    {"end_peaks", end_peaks, METH_NOARGS, "Keep no more peaks."},
+    {"save_peaks", save_peaks, METH_NOARGS, "All that restore_peaks needs; empty if no peaks are kept."},
+    {"restore_peaks", restore_peaks, METH_O, "restore_peaks(saved): go on with peaks that were saved at this time."},
+    {"whole_peaks", whole_peaks, METH_O, "whole_peaks(time): a row of peaks from their beginning to an instant of the last step."},
     {"set_state", set_state, METH_VARARGS, "set_state(time, state): restart the integrator there."},
     {"restart", restart, METH_NOARGS, "Restart the integrator where it is."},
     {"observe", observe, METH_VARARGS, "observe(time, state): a record."},
@@ -429,6 +518,7 @@ static PyMethodDef methods[] = {
 
 static PyGetSetDef properties[] = {
     {"time", get_time, NULL, "end of the last step, s", NULL},
+    {"row_length", get_row_length, NULL, "length of a row of records, with its peaks if they are kept", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 

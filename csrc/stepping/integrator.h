@@ -3,6 +3,7 @@
 #define TRB_STEPPING_INTEGRATOR_H
 
 #include "motion/dynamics.h"
+#include "stepping/impact.h"
 
 /* Settings of an integration. X(name, default, lower, upper, text) */
 #define TRB_SETTINGS(X) \
@@ -92,6 +93,7 @@ struct trb_integrator {
   double                    *y;        /* state there */
   double                    *scale;    /* absolute tolerance of every entry */
   double                    *relative; /* relative tolerance of every entry */
+  trb_impacts                impacts;  /* of rollers and cage, with the factors of their tolerances */
   trb_counters              *extra;    /* where evaluations for Jacobians are counted */
   void                      *self;     /* of the kind */
 };

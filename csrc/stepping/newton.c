@@ -20,6 +20,8 @@
 
 /* Largest share of a correction that the next one may keep of it before it is prolonged no further: at most 1/(1 - most_kept) times. */
 static const double most_kept = 0.95;
+/* Share of the tolerance below which what the equations lack needs no second look; else it must have fallen to this share by a correction. */
+static const double negligible = 0.1, contraction = 0.3;
 /* A correction that grows beyond this multiple of the first one diverges. */
 static const double divergence = 1e3;
 
@@ -74,7 +76,7 @@ static void improve(newton *self, int m, const double *weight, double *delta)
 
 static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
 {
-  double first = INFINITY;
+  double first = INFINITY, before = 0.0;
   for (int m = 0; m < self->most; m++) {
     if (m > 0) {
       const int flag = self->residual(correction, self->delta, memory);
@@ -88,7 +90,8 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     improve(self, m, N_VGetArrayPointer(weights), N_VGetArrayPointer(self->delta));
     const double change = sqrt(self->square[m] / self->n);
     N_VLinearSum(1.0, correction, 1.0, self->delta, correction);
-    if (off <= tolerance && change <= tolerance) return 0;
+    if (change <= tolerance && (off <= negligible * tolerance || (off <= tolerance && off <= contraction * before))) return 0;
+    before = off;
     if (m == 0) first = change;
     if (!(change <= divergence * first) || !(self->square[m] > 0.0)) return SUN_NLS_CONV_RECVR;
   }

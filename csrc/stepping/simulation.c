@@ -76,7 +76,7 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   it->motion = s->motion;
   it->variant = variant;
   trb_integrator_set_tolerances(it);
-  return TRB_OK;
+  return trb_impacts_create(s->model, &it->impacts, message);
 }
 
 trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant,
@@ -114,12 +114,14 @@ void trb_simulation_free(trb_simulation *s)
   if (s == NULL) return;
   if (s->integrator.kind != NULL) s->integrator.kind->free(&s->integrator);
   free(s->integrator.y);
+  trb_impacts_free(&s->integrator.impacts);
   free(s->integrator.scale);
   free(s->integrator.relative);
   free(s->between);
   trb_detail_free(s->detail);
   trb_dynamics_free(s->dynamics);
   trb_dynamics_free(s->onlooker);
+  trb_peaks_free(s->peaks);
   free(s);
 }
 
@@ -130,6 +132,8 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
   memmove(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
   s->integrator.time = s->previous = time;
   trb_integrator_set_tolerances(&s->integrator);
+  trb_impacts_forget(s->model, &s->integrator.impacts);
+  if (s->peaks != NULL) trb_peaks_begin(s->peaks, time, s->integrator.y, time, s->integrator.y);
   return s->integrator.kind->restart(&s->integrator, message);
 }
 
@@ -142,6 +146,7 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
   const trb_status status = it->kind->step(it, message);
   if (status == TRB_OK) {
     s->previous = from;
+    if (s->peaks != NULL) trb_peaks_step(s->peaks, it->time, it->y);
     return TRB_OK;
   }
   trb_message what, cause = *message;
@@ -149,6 +154,47 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
   memcpy(it->y, s->between, (size_t)it->n * sizeof(double));
   it->time = from;
   return trb_fail(message, status, "at t = %.9g s: %.200s; largest error: %.200s", from, cause.text, what.text);
+}
+
+trb_status trb_simulation_state_at(trb_simulation *s, double time, double *y, trb_message *message)
+{
+  trb_integrator *it = &s->integrator;
+  if (!(time >= s->previous && time <= it->time))
+    return trb_fail(message, TRB_ERR_INPUT, "time = %.9g s: must lie in the last step, from %.9g to %.9g s", time, s->previous, it->time);
+  if (time < it->time) return it->kind->interpolate(it, time, y, message);
+  memcpy(y, it->y, (size_t)it->n * sizeof *y);
+  return TRB_OK;
+}
+
+trb_status trb_simulation_begin_peaks(trb_simulation *s, double time, trb_message *message)
+{
+  trb_status status = trb_simulation_state_at(s, time, s->between, message);
+  if (status == TRB_OK && s->peaks == NULL) status = trb_peaks_create(s->model, s->motion, s->integrator.variant, &s->peaks, message);
+  if (status == TRB_OK) trb_peaks_begin(s->peaks, time, s->between, s->integrator.time, s->integrator.y);
+  return status;
+}
+
+void trb_simulation_end_peaks(trb_simulation *s)
+{
+  trb_peaks_free(s->peaks);
+  s->peaks = NULL;
+}
+
+trb_status trb_simulation_restore_peaks(trb_simulation *s, const double *saved, int length, trb_message *message)
+{
+  trb_status status = trb_simulation_begin_peaks(s, s->integrator.time, message);
+  if (status == TRB_OK && length != trb_peaks_length(s->peaks))
+    status = trb_fail(message, TRB_ERR_INPUT, "peaks: %d values needed, %d given", trb_peaks_length(s->peaks), length);
+  if (status == TRB_OK && saved[0] != s->integrator.time)
+    status = trb_fail(message, TRB_ERR_INPUT, "peaks: of t = %.9g s, not of %.9g s", saved[0], s->integrator.time);
+  if (status == TRB_OK) trb_peaks_restore(s->peaks, saved);
+  else trb_simulation_end_peaks(s);
+  return status;
+}
+
+int trb_simulation_row(const trb_simulation *s)
+{
+  return trb_record_offset(s->model, TRB_N_FIELDS) + (s->peaks != NULL ? trb_peak_offset(s->model, TRB_N_PEAK_FIELDS) : 0);
 }
 
 static trb_status output(trb_simulation *s, double time, double *record, trb_message *message)
@@ -161,13 +207,14 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
     y = s->between;
   }
   trb_record_fill(s->onlooker, time, y, s->detail, record);
+  if (s->peaks != NULL) trb_peaks_record(s->peaks, time, record + trb_record_offset(s->model, TRB_N_FIELDS));
   return TRB_OK;
 }
 
 trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
                               long *steps, trb_message *message)
 {
-  const size_t length = (size_t)trb_record_offset(s->model, TRB_N_FIELDS);
+  const size_t length = (size_t)trb_simulation_row(s);
   *rows = 0;
   *steps = 0;
   while (*rows < n) {

@@ -2,6 +2,7 @@
 #ifndef TRB_STEPPING_SIMULATION_H
 #define TRB_STEPPING_SIMULATION_H
 
+#include "motion/peaks.h"
 #include "motion/record.h"
 #include "stepping/integrator.h"
 
@@ -14,6 +15,7 @@ typedef struct trb_simulation {
   trb_detail       *detail;
   double           *between;  /* state at an output time */
   double            previous; /* start of the last step, s */
+  trb_peaks        *peaks;    /* NULL: nobody wants them */
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */
@@ -28,8 +30,20 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
 /* One step. On an error time and state are those of the last good step. */
 trb_status trb_simulation_step(trb_simulation *s, trb_message *message);
 
+/* The state at an instant of the last step. */
+trb_status trb_simulation_state_at(trb_simulation *s, double time, double *y, trb_message *message);
+
+/* Keep peaks from an instant of the last step on, or no more. */
+trb_status trb_simulation_begin_peaks(trb_simulation *s, double time, trb_message *message);
+void       trb_simulation_end_peaks(trb_simulation *s);
+/* Go on with peaks that were saved at this simulation's time: length numbers. */
+trb_status trb_simulation_restore_peaks(trb_simulation *s, const double *saved, int length, trb_message *message);
+
+/* Length of a row of records: a record, and after it a row of peaks if they are kept. */
+int trb_simulation_row(const trb_simulation *s);
+
 /* Steps until every one of n increasing times is passed, at most max_steps, none from the first step's end at or after stop_after on; a
- * record a time. Output times never change the steps. */
+ * row a time. Output times never change the steps. */
 trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
                               long *steps, trb_message *message);
 

@@ -78,6 +78,19 @@ static trb_status make_detail(trb_message *message)
   return status;
 }
 
+static trb_status make_peaks(trb_message *message)
+{
+  trb_motion *motion = NULL;
+  trb_peaks  *made = NULL;
+  trb_status  status = trb_motion_create(table, 1, &motion, message);
+  if (status != TRB_OK) return status;
+  status = trb_peaks_create(model, motion, "", &made, message);
+  CHECK((made == NULL) == (status != TRB_OK));
+  trb_peaks_free(made);
+  trb_motion_free(motion);
+  return status;
+}
+
 static trb_status solve_equilibrium(trb_message *message)
 {
   double          angles[12], rollers[36] = {0}, loads[36];
@@ -167,6 +180,7 @@ int main(void)
   fail_each("motion", make_motion);
   fail_each("dynamics", make_dynamics);
   fail_each("detail", make_detail);
+  fail_each("peaks", make_peaks);
   fail_each("equilibrium", solve_equilibrium);
   fail_each("bdf", make_bdf);
   fail_each("erk", make_erk);

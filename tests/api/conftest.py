@@ -155,10 +155,18 @@ class StubScene:
     bearing = SimpleNamespace(
         name="stub",
         n_rollers=Z,
+        pitch_diameter=82.389e-3,
         slot_names=("leading_bar", "trailing_bar", "large_end_wall", "small_end_wall"),
         cage=SimpleNamespace(play_radial=RADIAL_PLAY, play_circumferential=0.12e-3, play_axial=AXIAL_PLAY),
     )
-    effects = SimpleNamespace(bodies="rollers_and_cage", friction=SimpleNamespace(lambda_full=1.5))
+    effects = SimpleNamespace(
+        bodies="rollers_and_cage",
+        films=True,
+        traction="none",
+        rolling_resistance=True,
+        rolling_pressure_force=False,
+        friction=SimpleNamespace(lambda_full=1.5),
+    )
     axial_load, radial_load = 4930.0, 0.0
 
     def to_dict(self) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -45,6 +46,7 @@ class FakeSimulation:
 
 @pytest.fixture
 def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, synthetic: Any) -> type[FakeSimulation]:
+    monkeypatch.setattr("trbdyn.paper.creep.creep_time", lambda scene: math.nan)  # needs a simulation that steps
     module = ModuleType("trbdyn.simulation")
     kind = type("Simulation", (FakeSimulation,), {"run_data": synthetic, "calls": [], "error": None})
     module.Simulation = kind  # type: ignore[attr-defined]
@@ -69,7 +71,7 @@ def test_demo_writes_everything(
     pictures = {"cage_locus.png", "spacing_angles.png", "tilt.png", "pocket_forces.png"}
     assert names == {"run.h5", "summary.json"} | pictures
     values = json.loads((folder / "summary.json").read_text())
-    promised = ("cage_speed_ratio", "whirl_radius_over_cpr", "outer_load_mean", "inner_load_mean", "rib_load_mean")
+    promised = ("cage_speed_ratio", "orbit_radius_over_cpr", "outer_load_mean", "inner_load_mean", "rib_load_mean")
     promised += ("film_parameter_outer", "film_parameter_inner", "torque", "energy_closure", "wall_s_per_revolution")
     for name in (*promised, "steps", "rhs_evaluations"):
         assert isinstance(values[name], float | int), name
@@ -132,7 +134,7 @@ def test_plot_and_info_of_a_file(
     assert "4001 records" in text
     assert main(["info", "a.h5", "--json"]) == 0
     about = json.loads(capsys.readouterr().out)
-    assert about["summary"]["whirl_radius_over_cpr"] == pytest.approx(0.9)
+    assert about["summary"]["axis_distance_over_cpr"] == pytest.approx(0.9)
     assert main(["plot", "a.h5", "-o", "b", "--only", "tilts"]) == 2
     assert "did you mean 'tilt'" in capsys.readouterr().err
 

@@ -95,3 +95,38 @@ def test_nan_goes_through() -> None:
             if not np.isnan(law(*arguments)[1]):
                 made.append(f"{name}({parameter})")
     assert not made
+
+
+def test_docstrings_name_every_argument_with_its_unit() -> None:
+    """And nothing is described that no law takes."""
+    import doctest
+
+    from trbdyn.law_texts import ARGUMENTS, EXAMPLES, OF_ONE_LAW
+
+    taken = set()
+    for name in laws.names():
+        law = getattr(laws, name)
+        for parameter in inspect.signature(law).parameters:
+            line = next(line for line in law.__doc__.split(f"{parameter} : array_like\n")[1].splitlines())
+            assert len(line.split()) >= 3, (name, parameter)
+            assert line.rstrip().endswith(")."), (name, parameter)
+            taken.add((name, parameter))
+        parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(verbose=False)
+        runner.run(parser.get_doctest(law.__doc__, {}, name, None, 0))
+        assert runner.failures == 0, name
+        assert (runner.tries > 0) == (name in EXAMPLES)
+    assert set(OF_ONE_LAW) <= taken
+    assert set(ARGUMENTS) == {parameter for name, parameter in taken if (name, parameter) not in OF_ONE_LAW}
+
+
+def test_help_of_inputs_is_a_page_or_two() -> None:
+    import pydoc
+
+    for kind in (trb.Scene, trb.Effects, trb.Bearing, trb.Lubricant, trb.Start, trb.RunOptions):
+        text = pydoc.plain(pydoc.render_doc(kind))
+        assert len(text.splitlines()) < 150, kind
+        assert max(map(len, text.splitlines())) < 800, kind
+        assert "replace(self" in text
+        assert all(name in text for name in kind.model_fields)
+        assert {"replace", "to_dict", "fingerprint", *kind.model_fields} <= set(dir(kind))
+        assert "model_dump" not in text

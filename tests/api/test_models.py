@@ -285,7 +285,11 @@ class TestBearing:
 
 class TestEffects:
     def test_presets(self) -> None:
-        assert Effects.paper() == Effects()
+        assert Effects.standard() == Effects()
+        assert Effects(rolling_resistance=False).rolling_pressure_force is False
+        assert Effects(quadrature="uniform").rolling_pressure_force is True
+        with pytest.raises(InputError, match="rolling_pressure_force"):
+            Effects(rolling_resistance=False, rolling_pressure_force=True)
         paper = Effects.paper()
         assert (paper.damping, paper.rolling_pressure_force, paper.rib_film) == ("off", False, "max")
         assert paper.quadrature == "uniform"

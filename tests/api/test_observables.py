@@ -26,14 +26,14 @@ def test_locus_and_radius_of_a_circle() -> None:
     _, p = circle(radius=0.2e-3)
     assert obs.locus(p, PLAY).shape == (5001, 2)
     np.testing.assert_allclose(np.hypot(*obs.locus(p, PLAY).T), 0.8, rtol=1e-12)
-    np.testing.assert_allclose(obs.whirl_radius(p), 0.2e-3, rtol=1e-12)
+    np.testing.assert_allclose(obs.axis_distance(p), 0.2e-3, rtol=1e-12)
 
 
 def test_orbit_radius_forgets_where_the_orbit_lies() -> None:
     t, p = circle(radius=0.05e-3, hertz=20.0, duration=0.5, centre=(0.0, -0.2e-3))
     whole = p[:-1]
     np.testing.assert_allclose(obs.orbit_radius(whole), 0.05e-3, rtol=1e-9)
-    assert obs.whirl_radius(whole).max() == pytest.approx(0.25e-3, rel=1e-4)
+    assert obs.axis_distance(whole).max() == pytest.approx(0.25e-3, rel=1e-4)
     assert obs.whirl_frequency(t[:-1], whole, "mean") == pytest.approx(20.0, rel=1e-6)
     assert abs(obs.whirl_frequency(t[:-1], whole, "axis")) < 0.5
 

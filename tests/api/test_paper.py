@@ -174,7 +174,7 @@ class TestRun:
         assert run.point == POINT
         radius = run.numbers["whirl_radius_over_cpr"]
         assert radius["p5"] <= radius["mean"] <= radius["p95"]
-        assert radius["mean"] == pytest.approx(trb.load(done[0]).whirl_radius_over_cpr.mean())
+        assert radius["mean"] == pytest.approx(trb.load(done[0]).axis_distance_over_cpr.mean())
         assert {*PROMISED, "seeds", "start", "settled", "bearing_time"} <= set(run.numbers)
         assert run.numbers["bearing_time"] == pytest.approx(0.05, abs=1e-3)
         json.dumps(run.numbers, allow_nan=False)

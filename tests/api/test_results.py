@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import h5py
@@ -80,8 +81,8 @@ def test_attributes_are_the_recorded_fields(synthetic: Any, whirling: Result) ->
 def test_observables_of_a_known_whirl(synthetic: Any, whirling: Result) -> None:
     assert whirling.duration == pytest.approx(0.4)
     assert whirling.revolutions == pytest.approx(20.0)
-    np.testing.assert_allclose(whirling.whirl_radius_over_cpr, 0.9, rtol=1e-12)
-    np.testing.assert_allclose(whirling.whirl_radius, synthetic.whirl_radius, rtol=1e-12)
+    np.testing.assert_allclose(whirling.axis_distance_over_cpr, 0.9, rtol=1e-12)
+    np.testing.assert_allclose(whirling.axis_distance, synthetic.whirl_radius, rtol=1e-12)
     assert whirling.cage_frequency == pytest.approx(synthetic.cage_frequency, rel=1e-9)
     assert whirling.whirl_ratio == pytest.approx(1.0, abs=1e-3)
     assert whirling.cage_speed_ratio == pytest.approx(0.41662)
@@ -95,9 +96,72 @@ def test_observables_of_a_known_whirl(synthetic: Any, whirling: Result) -> None:
     assert whirling.power_split["rolling"] == pytest.approx(220.0)
     assert whirling.torque_split["rib"] == pytest.approx(0.25)
     assert whirling.pocket_statistics().duty[0, 0] == 1.0
-    assert whirling.settling().settled
+    assert whirling.torque_by_loss["rolling"] == pytest.approx(220.0 / (2 * np.pi * 50.0))
+    assert str(whirling.settling()).startswith("cannot be told: only")
     with pytest.raises(InputError, match="plane"):
         whirling.cage_locus("side")  # type: ignore[arg-type]
+
+
+def test_the_orbit_is_not_the_distance_from_the_axis(build: Callable[..., tuple[Any, Result]]) -> None:
+    """A cage that hangs at 0.9 Cpr and hardly moves has next to no orbit, though it is as far from the axis as a whirling one."""
+    _, hanging = build(radius=0.01e-3, centre=(0.0, -0.225e-3), duration=1.0)
+    _, whirling = build(radius=0.225e-3, duration=1.0)
+    for result, orbit, distance in ((hanging, 0.04, 0.9), (whirling, 0.9, 0.9)):
+        values = result.summary()
+        assert values["orbit_radius_over_cpr"] == pytest.approx(orbit, rel=2e-2)
+        assert values["axis_distance_over_cpr"] == pytest.approx(distance, rel=2e-2)
+        assert result.orbit_radius_over_cpr.mean() == pytest.approx(orbit, rel=5e-2)
+    words = [line.strip() for line in _summary_text(hanging).splitlines()]
+    order = [
+        next(k for k, line in enumerate(words) if line.startswith(start))
+        for start in ("orbit radius", "distance of the cage")
+    ]
+    assert order == sorted(order)
+    assert not any("whirl radius" in line for line in words)
+
+
+def _summary_text(result: Result) -> str:
+    from trbdyn import summary
+
+    return summary.table(result.summary())
+
+
+def test_old_names_still_work_and_say_what_they_are(whirling: Result) -> None:
+    with pytest.warns(DeprecationWarning, match="old name of axis_distance"):
+        np.testing.assert_array_equal(whirling.whirl_radius, whirling.axis_distance)
+    with pytest.warns(DeprecationWarning, match="orbit_radius_over_cpr tells the whirl"):
+        np.testing.assert_array_equal(whirling.whirl_radius_over_cpr, whirling.axis_distance_over_cpr)
+    values = whirling.summary()
+    assert values["whirl_radius_over_cpr"] == values["axis_distance_over_cpr"]
+
+
+def test_nothing_is_said_of_a_cage_that_is_not_there(whirling: Result) -> None:
+    whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers"}))
+    for read in (
+        whirling.cage_locus,
+        whirling.pocket_statistics,
+        lambda: whirling.orbit_radius,
+        lambda: whirling.axis_distance,
+        lambda: whirling.whirl_ratio,
+        lambda: whirling.cage_motion,
+        lambda: whirling.axial_motion,
+    ):
+        with pytest.raises(InputError, match="has no cage"):
+            read()
+    values = whirling.summary()
+    assert values["orbit_radius_over_cpr"] is None
+    assert values["torque"] == pytest.approx(1.25, rel=1e-2)
+
+
+def test_torques_that_differ_are_explained(whirling: Result) -> None:
+    assert "rolling_pressure_force" in whirling.summary()["torque_note"]
+    assert "both rings agree" in " ".join(_summary_text(whirling).split())
+    effects = vars(whirling.scene.effects)
+    whirling.scene.effects = SimpleNamespace(**(effects | {"rolling_pressure_force": True}))
+    assert "speed up or slow down" in whirling.summary()["torque_note"]
+    from trbdyn.summary import torque_note
+
+    assert torque_note(whirling, 1.25, 1.2501) is None
 
 
 def test_selection_and_windows(whirling: Result) -> None:
@@ -190,7 +254,7 @@ def test_a_real_scene_survives_the_file(tmp_path: Path, synthetic: Any) -> None:
     scene = scene.replace(bearing=scene.bearing.replace(cage=cage))
     loaded = load(write(tmp_path / "run.h5", synthetic, scene))
     assert loaded.scene == scene
-    np.testing.assert_allclose(loaded.whirl_radius_over_cpr, 0.9, rtol=1e-12)
+    np.testing.assert_allclose(loaded.axis_distance_over_cpr, 0.9, rtol=1e-12)
 
 
 def test_an_unfinished_file_is_readable_and_says_so(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
@@ -376,7 +440,7 @@ def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic:
     path = write(tmp_path / "run.h5", synthetic, stub_scene)
     loaded = load(path)
     time_before = loaded.time
-    write(path, synthetic, stub_scene)
+    write(path, synthetic, stub_scene, overwrite=True)
     assert loaded.time is time_before
     with pytest.raises(FileError, match="replaced"):
         loaded.cage_position  # noqa: B018
@@ -398,7 +462,8 @@ def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
     from trbdyn import summary
 
     values = whirling.summary()
-    assert values["whirl_radius_over_cpr"] == pytest.approx(0.9)
+    assert values["axis_distance_over_cpr"] == pytest.approx(0.9)
+    assert values["orbit_radius_over_cpr"] == pytest.approx(0.9, rel=1e-2)
     assert values["outer_load_mean"] == pytest.approx(1833.0, rel=1e-3)
     assert values["rib_load_mean"] == pytest.approx(122.0, rel=1e-3)
     assert values["film_parameter_outer"] == pytest.approx(4.0, rel=1e-2)
@@ -406,12 +471,13 @@ def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
     assert values["wall_s_per_revolution"] == pytest.approx(2.5 / 20.0)
     assert values["steps"] == 1234
     assert values["rhs_evaluations"] == 5678
-    assert values["settled"] is True
+    assert (values["settled"], values["settling"]) == (False, "unknown")
     assert values["speed_rpm"] == pytest.approx(3000.0)
     written = json.loads(summary.write_json(values, tmp_path / "summary.json").read_text())
     assert written == values
     text = summary.table(values)
-    assert "whirl radius / Cpr" in text
+    assert "orbit radius of the cage about its mean place, rms / Cpr" in text
+    assert "cannot be told: only" in text
     assert "0.9" in text
     with pytest.raises(FileError, match="cannot be written"):
         summary.write_json(values, tmp_path / "missing" / "summary.json")
@@ -420,7 +486,8 @@ def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
 def test_summary_leaves_out_what_was_not_recorded(whirling: Result) -> None:
     values = whirling.select(["torque"]).summary()
     assert values["torque"] == pytest.approx(1.25, rel=1e-2)
-    assert values["whirl_radius_over_cpr"] is None
+    assert values["orbit_radius_over_cpr"] is None
+    assert (values["settling"], values["settled"]) == ("unknown", False)
     assert values["energy_closure"] is None
     assert json.dumps(values, allow_nan=False)
 

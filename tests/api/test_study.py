@@ -23,6 +23,7 @@ from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError, StepError, TrbError
 from trbdyn.study import executors, runner, work
 from trbdyn.study.definition import Base, put, split_path
+from trbdyn.study.gather import unit_of
 from trbdyn.study.index import INDEX, Entry, Index, read_lines
 
 OPTIONS = study.RunOptions(duration=4e-3, save_every=2e-4)
@@ -409,7 +410,7 @@ class TestResume:
         assert same(records(folder / "a"), records(folder / "b"))
         names = [n for n in straight.variables if not str(n).startswith("wall") and n != "case"]
         for name in names:
-            assert np.array_equal(straight[name].values[list(order)], mixed[name].values), name
+            np.testing.assert_array_equal(straight[name].values[list(order)], mixed[name].values, err_msg=str(name))
 
 
 class TestDataset:
@@ -417,7 +418,8 @@ class TestDataset:
         data, _ = serial
         assert data.sizes == {"speed_rpm": 2, "start": 2}
         assert data.torque.attrs == {"long_name": "friction torque of the shaft", "units": "N m"}
-        assert data.speed_rpm.attrs["path"] == "scene.speed_rpm"
+        assert data.speed_rpm.attrs == {"path": "scene.speed_rpm", "long_name": "scene.speed_rpm", "units": "rpm"}
+        assert data.torque_by_loss_rolling.attrs["units"] == "N m"
         assert data.cage_motion.dtype == object
         assert float(data.torque.sel(speed_rpm=3000.0, start="whirl")) > float(
             data.torque.sel(speed_rpm=1000.0, start="whirl")
@@ -479,7 +481,7 @@ class TestCommand:
         assert main(["sweep", str(file), "-o", str(tmp_path / "out"), "--workers", "2"]) == 1
         said = capsys.readouterr()
         assert "axial_load" in said.err
-        assert "whirl_radius_over_cpr" in said.out
+        assert "orbit_radius_over_cpr" in said.out
         data = study.load(tmp_path / "out" / "observables.nc")
         assert data.sizes == {"speed_rpm": 2, "axial_load": 2}
         assert (data.status == "done").sum() == 2
@@ -532,3 +534,19 @@ class TestCommand:
         assert main(["sweep", str(file), "-o", str(out), "--quiet"]) == 0
         assert len([json.loads(line) for line in (out / INDEX).read_text().splitlines()]) == 12
         assert {path: path.stat().st_mtime_ns for path in before} == before
+
+
+@pytest.mark.parametrize(
+    ("path", "unit"),
+    [
+        ("bearing.cage.mass", "kg"),
+        ("scene.speed_rpm", "rpm"),
+        ("run.save_every", "s"),
+        ("effects.friction.boundary_decay", "1"),
+        ("scene.moment_x", "N m"),
+        ("lubricant.oil", ""),
+        ("start", ""),
+    ],
+)
+def test_axes_have_the_units_of_their_fields(path: str, unit: str) -> None:
+    assert unit_of(path) == unit

@@ -128,7 +128,7 @@ class TestTables:
         scene, _ = parse('[effects]\npreset = "standard"\nn_slices = 9\nfriction.dry_friction = 0.2')
         standard = Effects.standard()
         assert scene.effects == standard.replace(n_slices=9, friction=standard.friction.replace(dry_friction=0.2))
-        assert parse("[effects]\nthermal = false")[0].effects == Effects.paper().replace(thermal=False)
+        assert parse("[effects]\nthermal = false")[0].effects == Effects.standard().replace(thermal=False)
 
     def test_histories_and_start(self) -> None:
         extra = 'ring = "follows"\nradial_load = { times = [0, 1], values = [0, 500] }\n[start]\nkind = "unequal"\nseed = 7\n'
@@ -187,7 +187,7 @@ class TestMistakes:
                 "[lubricant]\noil = 'vg100'\ntemperature_c = 900",
                 "lubricant.temperature_c = 900 : must be between -20 and 200 (C)",
             ),
-            ("", "[effects]\npreset = 'papr'", "effects.preset = 'papr' : must be one of 'paper',"),
+            ("", "[effects]\npreset = 'papr'", "effects.preset = 'papr' : must be one of 'standard', 'paper',"),
             (
                 "",
                 "[effects]\nfriction.lambda_ful = 1",

@@ -33,7 +33,7 @@ SCENES = {
     "combined": lambda: scene_30310(2000.0, 4930.0, 5530.0),
     "misaligned": lambda: scene_30310(3000.0, 1230.0, misalignment_x=2e-4, start=Start.unequal(3)),
     "gauss": lambda: scene_30310(effects=Effects.paper().replace(quadrature="gauss", n_slices=9)),
-    "other bearing": lambda: scene_32216(),
+    "other bearing": lambda: scene_32216(effects=Effects.paper()),
 }
 
 

@@ -51,11 +51,11 @@ def test_dense_output_does_not_change_steps(
 
 
 def test_records_do_not_depend_on_each_other(kit: SimpleNamespace, reference: tuple[str, Simulation]) -> None:
-    """A record at an instant is the same whatever other instants are recorded."""
+    """A record at an instant is the same whatever other instants are recorded; peaks are those since the record before."""
     integrator, _ = reference
     coarse = started(kit, integrator=integrator).run(duration=SPAN, save_every=2e-4)
     fine = started(kit, integrator=integrator).run(duration=SPAN, save_every=1e-4)
-    for field in coarse.fields:
+    for field in coarse.select(set(coarse.groups) - {"peaks"}).fields:
         np.testing.assert_array_equal(coarse[field.name], fine[field.name][::2], err_msg=field.name)
 
 

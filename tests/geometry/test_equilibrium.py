@@ -216,7 +216,7 @@ class TestMoments:
         """A ring placed where a load would put it carries that load."""
         loaded = simulate(rig, 0.0, 4930.0, 2780.0)
         shift = tuple(float(x) for x in loaded.equilibrium.displacement[:3])
-        placed = Simulation(Scene(rig, speed_rpm=0.0, displacement=shift))
+        placed = Simulation(Scene(rig, speed_rpm=0.0, displacement=shift, effects=loaded.scene.effects))
         assert placed.equilibrium.outer_load == pytest.approx(loaded.equilibrium.outer_load, abs=1e-4)
         force, _ = balance(placed)
         assert force == pytest.approx([0.0, -2780.0, 4930.0], abs=1e-4)

@@ -82,7 +82,7 @@ def random_state(sim: Simulation, seed: int, skew: float = SKEW, tilt: float = T
 
 @pytest.fixture(scope="module", params=["straight", "logarithmic", "misaligned", "scattered", "32216"])
 def sim(request: pytest.FixtureRequest, rig: Bearing, straight_rig: Bearing) -> Simulation:
-    effects = Effects(n_slices=31)
+    effects = Effects.paper().replace(n_slices=31)
     if request.param == "32216":
         return Simulation(cases.scene_32216(0.0, effects=effects))
     if request.param == "scattered":
@@ -110,7 +110,7 @@ def test_discs_on_races(sim: Simulation, race: int, places: Any, cone_distance: 
 
 def test_the_comparison_sees_a_tenth_of_a_nanometre(rig: Bearing, places: Any, cone_distance: Any) -> None:
     """Without skew and tilt sphere and rim touch in the same point."""
-    sim = Simulation(cases.scene_30310(0.0, 4930.0, bearing=rig, effects=Effects(n_slices=31)))
+    sim = Simulation(cases.scene_30310(0.0, 4930.0, bearing=rig, effects=Effects.paper().replace(n_slices=31)))
     vector = random_state(sim, 6, skew=0.0, tilt=0.0)
     sim.view(vector)["roller_tilt"] = 0.0
     found = sim.contacts(vector)["raceway_interference"]

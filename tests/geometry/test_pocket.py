@@ -19,7 +19,9 @@ BARS, LARGE_END, SMALL_END = slice(0, 2), 2, 3
 
 
 def simulate(bearing: Bearing, **effects: Any) -> Simulation:
-    return Simulation(cases.scene_30310(0.0, 4930.0, bearing=bearing, effects=Effects(n_slices=12, **effects)))
+    return Simulation(
+        cases.scene_30310(0.0, 4930.0, bearing=bearing, effects=Effects.paper().replace(n_slices=12, **effects))
+    )
 
 
 @pytest.fixture(scope="module")

@@ -25,7 +25,7 @@ SCENES: dict[str, dict[str, Any]] = {
 
 
 def scene_of(name: str, **changes: Any) -> Scene:
-    effects = Effects(quadrature="gauss", n_slices=9, **SCENES.get(name, STARVED))
+    effects = Effects.paper().replace(quadrature="gauss", n_slices=9, **SCENES.get(name, STARVED))
     oil = vg100(60.0, pressure_law=name if name in ("roelands", "barus") else "dicke")  # type: ignore[arg-type]
     return cases.scene_30310(lubricant=oil, effects=effects, **changes)
 

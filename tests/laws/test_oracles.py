@@ -142,7 +142,9 @@ class TestProfiles:
         for shape in (Profile.straight(), profile):
             rig = cases.rig_30310()
             rig = rig.replace(roller=rig.roller.replace(profile=shape))
-            sim = Simulation(cases.scene_30310(bearing=rig, effects=Effects(quadrature="gauss", n_slices=16)))
+            sim = Simulation(
+                cases.scene_30310(bearing=rig, effects=Effects.paper().replace(quadrature="gauss", n_slices=16))
+            )
             vector = np.zeros_like(sim.state.vector)
             view = sim.view(vector)
             view["roller_r"] = 5e-6
@@ -165,7 +167,7 @@ class TestQuadrature:
 
     @staticmethod
     def weights(kind: str, n: int) -> np.ndarray:
-        sim = Simulation(cases.scene_30310(effects=Effects(quadrature=kind, n_slices=n)))
+        sim = Simulation(cases.scene_30310(effects=Effects.paper().replace(quadrature=kind, n_slices=n)))
         return sim.contacts()["raceway_weight"]
 
     @pytest.mark.parametrize("n", [1, 2, 3, 5, 8, 16, 31, 64, 200])

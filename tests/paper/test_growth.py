@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trbdyn.paper.growth import FULL, growth_of, whirl_amplitude
+from trbdyn.observables import whirl_amplitude
+from trbdyn.paper.growth import FULL, growth_of
 
 TURNS = np.arange(400) / 20.0
 

@@ -9,7 +9,7 @@ Amplitudes over Cpr: 3000 rpm, 4930 N: 0.744, 0.762, 0.760, 0.765; 2000 rpm, 493
 from __future__ import annotations
 
 import trbdyn as trb
-from trbdyn.paper.growth import whirl_amplitude
+from trbdyn.observables import whirl_amplitude
 from trbdyn.paper.points import Condition, Point
 
 

@@ -7,6 +7,7 @@ again or take hours: of those `make` is asked whether it knows them. Commands th
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -116,21 +117,34 @@ def test_commands(command: str, root: Path) -> None:
     if command.startswith("make "):
         # where make would install first, it would put the copy in place of the checkout
         assert "pip" not in run(command.replace("make ", "make -n "), root), "run make install first"
+    if " run " in command:
+        forget(root)
     if " resume " in command or " plot " in command or " info " in command:
         write_run(root)
     run(command, root)
 
 
+def forget(root: Path) -> None:
+    """Results of commands before: a new run does not replace them."""
+    for place in (*root.glob("*.h5"), *root.glob("*.checkpoint*")):
+        place.unlink()
+
+
 def write_run(root: Path) -> None:
     """A run.h5 with its checkpoint, for the commands that read one, whichever test comes first."""
     if not (root / "run.checkpoint").exists():
-        run(".venv/bin/python -m trbdyn run rig_30310 -o run.h5 --revolutions 2 --checkpoint-every 0.01 --quiet", root)
+        run(
+            ".venv/bin/python -m trbdyn run rig_30310 -o run.h5 --revolutions 2 --checkpoint-every 0.01 --overwrite --quiet",
+            root,
+        )
 
 
 @pytest.mark.parametrize("sample", blocks("python"))
 def test_samples(sample: str, root: Path) -> None:
+    forget(root)
     (root / "sample.py").write_text(sample, encoding="utf-8")
     run(".venv/bin/python sample.py", root)
+    forget(root)
     run(f".venv/bin/python - <<'END'\n{sample}\nEND", root)
 
 
@@ -174,3 +188,14 @@ def test_a_fresh_clone(tmp_path: Path) -> None:
     assert "installing" not in run("make install", clone)
     run("make test PYTEST='-k test_laws_api'", clone, timeout=1800.0)
     assert "skipped" not in run(f".venv/bin/pytest -q {PARTS}", clone)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem)
+def test_notebooks_show_their_outputs(path: Path) -> None:
+    """Read on a web page they show numbers and pictures; `make notebooks` writes them."""
+    cells = [cell for cell in json.loads(path.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
+    outputs = [output for cell in cells for output in cell["outputs"]]
+    assert all(cell["execution_count"] for cell in cells)
+    assert any("image/png" in output.get("data", {}) for output in outputs)
+    assert any(output["output_type"] == "stream" for output in outputs)
+    assert not any(output["output_type"] == "error" or output.get("name") == "stderr" for output in outputs)

@@ -50,6 +50,8 @@ def same(result: Any, reference: Any) -> None:
     np.testing.assert_array_equal(result.final_state.view(np.int64), reference.final_state.view(np.int64))
     for field in reference.fields:
         np.testing.assert_array_equal(result[field.name], reference[field.name], err_msg=field.name)
+    for name in reference.peaks:
+        np.testing.assert_array_equal(result.peaks[name], reference.peaks[name], err_msg=name)
     for name in ("steps", "rhs_evaluations", "jacobian_evaluations", "restarts", "smallest_step"):
         assert result.stats[name] == reference.stats[name]
     assert result.counters == reference.counters
@@ -107,7 +109,7 @@ def test_one_run_one_writer(tmp_path: Path) -> None:
         with pytest.raises(FileError, match="another run is writing it"):
             trb.resume(path)
         with pytest.raises(FileError, match="another run is writing it"):
-            trb.Simulation(runs.whirl()).run(duration=1e-3, output=path)
+            trb.Simulation(runs.whirl()).run(duration=1e-3, output=path, overwrite=True)
     finally:
         process.kill()
         process.communicate()

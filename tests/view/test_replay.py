@@ -8,7 +8,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.replay import Replay
 
-NOT_IN_A_STATE = ("energy",)
+NOT_IN_A_STATE = ("energy", "peaks")
 
 
 @pytest.mark.parametrize("name", ["whirling", "loaded_on_one_side"])

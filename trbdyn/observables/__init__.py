@@ -2,6 +2,7 @@
 
 from trbdyn.observables.cage import (
     CageMotion,
+    axis_distance,
     cage_frequency,
     cage_speed_ratio,
     classify,
@@ -15,6 +16,7 @@ from trbdyn.observables.cage import (
     whirl_frequency_spectral,
     whirl_radius,
 )
+from trbdyn.observables.drift import LIMITS, Drift, MotionSettling, by_turns, drift, motion_settling, whirl_amplitude
 from trbdyn.observables.energy import EnergyAudit, energy_audit, energy_balance, power_split, torque_split
 from trbdyn.observables.rollers import (
     PocketStatistics,
@@ -27,18 +29,25 @@ from trbdyn.observables.rollers import (
 from trbdyn.observables.signals import Settling, peak_frequency, settling, spectrum, uniform
 
 __all__ = [
+    "LIMITS",
     "CageMotion",
+    "Drift",
     "EnergyAudit",
+    "MotionSettling",
     "PocketStatistics",
     "Settling",
+    "axis_distance",
+    "by_turns",
     "cage_frequency",
     "cage_speed_ratio",
     "classify",
+    "drift",
     "energy_audit",
     "energy_balance",
     "kinematic_slip",
     "lean",
     "locus",
+    "motion_settling",
     "orbit_radius",
     "peak_frequency",
     "pocket_statistics",
@@ -50,6 +59,7 @@ __all__ = [
     "speed_deviation_ratio",
     "torque_split",
     "uniform",
+    "whirl_amplitude",
     "whirl_angle",
     "whirl_coherence",
     "whirl_frequency",

@@ -1,12 +1,13 @@
-"""The cage's motion: locus, whirl radius and frequency, tilt, speed, and what kind of motion it is.
+"""The cage's motion: locus, orbit and whirl frequency, tilt, speed, and what kind of motion it is.
 
-The whirl radius is the distance of the cage's centre from the bearing axis; the orbit radius is its distance from the centre of
-its own orbit (the mean place). For a cage that whirls around the axis they agree; for one that hangs or circles beside the
-axis only the second tells the orbit.
+The orbit radius is the distance of the cage's centre from the centre of its own orbit (its mean place); it tells how far the
+cage whirls. The distance from the bearing axis is another number: a cage that hangs still on its rollers has an orbit radius of
+zero, and lies far from the axis. They agree for a cage that whirls around the axis.
 """
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Literal
 
@@ -53,7 +54,7 @@ def locus(position: ArrayLike, radial_play: float) -> Array:
     return _planar(position) / radial_play
 
 
-def whirl_radius(position: ArrayLike) -> Array:
+def axis_distance(position: ArrayLike) -> Array:
     """Distance of the cage's centre from the bearing axis.
 
     Parameters
@@ -70,8 +71,33 @@ def whirl_radius(position: ArrayLike) -> Array:
     return np.hypot(p[:, 0], p[:, 1])
 
 
+def whirl_radius(position: ArrayLike) -> Array:
+    """Old name of `axis_distance`: the distance from the bearing axis is no radius of a whirl.
+
+    .. deprecated:: 0.1
+        Use `orbit_radius` for the size of the whirl, `axis_distance` for the distance from the bearing axis.
+    """
+    warnings.warn(
+        "whirl_radius is the old name of axis_distance, the distance from the bearing axis; orbit_radius tells the whirl",
+        DeprecationWarning,
+        stacklevel=2,
+    )
+    return axis_distance(position)
+
+
 def orbit_radius(position: ArrayLike) -> Array:
-    """Distance of the cage's centre from its own mean place; shapes and units as in `whirl_radius`."""
+    """Distance of the cage's centre from the centre of its own orbit, its mean place.
+
+    Parameters
+    ----------
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre, m, over at least one whole turn of the cage.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        Distance, m.
+    """
     p = _centred(position, "mean")
     return np.hypot(p[:, 0], p[:, 1])
 

@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.errors import FileError, InputError
+from trbdyn.motion import MAX_TIME
+from trbdyn.own_files import folder_path
 
 if TYPE_CHECKING:
     from trbdyn.paper.numbers import Runs
@@ -67,13 +69,23 @@ def run_paper(options: argparse.Namespace) -> int:
     """Run the points and report; the exit code is 0 if none failed."""
     from trbdyn.paper.points import STARTS, points
 
-    folder = Path(options.output)
+    folder = folder_path(options.output, "output")
+    for name, time in (("max_time", options.max_time), ("min_time", options.min_time)):
+        if time is not None and not 0.0 < time <= MAX_TIME:
+            raise InputError.of(name, time, f"must be above 0 and at most {MAX_TIME:g} (s)")
+    if options.workers is not None and options.workers < 1:
+        raise InputError.of("workers", options.workers, "must be at least 1")
+    if not all(0 <= seed < 2**63 for seed in options.seeds):
+        raise InputError.of("seeds", options.seeds, "must be whole numbers from 0 on, of less than 64 bits")
     plan = _plan(options)
     chosen = points(options.points, options.starts or STARTS, options.seeds)
     failures: dict[str, str] = {}
     if not options.report:
         failures = run_points(chosen, folder, plan, options.workers, resume=options.resume, progress=not options.quiet)
     runs = read_runs(folder)
+    if not runs.all:
+        why = next(iter(failures.values()), "").partition("\n")[0]
+        raise FileError(f"{folder}: holds no points to report on{f'; the first that failed: {why}' if why else ''}")
     text = report(runs, folder, plan, failures)
     if not options.quiet:
         print(text)

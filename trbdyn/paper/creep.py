@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import laws
+from trbdyn.bearing import Bearing
 from trbdyn.effects import Effects
-from trbdyn.errors import InputError
+from trbdyn.errors import InputError, TrbError
 from trbdyn.lubricants import Lubricant
 from trbdyn.motion import value_at
 from trbdyn.scene import Scene
@@ -214,3 +215,54 @@ def growth_per_turn(
     k = play_ratio * c
     force = play_ratio * froude * (c**4 / (1.0 - 0.5 * c * play_ratio * froude) + 0.5 * inertia * k**2) - 0.5 * c * k**2
     return 2.0 * chi / n_rollers * (force * (1.0 - unevenness * math.sin(lean)) - 0.5 * c**3 * k * unevenness)
+
+
+def bar_lean(bearing: Bearing) -> float:
+    """gamma, lean of a pocket's bars from the circumferential direction (rad), from the plays of the cage.
+
+    sin(gamma) cos(alpha_m) - tan(nu) sin(alpha_m) = (Cpc/Cpr) cos(gamma), as the pocket is built.
+    """
+    ratio = bearing.cage.play_circumferential / bearing.cage.play_radial
+    axis, half = bearing.geometry.roller_axis_angle, bearing.geometry.roller_half_angle
+    size = math.hypot(math.cos(axis), ratio)
+    return math.asin(math.tan(half) * math.sin(axis) / size) + math.atan2(ratio, math.cos(axis))
+
+
+def creep_time(scene: Scene) -> float:
+    """Time in which creep lets the whirl of the cage change by its own size (s): the scale of every slow change of the motion.
+
+    T_c Z/(2 chi) over the larger of q Fn c^4 and c k^2/2, the terms of centrifugal force and weight in `growth_per_turn`
+    (q = Cpc/Cpr, c = cos(gamma), k = q c). Both terms count, as they oppose each other: what is left of them is a difference.
+    Where rollers differ in load, v' is their mean, as each roller comes to every place of the loaded zone; none counts with more
+    than the drift at which it yields within a turn of the cage, chi = 2 Z/c.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene with a cage, films and the traction of Muraki and Kimura.
+
+    Returns
+    -------
+    float
+        Time (s); nan where this law of creep does not hold (other friction, no cage, standstill).
+    """
+    effects = scene.effects
+    if effects.bodies != "rollers_and_cage" or not effects.films or effects.traction != "muraki_kimura":
+        return math.nan
+    try:
+        with np.errstate(all="ignore"):  # rollers without load creep without bound
+            found = creep(scene.replace(ring="held"))
+    except (TrbError, ArithmeticError):
+        return math.nan
+    bearing, cage = scene.bearing, scene.bearing.cage
+    if not cage.play_radial > 0.0 or not cage.play_circumferential > 0.0:
+        return math.nan
+    c, q = math.cos(bar_lean(bearing)), cage.play_circumferential / cage.play_radial
+    orbit = 2.0 * math.pi / found.cage_period
+    gravity = math.hypot(*(value_at(part, scene.start.time) for part in scene.gravity[:2])) if effects.gravity else 0.0
+    per_drift = cage.mass * found.cage_period / cage.play_circumferential
+    yielding = 2.0 * bearing.n_rollers / (c * per_drift * max(gravity, orbit**2 * cage.play_radial))
+    per_force = per_drift * float(np.mean(np.fmin(found.drift, yielding)))
+    force = max(q * orbit**2 * cage.play_radial * c**4, 0.5 * c * (q * c) ** 2 * gravity)
+    rate = 2.0 * per_force / bearing.n_rollers * force
+    return found.cage_period / rate if rate > 0.0 else math.nan

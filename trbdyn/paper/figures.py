@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from trbdyn import observables
 from trbdyn import plotting as plot
-from trbdyn.paper.growth import whirl_amplitude
+from trbdyn.observables import whirl_amplitude
 from trbdyn.paper.movable import Movable, Pockets
 from trbdyn.paper.numbers import Run, Runs
 from trbdyn.paper.points import FIGURES, Condition, Point, StartKind

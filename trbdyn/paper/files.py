@@ -88,7 +88,8 @@ def write_progress(path: Path, history: History, fingerprint: str) -> None:
     """
     part = path.with_name(f"{path.name}.part")
     try:
-        with h5py.File(part, "w") as file:
+        part.unlink(missing_ok=True)
+        with h5py.File(part, "x") as file:
             file.attrs["fingerprint"] = fingerprint
             _put(file, history)
         part.replace(path)
@@ -171,6 +172,7 @@ def write_point(path: Path, result: Result, history: History, about: Mapping[str
         meta=result.meta,
         geometry=result.geometry,
         compression="gzip",
+        overwrite=True,
     ) as writer:
         writer.append(np.hstack(arrays))
         writer.finish(result.success, result.message, stats, result.counters, result.final_time, result.final_state)

@@ -1,7 +1,4 @@
-"""How fast a whirl grows or dies: the amplitude at the cage's own frequency, turn by turn of the cage.
-
-A whirl at the cage's frequency stands still in the cage's frame. So its amplitude is the mean, over a turn of the cage, of the
-centre's place in that frame; a cage that merely hangs aside, or circles faster, has none. Its logarithm over time gives the rate
+"""How fast a whirl grows or dies: the logarithm of its amplitude (`trbdyn.observables.whirl_amplitude`) over time gives the rate
 of growth, and how long the growth would still take.
 """
 
@@ -14,6 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.observables.drift import whirl_amplitude
 from trbdyn.paper.files import History
 
 Array = NDArray[np.float64]
@@ -58,38 +56,6 @@ class Growth:
         return math.log(FULL / self.amplitude) / self.rate if self.growing else math.nan
 
 
-def whirl_amplitude(time: Array, position: Array, cage_angle: Array) -> tuple[Array, Array]:
-    """Complex amplitude of the whirl at the cage's frequency, by turns of the cage.
-
-    Parameters
-    ----------
-    time : ndarray, shape (T,)
-        Times (s).
-    position : ndarray, shape (T, 2 or 3)
-        Place of the cage's centre.
-    cage_angle : ndarray, shape (T,)
-        Turn of the cage (rad).
-
-    Returns
-    -------
-    time : ndarray, shape (N,)
-        Mean time of each whole turn (s).
-    amplitude : ndarray of complex, shape (N,)
-        Mean place in the cage's frame, x + i y, in the unit of the position.
-    """
-    turned = np.abs(cage_angle - cage_angle[0]) / (2.0 * np.pi)
-    index = turned.astype(int)
-    turns = int(turned[-1])
-    kept = index < turns
-    fixed = (position[:, 0] + 1j * position[:, 1]) * np.exp(-1j * (cage_angle - cage_angle[0]))
-    count = np.bincount(index[kept], minlength=turns)
-
-    def mean(values: Array) -> Array:
-        return np.asarray(np.bincount(index[kept], weights=values[kept], minlength=turns) / count)
-
-    return mean(time), mean(fixed.real) + 1j * mean(fixed.imag)
-
-
 def growth_of(time: Array, amplitude: Array) -> Growth:
     """Growth from the size of the amplitude over Cpr by turns: the last half of the record decides."""
     half = slice(time.size // 2, None)
@@ -117,4 +83,4 @@ def growth_of_history(history: History, radial_play: float) -> Growth:
         Cpr (m).
     """
     time, amplitude = whirl_amplitude(history["time"], history["cage_position"], history["cage_angle"])
-    return growth_of(time, amplitude / radial_play)
+    return growth_of(time, np.abs(amplitude) / radial_play)

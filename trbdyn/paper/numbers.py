@@ -108,7 +108,7 @@ def numbers_of(result: Result, history: History, about: dict[str, Any]) -> dict[
     The first entries are those that ``paper.json`` promises; lengths are in units of the plays, angles in degrees where the name
     says so, else rad; forces in N.
     """
-    radius, axial, angle = result.whirl_radius_over_cpr, result.axial_motion, result["cage_angle"]
+    radius, axial, angle = result.axis_distance_over_cpr, result.axial_motion, result["cage_angle"]
     low, high = np.percentile(radius, (5.0, 95.0))
     force = result["pocket_force"]
     touched = force[force > 0.0]

@@ -150,7 +150,7 @@ def judge_history(history: History, point: Point) -> Verdict:
     """`judge` for a point's history; a whirl that grows from almost nothing has not settled, however little it moves."""
     bearing = point.scene().bearing
     unit = np.degrees(bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter))
-    radius = observables.whirl_radius(history["cage_position"]) / bearing.cage.play_radial
+    radius = observables.axis_distance(history["cage_position"]) / bearing.cage.play_radial
     spacing = observables.spacing_std(history["roller_orbit_angle"]) / unit
     turned = np.mean(history["roller_orbit_angle"][-1] - history["roller_orbit_angle"][0])
     verdict = judge(history["time"], radius, spacing, float(abs(turned)) / (2.0 * np.pi))

@@ -17,8 +17,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trbdyn.errors import FileError, InputError, unknown_name
+from trbdyn.own_files import folder_path
 from trbdyn.plotting.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
-from trbdyn.plotting.cage import axial_motion, cage_locus, spectrum, tilt, whirl_map, whirl_radius
+from trbdyn.plotting.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plotting.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plotting.energy import energy_audit, power_split, torque_split
 from trbdyn.plotting.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
@@ -44,6 +45,7 @@ __all__ = [
     "film_parameter",
     "load_zone",
     "make_folder",
+    "orbit_radius",
     "pocket_drawing",
     "pocket_forces",
     "pocket_polar",
@@ -66,7 +68,7 @@ Picture = Callable[["Result"], Axes | Figure]
 
 PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
     "cage_locus": (cage_locus, ("cage",)),
-    "whirl_radius": (whirl_radius, ("cage", "rollers")),
+    "orbit_radius": (orbit_radius, ("cage", "rollers")),
     "axial_motion": (axial_motion, ("cage",)),
     "tilt": (tilt, ("cage",)),
     "spectrum": (spectrum, ("cage",)),
@@ -88,6 +90,11 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
 }
 """Pictures of one result, by name, and the groups that each needs."""
 
+_RENAMED: Final = {"whirl_radius": "orbit_radius"}
+
+SPECTRUM_RECORDS: Final = 8
+"""Fewest records of a spectrum."""
+
 
 def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None = None) -> Path:
     """Save a picture and close its figure.
@@ -99,7 +106,7 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     path : path-like
         File to write; its ending gives the format.
     title : str, optional
-        Title above the whole figure.
+        A line under the figure's own title, which names the quantity.
 
     Returns
     -------
@@ -111,12 +118,14 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     FileError
         If the file cannot be written.
     """
-    figure = picture if isinstance(picture, Figure) else picture.get_figure(root=True)
-    assert figure is not None
+    figure = picture.figure
+    while not isinstance(figure, Figure):
+        figure = figure.figure
     try:
         with plt.rc_context(STYLE):
             if title:
-                figure.suptitle(title, fontsize=10)
+                quantity = figure.get_suptitle()
+                figure.suptitle(f"{quantity}\n{title}" if quantity else title, fontsize=10)
             figure.savefig(path, dpi=SAVE_DPI)
     except (OSError, ValueError) as error:
         raise FileError(f"{path}: the picture cannot be written: {error}") from error
@@ -139,7 +148,7 @@ def all(
     only : iterable of str, optional
         Names of the pictures to draw, of those in `PICTURES`; all by default.
     title : str, optional
-        Title of every picture; by default bearing, speed and loads.
+        A line under the title of every picture, which names the quantity; by default bearing, speed and loads.
 
     Returns
     -------
@@ -157,12 +166,15 @@ def all(
         there = set(result.groups) - (set() if result.has_cage else {"cage", "pocket"})
         chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
     else:
-        chosen = list(only)
+        chosen = [_RENAMED.get(name, name) for name in only]
+    if only is None and len(result) < SPECTRUM_RECORDS:
+        chosen = [name for name in chosen if name != "spectrum"]
     for name in chosen:
         if name not in PICTURES:
             raise InputError.of("only", name, unknown_name(name, PICTURES))
-    if len(result) < 2:
-        raise InputError.of("result", len(result), "must have at least two records to draw")
+    least = SPECTRUM_RECORDS if "spectrum" in chosen else 2
+    if len(result) < least:
+        raise InputError.of("result", len(result), f"must have at least {least} records to draw this")
     folder = make_folder(folder)
     heading = conditions(result) if title is None else title
     return [save(PICTURES[name][0](result), folder / f"{name}.png", heading) for name in chosen]
@@ -186,6 +198,7 @@ def make_folder(folder: str | os.PathLike[str]) -> Path:
     FileError
         If it cannot be made.
     """
+    folder = folder_path(folder, "folder")
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:

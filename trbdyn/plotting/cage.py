@@ -1,7 +1,11 @@
-"""Pictures of the cage's motion: locus, whirl radius, axial motion, tilt, spectrum and the map of whirl over operating points."""
+"""Pictures of the cage's motion: locus, orbit radius, axial motion, tilt, spectrum and the map of whirl over operating points.
+
+All of them raise `InputError` for a run without a cage.
+"""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Literal
 
@@ -12,7 +16,8 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MultipleLocator
 
 from trbdyn import observables
-from trbdyn.plotting.style import COLOURS, GREY, LINES, canvas, legend, line, sequence
+from trbdyn.errors import InputError
+from trbdyn.plotting.style import COLOURS, GREY, LINES, canvas, is_own, legend, line, sequence
 
 if TYPE_CHECKING:
     from trbdyn.results import Result
@@ -21,6 +26,14 @@ if TYPE_CHECKING:
 def revolutions(result: Result) -> np.ndarray:
     """Turns of the shaft since the start, shape (T,)."""
     return np.abs(result["shaft_angle"]) / (2.0 * np.pi)
+
+
+def need_cage(result: Result) -> None:
+    """An error if the run has no cage."""
+    if not result.has_cage:
+        raise InputError.of(
+            ("effects", "bodies"), result.scene.effects.bodies, "has no cage: there is nothing to draw of it"
+        )
 
 
 def last_turns(result: Result, turns: float | None) -> Result:
@@ -41,6 +54,10 @@ def cage_locus(
 ) -> Axes:
     """Locus of the cage's centre in units of the radial play, with circles of clearance.
 
+    Cpr and Cpc are the radial and the circumferential play of the cage, one-sided: how far a centred cage can move towards a
+    roller, and along the pitch circle, before its pocket touches that roller. The cage as a whole comes as far as the solid
+    circle, Cpr, when the rollers give way, and about as far as the dashed one, Cpc, while they stay evenly spaced.
+
     Parameters
     ----------
     result : Result
@@ -52,17 +69,23 @@ def cage_locus(
     colour_by_time : bool
         Colour the path by the turns of the shaft, dark to light; else one colour.
     circles : mapping of str to float, optional
-        Labels and radii (in units of Cpr) of circles to draw; by default Cpr and Cpc.
+        Labels and radii (in units of Cpr) of circles to draw; by default Cpr and Cpc with their sizes.
 
     Returns
     -------
     Axes
     """
+    need_cage(result)
     path = result.cage_locus(plane)
     plays = result.clearances
     if circles is None:
-        circles = {"$C_{pr}$": 1.0, "$C_{pc}$": plays.circumferential / plays.radial}
-    with canvas(ax, (5.4, 4.8)) as ax:
+        circles = {
+            f"radial play $C_{{pr}}$ = {1e3 * plays.radial:.3g} mm": 1.0,
+            f"circumferential play $C_{{pc}}$ = {1e3 * plays.circumferential:.3g} mm": plays.circumferential
+            / plays.radial,
+        }
+    where = "" if plane == "centre" else " at the large-end rail"
+    with canvas(ax, (5.4, 5.2), f"Locus of the cage's centre{where}") as ax:
         if colour_by_time and len(path) > 1:
             keep = max(1, len(path) // 50000)
             points, turned = path[::keep], revolutions(result)[::keep]
@@ -77,6 +100,7 @@ def cage_locus(
         for index, (label, radius) in enumerate(circles.items()):
             ax.add_patch(Circle((0, 0), radius, fill=False, linestyle=LINES[index], linewidth=1.2))
             ax.plot([], [], color="black", linestyle=LINES[index], label=label)
+        ax.plot(*path.mean(axis=0), marker="+", color="black", markersize=8, linestyle="none", label="mean place")
         ax.plot(*path[-1], marker="o", color="black", markersize=5, linestyle="none", label="end")
         ax.axhline(0, color=GREY, linewidth=0.5)
         ax.axvline(0, color=GREY, linewidth=0.5)
@@ -85,12 +109,31 @@ def cage_locus(
         ax.xaxis.set_major_locator(MultipleLocator(0.5))
         ax.yaxis.set_major_locator(MultipleLocator(0.5))
         ax.set(xlabel="$x/C_{pr}$", ylabel="$y/C_{pr}$")
-        legend(ax, ncols=3)
+        if is_own(ax):
+            legend(ax, ncols=2)
+        else:  # there is no room for a legend that covers no path
+            for label, radius in circles.items():
+                ax.annotate(label, (0, radius), ha="center", va="center", fontsize=7).set_bbox(
+                    {"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85}
+                )
     return ax
 
 
 def whirl_radius(result: Result, ax: Axes | None = None) -> Axes:
-    """Whirl radius in units of the radial play over the turns of the shaft, with the start of the settled part.
+    """Old name of `orbit_radius`.
+
+    .. deprecated:: 0.1
+        Use `orbit_radius`, which shows the orbit of the cage and its distance from the bearing axis.
+    """
+    warnings.warn("plot.whirl_radius is the old name of plot.orbit_radius", DeprecationWarning, stacklevel=2)
+    return orbit_radius(result, ax)
+
+
+def orbit_radius(result: Result, ax: Axes | None = None) -> Axes:
+    """Orbit radius of the cage's centre about its mean place, and its distance from the bearing axis, over the shaft's turns.
+
+    Both in units of the radial play Cpr. The mean place is that of the part after the transient, whose start is marked; the
+    legend says whether the motion has settled there.
 
     Parameters
     ----------
@@ -103,22 +146,26 @@ def whirl_radius(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    radius, turned, settling = result.whirl_radius_over_cpr, revolutions(result), result.settling()
-    with canvas(ax, (6.4, 3.2)) as ax:
-        line(ax, turned, radius, linewidth=0.8)
-        mean = float(radius[settling.index :].mean())
-        name = "mean after settling" if settling.settled else "mean of the second half (whirl or spacing not settled)"
+    need_cage(result)
+    turned, settling, play = revolutions(result), result.settling(), result.clearances.radial
+    place, distance = result["cage_position"][:, :2], result.axis_distance_over_cpr
+    orbit = np.hypot(*(place - place[settling.index :].mean(axis=0)).T) / play
+    with canvas(ax, (6.4, 3.6), "Orbit of the cage's centre") as ax:
+        line(ax, turned, distance, 1, "distance from the bearing axis", linestyle="-", linewidth=0.8, alpha=0.8)
+        line(ax, turned, orbit, 0, "orbit radius about the mean place", linestyle="-", linewidth=0.8)
+        rms = float(np.sqrt(np.mean(orbit[settling.index :] ** 2)))
+        known = {"settled": "settled", "drifting": "drifting", "unknown": "not known to have settled"}[settling.answer]
         ax.plot(
             [turned[settling.index], turned[-1]],
-            [mean, mean],
+            [rms, rms],
             color="black",
             linestyle="--",
-            label=f"{name}: {mean:.3f}",
+            label=f"orbit radius, rms after the transient: {rms:.3f} ({known})",
         )
         ax.axvline(turned[settling.index], color=GREY, linewidth=0.8, linestyle=":")
-        ax.set(xlabel="shaft revolutions", ylabel="whirl radius / $C_{pr}$", xlim=(turned[0], turned[-1]))
-        ax.set_ylim(0, 1.08 * max(1.0, float(radius.max())))
-        legend(ax)
+        ax.set(xlabel="shaft revolutions", ylabel="distance / $C_{pr}$", xlim=(turned[0], turned[-1]))
+        ax.set_ylim(0, 1.08 * max(1.0, float(distance.max()), float(orbit.max())))
+        legend(ax, ncols=1)
     return ax
 
 
@@ -136,11 +183,12 @@ def axial_motion(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    with canvas(ax, (6.4, 3.2)) as ax:
+    need_cage(result)
+    with canvas(ax, (6.4, 3.2), "Axial position of the cage; zero: rollers' large ends touch") as ax:
         turned = revolutions(result)
         line(ax, turned, 100.0 * result.axial_motion, linewidth=0.8)
         ax.axhline(0, color=GREY, linewidth=0.8)
-        ax.set(xlabel="shaft revolutions", ylabel="axial motion (% of play)", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel="shaft revolutions", ylabel="axial position (% of play)", xlim=(turned[0], turned[-1]))
     return ax
 
 
@@ -160,8 +208,9 @@ def tilt(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> A
     -------
     Axes
     """
+    need_cage(result)
     shown = last_turns(result, last)
-    with canvas(ax, (6.4, 3.4)) as ax:
+    with canvas(ax, (6.4, 3.4), "Tilt of the cage's axis") as ax:
         turned = revolutions(shown)
         for index, name in enumerate(("x", "y")):
             line(
@@ -196,12 +245,13 @@ def spectrum(result: Result, ax: Axes | None = None, orders: float = 4.0, segmen
     -------
     Axes
     """
+    need_cage(result)
     path = result.cage_locus()
     frequency, density = observables.spectrum(result["time"], path[:, 0] + 1j * path[:, 1], segments)
     cage = abs(result.cage_frequency)
     order = frequency / cage
     shown = np.abs(order) <= orders
-    with canvas(ax, (6.4, 3.4)) as ax:
+    with canvas(ax, (6.4, 3.4), "Spectrum of the cage centre's motion $x + iy$") as ax:
         ax.semilogy(order[shown], density[shown], color=COLOURS[0])
         highest = float(density[shown].max()) if shown.any() else 1.0
         ax.set_ylim(max(highest * 1e-10, float(np.min(density[shown], initial=highest))), 4 * highest)
@@ -214,7 +264,9 @@ def spectrum(result: Result, ax: Axes | None = None, orders: float = 4.0, segmen
 
 
 def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
-    """Whirl radius over speed and axial load: one mark an operating point, with its mean after settling.
+    """Whirl of the cage over speed and axial load: one mark an operating point, with the orbit radius about its mean place.
+
+    The orbit radius is the root mean square after the transient, in units of the radial play Cpr.
 
     Parameters
     ----------
@@ -227,16 +279,19 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
+    results = list(results)
+    for result in results:
+        need_cage(result)
     points = [
         (
             float(np.mean(np.abs(result["shaft_speed"]))) * 30.0 / np.pi,
             float(np.mean(np.abs(result["ring_force"][:, 2]))) / 1e3,
-            float(result.settled.whirl_radius_over_cpr.mean()),
+            result.settled.cage_motion.orbit_over_play,
         )
         for result in results
     ]
     speed, load, radius = np.array(points).T
-    with canvas(ax, (5.6, 4.2)) as ax:
+    with canvas(ax, (5.6, 4.4), "Orbit radius of the cage over speed and load") as ax:
         marks = ax.scatter(
             speed,
             load,
@@ -249,7 +304,7 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
         )
         for x, y, value in zip(speed, load, radius, strict=True):
             ax.annotate(f"{value:.2f}", (x, y), xytext=(14, 8), textcoords="offset points", fontsize=9)
-        ax.figure.colorbar(marks, ax=ax, shrink=0.8, pad=0.02).set_label("whirl radius / $C_{pr}$")
+        ax.figure.colorbar(marks, ax=ax, shrink=0.8, pad=0.02).set_label("orbit radius, rms / $C_{pr}$")
         ax.margins(0.18)
         ax.set(xlabel="shaft speed (rpm)", ylabel="axial load (kN)")
     return ax

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from trbdyn.plotting.cage import revolutions
-from trbdyn.plotting.style import COLOURS, canvas, legend, line
+from trbdyn.plotting.style import COLOURS, LINES, canvas, envelope, legend
 
 if TYPE_CHECKING:
     from trbdyn.results import Result
@@ -40,12 +40,16 @@ def _bars(ax: Axes, values: Mapping[str, float], unit: str, total: float) -> Non
 
 
 def torque_split(result: Result, ax: Axes | None = None) -> Axes:
-    """Mean share of each source in the shaft's friction torque.
+    """Friction torque of the shaft by what loses it: power loss of each mechanism over the shaft's speed.
+
+    The shares are those of `power_split`. A line under the axis tells the forces on the inner ring that make this torque
+    (`Result.torque_split`): traction on the inner raceway passes on what rolling resistance takes at the outer one, and loses
+    little itself. Where the power losses were not recorded, the bars are these forces.
 
     Parameters
     ----------
     result : Result
-        Needs the group torque.
+        Needs the group torque; energy or power for the losses.
     ax : Axes, optional
         Axes to draw into.
 
@@ -53,15 +57,21 @@ def torque_split(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    total = float(result["inner_torque"].mean())
-    with canvas(ax, (6.4, 2.8)) as ax:
-        _bars(ax, result.torque_split, "N m", total)
-        ax.set_xlabel(f"shaft torque (N m), {total:.4g} N m in all")
+    total, forces = float(result["inner_torque"].mean()), result.torque_split
+    if {"power", "energy"} & set(result.groups):
+        split, title = result.torque_by_loss, "Friction torque of the shaft by what loses it"
+        told = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in forces.items() if value)
+        note = f"\nforces on the inner ring that make this torque:\n{told} N m"
+    else:
+        split, title, note = forces, "Friction torque of the shaft by the force on the inner ring", ""
+    with canvas(ax, (6.4, 3.2), title) as ax:
+        _bars(ax, split, "N m", sum(split.values()))
+        ax.set_xlabel(f"torque (N m), {total:.4g} N m in all{note}")
     return ax
 
 
 def power_split(result: Result, ax: Axes | None = None) -> Axes:
-    """Mean power loss of each kind.
+    """Mean power loss of each mechanism.
 
     Parameters
     ----------
@@ -76,14 +86,17 @@ def power_split(result: Result, ax: Axes | None = None) -> Axes:
     """
     split = result.power_split
     total = sum(split.values())
-    with canvas(ax, (6.4, 3.0)) as ax:
+    with canvas(ax, (6.4, 3.2), "Power loss by mechanism") as ax:
         _bars(ax, split, "W", total)
         ax.set_xlabel(f"power loss (W), {total:.4g} W in all")
     return ax
 
 
 def energy_audit(result: Result, ax: Axes | None = None) -> Axes:
-    """The energy audit over the turns of the shaft: size of the work put in, the losses, the stored energy and the residual.
+    """The energy audit over the turns of the shaft: work put in, losses, stored energy and residual, each since the first record.
+
+    Sizes in a logarithmic scale. Of stored energy and residual, which go up and down, the largest size within each of some
+    stretches of time is drawn.
 
     Parameters
     ----------
@@ -101,14 +114,21 @@ def energy_audit(result: Result, ax: Axes | None = None) -> Axes:
     losses = np.sum([values for name, values in balance.items() if name.startswith("loss_")], axis=0)
     stored = balance["kinetic_energy"] + balance["elastic_energy"]
     closure = result.energy_closure
-    with canvas(ax) as ax:
+    with canvas(ax, (6.4, 4.0), "Energy audit") as ax:
         turned = revolutions(result)
-        rest = f"residual ({closure:.1e} of the losses)"
-        curves = {"work put in": work, "losses": losses, "stored": stored, rest: balance["residual"]}
+        rest = f"residual, largest ({closure:.1e} of the losses at the end)"
+        curves = {
+            "work put in": work,
+            "losses": losses,
+            "change of stored energy, largest": stored,
+            rest: balance["residual"],
+        }
         for index, (name, values) in enumerate(curves.items()):
-            size = np.abs(values)
-            line(ax, turned[size > 0], size[size > 0], index, name, linewidth=(2.4, 1.2, 0.8, 0.8)[index])
+            x, size = envelope(turned, np.abs(values))
+            colour, width = (COLOURS[5], COLOURS[0], COLOURS[1], COLOURS[6])[index], (4.0, 1.4, 1.0, 1.0)[index]
+            dashes = LINES[1] if index == 1 else "-"
+            ax.plot(x[size > 0], size[size > 0], label=name, color=colour, linewidth=width, linestyle=dashes)
         ax.set_yscale("log")
         ax.set(xlabel="shaft revolutions", ylabel="size since the start (J)", xlim=(turned[0], turned[-1]))
-        legend(ax)
+        legend(ax, ncols=2)
     return ax

@@ -8,18 +8,21 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
 from trbdyn.errors import InputError
-from trbdyn.plotting.cage import last_turns, revolutions
-from trbdyn.plotting.style import COLOURS, GREY, LIGHT, MARKERS, STYLE, canvas, legend, line
+from trbdyn.plotting.cage import last_turns, need_cage, revolutions
+from trbdyn.plotting.style import COLOURS, GREY, LIGHT, MARKERS, OWN, STYLE, canvas, legend, line, sequence
 
 if TYPE_CHECKING:
     from trbdyn.results import Result
 
 SIDES = ("outer", "inner", "rib")
 BINS = 72
+STRETCHES = 300
+"""Stretches of time into which a picture of pocket forces is divided."""
 
 
 def spacing_angles(result: Result, ax: Axes | None = None, n: int = 1, rollers: Sequence[int] | None = None) -> Axes:
@@ -46,7 +49,7 @@ def spacing_angles(result: Result, ax: Axes | None = None, n: int = 1, rollers: 
     for roller in named:
         if not 0 <= roller < count:
             raise InputError.of("rollers", roller, f"must lie between 0 and {count - 1}")
-    with canvas(ax, (6.4, 3.8)) as ax:
+    with canvas(ax, (6.4, 4.0), "Spacing of the rollers" if n == 1 else f"Spacing of the rollers over {n} gaps") as ax:
         turned = revolutions(result)
         for roller in sorted(set(range(count)) - set(named)):
             line(ax, turned, angles[:, roller], color=LIGHT, linestyle="-", linewidth=0.6, zorder=1)
@@ -67,14 +70,18 @@ def _face_name(result: Result, slot: int) -> str:
 
 
 def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: float | None = 12.0) -> Figure:
-    """Normal forces between rollers and cage: a panel a pocket, a curve a face.
+    """Normal forces between rollers and cage over the turns of the shaft: a panel for each face, a row for each pocket.
+
+    The colour is the largest force within a short stretch of time (the colour bar says how long), in a logarithmic scale; of all
+    steps where the group peaks was recorded, else of the records. So an impact of some tens of microseconds is seen as well as a
+    force that lasts. White: not touched.
 
     Parameters
     ----------
     result : Result
         Needs the groups time and pocket.
     pockets : sequence of int, optional
-        Pockets to show; by default all, or twelve spread over the cage if there are more.
+        Pockets to show, from 0; all by default.
     last : float or None
         Number of last shaft revolutions to show; None shows all.
 
@@ -82,35 +89,49 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
     -------
     Figure
     """
+    need_cage(result)
     shown = last_turns(result, last)
-    force, turned = shown["pocket_force"], revolutions(shown)
+    force = shown["pocket_force_peak" if "pocket_force_peak" in shown else "pocket_force"]
+    turned = revolutions(shown)
     count, slots = force.shape[1:]
-    chosen = (
-        list(np.unique(np.linspace(0, count - 1, min(count, 12)).astype(int))) if pockets is None else list(pockets)
-    )
-    touched = [slot for slot in range(slots) if force[:, chosen, slot].any()]
-    columns = min(3, len(chosen))
-    rows = -(-len(chosen) // columns)
+    chosen = list(range(count)) if pockets is None else list(pockets)
+    for pocket in chosen:
+        if not 0 <= pocket < count:
+            raise InputError.of("pockets", pocket, f"must lie between 0 and {count - 1}")
+    edges = np.unique(np.linspace(0, len(turned), min(len(turned), STRETCHES) + 1).astype(int))
+    largest = np.maximum.reduceat(force[:, chosen], edges[:-1], axis=0)
+    touched = [slot for slot in range(slots) if largest[:, :, slot].any()]
+    borders = np.append(turned[edges[:-1]], turned[-1])
+    top = float(largest.max(initial=0.0)) or 1.0
     with plt.rc_context(STYLE):
+        height = 0.55 + max(0.9, 0.13 * len(chosen))
         figure, axes = plt.subplots(
-            rows, columns, figsize=(7.6, 0.9 + 1.35 * rows), sharex=True, sharey=True, squeeze=False
+            max(1, len(touched)), 1, figsize=(6.8, 1.2 + height * max(1, len(touched))), sharex=True, squeeze=False
         )
-        for ax, pocket in zip(axes.flat, chosen, strict=False):
-            for index, slot in enumerate(touched):
-                label = _face_name(result, slot)
-                line(ax, turned, force[:, pocket, slot], index, label, linestyle="-", linewidth=0.8)
-            ax.set_title(f"pocket {pocket + 1}", loc="right", fontsize=9, pad=2)
-            ax.set_xlim(turned[0], turned[-1])
-        for ax in axes.flat[len(chosen) :]:
-            ax.set_visible(False)
-        axes[0, 0].set_ylim(bottom=0)
-        in_last_row = len(chosen) - (rows - 1) * columns
-        axes[-1, min(columns // 2, in_last_row - 1)].set_xlabel("shaft revolutions")
-        for ax in axes[-2, in_last_row:] if rows > 1 else ():
-            ax.tick_params(labelbottom=True)
-        figure.supylabel("normal force (N)", fontsize=10)
-        if touched:
-            figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+        figure.set_label(OWN)
+        figure.suptitle("Normal forces between rollers and cage", fontsize=11)
+        mesh = None
+        for ax, slot in zip(axes.flat, touched, strict=False):
+            mesh = ax.pcolormesh(
+                borders,
+                np.arange(len(chosen) + 1) - 0.5,
+                np.ma.masked_less_equal(largest[:, :, slot].T, 0.0),
+                norm=LogNorm(1e-3 * top, top),
+                cmap=sequence().reversed(),
+                rasterized=True,
+            )
+            ax.set_title(_face_name(result, slot), loc="left", pad=3)
+            rows = np.unique(np.linspace(0, len(chosen) - 1, min(len(chosen), 12)).astype(int))
+            ax.set_yticks(rows, [str(chosen[row] + 1) for row in rows])
+            ax.set_ylabel("pocket")
+            ax.grid(visible=False)
+        axes[-1, 0].set(xlabel="shaft revolutions", xlim=(turned[0], turned[-1]))
+        if mesh is None:
+            axes[0, 0].text(0.5, 0.5, "no pocket was touched", transform=axes[0, 0].transAxes, ha="center")
+        else:
+            long = 1e3 * (shown["time"][-1] - shown["time"][0]) / (len(edges) - 1)
+            bar = figure.colorbar(mesh, ax=axes.ravel().tolist(), shrink=0.9, pad=0.02, extend="min")
+            bar.set_label(f"largest force within {long:.2g} ms (N)")
     return figure
 
 
@@ -130,9 +151,10 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
     -------
     Axes
     """
+    need_cage(result)
     stats = result.pocket_statistics(threshold)
     touched = np.flatnonzero(stats.peak.max(axis=0) > 0).tolist()
-    with canvas(ax) as ax:
+    with canvas(ax, title="Forces on the pockets: 95 % in contact (filled), peak (open)") as ax:
         place = np.arange(1, stats.peak.shape[0] + 1)
         for index, slot in enumerate(touched):
             shift = 0.16 * (index - 0.5 * (len(touched) - 1))
@@ -148,7 +170,7 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
             ax.vlines(place + shift, p95, peak, color=look["color"], linewidth=0.8)
             ax.plot(place + shift, p95, label=label, **look)
             ax.plot(place + shift, peak, markerfacecolor="white", **look)
-        ax.set(xlabel="pocket", ylabel="normal force (N): 95 % and peak", xticks=place[:: max(1, place.size // 12)])
+        ax.set(xlabel="pocket", ylabel="normal force (N)", xticks=place[:: max(1, place.size // 12)])
         ax.set_ylim(bottom=0)
         legend(ax, ncols=1)
     return ax
@@ -176,7 +198,8 @@ def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> Non
         place, mean, low, high = _around(result["roller_orbit_angle"], values)
         line(ax, place, mean, index, f"{side} (mean {values.mean():.4g}{unit})")
         ax.fill_between(place, low, high, color=COLOURS[index], alpha=0.25, linewidth=0)
-    ax.set(xlim=(0, 360), xticks=range(0, 361, 45), xlabel="place around the bearing from x towards y (deg)")
+    ax.set(xlim=(0, 360), xticks=range(0, 361, 45))
+    ax.set_xlabel("place around the bearing from x towards y (deg)\nline: mean, band: 5 to 95 %")
 
 
 def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
@@ -193,7 +216,7 @@ def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    with canvas(ax) as ax:
+    with canvas(ax, title="Contact loads of the rollers around the bearing") as ax:
         _draw_around(result, ax, "load", " N")
         ax.set_ylabel("normal load (N)")
         ax.set_ylim(bottom=0)
@@ -215,7 +238,7 @@ def film_parameter(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    with canvas(ax) as ax:
+    with canvas(ax, title="Film parameter around the bearing") as ax:
         _draw_around(result, ax, "film_parameter")
         full = result.scene.effects.friction.lambda_full
         ax.axhline(full, color=GREY, linewidth=0.9)

@@ -58,11 +58,31 @@ STYLE: Any = {
 SAVE_DPI = 200
 
 
+OWN = "trbdyn"
+"""Label of figures that a picture made for itself."""
+
+
 @contextmanager
-def canvas(ax: Axes | None, figsize: tuple[float, float] = (6.4, 4.0)) -> Iterator[Axes]:
-    """The given axes, or new ones in a figure of their own; the style holds inside the block only."""
+def canvas(ax: Axes | None, figsize: tuple[float, float] = (6.4, 4.0), title: str = "") -> Iterator[Axes]:
+    """The given axes, or new ones in a figure of their own; the style holds inside the block only.
+
+    The title names the quantity: above a figure of its own, or on given axes that have no title yet.
+    """
     with plt.rc_context(STYLE):
-        yield ax if ax is not None else plt.subplots(figsize=figsize)[1]
+        if ax is None:
+            figure, ax = plt.subplots(figsize=figsize)
+            figure.set_label(OWN)
+            if title:
+                figure.suptitle(title, fontsize=11)
+        elif title and not ax.get_title():
+            ax.set_title(title)
+        yield ax
+
+
+def is_own(ax: Axes) -> bool:
+    """Whether the axes belong to a figure that a picture made for itself."""
+    figure = ax.get_figure(root=True)
+    return figure is not None and figure.get_label() == OWN
 
 
 def sequence() -> Colormap:
@@ -71,9 +91,14 @@ def sequence() -> Colormap:
 
 
 def legend(ax: Axes, **options: Any) -> None:
-    """A legend above the axes, where it covers no data."""
+    """A legend: in a figure of its own above the axes, where it covers no data; on given axes inside them, as above them is
+    the place of their title and of other axes.
+    """
     handles, labels = ax.get_legend_handles_labels()
-    if handles:
+    if handles and not is_own(ax):
+        options = {"fontsize": 8, **options, "ncols": 1}
+        ax.legend(handles, labels, loc="best", frameon=True, framealpha=0.85, edgecolor="none", **options)
+    elif handles:
         columns = options.pop("ncols", min(len(labels), 4))
         ax.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
 
@@ -88,6 +113,14 @@ def thin(x: Array, y: Array, points: int = 6000) -> tuple[Array, Array]:
     high = np.array([a + int(np.argmax(y[a:b])) for a, b in pairwise(edges)])
     kept = np.unique(np.concatenate([low, high, [0, x.size - 1]]))
     return x[kept], y[kept]
+
+
+def envelope(x: Array, y: Array, bins: int = 240) -> tuple[Array, Array]:
+    """The largest of a signal in each of some bins, so that what goes up and down within a bin is one quiet line."""
+    if x.size <= bins:
+        return x, y
+    edges = np.linspace(0, x.size, bins + 1).astype(int)
+    return x[(edges[:-1] + edges[1:]) // 2], np.maximum.reduceat(y, edges[:-1])
 
 
 def line(ax: Axes, x: Array, y: Array, index: int = 0, label: str | None = None, **options: Any) -> Line2D:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict, warnings
-from trbdyn.summary import LABELS
+from trbdyn.summary import LABELS, UNPRINTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -190,7 +190,7 @@ def _numbers(numbers: Sequence[dict[str, Any]], names: Sequence[str]) -> str:
     body = []
     for key, (words, unit) in LABELS.items():
         values = [entry.get(key) for entry in numbers]
-        if all(value is None for value in values):
+        if key in UNPRINTED or all(value is None for value in values):
             continue
         if any(isinstance(value, Mapping) for value in values):
             body.append(f"<tr><th colspan='{3 + len(numbers)}'>{_safe(words)}</th></tr>")

@@ -61,7 +61,7 @@ def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     turns = f"{numbers['revolutions']:.4g} turns of the shaft ({numbers['duration']:.4g} s)"
     if not result.success:
         return "bad", "The run did not reach its end", f"{turns} were simulated. {result.message}"
-    if numbers.get("settled"):
+    if numbers.get("settled") or numbers.get("settling") == "settled":
         return (
             "plain",
             "Settled",
@@ -70,15 +70,16 @@ def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     return (
         "care",
         "Not settled",
-        f"{turns} were simulated, too few to show that the motion has settled. Averages are those of the second half: take them "
-        "as a first look, and run longer for numbers to rely on.",
+        f"{turns} were simulated, and it is not known that the motion has settled"
+        + (f" ({numbers['settling_reason']})" if numbers.get("settling_reason") else "")
+        + ". Take averages as a first look, and run longer for numbers to rely on.",
     )
 
 
 def _whirl(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     if numbers.get("cage_motion") is None:
         return None
-    radius, ratio = numbers["whirl_radius_over_cpr"], numbers.get("whirl_ratio")
+    radius, ratio = numbers["axis_distance_over_cpr"], numbers.get("whirl_ratio")
     orbit = numbers["orbit_radius_over_cpr"]
     where = f"on average {radius:.2f} of its radial play Cpr away from the bearing axis"
     rate = (
@@ -92,7 +93,7 @@ def _whirl(result: Result, numbers: dict[str, Any]) -> Sentence | None:
             "The cage does not whirl",
             f"Its centre stays near one place (it moves by {orbit:.2g} of its radial play Cpr about it), {where}.",
         ),
-        "circling": ("care", "The cage whirls", f"Its centre goes round in one sense{rate}, {where}."),
+        "circling": ("care", "The cage whirls", f"Its centre goes round in one sense{rate}, on an orbit of {orbit:.2f} Cpr (rms), {where}."),
         "unstable": (
             "bad",
             "The cage moves without order",
@@ -117,7 +118,7 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     return (
         grade,
         "Hits on the cage",
-        f"The hardest recorded force between a roller and its pocket is {peak:.3g} N, {compared}; while they touch, 95 % of the "
+        f"The hardest force between a roller and its pocket is {peak:.3g} N, {compared}; while they touch, 95 % of the "
         f"forces stay below {numbers['pocket_force_p95']:.3g} N. A pocket is touched "
         f"{100.0 * numbers['pocket_duty']:.2g} % of the time.",
     )
@@ -127,11 +128,11 @@ def _torque(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     torque = numbers.get("torque")
     if torque is None:
         return None
-    split = {name: value for name, value in (numbers.get("torque_split") or {}).items() if value}
+    split = {name: value for name, value in (numbers.get("torque_by_loss") or {}).items() if value}
     part = ""
     if split and torque:
         largest = max(split, key=lambda name: abs(split[name]))
-        part = f"; the largest share is {largest.replace('_', ' ')} with {split[largest]:.3g} N m"
+        part = f"; most of it is lost by {largest.replace('_', ' ')}, {split[largest]:.3g} N m"
     power = numbers.get("power_loss")
     heat = "" if power is None else f" The bearing turns {power:.3g} W into heat."
     return "plain", "Torque", f"The shaft has to overcome {torque:.3g} N m of friction{part}.{heat}"
@@ -237,7 +238,7 @@ def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: i
             f"{assumed} inputs are assumed by the package because no source gives them, see the table of inputs."
         )
     interval = float(np.median(np.diff(result["time"]))) if len(result) > 2 else math.nan
-    if numbers.get("pocket_force_peak"):
+    if numbers.get("pocket_force_peak") and "peaks" not in result.groups:
         out.append(
             f"Peaks are those of the records, one every {1e3 * interval:.3g} ms: a hit between two records may be harder."
         )

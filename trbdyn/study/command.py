@@ -14,9 +14,9 @@ DONE, FAILED = 0, 1
 
 COLUMNS: Final = (
     "status",
-    "settled",
+    "settling",
     "cage_motion",
-    "whirl_radius_over_cpr",
+    "orbit_radius_over_cpr",
     "whirl_ratio",
     "pocket_force_p95",
     "torque",
@@ -47,7 +47,7 @@ def run_sweep(options: argparse.Namespace) -> int:
     from trbdyn.study.study_file import load_study
 
     study = load_study(options.study)
-    folder = Path(options.output or Path(options.study).stem)
+    folder = Path(options.study).stem if options.output is None else options.output
     data = run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
     failed = int((data.status != "done").sum())
     if not options.quiet:

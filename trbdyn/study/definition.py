@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import itertools
 import json
@@ -14,14 +15,18 @@ from typing import Any, Final
 
 import numpy as np
 
-from trbdyn.errors import FileError, InputError, Path, join_path
+from trbdyn.errors import InputError, Path, join_path
+from trbdyn.own_files import file_path
 from trbdyn.run_options import RunOptions
 from trbdyn.scene import Scene
-from trbdyn.toml_case import TABLES, case_from_dict, find_case, shipped_cases
+from trbdyn.toml_case import TABLES, case_from_dict, find_case, read_tables, shipped_cases
 from trbdyn.validation import Model
 
 Table = dict[str, Any]
 Overrides = Mapping[str, Any]
+
+LONGEST_WORDS: Final = 90
+"""Most bytes of the part of a file's name that tells the parameters."""
 
 _PART: Final = re.compile(r"([A-Za-z_]\w*)((?:\[\d+\])*)")
 _CHOOSERS: Final = {"bearing": "case", "lubricant": "oil", "effects": "preset"}
@@ -72,7 +77,7 @@ class Base:
         InputError
             If a path leads nowhere or a value is not allowed.
         """
-        tables = json.loads(json.dumps(self.tables))
+        tables = copy.deepcopy(self.tables)
         if self.whole:
             self._check_whole(overrides)
             for table, chooser in _CHOOSERS.items():
@@ -102,17 +107,10 @@ def read_toml(path: str | FilePath) -> Table:
     FileError
         If it cannot be read.
     """
-    import tomllib
-
-    file = FilePath(path)
+    file = file_path(path, "study")
     if not file.exists() and str(path).removesuffix(".toml") in shipped_cases():
         file = find_case(str(path))
-    try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FileError(f"{file}: {error.strerror or error}") from None
-    except ValueError as error:
-        raise FileError(f"{file}: not a TOML file: {error}") from None
+    return read_tables(file)
 
 
 def split_path(path: str) -> Path:
@@ -124,6 +122,8 @@ def split_path(path: str) -> Path:
         If it is no path to a value of a case.
     """
     parts: list[str | int] = []
+    if not isinstance(path, str):
+        raise InputError.of("override", path, "must be a dotted path, for instance 'scene.speed_rpm'")
     for piece in path.split("."):
         match = _PART.fullmatch(piece)
         if match is None:
@@ -211,7 +211,9 @@ class Case:
     def name(self) -> str:
         """A name for files: the parameters, and the beginning of the fingerprint."""
         words = "_".join(f"{key.rsplit('.', 1)[-1]}={label(value)}" for key, value in self.parameters.items())
-        words = re.sub(r"[^\w.=+-]+", "-", words)[:90].strip("-._")
+        words = re.sub(r"[^\w.=+-]+", "-", words)
+        # file systems count bytes, and a letter may have four
+        words = words.encode("utf-8", "replace")[:LONGEST_WORDS].decode("utf-8", "ignore").strip("-._")
         return f"{words or 'case'}-{self.fingerprint[:10]}"
 
 

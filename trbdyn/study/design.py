@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any
@@ -14,6 +15,7 @@ from trbdyn.run_options import RunOptions
 from trbdyn.scene import Scene
 from trbdyn.study.definition import Axis, Base, Case, Overrides, Study, label, plain
 from trbdyn.toml_case import TABLES
+from trbdyn.validation import number_of
 
 
 def _case(base: Base, parameters: Mapping[str, Any], overrides: Overrides) -> Case:
@@ -36,9 +38,15 @@ def _are_sets(values: Any) -> bool:
 
 
 def _axis(name: str, values: Any) -> Axis:
+    if not isinstance(name, str):
+        raise InputError.of(("grid", str(name)), name, "must be a path or a name")
+    if isinstance(values, str | bytes) or not isinstance(values, Mapping | Iterable):
+        raise InputError.of(name, values, "must be a sequence of values, or a table of labels and values")
     is_path = name.split(".")[0].split("[")[0] in TABLES and not _are_sets(values)
     if isinstance(values, Mapping):
         labels = tuple(values)
+        if not is_path and not all(isinstance(value, Mapping) for value in values.values()):
+            raise InputError.of(name, dict(values), "must be a path, or have a mapping of labels to overrides")
         overrides = [{name: value} if is_path else dict(value) for value in values.values()]
     elif is_path:
         listed = list(values)
@@ -92,7 +100,11 @@ def grid(
     InputError
         If an axis is wrong, or no case at all can be built.
     """
+    _check_name(name)
+    if not isinstance(axes, Mapping):
+        raise InputError.of("grid", axes, "must be a table: values by their paths")
     changed, listed = Base.of(base, run), [_axis(axis, values) for axis, values in axes.items()]
+    _check_count(math.prod(len(axis.labels) for axis in listed))
     names = _short_names([axis.name for axis in listed])
     listed = [Axis(short, a.path, a.labels, a.overrides) for short, a in zip(names, listed, strict=True)]
     made = []
@@ -133,8 +145,13 @@ def cases(
     InputError
         If no case at all can be built.
     """
-    changed = Base.of(base, run)
-    listed = [dict(entry) for entry in overrides]
+    _check_name(name)
+    if isinstance(overrides, str | bytes | Mapping) or not isinstance(overrides, Iterable):
+        raise InputError.of("list", overrides, "must be a sequence of tables: values by their paths")
+    changed, listed = Base.of(base, run), list(overrides)
+    for place, entry in enumerate(listed):
+        if not isinstance(entry, Mapping) or not all(isinstance(path, str) for path in entry):
+            raise InputError.of(("list", place), entry, "must be a table: values by their paths")
     paths = list(dict.fromkeys(path for entry in listed for path in entry))
     names = dict(zip(paths, _short_names(paths), strict=True))
     made = [_case(changed, {names[p]: _coordinate(v) for p, v in entry.items()}, entry) for entry in listed]
@@ -191,8 +208,13 @@ def random(
     InputError
         If a range is wrong, or no case at all can be built.
     """
-    if count < 1 or seed < 0:
-        raise InputError.of("count" if count < 1 else "seed", min(count, seed), "must be positive")
+    _check_name(name)
+    for field, value, least in (("count", count, 1), ("seed", seed, 0)):
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or not least <= value < 2**63:
+            raise InputError.of(field, value, f"must be a whole number, at least {least}")
+    if not isinstance(ranges, Mapping) or not all(isinstance(path, str) for path in ranges):
+        raise InputError.of("ranges", ranges, "must be a table: ranges by their paths")
+    _check_count(count)
     columns = {path: _draws(path, entry, count, seed) for path, entry in ranges.items()}
     names = _short_names(list(columns))
     changed, made = Base.of(base, run), []
@@ -207,6 +229,8 @@ def _draws(path: str, entry: Any, count: int, seed: int) -> list[Any]:
     """Random values of one path: from a stream of its own, one number a case."""
     unit = np.random.default_rng([seed, *path.encode()]).random(count)
     if isinstance(entry, Mapping) and set(entry) == {"choice"}:
+        if isinstance(entry["choice"], str) or not isinstance(entry["choice"], Sequence) or not entry["choice"]:
+            raise InputError.of((path, "choice"), entry["choice"], "must be a sequence of at least one value")
         choices = list(entry["choice"])
         return [choices[int(u * len(choices))] for u in unit]
     if isinstance(entry, Mapping):
@@ -214,8 +238,17 @@ def _draws(path: str, entry: Any, count: int, seed: int) -> list[Any]:
             raise InputError.of(path, dict(entry), "must have low and high, and may have scale; or choice")
         low, high, scale = entry["low"], entry["high"], entry.get("scale", "linear")
     else:
+        if isinstance(entry, str) or not isinstance(entry, Sequence) or len(entry) != 2:
+            raise InputError.of(
+                path, entry, "must be a range (low, high), or a table of low, high and scale, or of choice"
+            )
         low, high = entry
         scale = "linear"
+    for end in (low, high):
+        if not abs(number_of(path, end)) < 1e300:
+            raise InputError.of(path, end, "must be a finite number")
+    if not isinstance(scale, str):
+        raise InputError.of((path, "scale"), scale, "must be 'linear' or 'log'")
     if scale not in ("linear", "log") or not low < high or (scale == "log" and low <= 0):
         raise InputError.of(path, (low, high, scale), "must be a range low < high, linear or log (then above 0)")
     if scale == "log":
@@ -223,6 +256,20 @@ def _draws(path: str, entry: Any, count: int, seed: int) -> list[Any]:
     if isinstance(low, int) and isinstance(high, int):
         return [int(low + u * (high - low + 1)) for u in unit]
     return [float(low + u * (high - low)) for u in unit]
+
+
+MOST_CASES = 1_000_000
+"""Most cases of a study."""
+
+
+def _check_count(count: int) -> None:
+    if count > MOST_CASES:
+        raise InputError.of("study", count, f"must have at most {MOST_CASES} cases")
+
+
+def _check_name(name: object) -> None:
+    if not isinstance(name, str):
+        raise InputError.of("name", name, "must be text")
 
 
 def _checked(study: Study) -> Study:

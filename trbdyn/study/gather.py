@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
+from trbdyn.own_files import file_path, write_whole
 from trbdyn.study.definition import Study
 from trbdyn.study.index import Entry
 
@@ -64,15 +66,43 @@ def _texts(values: Sequence[str]) -> NDArray[Any]:
 
 def _coordinates(study: Study, dims: tuple[str, ...]) -> dict[str, Any]:
     if study.axes:
-        return {axis.name: (axis.name, _column(list(axis.labels)), {"path": axis.path}) for axis in study.axes}
+        return {axis.name: (axis.name, _column(list(axis.labels)), _about_path(axis.path)) for axis in study.axes}
     names = dict.fromkeys(key for case in study.cases for key in case.parameters)
-    columns = {name: ("case", _column([case.parameters.get(name) for case in study.cases])) for name in names}
+    columns = {
+        name: ("case", _column([case.parameters.get(name) for case in study.cases]), _about_path(name))
+        for name in names
+    }
     return {"case": np.arange(len(study)), **{n if n != "case" else "case_": c for n, c in columns.items()}}
+
+
+def _about_path(path: str) -> dict[str, str]:
+    """Attributes of the values at a dotted path of a case: the path, and the unit where the field has one."""
+    unit = unit_of(path)
+    return {"path": path} | ({"long_name": path, "units": unit} if unit else {})
+
+
+def unit_of(path: str) -> str:
+    """Unit of the field at a dotted path, for instance "kg" for ``bearing.cage.mass``; empty where it is no field with a unit."""
+    from trbdyn.run_options import RunOptions
+    from trbdyn.scene import Scene
+
+    table, *parts = re.sub(r"\[\d+\]", "", path).split(".")
+    owner: Any = RunOptions if table == "run" else Scene
+    for name in parts if table in ("scene", "run") else [table, *parts]:
+        fields = getattr(owner, "model_fields", {})
+        if name not in fields:
+            return ""
+        found, owner = fields[name], fields[name].annotation
+    extra = found.json_schema_extra if parts else None
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
 def _column(values: Sequence[Any]) -> NDArray[Any]:
     """Values of all cases as one array: truth values, whole numbers, numbers with nan, texts with '', or stacked arrays."""
     given = [value for value in values if value is not None]
+    if any(isinstance(value, list) for value in given) and not all(isinstance(value, list) for value in given):
+        values = [value if isinstance(value, list) else None for value in values]
+        given = [value for value in values if value is not None]
     if given and all(isinstance(value, list) for value in given):
         return _stacked(values)
     if any(isinstance(value, str) for value in given):
@@ -87,6 +117,7 @@ def _column(values: Sequence[Any]) -> NDArray[Any]:
 def _stacked(values: Sequence[Any]) -> NDArray[Any]:
     arrays = [None if value is None else np.array(value, dtype=float) for value in values]
     size = next(array.shape for array in arrays if array is not None)
+    arrays = [array if array is not None and array.ndim == len(size) else None for array in arrays]
     largest = tuple(max(array.shape[k] for array in arrays if array is not None) for k in range(len(size)))
     out = np.full((len(values), *largest), np.nan)
     for place, array in enumerate(arrays):
@@ -99,7 +130,7 @@ def _attributes(name: str) -> dict[str, str]:
     from trbdyn.summary import LABELS
 
     for label, (words, unit) in LABELS.items():
-        if name == label or (name.startswith(f"{label}_") and label.endswith("_split")):
+        if name == label or (name.startswith(f"{label}_") and label.endswith(("_split", "_by_loss"))):
             return {"long_name": words.strip() or label, "units": unit or "1"}
     return {}
 
@@ -112,19 +143,37 @@ def save(data: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
     FileError
         If it cannot be written.
     """
-    target = Path(path)
-    part = target.with_name(f".{target.name}.part")
+    target = file_path(path, "path")
     limit = np.iinfo(np.int32).max
     written = data.copy()
     for name, variable in data.variables.items():
         if variable.dtype.kind in "iu" and variable.size and np.abs(variable.values).max() > limit:
             written[name] = written[name].astype(float)
     try:
-        written.to_netcdf(part, engine="scipy", format="NETCDF3_64BIT")
-        part.replace(target)
-    except OSError as error:
-        raise FileError(f"{target}: the dataset cannot be written: {error.strerror or error}") from error
+        written = _renamed(written, lambda text: text.encode().decode("latin-1"))
+        content = bytes(written.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
+        write_whole(target, content, overwrite=True)
+    except (OSError, ValueError, TypeError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise FileError(f"{target}: the dataset cannot be written: {why}") from error
     return target
+
+
+def _renamed(data: xarray.Dataset, change: Callable[[str], str]) -> xarray.Dataset:
+    """The dataset with other names of variables and dimensions: netCDF keeps them as UTF-8, SciPy takes them for Latin-1."""
+    names = {str(name): change(str(name)) for name in {*data.variables, *data.dims}}
+    out = data.rename({name: new for name, new in names.items() if name != new})
+    parts: list[Any] = [out, *out.variables.values()]
+    for part in parts:
+        part.attrs = {key: change(value) if isinstance(value, str) else value for key, value in part.attrs.items()}
+    return out
+
+
+def _from_utf8(text: str) -> str:
+    try:
+        return text.encode("latin-1").decode()
+    except UnicodeError:
+        return text
 
 
 def load(path: str | os.PathLike[str]) -> xarray.Dataset:
@@ -138,6 +187,6 @@ def load(path: str | os.PathLike[str]) -> xarray.Dataset:
     import xarray
 
     try:
-        return xarray.load_dataset(path, engine="scipy")
+        return _renamed(xarray.load_dataset(path, engine="scipy"), _from_utf8)
     except (OSError, ValueError, TypeError) as error:
         raise FileError(f"{path}: the dataset cannot be read: {error}") from error

@@ -8,13 +8,17 @@ by a crash is passed over.
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
+
 from trbdyn.errors import FileError
+from trbdyn.own_files import write_whole
 
 INDEX = "index.jsonl"
 
@@ -129,10 +133,38 @@ def read_lines(path: Path) -> Iterator[Entry]:
     with path.open("rb") as stream:
         for line in stream:
             try:
-                values = json.loads(line)
-                yield Entry(**values)
-            except (ValueError, TypeError):
+                entry = Entry(**json.loads(line))
+            except (ValueError, TypeError, RecursionError):
                 continue
+            if _is_sound(entry):
+                yield entry
+
+
+def _is_sound(entry: Entry) -> bool:
+    """Whether every value of a line is of its kind."""
+    texts = (entry.name, entry.fingerprint, entry.message, entry.file, entry.finished, entry.version)
+    wall = entry.wall_s
+    return (
+        all(isinstance(text, str) for text in texts)
+        and entry.status in ("done", "failed")
+        and isinstance(entry.parameters, dict)
+        and isinstance(entry.values, dict)
+        and all(_is_observable(value) for value in entry.values.values())
+        and isinstance(wall, int | float)
+        and not isinstance(wall, bool)
+        and abs(wall) < math.inf
+        and (not entry.file or Path(entry.file).name == entry.file)
+    )
+
+
+def _is_observable(value: object) -> bool:
+    """Whether a value is a number, a text, or an array of numbers that are lists in lists of equal lengths."""
+    if value is None or isinstance(value, str | bool | int | float):
+        return not isinstance(value, int) or abs(value) < 2**63
+    try:
+        return isinstance(value, list) and np.array(value, dtype=float).size >= 0
+    except (ValueError, TypeError, OverflowError):
+        return False
 
 
 def write_json(path: Path, values: Mapping[str, Any] | list[Any]) -> None:
@@ -143,9 +175,7 @@ def write_json(path: Path, values: Mapping[str, Any] | list[Any]) -> None:
     FileError
         If it cannot be written.
     """
-    part = path.with_name(f".{path.name}.part")
     try:
-        part.write_text(json.dumps(values, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-        part.replace(path)
+        write_whole(path, (json.dumps(values, indent=1, allow_nan=False) + "\n").encode(), overwrite=True)
     except OSError as error:
         raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error

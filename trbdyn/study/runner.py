@@ -9,14 +9,15 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trbdyn.errors import InputError
+from trbdyn.errors import FileError, InputError
+from trbdyn.own_files import folder_path
 from trbdyn.run_options import RunOptions
 from trbdyn.scene import Scene
 from trbdyn.study import gather
 from trbdyn.study.definition import Case, Study
 from trbdyn.study.design import of_scenes
 from trbdyn.study.executors import Outcome, execute
-from trbdyn.study.index import Entry, Index
+from trbdyn.study.index import INDEX, Entry, Index
 from trbdyn.study.work import Observable, Report, Task, as_plain, run_case, said
 
 if TYPE_CHECKING:
@@ -73,7 +74,11 @@ def run(
         If the folder cannot be used.
     """
     study = study if isinstance(study, Study) else of_scenes(study, options)
-    place = None if folder is None else Path(folder)
+    place = None if folder is None else folder_path(folder, "folder")
+    if place is not None and (place / DATASET).exists() and not (place / INDEX).exists():
+        raise FileError(
+            f"{place / DATASET}: belongs to no study of this folder, and would be replaced; give another folder"
+        )
     index, functions = Index(place), dict(observables or {})
     waiting = {case.fingerprint: case for case in study.cases}
     if resume:
@@ -106,7 +111,7 @@ def collect(study: Study, folder: str | os.PathLike[str]) -> xarray.Dataset:
     FileError
         If the folder cannot be used.
     """
-    index = Index(Path(folder))
+    index = Index(folder_path(folder, "folder"))
     return gather.dataset(study, [index.entries.get(case.fingerprint) for case in study.cases])
 
 

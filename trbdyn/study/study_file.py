@@ -6,6 +6,7 @@ from pathlib import Path as FilePath
 from typing import Final
 
 from trbdyn.errors import InputError
+from trbdyn.own_files import file_path
 from trbdyn.study.definition import Study, Table, read_toml
 from trbdyn.study.design import cases, grid, random
 from trbdyn.toml_case import DATA
@@ -13,6 +14,7 @@ from trbdyn.toml_case import DATA
 STUDIES: Final = DATA / "studies"
 """Where the shipped studies lie."""
 _KINDS: Final = ("grid", "list", "random")
+_OWN_NAMES: Final = (*_KINDS, "count", "seed", "ranges", "name")
 
 
 def shipped_studies() -> tuple[str, ...]:
@@ -36,6 +38,7 @@ def load_study(path: str | FilePath) -> Study:
     InputError
         If something in it cannot be used.
     """
+    file_path(path, "study")
     if not FilePath(path).exists() and str(path) in shipped_studies():
         path = STUDIES / f"{path}.toml"
     values = read_toml(path)
@@ -49,6 +52,21 @@ def load_study(path: str | FilePath) -> Study:
         )
     if sum(kind in table for kind in _KINDS) != 1:
         raise InputError.of("study", sorted(table), f"must hold one of {', '.join(_KINDS)}")
+    kind = next(kind for kind in _KINDS if kind in table)
+    wanted, what = (list, "an array of tables") if kind == "list" else (dict, "a table")
+    if not isinstance(table[kind], wanted):
+        raise InputError.of(("study", kind), table[kind], f"must be {what}")
+    for key in ("case", "name"):
+        if not isinstance(table.get(key, ""), str):
+            raise InputError.of(("study", key), table[key], "must be text")
+    try:
+        return _study(path, table, values)
+    except InputError as error:
+        # what is wrong in the table of the study is told with its whole key
+        raise (error if error.problems[0].path[0] not in _OWN_NAMES else error.under(("study",))) from None
+
+
+def _study(path: str | FilePath, table: Table, values: Table) -> Study:
     tables = read_toml(_beside(path, table["case"])) if "case" in table else {}
     for key, entry in values.items():
         own = tables.get(key)
@@ -60,7 +78,7 @@ def load_study(path: str | FilePath) -> Study:
         return cases(tables, table["list"], name=name)
     draws = table["random"]
     if set(draws) != {"count", "seed", "ranges"}:
-        raise InputError.of(("study", "random"), sorted(draws), "must hold count, seed and ranges")
+        raise InputError.of("random", sorted(draws), "must hold count, seed and ranges")
     return random(tables, draws["ranges"], draws["count"], draws["seed"], name=name)
 
 

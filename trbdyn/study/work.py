@@ -106,7 +106,7 @@ def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
         raise
     file = ""
     if path is not None and part is not None and part.is_file():
-        kept = path if report.status == "done" else path.with_suffix(".failed.h5")
+        kept = path if report.status == "done" else path.with_name(f"{path.stem}.failed.h5")
         part.replace(kept)
         file = kept.name
         if result is not None:
@@ -131,6 +131,7 @@ def _run(task: Task, part: Path | None, stopped: Callable[[], bool]) -> tuple[Re
             save_every=run.save_every,
             save_groups=run.save_groups,
             output=part,
+            overwrite=True,
             callback=lambda _: stopped(),
         )
     except StepError as error:
@@ -146,7 +147,7 @@ def _run(task: Task, part: Path | None, stopped: Callable[[], bool]) -> tuple[Re
 def _clear(part: Path | None) -> None:
     """Remove an unfinished file, and checkpoints beside it."""
     if part is not None:
-        for leftover in (part, *part.parent.glob(f"{glob.escape(part.stem)}.checkpoint*")):
+        for leftover in (part, *part.parent.glob(f"{glob.escape(part.name)}.checkpoint*")):
             leftover.unlink(missing_ok=True)
 
 

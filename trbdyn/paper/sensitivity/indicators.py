@@ -69,12 +69,12 @@ def hang(result: Result) -> float:
 
 def whirl_radius(result: Result) -> float:
     """Distance of the cage's centre from the bearing axis, mean (Cpr): the paper's whirl radius."""
-    return float(part(result).whirl_radius_over_cpr.mean())
+    return float(part(result).axis_distance_over_cpr.mean())
 
 
 def whirl_radius_range(result: Result) -> list[float]:
     """The same, 5 % and 95 % (Cpr)."""
-    return [float(value) for value in np.percentile(part(result).whirl_radius_over_cpr, (5.0, 95.0))]
+    return [float(value) for value in np.percentile(part(result).axis_distance_over_cpr, (5.0, 95.0))]
 
 
 def whirl_order(result: Result) -> float:

@@ -1,0 +1,41 @@
+/* Holds: proofs, to first order in small displacements, that a load found at one state has changed little at another, so that it need
+ * not be evaluated again. A load follows an interference, which follows the place of a roller; it and the film follow its velocity too.
+ * Each coordinate counts with the longest arm by which it moves the contact along its normal. What is prescribed must be the same at
+ * both states. */
+#ifndef TRB_MOTION_HOLD_H
+#define TRB_MOTION_HOLD_H
+
+#include "bearing/state.h"
+
+typedef struct trb_hold {
+  double way;   /* displacement up to which it holds, m; negative: it does not hold */
+  double speed; /* change of velocity up to which it holds, m/s */
+  /* where it was set */
+  double y[TRB_ROLLER_SIZE];
+  double turn; /* of the roller about the bearing's axis, rad */
+} trb_hold;
+
+/* How far the ring is off the bearing's axis, which a roller sees turning as it orbits. */
+typedef struct trb_hold_ring {
+  double place; /* m */
+  double speed; /* m/s */
+} trb_hold_ring;
+
+/* What the coordinates of a roller do to one kind of contact. */
+typedef struct trb_hold_arms {
+  double radial, axial; /* parts of the normal, 1 */
+  double tilt, skew;    /* arms of tilt along the normal, and of skew across it, m */
+  double reach;         /* of the surface from the roller's centre of mass, m */
+  double off;           /* distance of the contact's centre of curvature from the ring's axis, m: skew moves it round the ring */
+} trb_hold_arms;
+
+trb_hold_arms trb_hold_arms_raceway(const trb_model *m);
+trb_hold_arms trb_hold_arms_rib(const trb_model *m);
+trb_hold_arms trb_hold_arms_front_rib(const trb_model *m);
+
+trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_drive *drive);
+/* turn: of the roller about the bearing's axis, rad. */
+void trb_hold_set(const double *y_roller, double turn, double way, double speed, trb_hold *hold);
+int  trb_hold_holds(const trb_hold *hold, const trb_hold_arms *arms, const trb_hold_ring *ring, const double *y_roller, double turn);
+
+#endif

@@ -1,0 +1,93 @@
+/* An impact is followed well if the errors of a step are small beside the speed at which the bodies meet and beside the interference that
+ * they reach, not beside numbers that are the same for all. So while a roller may reach its pocket within the next steps, or touches it, the
+ * absolute tolerances of roller and cage are multiplied by a factor: a share of that speed over the tolerance of velocities, or of that
+ * interference over the tolerance of positions, whichever is less, between a least factor and 1. The speed is the one at which they met:
+ * during contact it passes through zero. Bodies that lie on each other met at some speed, too, and cost nothing more. */
+#include "stepping/impact.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "laws/line_contact.h"
+
+/* Share of an impact's speed and interference that a step may be wrong by; least factor; steps ahead in which a gap may close. */
+static const double share = 0.01, least_factor = 0.02, ahead = 3.0;
+
+trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
+{
+  const size_t n = (size_t)m->n_rollers;
+  impacts->speed = trb_zeros(n, sizeof *impacts->speed);
+  impacts->factor = trb_zeros(n + 1, sizeof *impacts->factor);
+  if (impacts->speed == NULL || impacts->factor == NULL) {
+    trb_impacts_free(impacts);
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the impacts of %d rollers", m->n_rollers);
+  }
+  trb_impacts_forget(m, impacts);
+  return TRB_OK;
+}
+
+void trb_impacts_free(trb_impacts *impacts)
+{
+  free(impacts->speed);
+  free(impacts->factor);
+  *impacts = (trb_impacts){NULL, NULL};
+}
+
+void trb_impacts_forget(const trb_model *m, trb_impacts *impacts)
+{
+  for (int j = 0; j < m->n_rollers; j++) impacts->speed[j] = INFINITY;
+  for (int j = 0; j <= m->n_rollers; j++) impacts->factor[j] = 1.0;
+}
+
+/* Speed of a roller's centre of mass relative to its pocket. */
+static double closing_speed(const trb_roller_pose *r, const trb_cage_pose *cage)
+{
+  const trb_vec3 arm = trb_sub(trb_turn_z(r->x, r->cosine, r->sine), cage->x);
+  const trb_vec3 pocket = trb_add(cage->v, trb_cross(cage->omega, arm));
+  return trb_norm(trb_sub(r->v, trb_turn_z(pocket, r->cosine, -r->sine)));
+}
+
+/* Interference that a roller and the cage reach when they meet: speed over the frequency of both on a linear spring, as stiff as the flank's
+ * contact is at a micrometre. */
+static double interference_of(const trb_model *m, double speed)
+{
+  const double depth = 1e-6, roller = m->geometry.roller_mass, cage = m->params.cage_mass;
+  const double stiffness = m->palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
+  return speed * sqrt(roller * cage / ((roller + cage) * stiffness));
+}
+
+void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
+                      double tolerance, double tolerance_place)
+{
+  const trb_model *m = d->model;
+  const double    *y_cage = y + trb_state_cage(m);
+  trb_drive        drive;
+  trb_cage_pose    cage;
+  double           least = 1.0;
+  int              posed = 0;
+  for (int j = 0; j < m->n_rollers; j++) {
+    const double *y_roller = y + trb_state_roller(j);
+    const double  left = trb_clearance_left(&d->clearances[j], d->arms, y_roller, y_cage);
+    impacts->factor[j] = 1.0;
+    if (m->first_face[j + 1] == m->first_face[j]) continue;
+    if (!posed) {
+      trb_motion_at(motion, m, time, &drive);
+      trb_cage_pose_unpack(m, &drive, y_cage, &cage);
+      posed = 1;
+    }
+    trb_roller_pose r;
+    trb_roller_pose_unpack(m, &drive, j, y_roller, &r);
+    const double speed = closing_speed(&r, &cage);
+    if (left > ahead * step * speed) {
+      impacts->speed[j] = INFINITY;
+      continue;
+    }
+    /* in contact: the largest speed since they met */
+    impacts->speed[j] = left <= 0.0 && isfinite(impacts->speed[j]) ? trb_max(impacts->speed[j], speed) : speed;
+    const double finer = trb_min(impacts->speed[j] / tolerance, interference_of(m, impacts->speed[j]) / tolerance_place);
+    impacts->factor[j] = trb_clamp(share * finer, least_factor, 1.0);
+    least = trb_min(least, impacts->factor[j]);
+  }
+  impacts->factor[m->n_rollers] = least;
+}

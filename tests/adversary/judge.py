@@ -1,0 +1,209 @@
+"""Runs a random scene for a bounded number of steps and judges it by what must hold whatever it is.
+
+A run is *right* if its energy adds up and its losses and the speed of its rollers agree with those of a much tighter run with
+every force exact, *warned* if the program itself said that it is not, *stopped* if it ended with an error of the package, and
+*refused* if no run was begun. It is *wrong* if none of this holds, and *hanging* if its steps became so small that it would not
+end.
+"""
+
+from __future__ import annotations
+
+import math
+import time as clock
+import warnings
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from random_scenes import ORDINARY, Table, make
+
+import trbdyn as trb
+
+try:
+    from trbdyn.watch import Watch
+except ImportError:  # an older version, to compare with
+    Watch = None
+
+Array = NDArray[np.float64]
+
+MOST_STEPS = 6000
+"""Steps of the judged run; the others run over the same time."""
+MOST_REFERENCE_STEPS = 60_000
+PATIENCE_S = 60.0
+"""Processor time after which a run is given up."""
+SMALLEST_STEP = 2e-8
+"""Mean step below which a run hangs (s): a thousandth of the period of a contact's vibration, 35 kHz."""
+
+CLOSURE = 1e-2
+"""Largest residual of the energy audit over dissipated work and energy turned over."""
+LOSS = 0.05
+"""Largest difference of the loss from that of the tight run, of the larger of both."""
+SLIP = 0.02
+"""Largest difference of the mean speed of the rollers from that of the tight run, over the kinematic speed."""
+
+
+@dataclass
+class Run:
+    """What a bounded run gave. Energies in J, work and loss since the start."""
+
+    status: str = "done"
+    message: str = ""
+    time: float = 0.0
+    steps: int = 0
+    cpu_s: float = 0.0
+    loss: float = math.nan
+    residual: float = math.nan
+    turned_over: float = math.nan
+    stored: float = math.nan
+    roller_speed: float = math.nan
+    cage: tuple[float, float] = (math.nan, math.nan)
+    mean_step: float = math.nan
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def closure(self) -> float:
+        scale = max(self.turned_over, 1e-3 * self.stored, 1e-9)
+        return abs(self.residual) / scale
+
+
+@dataclass
+class Verdict:
+    """How a scene was judged, and by what."""
+
+    table: Table
+    status: str = "right"
+    broken: list[str] = field(default_factory=list)
+    run: Run | None = None
+    tight: Run | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def judge(table: Table) -> Verdict:
+    verdict = Verdict(table)
+    try:
+        scene = make(table)
+        sim = trb.Simulation(scene, accuracy=(ORDINARY | table)["accuracy"])
+    except trb.TrbError as error:
+        verdict.status, verdict.broken = "refused", [f"{type(error).__name__}: {str(error).splitlines()[0][:200]}"]
+        return verdict
+    duration = _duration(scene)
+    verdict.run = run = bounded_run(sim, duration, MOST_STEPS)
+    if run.status == "error":
+        verdict.status, verdict.broken = "stopped", [run.message]
+        return verdict
+    if run.mean_step < SMALLEST_STEP and run.time < duration:
+        verdict.status, verdict.broken = "hanging", [f"mean step {run.mean_step:.2g} s after {run.steps} steps"]
+        return verdict
+    if not run.closure <= CLOSURE:
+        verdict.broken.append(f"closure {run.closure:.2g}")
+    tight = trb.Simulation(scene, accuracy="reference", rings_share=0.0)
+    verdict.tight = bounded_run(tight, run.time, MOST_REFERENCE_STEPS)
+    if verdict.tight.status == "done":
+        _compare(scene, run, verdict.tight, verdict)
+    if verdict.broken:
+        verdict.status = "warned" if run.warnings else "wrong"
+    return verdict
+
+
+def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
+    """Against the tight run. Bodies that hit each other go their own ways after some impacts: where the judged run is off, other
+    tight runs show by how much such a scene's losses and speeds differ that are all as good."""
+    scale = max(abs(run.loss), abs(tight.loss), 1e-3 * tight.turned_over, 1e-6 * tight.stored, 1e-9)
+    loss = abs(run.loss - tight.loss) / scale
+    speed = abs(run.roller_speed - tight.roller_speed)
+    if loss <= LOSS and speed <= SLIP:
+        return
+    others = [
+        bounded_run(
+            trb.Simulation(scene, accuracy="reference", rings_share=0.0, **changed), run.time, MOST_REFERENCE_STEPS
+        )
+        for changed in ({"rtol": 5e-5}, {"rtol": 2e-4})
+    ]
+    good = [other for other in (tight, *others) if other.status == "done"]
+    losses, speeds = [other.loss for other in good], [other.roller_speed for other in good]
+    loss -= 2.0 * (max(losses) - min(losses)) / scale
+    speed -= 2.0 * (max(speeds) - min(speeds))
+    if loss > LOSS:
+        verdict.broken.append(f"loss off by {loss:.2g}")
+    if speed > SLIP:
+        verdict.broken.append(f"speed of the rollers off by {speed:.2g}")
+
+
+def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
+    """Step for a time, at most a number of steps or `PATIENCE_S`."""
+    run = Run()
+    first = sim.record()
+    begin, turned, last = sim.time, 0.0, first
+    found: list[str] = []
+    watch = Watch(sim, begin + duration, found, going_on=True) if Watch is not None else None
+    looks = np.linspace(0.0, duration, 17)[1:] + begin
+    began, half = clock.process_time(), (begin, 0)
+    try:
+        for look in looks:
+            while sim.time < look and run.steps < most_steps:
+                sim.step()
+                run.steps += 1
+                if run.steps == most_steps // 2:
+                    half = (sim.time, run.steps)
+                if run.steps % 256 == 0 and clock.process_time() - began > PATIENCE_S:
+                    most_steps = run.steps
+            if watch is not None:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    watch.look(final=run.steps >= most_steps or look == looks[-1])
+            now = sim.record()
+            turned += 0.5 * _turned_over(last, now)
+            last = now
+            if run.steps >= most_steps:
+                break
+    except trb.TrbError as error:
+        run.status, run.message = "error", str(error).splitlines()[0][:200]
+    if run.status == "done" and sim.time < begin + duration and run.steps >= most_steps:
+        run.status = "bounded"
+    run.time, run.warnings = sim.time - begin, tuple(found)
+    run.cpu_s = clock.process_time() - began
+    run.mean_step = (sim.time - half[0]) / max(run.steps - half[1], 1)
+    run.loss = _sum(last, "loss_") - _sum(first, "loss_")
+    stored = _stored(last)
+    run.residual = _sum(last, "work_") - _sum(first, "work_") - (stored - _stored(first)) - run.loss
+    run.turned_over, run.stored = turned, stored
+    nominal = abs(float(sim.scene.bearing.geometry.cage_speed_ratio) * _speed(sim)) * run.time
+    # where the rollers hardly orbit, they still fall through their pockets: 1 mrad is a tenth of that
+    run.roller_speed = float(np.mean(last["roller_orbit_angle"] - first["roller_orbit_angle"])) / max(nominal, 1e-3)
+    if "cage_position" in last:
+        run.cage = (float(last["cage_position"][0]), float(last["cage_position"][1]))
+    return run
+
+
+def _duration(scene: trb.Scene) -> float:
+    """A turn of the shaft, between 4 ms and 0.3 s; histories to their end."""
+    speed = scene.speed_rpm
+    if isinstance(speed, trb.History) or isinstance(scene.axial_load, trb.History):
+        ends = [q.times[-1] for q in (speed, scene.axial_load) if isinstance(q, trb.History)]
+        return float(1.2 * max(ends))
+    return float(min(max(60.0 / abs(speed), 4e-3), 0.3))
+
+
+def _speed(sim: trb.Simulation) -> float:
+    speed = sim.scene.speed_rpm
+    rpm = max(map(abs, speed.values)) if isinstance(speed, trb.History) else speed
+    return rpm * math.pi / 30.0
+
+
+def _sum(record: dict[str, Array], prefix: str) -> float:
+    return float(sum(float(value) for name, value in record.items() if name.startswith(prefix)))
+
+
+def _stored(record: dict[str, Array]) -> float:
+    return float(record["kinetic_energy"]) + float(record["elastic_energy"])
+
+
+def _turned_over(before: dict[str, Array], now: dict[str, Array]) -> float:
+    """Energy that changed hands between two records."""
+    names = [
+        name for name in now if name.startswith(("loss_", "work_")) or name in ("kinetic_energy", "elastic_energy")
+    ]
+    return float(sum(abs(float(now[name]) - float(before[name])) for name in names))

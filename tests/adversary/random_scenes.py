@@ -1,0 +1,225 @@
+"""Random scenes over the whole admitted space, each from a seed. A scene is a flat table, so that it can be kept and shrunk."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+import trbdyn as trb
+from trbdyn.cases import bearing_32216, rig_30310
+from trbdyn.lubricants import vg100
+
+Table = dict[str, Any]
+
+ORDINARY: Table = {
+    "bearing": "30310",
+    "speed_rpm": 3000.0,
+    "axial_load": 4930.0,
+    "radial_share": 0.0,
+    "direction_deg": 90.0,
+    "temperature_c": 60.0,
+    "effects": "paper",
+    "accuracy": "standard",
+    "start": "equal",
+    "seed": 0,
+    "eccentricity": 0.9,
+    "nodes": 8,
+    "gravity": True,
+    "misalignment_x": 0.0,
+    "misalignment_y": 0.0,
+    "displacement_x": None,
+    "displacement_y": 0.0,
+    "displacement_z": 0.0,
+    "cage_mass": 1.0,
+    "play": 1.0,
+    "scatter": 0.0,
+    "damping": None,
+    "starvation": 1.0,
+    "lubrication": None,
+    "traction": None,
+    "thermal": None,
+    "rolling_resistance": None,
+    "back_rib": None,
+    "front_rib": None,
+    "planar": None,
+    "dry_friction": None,
+    "coulomb_speed": None,
+    "end_speed_rpm": None,
+    "end_axial_load": None,
+    "history_s": 0.005,
+}
+"""What a table that says nothing means; shrinking a failure leads back to these."""
+
+SCALED = ("play_radial", "play_circumferential", "play_axial")
+
+
+def usual(rng: np.random.Generator) -> Table:
+    """A scene of practice: shipped bearings at 1 to 20 000 rpm, 0.5 to 32 kN, oil at 10 to 110 C, two presets of effects."""
+    table = {
+        "bearing": _one_of(rng, "30310", "32216"),
+        "speed_rpm": _log(rng, 1.0, 2e4),
+        "axial_load": _log(rng, 500.0, 32e3),
+        "temperature_c": float(rng.uniform(10.0, 110.0)),
+        "effects": _one_of(rng, "paper", "standard"),
+    }
+    if rng.random() < 0.5:
+        table |= {"radial_share": float(rng.uniform(0.05, 0.95)), "direction_deg": float(rng.uniform(-180.0, 180.0))}
+    table |= _start(rng)
+    return table
+
+
+def wide(rng: np.random.Generator) -> Table:
+    """Anything that a scene admits: very slow and very fast, held rings, histories, odd clearances, every switch."""
+    table = usual(rng)
+    table["speed_rpm"] = _log(rng, 0.01, 1e5) * _one_of(rng, 1.0, 1.0, 1.0, -1.0)
+    table["accuracy"] = _one_of(rng, "fast", "standard", "standard", "reference")
+    table["effects"] = _one_of(rng, "paper", "standard", "paper", "standard", "minimal", "frictionless")
+    if rng.random() < 0.2:
+        table |= {
+            "displacement_x": float(rng.uniform(-80e-6, 80e-6)),
+            "displacement_y": float(rng.uniform(-80e-6, 80e-6)),
+            "displacement_z": float(rng.uniform(-60e-6, 80e-6)),
+            "radial_share": 0.0,
+        }
+    options: dict[str, Any] = {
+        "misalignment_x": lambda: float(rng.uniform(-2e-3, 2e-3)),
+        "misalignment_y": lambda: float(rng.uniform(-2e-3, 2e-3)),
+        "gravity": lambda: False,
+        "cage_mass": lambda: _log(rng, 0.01, 20.0),
+        "play": lambda: _log(rng, 0.2, 4.0),
+        "scatter": lambda: _log(rng, 1e-7, 2e-5),
+        "damping": lambda: _log(rng, 1e-3, 10.0),
+        "starvation": lambda: _log(rng, 0.01, 1.0),
+        "lubrication": lambda: _one_of(rng, "mixed", "full_film", "boundary", "dry"),
+        "traction": lambda: _one_of(rng, "muraki_kimura", "coulomb", "none"),
+        "thermal": lambda: bool(rng.random() < 0.5),
+        "rolling_resistance": lambda: bool(rng.random() < 0.5),
+        "back_rib": lambda: False,
+        "front_rib": lambda: False,
+        "planar": lambda: True,
+        "dry_friction": lambda: _log(rng, 0.005, 0.5),
+        "coulomb_speed": lambda: _log(rng, 1e-5, 0.1),
+        "nodes": lambda: int(rng.integers(2, 40)),
+    }
+    for name, draw in options.items():
+        if rng.random() < 0.12:
+            table[name] = draw()
+    if rng.random() < 0.12:
+        table |= {
+            "end_speed_rpm": table["speed_rpm"] * float(rng.uniform(-1.0, 2.0)),
+            "history_s": _log(rng, 1e-4, 2e-2),
+        }
+    elif rng.random() < 0.08 and table.get("displacement_x") is None:
+        table |= {
+            "end_axial_load": table["axial_load"] * float(rng.uniform(0.7, 2.0)),
+            "history_s": _log(rng, 1e-3, 2e-2),
+        }
+    return table
+
+
+KINDS = {"usual": usual, "wide": wide}
+
+
+def draw(kind: str, seed: int) -> Table:
+    """The scene of a seed."""
+    return KINDS[kind](np.random.default_rng([seed, sum(kind.encode())]))
+
+
+def make(table: Table) -> trb.Scene:
+    """The scene that a table stands for.
+
+    Raises
+    ------
+    TrbError
+        If it is refused.
+    """
+    t = ORDINARY | table
+    bearing = _bearing(t)
+    slope = math.tan(math.radians(bearing.cup_half_angle_deg))
+    fields: Table = {
+        "lubricant": vg100(temperature_c=t["temperature_c"]),
+        "effects": _effects(t),
+        "speed_rpm": _ramp(t["speed_rpm"], t["end_speed_rpm"], t["history_s"]),
+        "misalignment_x": t["misalignment_x"],
+        "misalignment_y": t["misalignment_y"],
+    }
+    if t["displacement_x"] is not None:
+        fields["displacement"] = (t["displacement_x"], t["displacement_y"], t["displacement_z"])
+    else:
+        lowest = min(t["axial_load"], t["end_axial_load"] or math.inf)
+        fields |= {
+            "axial_load": _ramp(t["axial_load"], t["end_axial_load"], t["history_s"]),
+            "radial_load": t["radial_share"] * lowest / slope,
+            "radial_direction_deg": t["direction_deg"],
+        }
+        if t["end_axial_load"] is not None:
+            fields["ring"] = "follows"
+    return trb.Scene(bearing, start=_start_of(t), **fields)
+
+
+def _bearing(t: Table) -> trb.Bearing:
+    bearing = rig_30310() if t["bearing"] == "30310" else bearing_32216()
+    cage = bearing.cage
+    cage = cage.replace(
+        mass=cage.mass * t["cage_mass"],
+        inertia_axial=cage.inertia_axial * t["cage_mass"],
+        inertia_transverse=cage.inertia_transverse * t["cage_mass"],
+        **{name: getattr(cage, name) * t["play"] for name in SCALED},
+    )
+    roller = bearing.roller
+    if t["scatter"] > 0.0:
+        deviations = np.random.default_rng(t["seed"]).uniform(-0.5, 0.5, bearing.n_rollers) * t["scatter"]
+        roller = roller.replace(diameter_deviation=tuple(deviations.tolist()))
+    return bearing.replace(cage=cage, roller=roller)
+
+
+def _effects(t: Table) -> trb.Effects:
+    effects = {
+        "paper": trb.Effects.paper,
+        "standard": trb.Effects.standard,
+        "minimal": trb.Effects.minimal,
+        "frictionless": trb.Effects.frictionless,
+    }[t["effects"]]()
+    changes: Table = {"gravity": t["gravity"], "starvation_factor": t["starvation"]}
+    changes |= {"quadrature": "gauss", "n_slices": t["nodes"]}
+    for name in ("lubrication", "traction", "thermal", "rolling_resistance", "back_rib", "front_rib", "planar"):
+        if t[name] is not None:
+            changes[name] = t[name]
+    if changes.get("rolling_resistance") is False:
+        changes["rolling_pressure_force"] = False
+    if t["damping"] is not None:
+        changes |= {"damping": "hunt_crossley", "damping_race": t["damping"], "damping_cage": t["damping"]}
+    friction = {name: t[name] for name in ("dry_friction", "coulomb_speed") if t[name] is not None}
+    if friction:
+        changes["friction"] = effects.friction.replace(**friction)
+    return effects.replace(**changes)
+
+
+def _start(rng: np.random.Generator) -> Table:
+    kind = _one_of(rng, "equal", "equal", "unequal", "whirl")
+    table: Table = {"start": kind, "seed": int(rng.integers(1000))}
+    if kind == "whirl":
+        table["eccentricity"] = float(rng.uniform(0.1, 1.0))
+    return table
+
+
+def _start_of(t: Table) -> trb.Start:
+    if t["start"] == "unequal":
+        return trb.Start.unequal(t["seed"])
+    if t["start"] == "whirl":
+        return trb.Start.whirl(t["eccentricity"])
+    return trb.Start.equal()
+
+
+def _ramp(begin: float, end: float | None, duration: float) -> float | trb.History:
+    return begin if end is None else trb.History.ramp(0.2 * duration, 1.2 * duration, begin, end)
+
+
+def _log(rng: np.random.Generator, low: float, high: float) -> float:
+    return float(math.exp(rng.uniform(math.log(low), math.log(high))))
+
+
+def _one_of(rng: np.random.Generator, *choices: Any) -> Any:
+    return choices[int(rng.integers(len(choices)))]

@@ -1,0 +1,48 @@
+"""A bounded part of `make adversary`: new random scenes of every kind, and the failures of earlier ones."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+from judge import bounded_run, judge  # noqa: E402
+from random_scenes import KINDS, draw, make  # noqa: E402
+
+FINE = ("right", "warned", "stopped", "refused")
+FOUND = sorted((HERE / "found").glob("*.json"))
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_random_scenes_are_right_or_say_so(kind, seed):
+    verdict = judge(draw(kind, 1000 + seed))
+    assert verdict.status in FINE, verdict.broken
+
+
+@pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
+def test_found_failures_stay_mended(path):
+    verdict = judge(json.loads(path.read_text())["scene"])
+    assert verdict.status in FINE, verdict.broken
+
+
+def test_the_judge_sees_a_run_that_is_wrong():
+    """Tolerances of velocities that are far too large: losses are off, and the judge's measures show it."""
+    import trbdyn as trb
+
+    scene = make(draw("usual", 3) | {"speed_rpm": 200.0, "start": "equal"})
+    good = bounded_run(trb.Simulation(scene, accuracy="reference"), 0.02, 20_000)
+    loose = {"rtol": 0.1, "atol_position": 1e-6, "atol_angle": 1e-4, "atol_velocity": 1.0, "atol_spin": 100.0}
+    bad = bounded_run(trb.Simulation(scene, **loose), 0.02, 20_000)
+    assert good.closure < 1e-2
+    assert bad.closure > 1e-2 or abs(bad.loss - good.loss) > 0.05 * good.loss
+    assert bad.warnings
+
+
+def test_seeds_give_the_same_scene_again():
+    assert draw("wide", 7) == draw("wide", 7) != draw("wide", 8)

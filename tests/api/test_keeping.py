@@ -1,0 +1,68 @@
+"""What a run keeps by default: everything in short runs, less of it in long ones, and it is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import keeping
+from trbdyn.cases import scene_30310
+from trbdyn.run_options import GROUPS
+
+
+@pytest.mark.parametrize(
+    ("length", "speed", "every"),
+    [
+        (0.01, 3000.0, 1e-4),
+        (0.5, 3000.0, 1e-4),
+        (0.51, 3000.0, 2e-4),
+        (2.5, 3000.0, 5e-4),
+        (10.0, 3000.0, 1e-3),
+        (4000.0, 3000.0, 1e-3),
+        (40.0, 6000.0, 5e-4),
+        (40.0, 30000.0, 1e-4),
+        (40.0, 0.0, 1e-3),
+        (40.0, -3000.0, 1e-3),
+        (40.0, trb.History.ramp(0.0, 1.0, 0.0, 6000.0), 5e-4),
+    ],
+)
+def test_interval(length: float, speed: Any, every: float) -> None:
+    assert keeping.interval(length, speed) == pytest.approx(every, rel=1e-12)
+
+
+def test_groups_of_very_long_runs() -> None:
+    short = keeping.kept_by_default(20.0, 3000.0, None, None)
+    long = keeping.kept_by_default(21.0, 3000.0, None, None)
+    assert short["save_groups"] == GROUPS
+    assert set(GROUPS) - set(long["save_groups"]) == {"contacts", "pocket"}
+    assert keeping.kept_by_default(1e4, 3000.0, 1e-4, None) == {"save_every": 1e-4, "save_groups": GROUPS}
+    assert keeping.kept_by_default(1e4, 3000.0, None, ["cage"])["save_groups"] == ("cage",)
+    assert "without the groups contacts, pocket" in keeping.said(1e-3, long["save_groups"])
+
+
+def test_a_long_run_is_small_and_says_what_it_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a shorter limit, so that the test is short: the interval grows, the file is compressed, the steps are the same."""
+    sim = trb.Simulation(scene_30310(start=trb.Start.whirl(0.9)), accuracy="fast")
+    dense = sim.copy().run(duration=0.2, output=tmp_path / "dense.h5")
+    assert dense.meta["kept"] == "a record every 0.1 ms of bearing time, all groups"
+    monkeypatch.setattr(keeping, "RECORDS", 200)
+    thin = sim.copy().run(duration=0.2, output=tmp_path / "thin.h5")
+    assert thin.meta["kept"] == "a record every 1 ms of bearing time, all groups"
+    assert len(thin) == 201
+    np.testing.assert_allclose(
+        thin.cage_position, dense.cage_position[::10], rtol=1e-9, atol=1e-12
+    )  # times to rounding
+    np.testing.assert_array_equal(thin.final_state, dense.final_state)
+    size = {name: (tmp_path / f"{name}.h5").stat().st_size for name in ("dense", "thin")}
+    assert size["thin"] < 0.1 * size["dense"]
+    asked = sim.copy().run(duration=0.2, save_every=1e-4)
+    assert len(asked) == 2001
+    monkeypatch.setattr(keeping, "MANY", 100)
+    bare = sim.copy().run(duration=0.2)
+    assert not {"contacts", "pocket"} & set(bare.groups)
+    assert "without the groups contacts, pocket" in bare.meta["kept"]
+    assert sim.estimate(duration=0.2).records == 201

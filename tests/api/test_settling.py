@@ -1,0 +1,160 @@
+"""Three answers to whether a run has settled: settled, drifting with its time scale, not to be told from so short a run."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import observables as obs
+from trbdyn.cases import scene_30310
+
+CAGE = 130.0  # rad/s
+NOISE = np.random.default_rng(5)
+
+
+def judged(
+    duration: float,
+    radius: Any = 0.5,
+    spacing: Any = 0.3,
+    creep_time: float = math.nan,
+    noise: float = 0.02,
+    centre: complex = 0.0,
+) -> obs.MotionSettling:
+    """A cage whirling with its own rotation, with radius and spacing given as numbers or functions of time."""
+    t = np.linspace(0.0, duration, int(2000 * duration) + 1)
+
+    def values(of: Any) -> np.ndarray:
+        found = of(t) if callable(of) else np.full(t.size, of)
+        return np.asarray(found + noise * NOISE.normal(size=t.size))
+
+    place = centre + values(radius) * np.exp(1j * CAGE * t)
+    return obs.motion_settling(
+        t, CAGE * t, values(spacing), np.column_stack([place.real, place.imag]), CAGE * t, creep_time
+    )
+
+
+def test_settled() -> None:
+    found = judged(3.0, creep_time=0.5)
+    assert (found.answer, found.settled, str(found)) == ("settled", True, "yes")
+    assert math.isnan(found.time_scale)
+    assert set(found.drifts) == set(obs.LIMITS)
+    assert found.drifts["orbit radius"].mean == pytest.approx(0.5, rel=0.02)
+
+
+def test_a_transient_is_cut_off() -> None:
+    found = judged(4.0, radius=lambda t: 0.5 + 0.4 * np.exp(-t / 0.1), creep_time=0.5)
+    assert found.settled
+    assert 0.2 < found.time < 2.0
+
+
+def test_a_run_that_is_short_against_the_creep_cannot_be_told() -> None:
+    """However steady it looks: the same record, and only the creep differs."""
+    found = judged(3.0, creep_time=4.5)
+    assert found.answer == "unknown"
+    assert "creep within 4.5 s" in str(found)
+    assert judged(3.0, creep_time=0.9).settled
+
+
+def test_few_turns_cannot_be_told() -> None:
+    assert "only 2.1 turns" in str(judged(0.1))
+    assert judged(0.3, creep_time=0.01).answer == "unknown"
+
+
+@pytest.mark.parametrize("rate", [0.08, -0.08])
+def test_drift_has_its_time_scale(rate: float) -> None:
+    found = judged(3.0, spacing=lambda t: 0.4 + rate * t, noise=0.002)
+    assert found.answer == "drifting"
+    assert "roller spacing" in found.reason
+    assert ("increases" if rate > 0 else "decreases") in found.reason
+    mean = found.drifts["roller spacing"].mean
+    assert found.time_scale == pytest.approx(mean / abs(rate), rel=0.1)
+    assert found.drifts["roller spacing"].rate == pytest.approx(rate, abs=4 * found.drifts["roller spacing"].error)
+
+
+def test_a_whirl_that_grows_from_almost_nothing_drifts() -> None:
+    """Its radius hardly changes in the record; its logarithm does."""
+    found = judged(6.0, radius=lambda t: 1e-3 * np.exp(t / 2.0), creep_time=2.0, noise=1e-4)
+    assert found.answer == "drifting"
+    assert found.time_scale == pytest.approx(2.0, rel=0.15)
+    assert "grows" in found.reason
+
+
+def test_scatter_is_no_drift() -> None:
+    """At most a few in a hundred steady records with slow scatter are called drifting."""
+    wrong = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        slow = np.repeat(0.02 * rng.normal(size=80), 100)
+
+        def radius(t: np.ndarray, slow: np.ndarray = slow) -> np.ndarray:
+            return 0.5 + slow[np.minimum((t * 20).astype(int), 79)]
+
+        wrong += judged(4.0, radius=radius, creep_time=0.3, noise=0.005).answer == "drifting"
+    assert wrong <= 3
+
+
+def test_rollers_without_a_cage_are_judged_by_their_spacing() -> None:
+    t = np.linspace(0.0, 2.0, 4001)
+    steady = obs.motion_settling(t, CAGE * t, 0.3 + 0.01 * NOISE.normal(size=t.size))
+    assert steady.settled
+    assert obs.motion_settling(t, CAGE * t, 0.3 + 0.4 * t).answer == "drifting"
+
+
+def test_drift_needs_turns() -> None:
+    with pytest.raises(ValueError, match="at least 5"):
+        obs.drift([0.0, 1.0], [0.0, 1.0])
+    exact = obs.drift(np.arange(10.0), 3.0 + 0.5 * np.arange(10.0))
+    assert exact.rate == pytest.approx(0.5)
+    assert exact.error == pytest.approx(0.0, abs=1e-12)
+    assert exact.significant
+
+
+def test_the_slow_whirl_at_high_load_is_not_settled_in_a_second() -> None:
+    """3000 rpm, equal start: at 4930 N the whirl takes tens of seconds to grow, at 1230 N the rollers yield within a turn."""
+    answers = {}
+    for load, duration in ((4930.0, 1.0), (1230.0, 1.0)):
+        scene = scene_30310(3000.0, load, effects=trb.Effects.paper().replace(quadrature="gauss", n_slices=8))
+        run = trb.Simulation(scene, accuracy="fast").run(
+            duration=duration, save_every=1e-3, save_groups=["cage", "rollers"]
+        )
+        answers[load] = run.settling()
+        assert run.summary()["settled"] is answers[load].settled
+    assert answers[4930.0].answer in ("drifting", "unknown")
+    assert 3.0 < answers[4930.0].creep_time < 6.0
+    assert answers[1230.0].settled
+    assert answers[1230.0].creep_time < 0.1
+
+
+def test_creep_time_of_any_scene() -> None:
+    """A number where the law holds, nan elsewhere; never a warning or an error."""
+    import warnings
+
+    from trbdyn.paper.creep import creep_time
+
+    known = [
+        scene_30310(),
+        scene_30310(2000.0, 4930.0, 5530.0),
+        scene_30310(3000.0, 1230.0, 3000.0),
+        scene_30310(gravity=(0.0, 0.0, 0.0)),
+        scene_30310(effects=trb.Effects.standard()),
+        trb.cases.scene_32216(-2000.0),
+    ]
+    unknown = [
+        scene_30310(0.0),
+        scene_30310(effects=trb.Effects.minimal()),
+        scene_30310(effects=trb.Effects.frictionless()),
+        scene_30310(effects=trb.Effects.paper().replace(bodies="rollers")),
+        scene_30310(trb.History.ramp(0.0, 1.0, 0.0, 3000.0)),
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for scene in known:
+            assert 1e-3 < creep_time(scene) < 100.0
+        for scene in unknown:
+            assert math.isnan(creep_time(scene))
+    light, heavy = (creep_time(scene_30310(3000.0, load)) for load in (1230.0, 4930.0))
+    assert light < 0.02 * heavy

@@ -1,0 +1,126 @@
+"""The watch over a run: what is wrong is said, in the result, on the screen and in the file, and ends the run."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+import trbdyn as trb
+from trbdyn.cases import scene_30310
+from trbdyn.watch import STOP, WARN, WINDOWS, Watch
+
+LOOSE: dict[str, Any] = {
+    "rtol": 0.1,
+    "atol_position": 1e-6,
+    "atol_angle": 1e-4,
+    "atol_velocity": 1.0,
+    "atol_spin": 100.0,
+}
+
+
+def test_a_run_that_is_right_has_no_warnings(recwarn):
+    result = trb.Simulation(scene_30310()).run(duration=0.01)
+    assert result.success
+    assert result.warnings == ()
+    assert not [w for w in recwarn if issubclass(w.category, trb.RunWarning)]
+
+
+def test_a_run_that_is_wrong_ends_and_says_so(tmp_path):
+    path = tmp_path / "run.h5"
+    scene = scene_30310(500.0, 4930.0, 20_000.0)
+    with pytest.warns(trb.RunWarning, match="the energy does not add up"):
+        result = trb.Simulation(scene, **LOOSE).run(duration=0.03, output=path)
+    assert not result.success
+    assert "the energy does not add up" in result.message
+    assert "when_wrong='go_on'" in result.message
+    assert result.warnings
+    assert trb.load(path).warnings == result.warnings
+    assert trb.load(path).message == result.message
+
+
+def test_it_can_go_on_on_purpose():
+    scene = scene_30310(500.0, 4930.0, 20_000.0)
+    with pytest.warns(trb.RunWarning):
+        result = trb.Simulation(scene, when_wrong="go_on", **LOOSE).run(duration=0.03)
+    assert result.success
+    assert result.warnings
+
+
+class _Core:
+    """A core whose energies are given: what the watch reads of it."""
+
+    def __init__(self) -> None:
+        self.time, self.steps = 0.0, 0.0
+        self.row = [0.0, 0.0, 0.0, 0.0]
+
+    def observe(self, time: float, state: object) -> list[float]:
+        return list(self.row)
+
+    def state(self) -> None:
+        return None
+
+    def statistics(self) -> dict[str, float]:
+        return {"steps": self.steps, "error_failures": 0.0, "nonlinear_failures": 0.0}
+
+
+class _Model:
+    def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
+        names = ("work_shaft", "loss_rib", "kinetic_energy", "elastic_energy")
+        return [(name, place, ()) for place, name in enumerate(names)]
+
+
+class _Sim:
+    def __init__(self) -> None:
+        self._core, self._model = _Core(), _Model()
+
+
+def _window(work: float, loss: float, kinetic: float, elastic: float, **options: Any) -> tuple[str | None, list[str]]:
+    sim, found = _Sim(), []
+    watch = Watch(sim, WINDOWS * 1e-3, found, **options)  # type: ignore[arg-type]
+    sim._core.time, sim._core.row = 1e-3, [work, loss, kinetic, elastic]
+    return watch.look(), found
+
+
+@pytest.mark.parametrize(
+    ("work", "loss", "warned", "ended"),
+    [
+        (1.0, 1.0 - 0.9 * WARN, False, False),
+        (1.0, 1.0 - 1.2 * WARN, True, False),
+        (1.0, 1.0 + 1.2 * WARN, True, False),
+        (1.0, 1.0 + 1.2 * STOP, True, True),
+        (1.0, 1.0 - 1.2 * STOP, True, True),
+        (1e-12, 5e-12, False, False),
+        (math.nan, 1.0, True, True),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
+def test_bounds(work, loss, warned, ended):
+    reason, found = _window(work, loss, 0.0, 0.0)
+    assert bool(found) is warned
+    assert (reason is not None) is ended
+
+
+@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
+def test_vibrations_that_die_away_end_no_run():
+    """Elastic energy that is lost where nothing else takes energy: said, no more."""
+    reason, found = _window(0.0, 0.0, 0.0, -1.0)
+    assert found
+    assert reason is None
+    reason, found = _window(0.0, 0.0, 0.0, 1.0)
+    assert reason is not None, "energy that nobody put in"
+
+
+@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
+def test_steps_that_lead_nowhere_end_a_run():
+    sim, found = _Sim(), []
+    watch = Watch(sim, 1.0, found)  # type: ignore[arg-type]
+    reasons = []
+    for _ in range(60):
+        sim._core.steps += 4000.0
+        sim._core.time += 4000 * 1e-9
+        reasons.append(watch.look())
+    assert any("steps are" in text for text in found)
+    assert reasons[0] is None
+    assert reasons[-1] is not None

@@ -1,0 +1,75 @@
+"""The table of torques: every preset beside the measurements, both rings, the cup angle of ISO 355."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import trbdyn as trb
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCHMARKS = ROOT / "benchmarks"
+
+pytestmark = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="the benchmarks are not part of a source distribution")
+
+
+@pytest.fixture(scope="module")
+def torque(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    path = tmp_path_factory.mktemp("torque") / "torque.json"
+    command = [sys.executable, str(BENCHMARKS / "torque.py"), "--quick", "--json", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def test_every_preset_stands_beside_the_measurement(torque: dict[str, Any]) -> None:
+    rows = {(row["preset"], row["radial_load"]): row for row in torque["results"]}
+    assert set(rows) == {(preset, load) for preset in ("standard", "paper") for load in (0.0, 6500.0)}
+    for row in torque["results"]:
+        assert set(row) <= set(torque["columns"])
+        assert row["deviation"] == pytest.approx(100 * (row["shaft"] / row["measured"] - 1), abs=1e-9)
+        assert abs(row["deviation"]) < 40
+        assert row["rolling"] + row["rib"] + row["other"] == pytest.approx(row["shaft"], rel=0.02)
+
+
+def test_the_rings_agree_with_the_standard_preset_alone(torque: dict[str, Any]) -> None:
+    assert torque["summary"]["rings_differ"]["standard"] < 1.0
+    assert torque["summary"]["rings_differ"]["paper"] > 20.0
+
+
+def test_the_cup_angle_is_that_of_iso_355() -> None:
+    bearing = trb.cases.bearing_32216()
+    assert bearing.cup_half_angle_deg == pytest.approx(15 + 38 / 60 + 32 / 3600, abs=1e-9)
+    factor = 1.5 * math.tan(math.radians(bearing.cup_half_angle_deg))
+    assert 0.415 < factor < 0.43
+    load = 6000.0 / (bearing.n_rollers * math.sin(math.radians(bearing.cup_half_angle_deg)))
+    assert bearing.roller.profile.load == pytest.approx(load, rel=1e-3)
+
+
+def test_the_readme_has_every_measured_point() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(
+        r"^\| (0|6\.5 kN) \| (\d+) \| ([\d.]+) \| ([\d.]+) \(([\d.]+)\) \| ([+-]\d+) % \| ([\d.]+) ", text, re.M
+    )
+    measured = {("0", speed): value for speed, value in trb.cases.MEASURED_TORQUE_32216.items()}
+    measured |= {("6.5 kN", speed): value for speed, value in trb.cases.MEASURED_TORQUE_32216_COMBINED.items()}
+    assert {(load, float(speed)): float(value) for load, speed, value, *_ in rows} == measured
+    for _, _, value, shaft, outer, deviation, _ in rows:
+        assert float(outer) == pytest.approx(float(shaft), abs=0.02)
+        assert float(deviation) == pytest.approx(100 * (float(shaft) / float(value) - 1), abs=1.0)
+
+
+def test_users_get_the_standard_effects() -> None:
+    scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0)
+    assert scene.effects == trb.Effects.standard() == trb.Effects()
+    assert trb.cases.scene_32216().effects == trb.Effects.standard()
+    assert trb.cases.scene_30310().effects == trb.Effects.paper()
+    assert trb.load_case("rig_30310")[0].effects == trb.Effects.paper()

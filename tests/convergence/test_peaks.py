@@ -1,0 +1,216 @@
+"""Peaks: what happens between records, whatever records are made; looked at step by step."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import Effects, Result, Simulation
+from trbdyn import peaks as peak_table
+from trbdyn.cases import scene_30310
+
+SPAN = 0.06
+EVERY = [1e-3, 2e-4, 1e-4, 2e-5]
+SHARE = 2e-3
+"""What a held load of a ring's contact may be off; TRB_PEAK_SHARE of the core."""
+
+
+def whirling() -> trb.Scene:
+    return scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[float, Result]:
+    return {every: Simulation(whirling()).run(duration=SPAN, save_every=every) for every in EVERY}
+
+
+@pytest.mark.parametrize("every", EVERY[1:])
+def test_peaks_do_not_depend_on_records(runs: dict[float, Result], every: float) -> None:
+    one, other = runs[EVERY[0]].peaks, runs[every].peaks
+    assert set(one) == {field.name for field in peak_table.table()}
+    for name in one:
+        np.testing.assert_array_equal(one[name], other[name], err_msg=name)
+
+
+def test_pocket_statistics_are_those_of_all_steps(runs: dict[float, Result]) -> None:
+    stats = runs[EVERY[0]].pocket_statistics()
+    np.testing.assert_array_equal(stats.peak, runs[EVERY[-1]].peaks["pocket_force_peak"])
+    np.testing.assert_array_equal(stats.mean, runs[EVERY[-1]].peaks["pocket_force_mean"])
+    assert runs[EVERY[0]].summary()["pocket_force_peak"] == runs[EVERY[-1]].summary()["pocket_force_peak"]
+
+
+def test_records_miss_what_peaks_see(runs: dict[float, Result]) -> None:
+    samples = [runs[every].pocket_force.max() for every in EVERY]
+    peak = runs[EVERY[0]].peaks["pocket_force_peak"].max()
+    assert samples[0] < 0.5 * peak
+    assert samples[-1] == pytest.approx(peak, rel=0.05)
+
+
+@pytest.mark.parametrize("every", EVERY)
+def test_intervals_make_the_run(runs: dict[float, Result], every: float) -> None:
+    """Extremes and numbers of impacts to the last bit, integrals to rounding; times lie in their intervals."""
+    result = runs[every]
+    whole, joined, time = result.peaks, result.window().peaks, result.time
+    for name, how in ((row[0], row[5]) for row in trb._core.peak_table()):
+        if how == "time":
+            start, end = time[:-1, None], time[1:, None]
+            rows = result[name].reshape(time.size, -1)[1:]
+            assert ((rows >= start) & (rows <= end)).all(), name
+        if how in ("mean", "sum") or name == "pocket_impulse_peak":
+            np.testing.assert_allclose(joined[name], whole[name], rtol=1e-12, atol=1e-15, err_msg=name)
+        else:
+            np.testing.assert_array_equal(joined[name], whole[name], err_msg=name)
+    assert whole["pocket_impacts"].sum() > 20
+    np.testing.assert_array_equal(joined["pocket_impacts"], result.pocket_impacts.sum(axis=0))
+
+
+def test_means_do_not_alias(runs: dict[float, Result]) -> None:
+    """Samples of the pockets' forces do not tell their mean; the impulse does, and a fine record agrees."""
+    fine, coarse = runs[EVERY[-1]], runs[EVERY[0]]
+    mean = coarse.peaks["pocket_force_mean"].sum()
+    assert fine.pocket_force.mean(axis=0).sum() == pytest.approx(mean, rel=0.02)
+    np.testing.assert_allclose(coarse.peaks["pocket_impulse"], coarse.peaks["pocket_force_mean"] * SPAN, rtol=1e-12)
+    np.testing.assert_allclose(fine.outer_load.mean(), coarse.peaks["outer_load_mean"].mean(), rtol=1e-4)
+    assert (coarse.peaks["pocket_impulse_peak"] <= coarse.peaks["pocket_impulse"]).all()
+
+
+SCENES = {
+    "axial": {},
+    "radial": {"radial_load": 2000.0},
+    "tilted": {"misalignment_x": 1e-3},
+    "dry": {
+        "effects": Effects.standard().replace(lubrication="dry", rolling_resistance=False, rolling_pressure_force=False)
+    },
+    "rollers": {"effects": Effects.standard().replace(bodies="rollers"), "start": trb.Start.equal()},
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_step_by_step(name: str) -> None:
+    """Against records at the end of every step: of pockets to the last bit, of rings to what may be held."""
+    scene = scene_30310(
+        3000.0, 4930.0, **({"effects": Effects.standard(), "start": trb.Start.whirl(0.9)} | SCENES[name])
+    )
+    sim = Simulation(scene)
+    sim._core.begin_peaks(0.0)
+    rows = [sim.record()]
+    while sim.time < 4e-3:
+        sim.step()
+        rows.append(sim.record())
+    found = peak_table.from_row(sim._core.whole_peaks(sim.time), sim._model.peak_layout())
+    records = {field: np.array([row[field] for row in rows]) for field in rows[0]}
+    time = records["time"]
+    np.testing.assert_array_equal(found["pocket_force_peak"], records["pocket_force"].max(axis=0))
+    np.testing.assert_array_equal(found["pocket_force_peak_time"], time[records["pocket_force"].argmax(axis=0)])
+    np.testing.assert_array_equal(found["skew_peak"], np.abs(records["roller_skew"]).max(axis=0))
+    spacing = np.array([trb.observables.spacing(row["roller_orbit_angle"][None])[0] for row in rows])
+    np.testing.assert_allclose(found["spacing_max"], spacing.max(axis=0), atol=1e-12)
+    np.testing.assert_allclose(found["spacing_min"], spacing.min(axis=0), atol=1e-12)
+    begun = (records["pocket_force"][1:] > 0.0) & (records["pocket_force"][:-1] <= 0.0)
+    np.testing.assert_array_equal(found["pocket_impacts"], begun.sum(axis=0))
+    for quantity in ("outer_load", "inner_load", "rib_load", "front_rib_load", "pocket_force"):
+        mean = np.trapezoid(records[quantity], time, axis=0) / time[-1]
+        size = records[quantity].max()
+        np.testing.assert_allclose(
+            found[f"{quantity}_mean"], mean, rtol=SHARE, atol=SHARE * size + 1e-300, err_msg=quantity
+        )
+    for quantity in ("outer_load", "inner_load", "rib_load", "outer_pressure", "inner_pressure", "rib_pressure"):
+        np.testing.assert_allclose(
+            found[f"{quantity}_peak"], records[quantity].max(axis=0), rtol=SHARE, err_msg=quantity
+        )
+    for side in ("outer", "inner", "rib"):
+        loaded = np.where(records[f"{side}_load"] > 0.0, records[f"{side}_film_parameter"], np.inf).min(axis=0)
+        wanted = np.where(np.isfinite(loaded) & scene.effects.films, loaded, np.nan)
+        np.testing.assert_allclose(found[f"{side}_film_parameter_min"], wanted, rtol=SHARE, err_msg=side)
+
+
+def test_nobody_pays_who_does_not_ask(kit: SimpleNamespace, tmp_path: Path) -> None:
+    """Without the group no look is made, rows are records, and asking says why there is nothing."""
+    sim = kit.simulate(Effects.paper())
+    seen = []
+    result = sim.run(
+        duration=1e-3,
+        save_groups=["pocket"],
+        output=tmp_path / "r.h5",
+        callback=lambda now: seen.append(now._core.row_length),
+    )
+    assert set(seen) == {sim._model.record_length}
+    assert not result._info.peaks
+    with pytest.raises(trb.InputError, match="without the group 'peaks'"):
+        _ = result.peaks
+    assert result.summary()["pocket_force_peak"] is None
+    sim.run(duration=1e-3)
+    assert sim._core.row_length == sim._model.record_length
+    assert not sim._core.save_peaks().size
+
+
+def test_files_hold_the_peaks(runs: dict[float, Result], tmp_path: Path) -> None:
+    result = Simulation(whirling()).run(
+        duration=SPAN, save_every=1e-3, save_groups=["peaks"], output=tmp_path / "run.h5"
+    )
+    loaded = trb.load(tmp_path / "run.h5")
+    for found in (result, loaded):
+        assert found.groups == ("time", "peaks")
+        for name in runs[1e-3].peaks:
+            np.testing.assert_array_equal(found.peaks[name], runs[1e-3].peaks[name])
+            np.testing.assert_array_equal(found[name], runs[1e-3][name])
+    assert {field.unit for field in loaded.fields if field.name.endswith("_time")} == {"s"}
+    with pytest.raises(trb.InputError, match="pocket_force_peak"):
+        loaded.peaks["pocket_force_peek"]
+
+
+def test_pieces_have_peaks_of_their_own(runs: dict[float, Result]) -> None:
+    sim = Simulation(whirling())
+    pieces = [sim.run(duration=SPAN / 2, save_every=1e-3).peaks for _ in range(2)]
+    whole = runs[1e-3].peaks
+    for name in ("pocket_force_peak", "outer_load_peak", "skew_peak"):
+        np.testing.assert_allclose(np.maximum(pieces[0][name], pieces[1][name]), whole[name], rtol=SHARE)
+    for half, when in zip(pieces, (0.0, SPAN / 2), strict=True):
+        assert (half["pocket_force_peak_time"] >= when).all()
+        assert (half["pocket_force_peak_time"] <= when + SPAN / 2).all()
+    np.testing.assert_allclose(
+        pieces[0]["pocket_impulse"] + pieces[1]["pocket_impulse"], whole["pocket_impulse"], rtol=1e-3, atol=1e-9
+    )
+
+
+def test_a_run_that_ends_early_has_its_peaks() -> None:
+    sim = Simulation(whirling())
+    result = sim.run(duration=SPAN, save_every=1e-2, callback=lambda now: now.time > 0.02)
+    assert not result.success
+    assert sim.time == result.final_time > 0.02
+    assert result.peaks["pocket_force_peak_time"].max() <= result.final_time
+    reference = Simulation(whirling()).run(duration=result.final_time, save_every=1e-3)
+    np.testing.assert_array_equal(result.peaks["pocket_force_peak"], reference.peaks["pocket_force_peak"])
+
+
+def test_what_users_read_after_a_run_is_at_its_end(kit: SimpleNamespace) -> None:
+    """The integrator's last step reaches beyond; what is read does not, and the next run goes on as if nothing had been read."""
+    end = 1.23456e-3
+    sim = kit.simulate(Effects.paper())
+    kit.throw(sim)
+    whole = sim.copy()
+    result = sim.run(duration=end, save_every=1e-4)
+    assert sim._core.time > end
+    assert sim.time == sim.state.time == result.final_time == result.time[-1] == end
+    record = sim.record()
+    for name in record:
+        np.testing.assert_array_equal(record[name], result[name][-1], err_msg=name)
+    np.testing.assert_array_equal(result.final_state, sim.state.vector)
+    np.testing.assert_array_equal(sim.view()["cage_x"], sim.view(sim.state.vector)["cage_x"])
+    np.testing.assert_array_equal(sim.contacts()["pocket_load"], record["pocket_force"])
+    copy = sim.copy()
+    assert copy.time == end
+    np.testing.assert_array_equal(copy.state.vector, sim.state.vector)
+    sim.run(duration=1e-3)
+    whole.run(duration=end + 1e-3)
+    np.testing.assert_array_equal(sim._core.state(), whole._core.state())
+    before = sim.time
+    assert sim.step() > before
+    assert sim.time == sim._core.time
+    sim.run(duration=1e-4)
+    sim.restart()
+    assert sim._core.time == sim.time

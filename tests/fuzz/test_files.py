@@ -1,0 +1,448 @@
+"""Whatever lies beside a run, and whatever happens to its file: nobody's file is lost, and the run's own records are kept."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import stat
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import checkpoint
+from trbdyn.cases import scene_30310
+from trbdyn.checkpoint import checkpoint_path, previous_path
+from trbdyn.cli import main
+from trbdyn.errors import FileError, InputError, TrbError
+from trbdyn.hdf5_marks import take_lock
+
+SPAN = {"duration": 4e-3, "save_every": 1e-5}
+FOREIGN = b"days of work of somebody else\n"
+
+
+class Cut(Exception):
+    """Ends a run from within."""
+
+
+def cut_after(time: float) -> Callable[[trb.Simulation], None]:
+    def callback(sim: trb.Simulation) -> None:
+        if sim.time > time:
+            raise Cut
+
+    return callback
+
+
+def run(output: Path | str, **options: Any) -> trb.Result:
+    return trb.Simulation(scene_30310()).run(output=output, **SPAN | options)
+
+
+def cut_run(output: Path, after: float = 0.0, **options: Any) -> None:
+    with pytest.raises(Cut):
+        run(output, callback=cut_after(after), **{"checkpoint_every": 1e-3} | options)
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+# ---- what lies there already ----
+
+
+def test_an_existing_file_is_replaced_only_if_asked(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    first = run(path, duration=1e-4)
+    before = path.read_bytes()
+    with pytest.raises(FileError, match=r"run\.h5: the file exists already.*overwrite"):
+        run(path)
+    assert path.read_bytes() == before
+    assert len(run(path, duration=2e-4, overwrite=True)) == 2 * len(first) - 1
+    note = tmp_path / "note.txt"
+    note.write_bytes(FOREIGN)
+    with pytest.raises(FileError, match="exists already"):
+        run(note)
+    assert note.read_bytes() == FOREIGN
+
+
+def test_the_command_line_replaces_only_if_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, summary = tmp_path / "run.h5", tmp_path / "summary.json"
+    words = ["run", "rig_30310", "--duration", "1e-4", "--quiet", "-o", str(path), "--summary", str(summary)]
+    assert main(words) == 0
+    before = path.read_bytes(), summary.read_bytes()
+    assert main(words) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    path.rename(tmp_path / "other.h5")
+    assert main(words) == 2, "the summary is there still"
+    assert not path.exists()
+    assert (tmp_path / "other.h5").read_bytes(), summary.read_bytes() == before
+    assert main([*words, "--overwrite"]) == 0
+    assert main([*words[:-1], str(path), "--overwrite"]) == 2, "result and summary are one file"
+    assert trb.load(path).success
+
+
+def test_a_file_that_appears_while_a_run_is_prepared_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from trbdyn.result_file import ResultWriter
+
+    path, header = tmp_path / "run.h5", ResultWriter._write_header
+
+    def meanwhile(self: ResultWriter, *rest: Any) -> None:
+        header(self, *rest)
+        path.write_bytes(FOREIGN)
+
+    monkeypatch.setattr(ResultWriter, "_write_header", meanwhile)
+    with pytest.raises(FileError, match="exists already"):
+        run(path)
+    assert path.read_bytes() == FOREIGN
+    assert names(tmp_path) == ["run.h5"]
+
+
+def test_segments_of_others_and_text_files_stay(tmp_path: Path) -> None:
+    """Only segments of the very run that is replaced go."""
+    path = tmp_path / "run.h5"
+    cut_run(path, 2e-3)
+    trb.resume(path)
+    assert "run.part1.h5" in names(tmp_path)
+    text, other = tmp_path / "run.part2.h5", tmp_path / "run.part3.h5"
+    text.write_bytes(FOREIGN)
+    run(other, duration=1e-4)
+    run(path, duration=1e-4, overwrite=True)
+    assert names(tmp_path) == ["run.h5", "run.part2.h5", "run.part3.h5"]
+    assert text.read_bytes() == FOREIGN
+    assert trb.load(other).success
+    assert trb.load(path).success, "a complete run needs nothing that lies beside it"
+    path.unlink()
+    run(path, duration=1e-4)
+    assert names(tmp_path) == ["run.h5", "run.part2.h5", "run.part3.h5"]
+
+
+@pytest.mark.parametrize(("one", "two"), [("x.h5", "x.hdf5"), ("v3000.5", "v3000.6"), ("x", "x.h5")])
+def test_checkpoints_of_neighbours_do_not_collide(tmp_path: Path, one: str, two: str) -> None:
+    first, second = tmp_path / one, tmp_path / two
+    cut_run(first, 2e-3)
+    cut_run(second, 1e-3)
+    assert checkpoint_path(first) != checkpoint_path(second)
+    assert run(second, overwrite=True, checkpoint_every=1e-3).success
+    resumed = trb.resume(first)
+    assert resumed.success
+    assert resumed.time[-1] == 4e-3
+
+
+@pytest.mark.parametrize("name", ["y.checkpoint", "y.h5.checkpoint.previous", "y.new"])
+def test_a_result_cannot_have_a_checkpoints_name(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match="must not end in"):
+        run(tmp_path / name, checkpoint_every=1e-3)
+    assert names(tmp_path) == []
+
+
+def test_a_file_with_a_checkpoints_name_stays(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    for place in (checkpoint_path(path), previous_path(checkpoint_path(path))):
+        place.write_bytes(FOREIGN)
+        with pytest.raises(FileError, match="not a checkpoint"):
+            run(path, checkpoint_every=1e-3, overwrite=True)
+        assert place.read_bytes() == FOREIGN
+        assert names(tmp_path) == [place.name]
+        place.unlink()
+
+
+def test_the_checkpoint_of_a_lost_result_stays(tmp_path: Path) -> None:
+    """It is all that is left of a run: a new one does not replace it without being asked."""
+    path = tmp_path / "run.h5"
+    cut_run(path, 2e-3)
+    path.unlink()
+    kept = checkpoint_path(path).read_bytes()
+    with pytest.raises(FileError, match="a checkpoint of another run lies there"):
+        run(path, checkpoint_every=1e-3)
+    assert checkpoint_path(path).read_bytes() == kept
+    assert run(path, checkpoint_every=1e-3, overwrite=True).success
+    assert names(tmp_path) == ["run.h5"]
+
+
+def test_a_checkpoint_of_another_run_is_never_replaced_or_removed(tmp_path: Path) -> None:
+    other, path = tmp_path / "other.h5", tmp_path / "run.h5"
+    cut_run(other, 2e-3)
+    foreign = checkpoint_path(other).read_bytes()
+
+    def put(sim: trb.Simulation) -> None:
+        checkpoint_path(path).write_bytes(foreign)
+
+    with pytest.raises(FileError, match="that of another run lies there"):
+        run(path, checkpoint_every=1e-3, callback=put)
+    assert checkpoint_path(path).read_bytes() == foreign
+    checkpoint.remove(path, "a" * 32)
+    assert checkpoint_path(path).read_bytes() == foreign
+
+
+def test_noise_in_place_of_a_checkpoint_is_moved_aside(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    cut_run(path, 2e-3)
+    checkpoint_path(path).write_bytes(FOREIGN)
+    with pytest.warns(UserWarning, match="the one before it"):
+        assert trb.resume(path).success
+    assert (tmp_path / "run.h5.checkpoint.damaged").read_bytes() == FOREIGN
+
+
+# ---- what is no regular file ----
+
+
+def test_devices_pipes_and_folders_are_refused_at_once(tmp_path: Path) -> None:
+    pipe, folder = tmp_path / "pipe.h5", tmp_path / "folder.h5"
+    os.mkfifo(pipe)
+    folder.mkdir()
+    device = Path("/dev/null")
+    kind = stat.S_IFMT(device.stat().st_mode)
+    for place in (pipe, folder, device, "/dev/zero"):
+        for overwrite in (False, True):
+            with pytest.raises(FileError, match="not a regular file|is a folder"):
+                run(place, overwrite=overwrite)
+    assert stat.S_IFMT(device.stat().st_mode) == kind
+    assert names(tmp_path) == ["folder.h5", "pipe.h5"]
+
+
+def test_a_symbolic_link_is_followed_not_replaced(tmp_path: Path) -> None:
+    target, link = tmp_path / "disk" / "run.h5", tmp_path / "run.h5"
+    target.parent.mkdir()
+    link.symlink_to(target)
+    cut_run(link, 2e-3)
+    assert link.is_symlink()
+    assert len(trb.load(link))
+    with pytest.raises(FileError, match="exists already"):
+        run(link)
+    assert trb.resume(link).success
+    assert names(tmp_path) == ["disk", "run.h5"]
+    loop = tmp_path / "loop.h5"
+    loop.symlink_to(loop)
+    with pytest.raises(FileError):
+        run(loop, overwrite=True)
+
+
+def test_a_link_with_a_drafts_name_is_not_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Somebody who knows the draft's name cannot have a foreign file truncated through it."""
+    import uuid
+
+    known = uuid.UUID(int=7)
+    monkeypatch.setattr(uuid, "uuid4", lambda: known)
+    foreign, path = tmp_path / "foreign.txt", tmp_path / "run.h5"
+    foreign.write_bytes(FOREIGN)
+    for name in ("run.h5", "run.h5.checkpoint"):
+        for draft in (f".{name}.new", f".{name}.{known.hex[:12]}.new"):
+            (tmp_path / draft).symlink_to(foreign)
+    assert run(path, checkpoint_every=1e-3).success
+    assert foreign.read_bytes() == FOREIGN
+    assert not path.is_symlink()
+
+
+@pytest.mark.parametrize("output", ["", ".", "..", "a/", "/", "nul\0.h5", 3, None, b"run.h5", "\ud800.h5"])
+def test_what_names_no_file(output: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    if output is not None:
+        with pytest.raises(InputError) as found:
+            run(output, duration=1e-4)
+        assert found.value.field == "output"
+    for act in (trb.load, trb.resume):
+        with pytest.raises(TrbError):
+            act(output)
+    assert names(tmp_path) == []
+
+
+def test_long_names_are_refused_before_the_run(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="too long"):
+        run(tmp_path / ("保" * 80 + ".h5"), checkpoint_every=1e-3)
+    assert run(tmp_path / ("保" * 60 + ".h5"), checkpoint_every=1e-3, duration=1e-4).success
+
+
+# ---- what happens during the run ----
+
+
+def test_a_result_removed_during_the_run_is_put_back(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    seen: list[int] = []
+
+    def remove(sim: trb.Simulation) -> None:
+        seen.append(1)
+        path.unlink(missing_ok=True)
+
+    with pytest.raises(FileError, match="removed by another program; it is put back"):
+        run(path, duration=0.02, checkpoint_every=1e-3, callback=remove)
+    kept = trb.load(path)
+    assert len(kept) > 1
+    assert trb.resume(path).success, "the run goes on from there"
+    np.testing.assert_array_equal(trb.load(path).time[: len(kept)], kept.time)
+
+
+@pytest.mark.parametrize("by", ["text", "success"])
+def test_a_result_replaced_during_the_run_is_kept_beside(tmp_path: Path, by: str) -> None:
+    """The other file is left alone, and is not read as the run's success."""
+    path, other = tmp_path / "run.h5", tmp_path / "other.h5"
+    if by == "text":
+        other.write_bytes(FOREIGN)
+    else:
+        run(other, duration=1e-4)
+    content = other.read_bytes()
+
+    def replace(sim: trb.Simulation) -> None:
+        if other.exists():
+            other.replace(path)
+
+    with pytest.raises(FileError, match="replaced by another program; the records so far are in ") as found:
+        run(path, callback=replace)
+    assert path.read_bytes() == content
+    kept = Path(str(found.value).rpartition(" are in ")[2])
+    assert kept.parent == tmp_path
+    assert len(trb.load(kept)) > 1
+
+
+def test_a_result_replaced_after_the_last_write_is_not_read_as_success(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from trbdyn.result_file import ResultWriter
+
+    path, other = tmp_path / "run.h5", tmp_path / "other.h5"
+    run(other, duration=1e-4)
+    close = ResultWriter._close
+
+    def then_replace(self: ResultWriter) -> None:
+        close(self)
+        other.replace(path)
+
+    monkeypatch.setattr(ResultWriter, "_close", then_replace)
+    with pytest.raises(FileError, match="replaced by another program"):
+        run(path)
+
+
+CHILD = """
+import os, sys, time
+import trbdyn as trb
+from trbdyn import result_file
+from trbdyn.cases import scene_30310
+
+result_file.FLUSH_SECONDS = 0.0
+how, output = sys.argv[1:]
+calls = 0
+
+def callback(sim):
+    global calls
+    calls += 1
+    if calls != 2:
+        return
+    pid = os.fork()
+    if pid:
+        if how != "lives on":
+            os.waitpid(pid, 0)
+        return
+    if how == "raises":
+        raise SystemExit(0)
+    if how == "stops":
+        return True
+    if how == "exits":
+        sys.exit(0)
+    if how == "lives on":
+        os.close(1)
+        time.sleep(20)
+        os._exit(0)
+
+if True:
+    try:
+        trb.Simulation(scene_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output, callback=callback)
+    except trb.TrbError as error:
+        print("child:", error, flush=True)
+        sys.exit(0)
+    print("parent done", flush=True)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.parametrize("how", ["goes on", "stops", "raises", "exits", "lives on"])
+def test_a_forked_child_leaves_the_file_alone(tmp_path: Path, how: str) -> None:
+    """A callback may fork, as a pool of workers does: the child writes nothing, removes nothing and keeps no lock."""
+    path, reference = tmp_path / "run.h5", tmp_path / "reference.h5"
+    words = [sys.executable, "-P", "-c", CHILD, how, str(path)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
+    process = subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment, text=True, start_new_session=True
+    )
+    try:
+        assert process.stdout is not None
+        said = ""
+        while "parent done" not in said:
+            line = process.stdout.readline()
+            assert line, process.stderr.read() if process.stderr else ""
+            said += line
+        process.wait(60)
+        assert ("child:" in said) is (how in ("goes on", "stops"))
+        take_lock(path).close()
+        result, whole = trb.load(path), run(reference, duration=0.02, checkpoint_every=2e-3)
+        assert result.success
+        for name in ("time", "cage_position", "work_shaft"):
+            np.testing.assert_array_equal(result[name], whole[name])
+        assert names(tmp_path) == ["reference.h5", "run.h5"]
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+# ---- resuming ----
+
+RESUME = "import sys, trbdyn as trb\nprint('ready', flush=True)\nsys.stdin.readline()\ntrb.resume(sys.argv[1])\nprint('done')"
+
+
+def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
+    """The other one is told at once, and what the one gives is whole from the checkpoint on."""
+    path = tmp_path / "run.h5"
+    cut_run(path, 2e-3, duration=0.1)
+    path.unlink()
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
+    words = [sys.executable, "-P", "-c", RESUME, str(path)]
+    pipes: dict[str, Any] = {name: subprocess.PIPE for name in ("stdin", "stdout", "stderr")}
+    both = [subprocess.Popen(words, **pipes, env=environment, text=True) for _ in range(2)]
+    for process in both:
+        assert process.stdout.readline() == "ready\n"
+    for process in both:
+        process.stdin.write("\n")
+        process.stdin.flush()
+    began = time.monotonic()
+    said = [process.communicate() for process in both]
+    assert sorted(process.returncode for process in both) == [0, 1], (said, time.monotonic() - began)
+    refused = next(err for (_, err), process in zip(said, both, strict=True) if process.returncode)
+    assert "FileError" in refused
+    assert "exists already" in refused or "another run is writing it" in refused
+    result = trb.load(path)
+    assert result.success
+    assert "records of it are missing" in result.message
+    assert 0.0 < result.time[0] < result.time[-1] == pytest.approx(0.1)
+    assert names(tmp_path) == ["run.h5"]
+
+
+def test_resuming_touches_nothing_of_others(tmp_path: Path) -> None:
+    """A file of another run in the place of the result, or beside it, is read and left as it is."""
+    path, part = tmp_path / "run.h5", tmp_path / "run.part1.h5"
+    cut_run(path, 2e-3)
+    cut_run(part, 1e-3, checkpoint_every=None)
+    before = part.read_bytes()
+    assert trb.resume(path).success
+    assert part.read_bytes() == before
+    assert names(tmp_path) == ["run.h5", "run.part1.h5", "run.part2.h5"]
+    other = tmp_path / "other.h5"
+    cut_run(other, 2e-3)
+    run(path, duration=1e-4, overwrite=True).final_time  # noqa: B018
+    path.replace(other)
+    before = other.read_bytes()
+    with pytest.raises(FileError, match="belongs to another run") if not trb.load(other).success else _nothing():
+        assert trb.resume(other).success
+    assert other.read_bytes() == before
+
+
+class _nothing:
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, *error: object) -> None:
+        return None

@@ -1,0 +1,261 @@
+"""Files that a run makes, replaces and removes: its own ones, and nobody else's.
+
+A file that is about to appear is written under a draft's name first. The draft's name holds the name of the run, and it is created
+exclusively: nothing that is there already is opened, truncated or followed. It then takes its name in one step. A file that lies
+there is replaced only where the caller says so.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import uuid
+from contextlib import suppress
+from pathlib import Path
+from typing import BinaryIO
+
+from trbdyn.errors import FileError, InputError
+
+LONGEST_NAME = 200
+"""Most bytes of a file's name: file systems allow 255, and drafts and checkpoints have the name of the result in theirs."""
+
+RESERVED = (".checkpoint", ".checkpoint.previous", ".new")
+"""Endings of files that a run makes beside its result."""
+
+
+def file_path(value: object, field: str) -> Path:
+    """A path as users give it: a text or path-like that names a file.
+
+    Parameters
+    ----------
+    value : object
+        What the user gave.
+    field : str
+        Name of the argument, for the message.
+
+    Raises
+    ------
+    InputError
+        If it is no path, or names no file.
+    """
+    if not isinstance(value, str | os.PathLike):
+        raise InputError.of(field, value, "must be the path of a file")
+    text = os.fspath(value)
+    if not isinstance(text, str):
+        raise InputError.of(field, value, "must be the path of a file, as text")
+    if not text or "\0" in text:
+        raise InputError.of(field, value, "must name a file, without null characters")
+    try:
+        text.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:
+        raise InputError.of(field, value, "must name a file; it holds characters that no file name can have") from None
+    path = Path(text)
+    if path.name in ("", "..") or text.endswith(os.sep):
+        raise InputError.of(field, value, "must name a file, not a folder")
+    return path
+
+
+def folder_path(value: object, field: str) -> Path:
+    """A path as users give it: a text or path-like that names a folder.
+
+    Raises
+    ------
+    InputError
+        If it is no path, or empty.
+    """
+    text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
+    if not isinstance(text, str) or not text or "\0" in text:
+        raise InputError.of(field, value, "must be the path of a folder, without null characters")
+    return Path(text)
+
+
+def output_path(value: object, *, overwrite: bool, field: str = "output") -> Path:
+    """Where a result shall be written. A symbolic link is followed: its target is written.
+
+    Parameters
+    ----------
+    value : object
+        What the user gave.
+    overwrite : bool
+        Whether a file that is there may be replaced.
+    field : str
+        Name of the argument, for the message.
+
+    Raises
+    ------
+    InputError
+        If it names no file, or has an ending that checkpoints have.
+    FileError
+        If something lies there that must not be replaced.
+    """
+    path = file_path(value, field)
+    if path.is_symlink():
+        path = Path(os.path.realpath(path))
+    if path.name.endswith(RESERVED):
+        raise InputError.of(field, value, f"must not end in {', '.join(RESERVED)}: runs give such names themselves")
+    if len(os.fsencode(path.name)) > LONGEST_NAME:
+        raise FileError(f"{path}: the file name is too long: at most {LONGEST_NAME} bytes")
+    try:
+        there = path.lstat()
+    except FileNotFoundError:
+        return path
+    except OSError as error:
+        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+    if stat.S_ISDIR(there.st_mode):
+        raise FileError(f"{path}: cannot be written: it is a folder")
+    if not stat.S_ISREG(there.st_mode):
+        raise FileError(f"{path}: cannot be written: it is not a regular file")
+    if not overwrite:
+        raise exists_already(path)
+    return path
+
+
+def exists_already(path: Path) -> FileError:
+    """The error for a file that is there and was not asked to be replaced."""
+    return FileError(
+        f"{path}: the file exists already; give another name, or overwrite=True (--overwrite on the command line) to replace it"
+    )
+
+
+def draft_of(path: Path, run_id: str) -> Path:
+    """Name of the draft of a run's file."""
+    return path.with_name(f".{path.name}.{run_id[:12]}.new")
+
+
+def create(path: Path) -> BinaryIO:
+    """A new file, open for reading and writing; nothing that has its name already is opened or followed.
+
+    Raises
+    ------
+    OSError
+        If something has that name (errno EEXIST), or it cannot be made.
+    """
+    flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | os.O_CLOEXEC
+    return os.fdopen(os.open(path, flags, 0o666), "r+b")
+
+
+def create_draft(path: Path, run_id: str) -> tuple[Path, BinaryIO]:
+    """The draft of a run's file. One that the same run left when it was killed is removed first.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made.
+    """
+    draft = draft_of(path, run_id)
+    with suppress(FileNotFoundError):
+        draft.unlink()
+    return draft, create(draft)
+
+
+def put_in_place(draft: Path, path: Path, *, replace: bool) -> None:
+    """Give a draft its name, in one step.
+
+    Raises
+    ------
+    OSError
+        If it cannot; without `replace`, also if something has the name already (errno EEXIST).
+    """
+    if replace:
+        os.replace(draft, path)
+        return
+    try:
+        os.link(draft, path, follow_symlinks=False)
+    except OSError as error:
+        if error.errno not in (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK, errno.EXDEV):
+            raise
+        # a file system without hard links: the name is looked at, then taken
+        if os.path.lexists(path):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path)) from None
+        os.replace(draft, path)
+        return
+    os.unlink(draft)
+
+
+def write_whole(path: Path, content: bytes, *, overwrite: bool) -> None:
+    """Write a file that is either the old one or the whole new one.
+
+    Raises
+    ------
+    FileError
+        If it is there and shall not be replaced.
+    OSError
+        If it cannot be written.
+    """
+    draft, stream = create_draft(path, uuid.uuid4().hex)
+    try:
+        with stream:
+            stream.write(content)
+        put_in_place(draft, path, replace=overwrite)
+    except FileExistsError:
+        draft.unlink(missing_ok=True)
+        raise exists_already(path) from None
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+def read_text(path: Path, largest: int = 16 << 20) -> str:
+    """The text of a small file, UTF-8.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    ValueError
+        If it is longer than `largest` bytes, or no text.
+    """
+    # a pipe that nobody writes to is empty, and does not make it wait
+    with os.fdopen(os.open(path, os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NONBLOCK", 0)), "rb") as stream:
+        os.set_blocking(stream.fileno(), True)
+        data = stream.read(largest + 1)
+    if len(data) > largest:
+        raise ValueError(f"it is larger than {largest >> 20} MB")
+    return data.decode("utf-8")
+
+
+def set_aside(path: Path) -> Path:
+    """Move a file that belongs to nobody known to a name that is free: ``NAME.damaged``, ``NAME.damaged1`` and so on.
+
+    Raises
+    ------
+    OSError
+        If it cannot be moved.
+    """
+    for number in range(1000):
+        other = path.with_name(f"{path.name}.damaged{number or ''}")
+        try:
+            put_in_place(path, other, replace=False)
+        except FileExistsError:
+            continue
+        return other
+    raise OSError(errno.EEXIST, "too many damaged files lie beside it", str(path))
+
+
+def is_same(path: Path, stream: BinaryIO) -> bool:
+    """Whether a name still belongs to an open file."""
+    try:
+        named = path.stat()
+    except OSError:
+        return False
+    return os.path.samestat(named, os.fstat(stream.fileno()))
+
+
+def copy_content(stream: BinaryIO, path: Path) -> None:
+    """Write the content of an open file to a new file of another name.
+
+    Raises
+    ------
+    OSError
+        If something has that name, or it cannot be written.
+    """
+    with create(path) as target:
+        place, size = 0, os.fstat(stream.fileno()).st_size
+        while place < size:
+            block = os.pread(stream.fileno(), min(1 << 22, size - place), place)
+            if not block:
+                break
+            target.write(block)
+            place += len(block)
+        os.fsync(target.fileno())
