@@ -1,6 +1,10 @@
 """How the documentation site is built: MyST pages, code cells executed at build, warnings are errors (`make docs`)."""
 
+import os
+
 import trbdyn
+
+os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"  # pictures of code cells stand on the page
 
 project = "trbdyn"
 author = "The trbdyn developers"

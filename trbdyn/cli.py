@@ -1,7 +1,7 @@
 """The command line: run cases, draw pictures, look into files and cases.
 
-Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that cannot be used;
-3 a fault of trbdyn itself; 130 stopped by Ctrl-C outside of a run.
+Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that
+cannot be used; 3 a fault of trbdyn itself; 130 stopped by Ctrl-C outside of a run.
 """
 
 from __future__ import annotations

@@ -462,12 +462,12 @@ static PyObject *restore_peaks(PyObject *object, PyObject *values)
   trb_message        message = {TRB_OK, ""};
   PyArrayObject     *array = trb_array(values, 1, "peaks");
   if (array == NULL || enter(self, 0) != 0) {
-    Py_XDECREF(array);
+    Py_XDECREF((PyObject *)array);
     return NULL;
   }
   const trb_status status = trb_simulation_restore_peaks(self->simulation, PyArray_DATA(array), (int)PyArray_DIM(array, 0), &message);
   leave(self, 0);
-  Py_DECREF(array);
+  Py_DECREF((PyObject *)array);
   if (status != TRB_OK) return trb_raise(status, &message);
   Py_RETURN_NONE;
 }

@@ -93,7 +93,11 @@ def _whirl(result: Result, numbers: dict[str, Any]) -> Sentence | None:
             "The cage does not whirl",
             f"Its centre stays near one place (it moves by {orbit:.2g} of its radial play Cpr about it), {where}.",
         ),
-        "circling": ("care", "The cage whirls", f"Its centre goes round in one sense{rate}, on an orbit of {orbit:.2f} Cpr (rms), {where}."),
+        "circling": (
+            "care",
+            "The cage whirls",
+            f"Its centre goes round in one sense{rate}, on an orbit of {orbit:.2f} Cpr (rms), {where}.",
+        ),
         "unstable": (
             "bad",
             "The cage moves without order",
