@@ -26,13 +26,17 @@ SIDES: Final = ("outer", "inner", "rib")
 NAMES: Final = {"outer": "outer raceway", "inner": "inner raceway", "rib": "back-face rib"}
 
 
-def _polar(ax: Axes | None, size: tuple[float, float] = (5.2, 5.2)) -> Any:
-    """Polar axes: the given ones, or new ones with angles counted from x towards y."""
+def _polar(ax: Axes | None, title: str, size: tuple[float, float] = (5.2, 5.2)) -> Any:
+    """Polar axes with a title: the given ones, or new ones in a figure of their own."""
     if ax is not None:
         if ax.name != "polar":
             raise InputError.of("ax", ax.name, "must be polar axes: subplot_kw={'projection': 'polar'}")
+        if not ax.get_title():
+            ax.set_title(title, pad=14)
         return ax
-    return plt.subplots(figsize=size, subplot_kw={"projection": "polar"})[1]
+    figure, own = plt.subplots(figsize=size, subplot_kw={"projection": "polar"})
+    figure.suptitle(title, fontsize=10)
+    return own
 
 
 def binned(angle: Array, values: Array, bins: int) -> tuple[Array, Array, Array, Array]:
@@ -84,13 +88,13 @@ def load_zone(result: Result, ax: Axes | None = None, last: float | None = None,
     --------
     >>> import trbdyn as trb
     >>> result = trb.Simulation(trb.cases.scene_30310(2000.0, 4930.0, 5530.0)).run(revolutions=1)
-    >>> trb.plot.load_zone(result).get_title()
+    >>> trb.plot.load_zone(result).figure.get_suptitle()
     'Load of a roller by its place around the bearing (N)'
     """
     shown = last_turns(result, last)
     orbit = shown["roller_orbit_angle"]
     with plt.rc_context(STYLE):
-        ax = _polar(ax)
+        ax = _polar(ax, "Load of a roller by its place around the bearing (N)")
         for index, side in enumerate(SIDES):
             load = shown[f"{side}_load"]
             if not load.any():
@@ -102,7 +106,6 @@ def load_zone(result: Result, ax: Axes | None = None, last: float | None = None,
             ax.fill_between(around[0], around[2], around[3], color=COLOURS[index], alpha=0.2, linewidth=0)
         ax.set_ylim(bottom=0)
         _angles(ax)
-        ax.set_title("Load of a roller by its place around the bearing (N)", pad=14)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=1)
     return ax
 
@@ -169,7 +172,7 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
     touched = np.flatnonzero(statistics.peak.max(axis=0) > threshold).tolist()
     width = 2.0 * np.pi / count
     with plt.rc_context(STYLE):
-        paper: Any = _polar(ax)
+        paper: Any = _polar(ax, "Force in each pocket (N): peak (light) and 95 % while touched (dark)")
         for order, slot in enumerate(touched):
             bar = 0.8 * width / len(touched)
             place = width * np.arange(count) + bar * (order - 0.5 * (len(touched) - 1))
@@ -183,7 +186,6 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
         paper.set_thetagrids(
             np.degrees(width * np.arange(0, count, every)), [str(k + 1) for k in range(0, count, every)]
         )
-        paper.set_title("Force in each pocket (N): peak (light) and 95 % while touched (dark)", pad=14)
         if touched:
             paper.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)
         else:

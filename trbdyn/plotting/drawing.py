@@ -49,7 +49,7 @@ def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
     from trbdyn.viewer.shapes import cone_outline, cup_outline, profile_drop, rail_bands
 
     geometry, roller = bearing.geometry, bearing.roller
-    with canvas(ax, (6.4, 5.6)) as ax:
+    with canvas(ax, (6.4, 5.6), f"{bearing.name}: section through the bearing") as ax:
         for outline in (cup_outline(bearing), cone_outline(bearing)):
             corners = 1e3 * np.array(outline)[:, ::-1]
             ax.add_patch(Polygon(corners, facecolor=_STEEL, edgecolor="black", linewidth=0.9, hatch="///", alpha=0.9))
@@ -77,7 +77,6 @@ def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
         wide = 1.1e3 * max(abs(point[1]) for point in (*cup_outline(bearing), *cone_outline(bearing)))
         ax.set(xlim=(-wide, max(2.4 * wide, 1.05 * outer - wide)), ylim=(-0.06 * outer, 1.1 * outer))
         ax.set(xlabel="from the roller-centre plane towards the large ends (mm)", ylabel="radius (mm)")
-        ax.set_title(f"{bearing.name}: section through the bearing", pad=8)
         ax.grid(visible=False)
     return ax
 

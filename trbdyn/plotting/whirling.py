@@ -76,7 +76,7 @@ def poincare(result: Result, ax: Axes | None = None, once_per: Literal["cage", "
     """
     points, path = section_points(result, once_per), result.cage_locus()
     words = {"cage": "turn of the cage", "shaft": "turn of the shaft", "roller": "pitch of the cage"}[once_per]
-    with canvas(ax, (5.4, 4.8)) as ax:
+    with canvas(ax, (5.4, 4.8), "Poincaré section of the cage's centre") as ax:
         keep = max(1, len(path) // 20000)
         ax.plot(*path[::keep].T, color="#CCCCCC", linewidth=0.4, zorder=1, label="whole path")
         dots = ax.scatter(
@@ -92,7 +92,6 @@ def poincare(result: Result, ax: Axes | None = None, once_per: Literal["cage", "
         ax.add_patch(Circle((0, 0), 1.0, fill=False, linewidth=1.1))
         reach = 1.08 * max(1.0, float(np.abs(path).max()))
         ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel="$x/C_{pr}$", ylabel="$y/C_{pr}$")
-        ax.set_title("Poincaré section of the cage's centre", pad=26)
         legend(ax, ncols=2)
     return ax
 
@@ -135,7 +134,8 @@ def waterfall(results: Sequence[Result], ax: Axes | None = None, reach: float = 
     speeds = [_speed(run) for run in runs]
     gaps = np.diff(speeds)
     height = 0.9 * float(gaps[gaps > 0].min()) if np.any(gaps > 0) else max(0.3 * speeds[0], 1.0)
-    with canvas(ax, (6.4, 1.8 + 0.45 * min(len(runs), 12))) as ax:
+    title = f"Spectra of the cage's motion over speed ({decades:g} decades each)"
+    with canvas(ax, (6.4, 1.8 + 0.45 * min(len(runs), 12)), title) as ax:
         for order, (run, speed) in enumerate(zip(runs, speeds, strict=True)):
             if len(run) < 16:
                 raise InputError.of("results", f"{len(run)} records", "must have at least 16 records a run")
@@ -157,7 +157,6 @@ def waterfall(results: Sequence[Result], ax: Axes | None = None, reach: float = 
         ax.set(xlim=(-reach, reach), xlabel="frequency / shaft frequency (negative: backward whirl)")
         ax.set_ylabel("shaft speed (rpm)")
         ax.set_yticks(sorted({round(speed) for speed in speeds}))
-        ax.set_title(f"Spectra of the cage's motion over speed ({decades:g} decades each)", pad=16)
     return ax
 
 
@@ -185,7 +184,7 @@ def torque_sources(result: Result, ax: Axes | None = None) -> Axes:
         for field in result.fields
         if field.name.startswith("inner_torque_")
     }
-    with canvas(ax, (6.4, 3.6)) as ax:
+    with canvas(ax, (6.4, 3.6), "Friction torque of the shaft by source") as ax:
         total = result["inner_torque"]
         line(ax, turned, total, 2, f"sum (mean {total.mean():.4g} N m)", linestyle="-", linewidth=1.0)
         for index, (name, values) in enumerate(shares.items()):
@@ -194,6 +193,5 @@ def torque_sources(result: Result, ax: Axes | None = None) -> Axes:
                 line(ax, turned, values, 0, f"{name} ({values.mean():.3g} N m)", linewidth=0.9, **look)
         ax.axhline(0, color=GREY, linewidth=0.8)
         ax.set(xlabel="shaft revolutions", ylabel="friction torque (N m)", xlim=(turned[0], turned[-1]))
-        ax.set_title("Friction torque of the shaft by source", pad=42)
         legend(ax, ncols=2)
     return ax
