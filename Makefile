@@ -10,6 +10,7 @@
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make docs       the documentation site in build/docs; its code is run, warnings are errors
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
+#   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=60 SEED=1 MORE=1)
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -37,7 +38,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: demo docs wheels test lint format bench stability notebooks fuzz sanitize install clean distclean
+.PHONY: demo docs wheels test lint format bench stability notebooks fuzz sanitize mutate install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -81,6 +82,9 @@ notebooks: install $(VENV)/.test
 
 fuzz: $(VENV)/.tools
 	SECONDS_EACH=$(or $(SECONDS),60) .ci/fuzz
+
+mutate: install
+	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),60) --seed $(or $(SEED),1) $(if $(MORE),--more)
 
 install: build/.package
 

@@ -2,7 +2,7 @@
 
 Catalogues do not tell what is inside. The inner geometry is estimated: the cup's angle from e, the size of the rollers
 from the rating formula of ISO 281, everything else from usual ratios. Every estimate has a band and a source and stays
-marked as estimated (`Bearing.assumed`); whatever you know better, give it, or change it later with ``replace``.
+marked as estimated (`Bearing.estimated`); whatever you know better, give it, or change it later with ``replace``.
 """
 
 from __future__ import annotations

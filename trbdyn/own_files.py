@@ -1,8 +1,8 @@
 """Files that a run makes, replaces and removes: its own ones, and nobody else's.
 
-A file that is about to appear is written under a draft's name first. The draft's name holds the name of the run, and it is created
-exclusively: nothing that is there already is opened, truncated or followed. It then takes its name in one step. A file that lies
-there is replaced only where the caller says so.
+A file that is about to appear is written under a draft's name first. The draft is created exclusively: nothing that is
+there already is opened, truncated or followed. It then takes its name in one step. A file that lies there is replaced
+only where the caller says so.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from typing import BinaryIO
 from trbdyn.errors import FileError, InputError
 
 LONGEST_NAME = 200
-"""Most bytes of a file's name: file systems allow 255, and drafts and checkpoints have the name of the result in theirs."""
+"""Most bytes of a file's name: file systems allow 255, and drafts and checkpoints have the name of the result in
+theirs.
+"""
 
 RESERVED = (".checkpoint", ".checkpoint.previous", ".new")
 """Endings of files that a run makes beside its result."""
@@ -46,10 +48,8 @@ def file_path(value: object, field: str) -> Path:
         raise InputError.of(field, value, "must be the path of a file, as text")
     if not text or "\0" in text:
         raise InputError.of(field, value, "must name a file, without null characters")
-    try:
-        text.encode("utf-8", "surrogateescape")
-    except UnicodeEncodeError:
-        raise InputError.of(field, value, "must name a file; it holds characters that no file name can have") from None
+    if not _is_encodable(text):
+        raise InputError.of(field, value, "must name a file; it holds characters that no file name can have")
     path = Path(text)
     if path.name in ("", "..") or text.endswith(os.sep):
         raise InputError.of(field, value, "must name a file, not a folder")
@@ -65,9 +65,18 @@ def folder_path(value: object, field: str) -> Path:
         If it is no path, or empty.
     """
     text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
-    if not isinstance(text, str) or not text or "\0" in text:
+    if not isinstance(text, str) or not text or "\0" in text or not _is_encodable(text):
         raise InputError.of(field, value, "must be the path of a folder, without null characters")
     return Path(text)
+
+
+def _is_encodable(text: str) -> bool:
+    """Whether a file's name can have these characters."""
+    try:
+        os.fsencode(text)
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def output_path(value: object, *, overwrite: bool, field: str = "output") -> Path:

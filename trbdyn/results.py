@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -31,8 +32,8 @@ class Result(Derived):
     """What a run gives.
 
     Every recorded field is an attribute: a read-only float64 array with time as its first axis, in SI units
-    (``result.cage_position`` has shape (T, 3)); ``result.fields`` lists them with their units and texts. A result that was loaded
-    reads a field from its file when it is first asked for.
+    (``result.cage_position`` has shape (T, 3)); ``result.fields`` lists them with their units and texts. A result that
+    was loaded reads a field from its file when it is first asked for.
 
     Parameters
     ----------
@@ -159,13 +160,24 @@ class Result(Derived):
             If it was not recorded, or does not exist.
         """
         if name not in self._fields:
-            raise InputError.of("field", name, f"was not recorded; recorded groups: {', '.join(self.groups)}")
+            raise InputError.of("field", name, self._unknown(name))
         return self._source.read(name)
 
     def __getattr__(self, name: str) -> Array:
         if name.startswith("_") or name not in self._fields:
-            raise AttributeError(f"this result has no field or attribute {name!r}")
+            raise AttributeError(f"this result has no {name!r}: {self._unknown(name)}")
         return self[name]
+
+    def _unknown(self, name: str) -> str:
+        """Why there is no such field: its group was not saved, or what the name may have meant."""
+        every = {field.name: field.group for field in field_table.table()}
+        saved = f"saved groups: {', '.join(self.groups)}"
+        if name in every:
+            return f"was not recorded: it belongs to the group '{every[name]}', which save_groups left out; {saved}"
+        derived = [entry for entry in super().__dir__() if not entry.startswith("_")]
+        near = difflib.get_close_matches(str(name), [*every, *derived], n=3)
+        hint = f"did you mean {' or '.join(repr(entry) for entry in near)}? " if near else ""
+        return f"unknown name; {hint}{saved}; `dir(result)` lists every name"
 
     def __contains__(self, name: object) -> bool:
         return name in self._fields
@@ -274,8 +286,8 @@ class Result(Derived):
     def peaks(self) -> Peaks:
         """Extremes, means and impacts between the records too: of the whole run, or of a window's records.
 
-        ``result.peaks["pocket_force_peak"]`` is the largest force on each face of each pocket, ``result.pocket_force_peak`` the
-        largest since the record before, at each record.
+        ``result.peaks["pocket_force_peak"]`` is the largest force on each face of each pocket,
+        ``result.pocket_force_peak`` the largest since the record before, at each record.
 
         Raises
         ------
@@ -291,7 +303,9 @@ class Result(Derived):
 
     @property
     def settled(self) -> Result:
-        """The result after the transient, the second half of the run at least; `settling` says whether it has settled there."""
+        """The result after the transient, the second half of the run at least; `settling` says whether it has settled
+        there.
+        """
         return self.window(self.settling().time)
 
     @property
@@ -312,7 +326,8 @@ class Result(Derived):
         Returns
         -------
         xarray.Dataset
-            Dimensions time, roller, xyz, xy, wxyz and slot; attributes ``units`` and ``long_name`` as xarray's plots use them.
+            Dimensions time, roller, xyz, xy, wxyz and slot; attributes ``units`` and ``long_name`` as xarray's plots
+            use them.
         """
         import xarray
 
@@ -341,8 +356,8 @@ def load(path: str | os.PathLike[str]) -> Result:
     Returns
     -------
     Result
-        Its fields are read when they are asked for. If the run was cut off, ``success`` is False and the records up to the last
-        write are there.
+        Its fields are read when they are asked for. If the run was cut off, ``success`` is False and the records up to
+        the last write are there.
 
     Raises
     ------

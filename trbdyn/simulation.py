@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, p
 from trbdyn.keeping import kept_by_default
 from trbdyn.motion import MAX_TIME
 from trbdyn.own_files import output_path
+from trbdyn.plausible import UnusualInput, unusual
 from trbdyn.results import Result
 from trbdyn.run_options import Group, RunOptions
 from trbdyn.running import Callback, Run, output_times
@@ -41,10 +43,13 @@ class State:
         Time (s).
     vector : ndarray, shape (n_state,)
         The core's state vector.
+    shaft_angle : float, optional
+        Angle of the shaft (rad).
     """
 
     time: float
     vector: Array
+    shaft_angle: float | None = None
 
 
 def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
@@ -71,8 +76,8 @@ class Simulation:
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances.
     instruction_set : str
-        Kernel variant: 'scalar', 'base', 'avx2', 'avx512'; by default the fastest that this machine runs. Results of two
-        variants differ in rounding.
+        Kernel variant: 'scalar', 'base', 'avx2', 'avx512'; by default the fastest that this machine runs. Results of
+        two variants differ in rounding.
     **options
         Fields of `RunOptions` that set the integrator: integrator, rtol, atol_position, atol_angle, atol_velocity,
         atol_spin, max_order, max_step, first_step, rings_share, checkpoint_every.
@@ -83,6 +88,11 @@ class Simulation:
         If the scene or an option cannot be used.
     LoadError
         If the bearing cannot carry the load.
+
+    Warns
+    -----
+    UnusualInput
+        Where numbers are allowed but can hardly be meant; the texts are kept in `warnings` and in the result's notes.
     """
 
     def __init__(self, scene: Scene, *, accuracy: str = "standard", instruction_set: str = "", **options: Any) -> None:
@@ -91,6 +101,9 @@ class Simulation:
         self._model = build_model(scene, instruction_set)
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
+        self.warnings = unusual(scene, self.equilibrium)
+        for text in self.warnings:
+            warnings.warn(text, UnusualInput, stacklevel=2)
         self._running = False
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
@@ -98,14 +111,20 @@ class Simulation:
         self._reached = scene.start.time
 
     equilibrium: Equilibrium
+    warnings: tuple[str, ...]
     _end: State | None
-    """Where a run has ended, inside the integrator's last step; None where the present state is the end of that step."""
+    """Where a run has ended, inside the integrator's last step; None where the present state is the end of that
+    step.
+    """
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if not abs(time) <= MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
+        first = self.scene.start.time
+        if time < first and len(self._motion.table) > 1:
+            raise InputError.of("time", time, f"must be >= {first:g}, the start: histories are known from there on (s)")
         try:
-            return _core.Simulation(self._model, self._motion, time, vector, self.options.settings())
+            return self._motion.open(self._model, time, vector, self.options.settings())
         except ValueError as error:
             raise InputError.of("state", "given", str(error)) from None
 
@@ -116,8 +135,8 @@ class Simulation:
         self._end = None
 
     def _stand_at(self, time: float) -> None:
-        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there.
-        Where a callback has gone on after that instant, or has set a state, the present state is that one.
+        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on
+        from there. Where a callback has gone on after that instant, or has set a state, the present state is that one.
         """
         self._end = None
         if time != self._core.time:
@@ -140,8 +159,9 @@ class Simulation:
     def time(self) -> float:
         """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
 
-        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the run's end;
-        the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the whole run.
+        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the
+        run's end; the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the
+        whole run.
         """
         return self._core.time if self._end is None else self._end.time
 
@@ -154,8 +174,10 @@ class Simulation:
     def state(self) -> State:
         """A copy of the present state, at `time`."""
         if self._end is not None:
-            return State(self._end.time, self._end.vector.copy())
-        return State(self._core.time, self._core.state())
+            time, vector = self._end.time, self._end.vector.copy()
+        else:
+            time, vector = self._core.time, self._core.state()
+        return State(time, vector, self.scene.start_shaft_angle + self.scene.shaft_turn(time))
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
@@ -243,7 +265,9 @@ class Simulation:
     def estimate(
         self, *, revolutions: float | None = None, duration: float | None = None, save_every: float | None = None
     ) -> Estimate:
-        """Expected wall time and error of a run from here, by a short probe of a copy; see `trbdyn.estimate.estimate`."""
+        """Expected wall time and error of a run from here, by a short probe of a copy; see
+        `trbdyn.estimate.estimate`.
+        """
         from trbdyn.estimate import estimate
 
         return estimate(self, revolutions=revolutions, duration=duration, save_every=save_every)
@@ -264,10 +288,10 @@ class Simulation:
         Returns
         -------
         dict of str to ndarray
-            ``raceway_<quantity>``, shape (2, Z, n): outer and inner race, roller, node, for interference, load, pressure,
-            films, film parameter, slide-roll ratio, friction coefficient and others; ``rib_<quantity>`` and
-            ``front_rib_<quantity>``, shape (Z,); ``pocket_load``, ``pocket_friction``, ``pocket_interference`` (negative:
-            gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); all SI.
+            ``raceway_<quantity>``, shape (2, Z, n): outer and inner race, roller, node, for interference, load,
+            pressure, films, film parameter, slide-roll ratio, friction coefficient and others; ``rib_<quantity>`` and
+            ``front_rib_<quantity>``, shape (Z,); ``pocket_load``, ``pocket_friction``, ``pocket_interference``
+            (negative: gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); all SI.
         """
         return self._core.contacts(*self._place(vector, time))
 
@@ -314,8 +338,9 @@ class Simulation:
         duration : float, optional
             How far to go (s); one of both must be given.
         save_every : float, optional
-            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3 s, but
-            not longer than a twentieth of a turn of the shaft (`trbdyn.keeping`); ``result.meta["kept"]`` says what was kept.
+            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3
+            s, but not longer than a twentieth of a turn of the shaft (`trbdyn.keeping`); ``result.meta["kept"]`` says
+            what was kept.
         save_groups : sequence of str, optional
             Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
         output : path-like, optional
@@ -323,11 +348,11 @@ class Simulation:
         progress : bool
             Show a progress bar.
         callback : callable, optional
-            Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run too,
-            after the file is closed. It may look at the simulation, but not step, restart or set it.
+            Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run
+            too, after the file is closed. It may look at the simulation, but not step, restart or set it.
         checkpoint_every : float, optional
-            Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options. Together
-            with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
+            Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options.
+            Together with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
         overwrite : bool
             Replace the file `output` if it is there, together with segments and checkpoints of the run that it holds.
 
@@ -347,6 +372,8 @@ class Simulation:
         """
         self._check_not_running("run")
         path = None if output is None else output_path(output, overwrite=overwrite)
+        if path is not None:
+            _check_output(path)
         changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
         changes |= {} if save_every is None else {"save_every": save_every}
         changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
@@ -360,6 +387,18 @@ class Simulation:
         if path is not None:
             run.write_to(path, overwrite=overwrite)
         return run.go(progress=progress)
+
+
+_OTHER_FORMATS = frozenset(
+    (".csv", ".txt", ".json", ".toml", ".npy", ".npz", ".mat", ".xlsx", ".parquet", ".png", ".gif", ".nc")
+)
+
+
+def _check_output(path: Path) -> None:
+    """Records are written as HDF5: a name that says something else would mislead."""
+    if path.suffix.lower() in _OTHER_FORMATS:
+        limit = f"must end in .h5 or .hdf5: records are written as HDF5, not as {path.suffix}"
+        raise InputError.of("output", str(path), limit)
 
 
 def _numbers(values: ArrayLike) -> Array:

@@ -85,7 +85,7 @@ def sensitivity(
 ) -> Sensitivity:
     """Which estimated inputs of the scene's bearing matter for a result.
 
-    Every estimate (`Bearing.assumed`) is put to the low and the high end of its band, alone, and a short run is made
+    Every estimate (`Bearing.estimated`) is put to the low and the high end of its band, alone, and a short run is made
     for each end. A cage that collides is chaotic, so a result moves a little whatever is changed: this scatter is
     measured by a run that starts otherwise, and smaller influences are marked as not told apart.
 
@@ -137,7 +137,7 @@ def sensitivity(
 
 
 def _chosen(bearing: Bearing, paths: Sequence[str] | None) -> list[Estimated]:
-    known = {entry.path: entry for entry in bearing.assumed}
+    known = {entry.path: entry for entry in bearing.estimated}
     if not known:
         raise InputError.of(
             "scene", bearing.name, "must have a bearing with estimates, as Bearing.from_catalogue makes it"

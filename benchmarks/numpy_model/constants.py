@@ -21,9 +21,9 @@ SLIDING_GUARD = 1e-9
 PASCAL_PER_BAR = 1e5
 
 NORMAL, TRACTION, RESISTANCE, ROLLING_SPEED, PRESSURE, ELASTIC, RIGID, THERMAL_1, THERMAL_2, THERMAL_3 = range(10)
-"""Powers of interference, sliding and mean speed: load (N); traction over sliding speed at S = 1; rolling resistance over
-mean speed; mean speed over half width times viscosity over the floor's half width; mean pressure (bar); both films times
-tau0 over viscosity; the three powers of the thermal factor."""
+"""Powers of interference, sliding and mean speed: load (N); traction over sliding speed at S = 1; rolling resistance
+over mean speed; mean speed over half width times viscosity over the floor's half width; mean pressure (bar); both
+films times tau0 over viscosity; the three powers of the thermal factor."""
 
 
 class Constants:
@@ -43,7 +43,7 @@ class Constants:
     def __init__(self, scene: Scene) -> None:
         self.p = {name: float(entry.value) for name, entry in scene_entries(scene).items()}
         self.g = scene.bearing.geometry
-        motion, _ = ring_motion(build_model(scene), scene)
+        motion = ring_motion(build_model(scene), scene)[0].table
         self.check(motion)
         self.n_rollers = int(self.p["n_rollers"])
         self.n_nodes = int(self.p["n_slices"])
@@ -121,7 +121,9 @@ class Constants:
         return _core.law("profile_logarithmic", np.stack([station, *(np.full_like(station, x) for x in numbers)]))
 
     def _exponents(self) -> None:
-        """Logarithms of all powers are linear in (ln d, ln sliding, ln mean): a matrix and a constant for races and rib."""
+        """Logarithms of all powers are linear in (ln d, ln sliding, ln mean): a matrix and a constant for races and
+        rib.
+        """
         p, g, modulus = self.p, self.g, self.g.effective_modulus
         eta, tau = log(p["viscosity"]), log(p["eyring_stress"])
         log_g = log(p["pressure_coefficient"] * modulus)

@@ -66,9 +66,9 @@ def test_rollers_that_fit_reach_the_rating(name: str, cup: bool) -> None:
     assert small - 0.5e-3 * d > 0.05 * height
     assert 0.5e-3 * D - large > 0.02 * height
     assert bearing.n_rollers * bearing.roller.diameter < 0.89 * 3.1416 * bearing.pitch_diameter
-    for entry in bearing.assumed:
+    for entry in bearing.estimated:
         assert entry.low <= entry.value <= entry.high, entry
-    assert all("maker's factor" not in entry.source for entry in bearing.assumed)
+    assert all("maker's factor" not in entry.source for entry in bearing.estimated)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -90,7 +90,7 @@ def test_bands_hold_what_is_known_of_real_bearings() -> None:
     maker.
     """
     real = trb.cases.bearing_32216()
-    found = {entry.path: entry for entry in trb.Bearing.from_catalogue(**page("32216")).assumed}
+    found = {entry.path: entry for entry in trb.Bearing.from_catalogue(**page("32216")).estimated}
     known = {
         "pitch_diameter": real.pitch_diameter,
         "roller.diameter": real.roller.diameter,
@@ -115,7 +115,7 @@ def test_what_is_known_is_taken_and_not_estimated() -> None:
     assert bearing.roller.diameter == rig.roller.diameter
     assert bearing.n_rollers == 12
     assert bearing.cage.play_radial == pytest.approx(rig.cage.play_radial)
-    paths = {entry.path for entry in bearing.assumed}
+    paths = {entry.path for entry in bearing.estimated}
     assert not paths & {
         "n_rollers",
         "roller.diameter",
@@ -141,9 +141,9 @@ def test_estimates_are_marked_until_they_are_changed() -> None:
     assert marks["bearing.roller.diameter"] == "estimated"
     assert marks["bearing.cage.play_radial"] == "estimated"
     known = changed(bearing, "roller.diameter", 9.8e-3)
-    assert "roller.diameter" not in {entry.path for entry in known.assumed}
-    assert "cage.mass" in {entry.path for entry in known.assumed}
-    assert trb.cases.rig_30310().assumed == ()
+    assert "roller.diameter" not in {entry.path for entry in known.estimated}
+    assert "cage.mass" in {entry.path for entry in known.estimated}
+    assert trb.cases.rig_30310().estimated == ()
 
 
 @pytest.mark.parametrize(
@@ -172,7 +172,7 @@ def test_bad_pages_are_refused(change: dict[str, Any], match: str) -> None:
 
 def test_a_maker_whose_rating_is_above_the_standard_is_said() -> None:
     bearing = trb.Bearing.from_catalogue(**page("30310", C=190e3))
-    assert any("maker's factor" in entry.source for entry in bearing.assumed)
+    assert any("maker's factor" in entry.source for entry in bearing.estimated)
     assert bearing.roller.diameter <= RATIOS["diameter"][2] * 0.030 + 1e-12
 
 

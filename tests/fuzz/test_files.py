@@ -1,4 +1,6 @@
-"""Whatever lies beside a run, and whatever happens to its file: nobody's file is lost, and the run's own records are kept."""
+"""Whatever lies beside a run, and whatever happens to its file: nobody's file is lost, and the run's own records are
+kept.
+"""
 
 from __future__ import annotations
 
@@ -200,7 +202,7 @@ def test_devices_pipes_and_folders_are_refused_at_once(tmp_path: Path) -> None:
     kind = stat.S_IFMT(device.stat().st_mode)
     for place in (pipe, folder, device, "/dev/zero"):
         for overwrite in (False, True):
-            with pytest.raises(FileError, match="not a regular file|is a folder"):
+            with pytest.raises(FileError, match=r"not a regular file|is a folder"):
                 run(place, overwrite=overwrite)
     assert stat.S_IFMT(device.stat().st_mode) == kind
     assert names(tmp_path) == ["folder.h5", "pipe.h5"]
@@ -350,7 +352,8 @@ def callback(sim):
 
 if True:
     try:
-        trb.Simulation(scene_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output, callback=callback)
+        trb.Simulation(scene_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output,
+        callback=callback)
     except trb.TrbError as error:
         print("child:", error, flush=True)
         sys.exit(0)
@@ -401,7 +404,7 @@ def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
     path.unlink()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     words = [sys.executable, "-P", "-c", RESUME, str(path)]
-    pipes: dict[str, Any] = {name: subprocess.PIPE for name in ("stdin", "stdout", "stderr")}
+    pipes: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
     both = [subprocess.Popen(words, **pipes, env=environment, text=True) for _ in range(2)]
     for process in both:
         assert process.stdout.readline() == "ready\n"

@@ -72,6 +72,7 @@ def contact_viscosity(oil: Lubricant, pressure: Array) -> Array:
     """Viscosity (Pa s) of an oil at a pressure (Pa), by its pressure law."""
     if oil.pressure_law == "dicke":
         law = oil.dicke
+        assert law is not None
         exponent = laws.viscosity_dicke(pressure, oil.temperature_c, law.a, law.b, law.c, law.d)
     elif oil.pressure_law == "roelands":
         exponent = laws.viscosity_roelands(
@@ -229,12 +230,13 @@ def bar_lean(bearing: Bearing) -> float:
 
 
 def creep_time(scene: Scene) -> float:
-    """Time in which creep lets the whirl of the cage change by its own size (s): the scale of every slow change of the motion.
+    """Time in which creep lets the whirl of the cage change by its own size (s): the scale of every slow change of the
+    motion.
 
-    T_c Z/(2 chi) over the larger of q Fn c^4 and c k^2/2, the terms of centrifugal force and weight in `growth_per_turn`
-    (q = Cpc/Cpr, c = cos(gamma), k = q c). Both terms count, as they oppose each other: what is left of them is a difference.
-    Where rollers differ in load, v' is their mean, as each roller comes to every place of the loaded zone; none counts with more
-    than the drift at which it yields within a turn of the cage, chi = 2 Z/c.
+    T_c Z/(2 chi) over the larger of q Fn c^4 and c k^2/2, the terms of centrifugal force and weight in
+    `growth_per_turn` (q = Cpc/Cpr, c = cos(gamma), k = q c). Both terms count, as they oppose each other: what is left
+    of them is a difference. Where rollers differ in load, v' is their mean, as each roller comes to every place of the
+    loaded zone; none counts with more than the drift at which it yields within a turn of the cage, chi = 2 Z/c.
 
     Parameters
     ----------

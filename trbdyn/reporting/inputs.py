@@ -59,18 +59,20 @@ def field_texts(kind: type[Model]) -> Mapping[str, str]:
 
 def rows(scene: Scene) -> list[Row]:
     """Every input of a scene."""
-    estimated = {estimate.path for estimate in getattr(scene.bearing, "assumed", ()) if hasattr(estimate, "path")}
-    return list(_rows(scene, "", estimated))
+    marks = dict.fromkeys(scene.bearing.assumed, "assumed") | {
+        entry.path: "estimated" for entry in scene.bearing.estimated
+    }
+    return list(_rows(scene, "", marks))
 
 
-def _rows(model: Model, prefix: str, estimated: set[str]) -> Iterator[Row]:
+def _rows(model: Model, prefix: str, marks: dict[str, str]) -> Iterator[Row]:
     texts = field_texts(type(model))
     for name, info in type(model).model_fields.items():
         if name in HIDDEN:
             continue
         value, path = getattr(model, name), f"{prefix}{name}"
         if isinstance(value, Model) and name not in ("pocket",) and not _is_history(value):
-            yield from _rows(value, f"{path}.", estimated)
+            yield from _rows(value, f"{path}.", marks)
             continue
         if value is None or value == ():
             continue
@@ -80,8 +82,8 @@ def _rows(model: Model, prefix: str, estimated: set[str]) -> Iterator[Row]:
         unit = unit or _unit_in(text)
         default = info.get_default(call_default_factory=True) if not info.is_required() else None
         mark = "assumed" if "assumed" in text and value == default else ""
-        if path.removeprefix("bearing.") in estimated:
-            mark = "estimated"
+        if path.startswith("bearing."):
+            mark = marks.get(path.removeprefix("bearing."), "")
         yield Row(path, _shown(value), "" if unit == "1" else unit, _short(text), mark)
 
 

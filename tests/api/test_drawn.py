@@ -1,0 +1,213 @@
+"""What is drawn: every curve, bar and mark against the result, where no two panels, faces, sides or components are
+alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection
+from numpy.typing import NDArray
+
+from trbdyn import plotting
+from trbdyn.plotting.style import COLOURS
+from trbdyn.results import Result
+
+Array = NDArray[np.float64]
+
+
+@pytest.fixture(autouse=True)
+def _close() -> Iterator[None]:
+    yield
+    plt.close("all")
+
+
+@pytest.fixture
+def uneven(synthetic: Any, whirling: Result) -> Result:
+    """As the whirling run, but every pocket, face, side and component with its own numbers; too short to be thinned."""
+    keep = slice(0, 400)
+    time = synthetic.column("time")[keep]
+    for name in ("pocket_force", "cage_tilt", "cage_position", "outer_load", "inner_load", "rib_load"):
+        column = synthetic.column(name)
+        random = np.random.default_rng(len(name))
+        column[...] *= 1.0 + random.random(column.shape)
+    force = synthetic.column("pocket_force")
+    force[...] = (
+        1.0 + np.arange(48).reshape(12, 4) + np.sin(40.0 * synthetic.column("time"))[:, np.newaxis].reshape(-1, 1, 1)
+    )
+    force[:, :, 3] = 0.0
+    assert time.size == 400
+    about = {"scene": whirling.scene, "geometry": synthetic.geometry, "fields": synthetic.fields} | synthetic.ending()
+    return Result.from_records(synthetic.records[keep], synthetic.layout, **about)
+
+
+def data(line: Any) -> tuple[Array, Array]:
+    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
+
+
+def turns(result: Result) -> Array:
+    return result.shaft_angle / (2.0 * np.pi)
+
+
+def curve(ax: Any, label: str) -> tuple[Array, Array]:
+    return data(next(line for line in ax.lines if label in str(line.get_label())))
+
+
+def test_tilt(uneven: Result) -> None:
+    ax = plotting.tilt(uneven, last=None)
+    for index, label in enumerate((r"\theta_x", r"\theta_y")):
+        x, y = curve(ax, label)
+        np.testing.assert_allclose(x, turns(uneven))
+        np.testing.assert_allclose(y, 1e3 * uneven.cage_tilt[:, index])
+
+
+def test_axial_motion(uneven: Result) -> None:
+    x, y = data(plotting.axial_motion(uneven).lines[0])
+    np.testing.assert_allclose(x, turns(uneven))
+    np.testing.assert_allclose(y, 100.0 * uneven.cage_position[:, 2] / 0.4e-3)
+
+
+def test_whirl_radius(uneven: Result) -> None:
+    ax = plotting.whirl_radius(uneven)
+    x, y = data(ax.lines[0])
+    np.testing.assert_allclose(x, turns(uneven))
+    np.testing.assert_allclose(y, np.hypot(*uneven.cage_position[:, :2].T) / 0.25e-3)
+    start = uneven.settling().index
+    ends, level = data(ax.lines[1])
+    np.testing.assert_allclose(ends, [x[start], x[-1]])
+    np.testing.assert_allclose(level, [y[start:].mean()] * 2)
+
+
+@pytest.mark.parametrize("plane", ["centre", "rail"])
+def test_cage_locus(uneven: Result, plane: Any) -> None:
+    place = uneven.cage_position if plane == "centre" else uneven.cage_rail_position
+    expected = place[:, :2] / 0.25e-3
+    ax = plotting.cage_locus(uneven, plane=plane)
+    path = next(item for item in ax.collections if isinstance(item, LineCollection))
+    segments = np.array(path.get_segments())
+    np.testing.assert_allclose(segments[:, 0], expected[:-1])
+    np.testing.assert_allclose(segments[:, 1], expected[1:])
+    np.testing.assert_allclose(path.get_array(), turns(uneven)[:-1])
+    np.testing.assert_allclose(np.ravel(data(ax.lines[-3])), expected[-1], err_msg="the mark of the end")
+    one = plotting.cage_locus(uneven, plane=plane, colour_by_time=False).lines[0]
+    np.testing.assert_allclose(np.column_stack(data(one)), expected)
+
+
+def test_pocket_forces(uneven: Result) -> None:
+    """Every panel its own pocket, every curve its own face."""
+    names = [name.replace("_", " ") for name in uneven.slot_names]
+    figure = plotting.pocket_forces(uneven, last=None)
+    panels = [ax for ax in figure.axes if ax.get_visible()]
+    assert len(panels) == 12
+    for pocket, ax in enumerate(panels):
+        assert ax.get_title(loc="right") == f"pocket {pocket + 1}"
+        assert len(ax.lines) == 3, "a face that is never touched has no curve"
+        for slot, line in enumerate(ax.lines):
+            assert line.get_label() == names[slot]
+            x, y = data(line)
+            np.testing.assert_allclose(x, turns(uneven))
+            np.testing.assert_allclose(y, uneven.pocket_force[:, pocket, slot])
+    chosen = [ax for ax in plotting.pocket_forces(uneven, pockets=[7, 2]).axes if ax.get_visible()]
+    for pocket, ax in zip((7, 2), chosen, strict=True):
+        assert ax.get_title(loc="right") == f"pocket {pocket + 1}"
+        np.testing.assert_allclose(data(ax.lines[1])[1], uneven.pocket_force[:, pocket, 1])
+
+
+def test_pocket_statistics(uneven: Result) -> None:
+    ax, force = plotting.pocket_statistics(uneven), uneven.pocket_force
+    marks = [line for line in ax.lines if len(line.get_xdata()) == 12]
+    assert len(marks) == 6
+    for slot in range(3):
+        x, low = data(marks[2 * slot])
+        y, high = data(marks[2 * slot + 1])
+        np.testing.assert_allclose(x, np.arange(1, 13) + 0.16 * (slot - 1))
+        np.testing.assert_allclose(y, x)
+        np.testing.assert_allclose(low, np.percentile(force[:, :, slot], 95.0, axis=0))
+        np.testing.assert_allclose(high, force[:, :, slot].max(axis=0))
+        assert "touched 1e+02 %" in str(marks[2 * slot].get_label())
+
+
+@pytest.mark.parametrize(("picture", "quantity"), [("contact_loads", "load"), ("film_parameter", "film_parameter")])
+def test_around_the_bearing(uneven: Result, picture: str, quantity: str) -> None:
+    ax = getattr(plotting, picture)(uneven)
+    angle = np.degrees(np.mod(uneven.roller_orbit_angle, 2.0 * np.pi))
+    for index, side in enumerate(("outer", "inner", "rib")):
+        values = uneven[f"{side}_{quantity}"]
+        line = next(line for line in ax.lines if str(line.get_label()).startswith(side))
+        assert line.get_color() == COLOURS[index]
+        x, y = data(line)
+        width = 5.0
+        assert np.allclose(np.mod(x, width), 0.5 * width)
+        for place, mean in zip(x, y, strict=True):
+            inside = (angle >= place - 0.5 * width) & (angle < place + 0.5 * width)
+            assert mean == pytest.approx(values[inside].mean(), rel=1e-9), place
+        band = ax.collections[index].get_paths()[0].vertices
+        here = (angle >= x[0] - 0.5 * width) & (angle < x[0] + 0.5 * width)
+        low, high = np.percentile(values[here], (5.0, 95.0))
+        at = band[np.isclose(band[:, 0], x[0]), 1]
+        assert (at.min(), at.max()) == (pytest.approx(low), pytest.approx(high))
+
+
+def test_spacing_angles(uneven: Result) -> None:
+    ax = plotting.spacing_angles(uneven)
+    gaps = np.degrees(uneven.spacing_angles())
+    curves = [line for line in ax.lines if len(line.get_xdata()) == len(uneven)]
+    assert len(curves) == 12
+    drawn = []
+    for line in curves:
+        x, y = data(line)
+        np.testing.assert_allclose(x, turns(uneven))
+        roller = int(np.argmin(np.abs(gaps - y[:, np.newaxis]).max(axis=0)))
+        np.testing.assert_allclose(y, gaps[:, roller], rtol=1e-12)
+        drawn.append(roller)
+        label = str(line.get_label())
+        assert label.startswith("_") or label == f"{roller + 1}–{roller + 2}"
+    assert sorted(drawn) == list(range(12)), "each gap once"
+
+
+def test_bars_of_the_splits(uneven: Result) -> None:
+    for draw, split, unit in (
+        (plotting.torque_split, uneven.torque_split, "N m"),
+        (plotting.power_split, uneven.power_split, "W"),
+    ):
+        ax = draw(uneven)
+        shown = {name.replace("_", " "): value for name, value in split.items() if value}
+        labels = [label.get_text() for label in ax.get_yticklabels()]
+        assert {label: bar.get_width() for label, bar in zip(labels, ax.patches, strict=True)} == pytest.approx(shown)
+        assert [abs(bar.get_width()) for bar in ax.patches] == sorted(abs(value) for value in shown.values())
+        total = uneven.inner_torque.mean() if unit == "N m" else sum(split.values())
+        texts = [text.get_text() for text in ax.texts]
+        for bar, text in zip(ax.patches, texts, strict=True):
+            assert text == f"{bar.get_width():.3g} {unit} ({100.0 * bar.get_width() / total:.3g} %)"
+        assert f"{total:.4g} {unit} in all" in ax.get_xlabel()
+
+
+def test_energy_audit(uneven: Result) -> None:
+    ax, balance = plotting.energy_audit(uneven), uneven.energy_balance
+    parts = {
+        "work put in": balance["work_shaft"] + balance["work_gravity"] + balance["work_ring"],
+        "losses": sum(values for name, values in balance.items() if name.startswith("loss_")),
+        "stored": balance["kinetic_energy"] + balance["elastic_energy"],
+        "residual": balance["residual"],
+    }
+    for label, values in parts.items():
+        x, y = curve(ax, label)
+        size = np.abs(values)
+        np.testing.assert_allclose(y, size[size > 0.0])
+        np.testing.assert_allclose(x, turns(uneven)[size > 0.0])
+
+
+def test_spectrum(uneven: Result) -> None:
+    """Peaks at the order of the cage's whirl, and not at its mirror image."""
+    ax = plotting.spectrum(uneven)
+    x, y = max((data(line) for line in ax.lines), key=lambda pair: pair[0].size)
+    assert x[np.argmax(y)] == pytest.approx(1.0, abs=0.6)
+    assert y[np.argmin(np.abs(x + 1.0))] < 0.5 * y.max()
