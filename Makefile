@@ -9,6 +9,8 @@
 #   make adversary  random scenes for a time, each judged; failures are shrunk and kept (MINUTES=20, SEED=0)
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
+#   make docs       the documentation site in build/docs; its code is run, warnings are errors
+#   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=60 SEED=1 MORE=1)
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
@@ -37,11 +39,18 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: demo test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
+.PHONY: demo docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
 	$(PY) -m trbdyn demo -o demo --overwrite
+
+docs: install $(VENV)/.docs
+	$(PY) -m sphinx -q -W --keep-going -b html -d build/docs-cache docs build/docs
+	@echo "build/docs/index.html"
+
+wheels: install
+	.ci/wheels
 
 test: install $(VENV)/.test
 	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
@@ -125,6 +134,13 @@ $(VENV)/.lint: $(VENV)/.test
 	@mkdir -p build
 	@$(PY) .ci/requirements.py lint >build/requirements-lint.txt
 	@$(PIP) -q install -r build/requirements-lint.txt
+	@touch $@
+
+$(VENV)/.docs: $(VENV)/.tools
+	@echo "installing what the documentation needs"
+	@mkdir -p build
+	@$(PY) .ci/requirements.py docs >build/requirements-docs.txt
+	@$(PIP) -q install -r build/requirements-docs.txt
 	@touch $@
 
 # The package as an editable install: .venv imports the Python sources of trbdyn/ and finds the compiled core beside its other packages,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 table = tomllib.loads((Path(__file__).parent.parent / "pyproject.toml").read_text(encoding="utf-8"))
 lists = {
-    "build": [*table["build-system"]["requires"], "cmake>=3.20", "ninja"],
+    "build": [*table["build-system"]["requires"], "cmake>=3.26", "ninja"],
     "dependencies": table["project"]["dependencies"],
     **table["project"]["optional-dependencies"],
 }

@@ -1,7 +1,8 @@
-"""Cage behaviour over creep number and Froude number: growth, yielding, direction of the load, and the paper's points on the map.
+"""Cage behaviour over creep number and Froude number: growth, yielding, direction of the load, and the paper's points
+on the map.
 
-Creep numbers come from the core's laws at static equilibrium; growth, yielding and direction are measured in the complete model
-(8 Gauss nodes); the map is drawn by the planar model of `creep.planar`.
+Creep numbers come from the core's laws at static equilibrium; growth, yielding and direction are measured in the
+complete model (8 Gauss nodes); the map is drawn by the planar model of `creep.planar`.
 """
 
 from __future__ import annotations
@@ -263,8 +264,8 @@ def draw(report: common.Report, path: Path, chi: Any, froude: Any, radius: Any, 
 def warm_contact(temperature_c: float) -> trb.Lubricant:
     """VG100 (Dicke) as it is at a temperature in the contacts, with the films of 60 C.
 
-    The film alone takes the pressure coefficient, so that it is raised until the thinnest film at 3000 rpm, 4930 N is that of
-    60 C; rolling resistance takes it as well.
+    The film alone takes the pressure coefficient, so that it is raised until the thinnest film at 3000 rpm, 4930 N is
+    that of 60 C; rolling resistance takes it as well.
     """
 
     def thinnest(oil: trb.Lubricant) -> float:

@@ -2,14 +2,15 @@
 
     python benchmarks/effects.py [--quick] [--json FILE]
 
-Alone off: all effects but one, from states of a whirling cage in the middle of a collision: time, evaluations, and what the
-effect changes in cage speed, whirl and torque. Alone on: that effect alone beside normal contact at the raceways.
+Alone off: all effects but one, from states of a whirling cage in the middle of a collision: time, evaluations, and
+what the effect changes in cage speed, whirl and torque. Alone on: that effect alone beside normal contact at the
+raceways.
 
-``time_ratio_off`` is the time of one force evaluation (``derivative``) of the scene without the effect, in the core as it is,
-over that in a core that was compiled without the effect's code: 1 if an effect that is off costs nothing. Both cores are
-compiled in this run from the same copy of the sources with the same flags, loaded side by side and timed in turns.
-``evaluations_off`` sums the effect's counters over a run without it. Effects whose switch only chooses data or one of two
-loops (pocket faces, the rib's film, planar motion) have no code of their own to leave out, and no ratio.
+``time_ratio_off`` is the time of one force evaluation (``derivative``) of the scene without the effect, in the core as
+it is, over that in a core that was compiled without the effect's code: 1 if an effect that is off costs nothing. Both
+cores are compiled in this run from the same copy of the sources with the same flags, loaded side by side and timed in
+turns. ``evaluations_off`` sums the effect's counters over a run without it. Effects whose switch only chooses data or
+one of two loops (pocket faces, the rib's film, planar motion) have no code of their own to leave out, and no ratio.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ COLUMNS = {
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is run: states, turns of a run, rounds of paired timings, and the effects that a core is built without."""
+    """How much is run: states, turns of a run, rounds of paired timings, and the effects that a core is built
+    without.
+    """
 
     states: int
     revolutions: float

@@ -24,12 +24,15 @@ if TYPE_CHECKING:
     from trbdyn.lubricants import Lubricant, Oil
     from trbdyn.motion import History
     from trbdyn.pocket import Face, OtherPocket, Pocket
+    from trbdyn.reporting import report
     from trbdyn.results import Result, load
     from trbdyn.resuming import resume
     from trbdyn.run_options import RunOptions
     from trbdyn.scene import RotatingLoad, Scene, Start
     from trbdyn.simulation import Simulation
     from trbdyn.toml_case import load_case
+    from trbdyn.viewer import view
+    from trbdyn.what_matters import sensitivity
 
 _MODULES = {
     "animation": "trbdyn.animation",
@@ -73,7 +76,10 @@ _NAMES = {
     "TrbError": "trbdyn.errors",
     "load": "trbdyn.results",
     "load_case": "trbdyn.toml_case",
+    "report": "trbdyn.reporting",
     "resume": "trbdyn.resuming",
+    "sensitivity": "trbdyn.what_matters",
+    "view": "trbdyn.viewer",
 }
 
 __all__ = [
@@ -115,8 +121,11 @@ __all__ = [
     "observables",
     "plot",
     "pocket_shapes",
+    "report",
     "resume",
+    "sensitivity",
     "study",
+    "view",
 ]
 
 try:

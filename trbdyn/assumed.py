@@ -1,7 +1,8 @@
 """Inputs of a bearing that nobody gave: assumed in proportion to the 30310 rig, whose numbers physics gives or assumes.
 
-A number is *given* where the user gave it, and *assumed* otherwise; `Bearing.assumed` lists the latter, and a result keeps
-the list. An assumed number follows the bearing: after ``bearing.replace(pitch_diameter=...)`` it is that of the new size.
+A number is *given* where the user gave it, and *assumed* otherwise; `Bearing.assumed` lists the latter, and a result
+keeps the list. An assumed number follows the bearing: after ``bearing.replace(pitch_diameter=...)`` it is that of the
+new size.
 """
 
 from __future__ import annotations
@@ -75,8 +76,8 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     Parameters
     ----------
     size : mapping of str to float
-        diameter, effective_length, pitch_diameter (m), cup_half_angle_deg (deg); as far as they are given total_length (m),
-        contact_height (m) and the cage's mass (kg).
+        diameter, effective_length, pitch_diameter (m), cup_half_angle_deg (deg); as far as they are given total_length
+        (m), contact_height (m) and the cage's mass (kg).
 
     Returns
     -------
@@ -112,8 +113,8 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
 def with_assumed(values: Mapping[str, Any]) -> Values:
     """Fields of a bearing, its sections made whole with assumed numbers.
 
-    A list ``assumed`` among the fields, as `Bearing.to_dict` writes it, says which of the numbers were not given: they stay as
-    they are, so that a result keeps what it was made with.
+    A list ``assumed`` among the fields, as `Bearing.to_dict` writes it, says which of the numbers were not given: they
+    stay as they are, so that a result keeps what it was made with.
 
     Raises
     ------

@@ -17,6 +17,7 @@ from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, mod
 
 from trbdyn.assumed import RIG, assumed_inputs, with_assumed
 from trbdyn.errors import InputError, Path, Problem
+from trbdyn.estimated import Estimated
 from trbdyn.geometry import Geometry
 from trbdyn.pocket import Face, OtherPocket, Pocket
 from trbdyn.validation import Gap, Length, Model, Number, Whole, unit
@@ -28,7 +29,7 @@ class Profile(Model):
     Parameters
     ----------
     kind : {'logarithmic', 'crowned', 'straight'}
-        Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((|y| - a)/(k2 a) + 1)^2]} for |y| > a - k2 a with A = 2 k1 Q/(pi
+        Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((abs(y) - a)/(k2 a) + 1)^2]} for abs(y) > a - k2 a with A = 2 k1 Q/(pi
         L E'), a = L/2.
     crown_radius : float
         Radius of the arc of a crowned roller (m).
@@ -37,8 +38,8 @@ class Profile(Model):
     zm : float
         Drop of the logarithmic profile at the end (m).
     load : float
-        Design load Q of the logarithmic profile (N); by default the one of the 30310 rig times diameter and length of the
-        roller over those of the rig, that is at the same pressure.
+        Design load Q of the logarithmic profile (N); by default the one of the 30310 rig times diameter and length of
+        the roller over those of the rig, that is at the same pressure.
     """
 
     _assumed: ClassVar[bool] = True
@@ -95,7 +96,9 @@ class Material(Model):
 
     @classmethod
     def polyamide(cls) -> Self:
-        """Polyamide 66 with a quarter of glass fibre at 60 C, conditioned: 3.5 GPa, 0.4; such a cage weighs a sixth of steel."""
+        """Polyamide 66 with a quarter of glass fibre at 60 C, conditioned: 3.5 GPa, 0.4; such a cage weighs a sixth of
+        steel.
+        """
         return cls(youngs_modulus=3.5e9, poisson_ratio=0.4)
 
     @classmethod
@@ -133,8 +136,8 @@ class Roller(Model):
     effective_length : float
         Lwe, effective length of the contact line (m).
     total_length : float
-        Length over the ends, centred on the effective length (m); by default the effective length and a fourteenth of the
-        diameter.
+        Length over the ends, centred on the effective length (m); by default the effective length and a fourteenth of
+        the diameter.
     density : float
         Density (kg/m3).
     profile : Profile
@@ -146,8 +149,8 @@ class Roller(Model):
     sphere_ratio : float
         Radius of the large end's sphere over the distance from the apex to the large end (1); assumed.
     end_stiffness : float
-        k of roller end against a flat of the ring, force = k d^1.5 (N/m^1.5); against the cage's walls in the ratio of the
-        composite moduli. By default 1e10 times the root of the diameter over that of the 30310 rig; assumed.
+        k of roller end against a flat of the ring, force = k d^1.5 (N/m^1.5); against the cage's walls in the ratio of
+        the composite moduli. By default 1e10 times the root of the diameter over that of the 30310 rig; assumed.
     material : Material, optional
         Elasticity of the rollers; that of the bearing by default.
     """
@@ -188,8 +191,8 @@ class Ribs(Model):
     edge_low, edge_high : float
         Heights of the back-face rib's edges (m); by default 0.3/1.667 and 3.5/1.667 of the contact height.
     front_clearance : float
-        Nominal gap between small end and front rib (m); by default 0.2/14 of the roller's diameter. The front rib's face is
-        perpendicular to the roller's axis.
+        Nominal gap between small end and front rib (m); by default 0.2/14 of the roller's diameter. The front rib's
+        face is perpendicular to the roller's axis.
     front_low, front_high : float
         Heights of the front rib's edges (m); by default 0.3/14 and 2/14 of the roller's diameter.
     """
@@ -226,8 +229,8 @@ class Cage(Model):
     mass : float
         Mass (kg); by default 0.2 kg times the pitch diameter squared and the roller's length over those of the rig.
     inertia_axial, inertia_transverse : float
-        Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2); by default with
-        mass and pitch diameter squared.
+        Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2); by default
+        with mass and pitch diameter squared.
     play_radial, play_circumferential : float
         Cpr and Cpc: plays in the x-y plane, radial and circumferential, one-sided, measured to one roller with the cage
         centred and the roller's large end touching its pocket (m); by default 0.25/14 and 0.12/14 of the diameter.
@@ -236,13 +239,13 @@ class Cage(Model):
     offset : float
         Axial position of the centre of mass from the roller-centre plane (m); assumed.
     rail_offset : float
-        Axial position of the large-end rail, where sensors look, from the roller-centre plane (m); by default 12/19.8 of
-        the roller's length.
+        Axial position of the large-end rail, where sensors look, from the roller-centre plane (m); by default 12/19.8
+        of the roller's length.
     bar_width : float
         Width of the bars' faces across the contact line (m); by default 3/14 of the diameter.
     wall_inner, wall_outer : float
-        The end walls' bands reach from here to here, outward of the roller's axis (m); by default 1.5/14 and 4.5/14 of the
-        diameter, at most 0.3 and 0.9 of the small end's radius.
+        The end walls' bands reach from here to here, outward of the roller's axis (m); by default 1.5/14 and 4.5/14 of
+        the diameter, at most 0.3 and 0.9 of the small end's radius.
     wall_half_width : float
         Half width of the end walls' bands (m); by default 6/14 of the diameter.
     pocket : Pocket, optional
@@ -304,8 +307,9 @@ class Roughness(Model):
 
 
 class Bearing(Model):
-    """A single-row tapered roller bearing. Needed are the number of rollers, their diameter and length, the pitch diameter
-    and the cup's angle; every other number has a default in proportion to the bearing's size, listed by `assumed`.
+    """A single-row tapered roller bearing. Needed are the number of rollers, their diameter and length, the pitch
+    diameter and the cup's angle; every other number has a default in proportion to the bearing's size, listed by
+    `assumed`.
 
     Parameters
     ----------
@@ -327,6 +331,8 @@ class Bearing(Model):
         Roughness of the contacts.
     name : str
         Name in titles and files.
+    estimates : sequence of Estimated
+        Inputs that were estimated when the bearing was made from catalogue numbers; see `estimated`.
 
     Raises
     ------
@@ -355,6 +361,106 @@ class Bearing(Model):
     material: Material = Material()
     roughness: Roughness = Roughness()
     name: Annotated[str, Field(min_length=1)] = "bearing"
+    estimates: tuple[Estimated, ...] = ()
+
+    @classmethod
+    def from_catalogue(
+        cls,
+        *,
+        bore: float,
+        outside: float,
+        width: float,
+        C: float,
+        e: float | None = None,
+        Y: float | None = None,
+        cup_width: float | None = None,
+        n_rollers: int | None = None,
+        roller_diameter: float | None = None,
+        roller_length: float | None = None,
+        pitch_diameter: float | None = None,
+        contact_angle_deg: float | None = None,
+        cage_mass: float | None = None,
+        name: str = "",
+    ) -> Bearing:
+        """A bearing from the numbers of a catalogue page; what is inside is estimated.
+
+        The angle of the cup follows from e or Y, the length of the rollers from the rating formula of ISO 281, the
+        rest from usual ratios. `estimated` lists every estimate with its band and source. Give what you know better.
+
+        Parameters
+        ----------
+        bore, outside, width : float
+            Boundary dimensions d, D and T (m).
+        C : float
+            Basic dynamic load rating (N).
+        e, Y : float, optional
+            Calculation factors; one of them, or the contact angle, must be given (1).
+        cup_width : float, optional
+            Width of the cup, often called C beside T and B (m).
+        n_rollers : int, optional
+            Z.
+        roller_diameter, roller_length, pitch_diameter : float, optional
+            Dwe, Lwe, Dpw (m).
+        contact_angle_deg : float, optional
+            Half angle of the cup (deg).
+        cage_mass : float, optional
+            Mass of the cage (kg).
+        name : str
+            Name; by default the boundary dimensions.
+
+        Returns
+        -------
+        Bearing
+
+        Raises
+        ------
+        InputError
+            If a number is not allowed, or no rollers that fit the dimensions come near this C.
+
+        Notes
+        -----
+        Sources: ISO 281:2007 (rating, e = 1.5 tan alpha, Y = 0.4 cot alpha); ISO 355 (proportions of the dimension
+        series).
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43,
+        name="32216")
+        >>> print(bearing.estimated[0])
+        cup_half_angle_deg = 15.99 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
+        """
+        from trbdyn.catalogue import bearing_from_catalogue
+
+        return bearing_from_catalogue(
+            bore=bore,
+            outside=outside,
+            width=width,
+            C=C,
+            e=e,
+            Y=Y,
+            cup_width=cup_width,
+            n_rollers=n_rollers,
+            roller_diameter=roller_diameter,
+            roller_length=roller_length,
+            pitch_diameter=pitch_diameter,
+            contact_angle_deg=contact_angle_deg,
+            cage_mass=cage_mass,
+            name=name,
+        )
+
+    @property
+    def estimated(self) -> tuple[Estimated, ...]:
+        """Inputs that are estimated, with their bands and sources; one that was changed since is no longer among
+        them.
+        """
+        return tuple(entry for entry in self.estimates if self._at(entry.path) == entry.value)
+
+    def _at(self, path: str) -> object:
+        value: object = self
+        for part in path.split("."):
+            value = getattr(value, part, None)
+        return value
 
     @model_validator(mode="before")
     @classmethod

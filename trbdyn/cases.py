@@ -85,11 +85,12 @@ def rig_30310() -> Bearing:
 def bearing_32216() -> Bearing:
     """A 32216 (80 x 140 x 35.25 mm) from catalogue numbers; 16 rollers.
 
-    Known are the pitch diameter, diameter, length and number of the rollers (Wingertszahn et al. 2023, Lubricants 11:369). That
-    source gives no cup angle: it is that of ISO 355 for the series 3EC, 15 deg 38' 32", which agrees with the catalogues'
-    e = 0.42 to 0.43 = 1.5 tan(alpha). All other numbers are assumed: those of the 30310 rig, lengths of rib and pocket scaled
-    with the roller's diameter (17/14), bars with its length, the cage's mass with pitch diameter squared times length, its
-    inertias with pitch diameter squared in addition. The profile's design load is the outer load of a roller at 6 kN.
+    Known are the pitch diameter, diameter, length and number of the rollers (Wingertszahn et al. 2023, Lubricants
+    11:369). That source gives no cup angle: it is that of ISO 355 for the series 3EC, 15 deg 38' 32", which agrees
+    with the catalogues' e = 0.42 to 0.43 = 1.5 tan(alpha). All other numbers are assumed: those of the 30310 rig,
+    lengths of rib and pocket scaled with the roller's diameter (17/14), bars with its length, the cage's mass with
+    pitch diameter squared times length, its inertias with pitch diameter squared in addition. The profile's design
+    load is the outer load of a roller at 6 kN.
     """
     rig = rig_30310()
     scale = 17.0 / 14.0

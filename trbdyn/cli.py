@@ -1,7 +1,7 @@
 """The command line: run cases, draw pictures, look into files and cases.
 
-Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that cannot be used;
-3 a fault of trbdyn itself; 130 stopped by Ctrl-C outside of a run.
+Exit codes: 0 done; 1 a run failed or was stopped by Ctrl-C (what it recorded is kept); 2 input, case or file that
+cannot be used; 3 a fault of trbdyn itself; 130 stopped by Ctrl-C outside of a run.
 """
 
 from __future__ import annotations
@@ -30,6 +30,21 @@ if TYPE_CHECKING:
 DONE, FAILED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
 
 DEMO_PICTURES: Final = ("cage_locus", "spacing_angles", "tilt", "pocket_forces")
+DEMO_REPORT: Final = (
+    "cage_locus",
+    "orbit_radius",
+    "load_zone",
+    "pressure_map",
+    "film_map",
+    "pocket_polar",
+    "torque_split",
+    "energy_audit",
+)
+DEMO_WORDS: Final = (
+    "A tapered roller bearing 30310 turns at 3000 rpm under 4930 N axial load, for {turns:g} turns of the shaft.\n"
+    "Its cage starts off centre. Will it whirl, how hard do the rollers strike it, and what does the bearing cost in torque?\n"
+    "Everything is written to {folder}."
+)
 
 _SIMULATION_OPTIONS: Final = (
     "accuracy",
@@ -171,8 +186,12 @@ def _parser() -> argparse.ArgumentParser:
     demo.set_defaults(command=_demo)
 
     from trbdyn.paper.command import add_paper_parser
+    from trbdyn.reporting.command import add_report_parser
     from trbdyn.study.command import add_sweep_parser
+    from trbdyn.viewer.command import add_view_parser
 
+    add_report_parser(commands, [common])
+    add_view_parser(commands, [common])
     add_sweep_parser(commands, [common])
     add_paper_parser(commands, [common])
 
@@ -393,23 +412,35 @@ def _amount(quantity: Any) -> str:
 
 
 def _demo(options: argparse.Namespace) -> int:
-    from trbdyn import plotting
+    from trbdyn import plotting, summary
     from trbdyn.cases import scene_30310
     from trbdyn.effects import Effects
+    from trbdyn.reporting import report
+    from trbdyn.reporting.verdict import what_matters
     from trbdyn.run_options import RunOptions
     from trbdyn.scene import Start
+    from trbdyn.viewer import view
 
     revolutions = 50.0 if options.revolutions is None else options.revolutions
     run = RunOptions(revolutions=revolutions, accuracy=options.accuracy or "standard")
     scene = scene_30310(3000.0, 4930.0, effects=Effects.paper(), start=Start.whirl(0.9))
     run.end_time(scene.speed_rpm)
     folder = plotting.make_folder(options.output)
+    if not options.quiet:
+        print(DEMO_WORDS.format(turns=revolutions, folder=folder))
     result = _simulate(scene, run, folder / "run.h5", quiet=options.quiet, overwrite=options.overwrite)
     plotting.all(result, folder, DEMO_PICTURES)
-    code = _finish(result, folder / "run.h5", folder / "summary.json", quiet=options.quiet)
+    numbers = result.summary()
+    summary.write_json(numbers, folder / "summary.json")
+    page = report(result, folder / "report.html", pictures=DEMO_REPORT)
+    moving = folder / "view.html"
+    view(result, moving)
     if not options.quiet:
-        print(f"pictures {', '.join(f'{name}.png' for name in DEMO_PICTURES)} and summary.json in {folder}")
-    return code
+        print("\n" + "\n".join(f"{number}. {text}" for number, text in enumerate(what_matters(result, numbers), 1)))
+        print(f"\nreport: {page}\n3-D view: {moving}")
+    if not result.success:
+        print(f"trbdyn: {result.message}", file=sys.stderr)
+    return DONE if result.success else FAILED
 
 
 def _new(options: argparse.Namespace) -> int:

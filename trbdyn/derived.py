@@ -77,8 +77,8 @@ class Derived(ABC):
     def settling(self) -> observables.MotionSettling:
         """Whether the motion has settled, drifts (with its time scale), or cannot be told from this record.
 
-        Judged by the drift of the roller spacing, the cage's orbit radius and its whirl amplitude, each with its error, and by
-        the time that the creep of the rollers takes (see `observables.motion_settling`).
+        Judged by the drift of the roller spacing, the cage's orbit radius and its whirl amplitude, each with its
+        error, and by the time that the creep of the rollers takes (see `observables.motion_settling`).
 
         Returns
         -------
@@ -97,7 +97,8 @@ class Derived(ABC):
 
     @property
     def creep_time(self) -> float:
-        """Time in which creep of the rollers lets the cage's whirl change by its own size, s; nan where it is not known.
+        """Time in which creep of the rollers lets the cage's whirl change by its own size, s; nan where it is not
+        known.
 
         From the traction at tiny slip in the equilibrium at the start (see `trbdyn.paper.creep.creep_time`).
         """
@@ -156,14 +157,18 @@ class Derived(ABC):
 
     @property
     def axial_motion(self) -> Array:
-        """Axial position of the cage in units of its axial play, shape (T,); zero where large ends touch, nan without play."""
+        """Axial position of the cage in units of its axial play, shape (T,); zero where large ends touch, nan without
+        play.
+        """
         return self._of_cage("cage_position")[:, 2] / (self.clearances.axial or np.nan)
 
     @property
     def orbit_radius(self) -> Array:
-        """Distance of the cage's centre from the centre of its own orbit (its mean place over this record), m, shape (T,).
+        """Distance of the cage's centre from the centre of its own orbit (its mean place over this record), m, shape
+        (T,).
 
-        In the roller-centre plane; it tells how far the cage whirls. Its root mean square is ``cage_motion.orbit_over_play``.
+        In the roller-centre plane; it tells how far the cage whirls. Its root mean square is
+        ``cage_motion.orbit_over_play``.
         """
         return observables.orbit_radius(self._of_cage("cage_position"))
 
@@ -200,7 +205,8 @@ class Derived(ABC):
         """Old name of `axis_distance_over_cpr`.
 
         .. deprecated:: 0.1
-            Use `orbit_radius_over_cpr` for the size of the whirl, `axis_distance_over_cpr` for the distance from the axis.
+            Use `orbit_radius_over_cpr` for the size of the whirl, `axis_distance_over_cpr` for the distance from the
+            axis.
         """
         _old_name("whirl_radius_over_cpr", "axis_distance_over_cpr", "orbit_radius_over_cpr")
         return self.axis_distance_over_cpr
@@ -277,8 +283,8 @@ class Derived(ABC):
     def torque_split(self) -> dict[str, float]:
         """Mean torque of each force on the inner ring, N m; together the shaft's friction torque.
 
-        A force that makes torque need not lose power: traction on the inner raceway passes on what rolling resistance takes at
-        the outer one. What is lost where is told by `power_split` and `torque_by_loss`.
+        A force that makes torque need not lose power: traction on the inner raceway passes on what rolling resistance
+        takes at the outer one. What is lost where is told by `power_split` and `torque_by_loss`.
 
         Raises
         ------
@@ -295,10 +301,11 @@ class Derived(ABC):
 
     @property
     def torque_by_loss(self) -> dict[str, float]:
-        """Friction torque of the shaft by what loses it, N m: the power loss of each mechanism over the mean speed of the shaft.
+        """Friction torque of the shaft by what loses it, N m: the power loss of each mechanism over the mean speed of
+        the shaft.
 
-        Unlike `torque_split`, which tells the forces on the inner ring, its shares are those of the power loss. Empty at
-        standstill.
+        Unlike `torque_split`, which tells the forces on the inner ring, its shares are those of the power loss. Empty
+        at standstill.
         """
         speed = float(np.abs(self["shaft_speed"]).mean())
         return {name: value / speed for name, value in self.power_split.items()} if speed > 0.0 else {}

@@ -234,7 +234,9 @@ def parameter_block(scene: Scene) -> FloatArray:
 
 
 def face_rows(scene: Scene) -> FloatArray:
-    """Faces of the cage's pockets as the core takes them, shape (F, C): a row a face, columns of `_core.face_table()`."""
+    """Faces of the cage's pockets as the core takes them, shape (F, C): a row a face, columns of
+    `_core.face_table()`.
+    """
     from trbdyn import _core
 
     columns = [(name, count) for name, count, _, _ in _core.face_table()]

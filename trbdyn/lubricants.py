@@ -1,8 +1,8 @@
 """Oils: viscosity against temperature and pressure.
 
-An `Oil` knows its viscosity at every temperature; a `Lubricant` is an oil at one temperature. Oils that ship: ISO VG 32 to
-460 of ordinary mineral oil, FVA3 (the measured VG 100 of the test rig), two gear oils and an ATF; others are made from the
-two viscosities of a data sheet: ``Oil(nu40=68.0, nu100=8.7, density=880.0)``.
+An `Oil` knows its viscosity at every temperature; a `Lubricant` is an oil at one temperature. Oils that ship: ISO VG
+32 to 460 of ordinary mineral oil, FVA3 (the measured VG 100 of the test rig), two gear oils and an ATF; others are
+made from the two viscosities of a data sheet: ``Oil(nu40=68.0, nu100=8.7, density=880.0)``.
 """
 
 from __future__ import annotations
@@ -112,8 +112,8 @@ def wooster(viscosity: float) -> float:
 
     Notes
     -----
-    Source: Wooster, as in Briant, Denis and Parc 1989, Rheological Properties of Lubricants; within about 15 % of measured
-    mineral oils (FVA3 at 60 C: 2.09e-8 for 1.97e-8). Below 0.8 mPa s it is kept at 0.5e-8.
+    Source: Wooster, as in Briant, Denis and Parc 1989, Rheological Properties of Lubricants; within about 15 % of
+    measured mineral oils (FVA3 at 60 C: 2.09e-8 for 1.97e-8). Below 0.8 mPa s it is kept at 0.5e-8.
     """
     return max(0.6 + 0.965 * math.log10(1e3 * viscosity), 0.5) * 1e-8
 
@@ -134,8 +134,8 @@ class Oil(Model):
     expansion : float
         Share by which the density falls for a degree (1/K).
     base : {'mineral', 'synthetic'}
-        Base of the oil. alpha0 follows from `wooster`; synthetic oils (PAO) have three quarters of it (assumed: published
-        ratios lie between 0.7 and 0.8).
+        Base of the oil. alpha0 follows from `wooster`; synthetic oils (PAO) have three quarters of it (assumed:
+        published ratios lie between 0.7 and 0.8).
     pressure_coefficient : float, optional
         Measured alpha0 (1/Pa) at `pressure_coefficient_c`, in place of that correlation, which then only carries it to
         other temperatures.
@@ -228,7 +228,8 @@ _OF_THE_OIL: Final = {
 
 
 class Lubricant(Model):
-    """An oil at one temperature: by its `oil`, from which everything follows, or by numbers that belong to this temperature.
+    """An oil at one temperature: by its `oil`, from which everything follows, or by numbers that belong to this
+    temperature.
 
     Parameters
     ----------
@@ -240,8 +241,8 @@ class Lubricant(Model):
     viscosity : float
         eta0, dynamic viscosity at ambient pressure (Pa s).
     pressure_coefficient : float
-        alpha0, pressure-viscosity coefficient (1/Pa), used by the films and by the laws of Roelands and Barus; it must agree
-        with the slope of the law of Dicke where that is used.
+        alpha0, pressure-viscosity coefficient (1/Pa), used by the films and by the laws of Roelands and Barus; it must
+        agree with the slope of the law of Dicke where that is used.
     temperature_coefficient : float
         beta = -d ln(eta0)/dt (1/K).
     density : float
@@ -249,8 +250,8 @@ class Lubricant(Model):
     conductivity : float
         k', thermal conductivity (W/mK).
     pressure_law : {'dicke', 'roelands', 'barus'}
-        Law of viscosity against pressure that the traction uses; by default that of Dicke where its constants are known,
-        else that of Roelands. Barus is capped.
+        Law of viscosity against pressure that the traction uses; by default that of Dicke where its constants are
+        known, else that of Roelands. Barus is capped.
     dicke : Dicke, optional
         Measured constants of the law of Dicke.
     viscosity_exponent_cap : float
@@ -373,14 +374,15 @@ class Lubricant(Model):
     def replace(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Self:
         """A copy with some fields changed, validated again; `changes` by path as for every model.
 
-        With an `oil` a change of `temperature_c` changes everything that follows from it. A change of what follows from the
-        oil (viscosity, pressure_coefficient, temperature_coefficient, density) gives a lubricant by numbers, without oil.
+        With an `oil` a change of `temperature_c` changes everything that follows from it. A change of what follows
+        from the oil (viscosity, pressure_coefficient, temperature_coefficient, density) gives a lubricant by numbers,
+        without oil.
 
         Raises
         ------
         InputError
-            If a name is unknown or a value not allowed, or the numbers of a lubricant without oil do not belong to the new
-            temperature.
+            If a name is unknown or a value not allowed, or the numbers of a lubricant without oil do not belong to the
+            new temperature.
         """
         new = {**(self._changed(split_paths(changes)) if changes is not None else {}), **fields}
         own = {name: getattr(self, name) for name in type(self).model_fields}
@@ -523,7 +525,8 @@ def iso_vg(grade: int, temperature_c: float = 60.0, *, eyring_stress: float = 5e
     Returns
     -------
     Lubricant
-        Viscosity by ASTM D341 from the grade at 40 C and the typical one at 100 C, alpha0 by `wooster`, law of Roelands.
+        Viscosity by ASTM D341 from the grade at 40 C and the typical one at 100 C, alpha0 by `wooster`, law of
+        Roelands.
 
     Raises
     ------

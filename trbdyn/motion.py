@@ -24,7 +24,9 @@ from trbdyn.validation import Flag, Model, Number, as_number, unit
 FloatArray = NDArray[np.float64]
 
 MAX_TIME = 1e6
-"""Latest time of anything (s): up to there times are told apart to a tenth of a nanosecond, the first steps of a run."""
+"""Latest time of anything (s): up to there times are told apart to a tenth of a nanosecond, the first steps of a
+run.
+"""
 
 HARMONIC_PIECES = 24
 """Cubic pieces of a period of `History.harmonic`: a multiple of four."""

@@ -1,8 +1,8 @@
 """Files that a run makes, replaces and removes: its own ones, and nobody else's.
 
-A file that is about to appear is written under a draft's name first. The draft is created exclusively: nothing that is there
-already is opened, truncated or followed. It then takes its name in one step. A file that lies there is replaced only where the
-caller says so.
+A file that is about to appear is written under a draft's name first. The draft is created exclusively: nothing that is
+there already is opened, truncated or followed. It then takes its name in one step. A file that lies there is replaced
+only where the caller says so.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from typing import BinaryIO
 from trbdyn.errors import FileError, InputError
 
 LONGEST_NAME = 200
-"""Most bytes of a file's name: file systems allow 255, and drafts and checkpoints have the name of the result in theirs."""
+"""Most bytes of a file's name: file systems allow 255, and drafts and checkpoints have the name of the result in
+theirs.
+"""
 
 RESERVED = (".checkpoint", ".checkpoint.previous", ".new")
 """Endings of files that a run makes beside its result."""

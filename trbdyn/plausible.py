@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from trbdyn.start import Equilibrium
 
 PERMISSIBLE_PRESSURE: Final = 4e9
-"""Pressure (Pa) at which the most loaded roller keeps a dent of a ten thousandth of its diameter: ISO 76, roller bearings."""
+"""Pressure (Pa) at which the most loaded roller keeps a dent of a ten thousandth of its diameter: ISO 76, roller
+bearings.
+"""
 
 LARGEST_PLAY_SHARE: Final = 0.1
 """Largest usual play of a cage's pocket, in units of the roller's diameter; usual are 0.01 to 0.03."""

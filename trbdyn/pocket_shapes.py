@@ -155,7 +155,9 @@ def one_sided_pocket(bearing: Bearing, missing: str = "leading") -> Pocket:
 
 
 def large_end_wall(bearing: Bearing) -> Face:
-    """Wall behind the large end, perpendicular to the roller's axis; the nominal sphere just touches its nearest edge."""
+    """Wall behind the large end, perpendicular to the roller's axis; the nominal sphere just touches its nearest
+    edge.
+    """
     geometry, cage = bearing.geometry, bearing.cage
     place = geometry.sphere_centre - geometry.apex_to_mid + math.sqrt(geometry.sphere_radius**2 - cage.wall_inner**2)
     low, high, half = cage.wall_inner, cage.wall_outer, cage.wall_half_width

@@ -32,8 +32,8 @@ class Result(Derived):
     """What a run gives.
 
     Every recorded field is an attribute: a read-only float64 array with time as its first axis, in SI units
-    (``result.cage_position`` has shape (T, 3)); ``result.fields`` lists them with their units and texts. A result that was loaded
-    reads a field from its file when it is first asked for.
+    (``result.cage_position`` has shape (T, 3)); ``result.fields`` lists them with their units and texts. A result that
+    was loaded reads a field from its file when it is first asked for.
 
     Parameters
     ----------
@@ -286,8 +286,8 @@ class Result(Derived):
     def peaks(self) -> Peaks:
         """Extremes, means and impacts between the records too: of the whole run, or of a window's records.
 
-        ``result.peaks["pocket_force_peak"]`` is the largest force on each face of each pocket, ``result.pocket_force_peak`` the
-        largest since the record before, at each record.
+        ``result.peaks["pocket_force_peak"]`` is the largest force on each face of each pocket,
+        ``result.pocket_force_peak`` the largest since the record before, at each record.
 
         Raises
         ------
@@ -303,7 +303,9 @@ class Result(Derived):
 
     @property
     def settled(self) -> Result:
-        """The result after the transient, the second half of the run at least; `settling` says whether it has settled there."""
+        """The result after the transient, the second half of the run at least; `settling` says whether it has settled
+        there.
+        """
         return self.window(self.settling().time)
 
     @property
@@ -324,7 +326,8 @@ class Result(Derived):
         Returns
         -------
         xarray.Dataset
-            Dimensions time, roller, xyz, xy, wxyz and slot; attributes ``units`` and ``long_name`` as xarray's plots use them.
+            Dimensions time, roller, xyz, xy, wxyz and slot; attributes ``units`` and ``long_name`` as xarray's plots
+            use them.
         """
         import xarray
 
@@ -353,8 +356,8 @@ def load(path: str | os.PathLike[str]) -> Result:
     Returns
     -------
     Result
-        Its fields are read when they are asked for. If the run was cut off, ``success`` is False and the records up to the last
-        write are there.
+        Its fields are read when they are asked for. If the run was cut off, ``success`` is False and the records up to
+        the last write are there.
 
     Raises
     ------

@@ -33,8 +33,9 @@ def resume(
 ) -> Result:
     """Go on with a run that was cut off, from its last checkpoint.
 
-    It takes the steps that the uninterrupted run would have taken: records and final state are bit-identical, on the same build
-    and instruction set. Records go to a segment of their own, ``run.part1.h5``, which `load` joins to ``run.h5``.
+    It takes the steps that the uninterrupted run would have taken: records and final state are bit-identical, on the
+    same build and instruction set. Records go to a segment of their own, ``run.part1.h5``, which `load` joins to
+    ``run.h5``.
 
     Parameters
     ----------
@@ -64,7 +65,8 @@ def resume(
     Warns
     -----
     UserWarning
-        If an older checkpoint had to be used, or results will not be bit-identical; ``result.meta["notes"]`` says so too.
+        If an older checkpoint had to be used, or results will not be bit-identical; ``result.meta["notes"]`` says so
+        too.
     """
     output = file_path(path, "path")
     output = Path(os.path.realpath(output)) if output.is_symlink() else output

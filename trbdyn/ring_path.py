@@ -1,8 +1,10 @@
-"""The path of an inner ring that follows its load: through static equilibria, refined until it lies close to all of them.
+"""The path of an inner ring that follows its load: through static equilibria, refined until it lies close to all of
+them.
 
 Between two times the path is a cubic. Each interval is tested at its quarters: where the cubic lies farther than
-`PATH_TOLERANCE` from the equilibrium, the interval is halved. Equilibria are solved from their neighbours in time, which
-takes about a millisecond each. The slope at an interval's ends is that of the quartic through its five equilibria.
+`PATH_TOLERANCE` from the equilibrium, the interval is halved. Equilibria are solved from their neighbours in time,
+which takes about a millisecond each. The slope at an interval's ends is that of the quartic through its five
+equilibria.
 """
 
 from __future__ import annotations
@@ -136,7 +138,9 @@ class _Search:
         return np.concatenate(times)
 
     def _turn(self, low: float, high: float) -> float:
-        """A bound of how far the loads' directions turn between two times (deg); monotone curves have slopes up to 3 means."""
+        """A bound of how far the loads' directions turn between two times (deg); monotone curves have slopes up to 3
+        means.
+        """
         scene, turn = self.scene, 0.0
         direction = scene.radial_direction_deg
         if isinstance(direction, History):

@@ -259,7 +259,9 @@ class Run:
         checkpoint.write(checkpoint.checkpoint_path(self.output), found)
 
     def _abandon(self) -> None:
-        """Leave a result file that cannot be written as it is: the records in it can be read, a checkpoint goes on from there."""
+        """Leave a result file that cannot be written as it is: the records in it can be read, a checkpoint goes on
+        from there.
+        """
         self.sim._core.end_peaks()
         if self.writer is not None:
             with contextlib.suppress(FileError):
@@ -386,7 +388,9 @@ def output_times(start: float, end: float, every: float) -> Array:
 
 @contextlib.contextmanager
 def _interrupts() -> Iterator[list[int]]:
-    """A list that Ctrl-C adds to, so that it comes between steps and records and never gets lost; a second one comes at once."""
+    """A list that Ctrl-C adds to, so that it comes between steps and records and never gets lost; a second one comes
+    at once.
+    """
     caught: list[int] = []
     before = signal.getsignal(signal.SIGINT)
 

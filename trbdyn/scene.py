@@ -121,8 +121,8 @@ class Start(Model):
         time : float
             The time it belongs to (s).
         shaft_angle : float, optional
-            Angle of the shaft at that time (rad), for instance `Simulation.state.shaft_angle`; by default what the shaft
-            has turned by since t = 0. It must be given where the saved run itself did not start at t = 0.
+            Angle of the shaft at that time (rad), for instance `Simulation.state.shaft_angle`; by default what the
+            shaft has turned by since t = 0. It must be given where the saved run itself did not start at t = 0.
         """
         try:
             numbers = np.asarray(vector, dtype=np.float64).ravel().tolist()
@@ -149,8 +149,8 @@ class RotatingLoad(Model):
     --------
     >>> import trbdyn as trb
     >>> scene = trb.Scene(
-    ...     trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0, rotating_load=trb.RotatingLoad(500.0), ring="follows"
-    ... )
+    ...     trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0, rotating_load=trb.RotatingLoad(500.0),
+    ring="follows" ... )
     >>> float(scene.period)
     0.02
     """
@@ -186,7 +186,8 @@ class Scene(Model):
     speed_rpm : float or History
         Speed of the inner ring (rpm).
     axial_load : float or History
-        Axial load Fa (N), presses the inner ring towards -z; must be > 0 unless `displacement` gives the axial position.
+        Axial load Fa (N), presses the inner ring towards -z; must be > 0 unless `displacement` gives the axial
+        position.
     radial_load : float or History
         Magnitude of the radial load Fr (N).
     radial_direction_deg : float or History
@@ -198,8 +199,9 @@ class Scene(Model):
     rotating_load : RotatingLoad, optional
         A radial load that rotates; needs ``ring = 'follows'``.
     displacement : tuple of float, History or None, shape (3,), optional
-        Position of the inner ring along x, y, z (m), in place of loads. Where an entry is None, the load along it decides:
-        ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts. TOML writes 'free' for None.
+        Position of the inner ring along x, y, z (m), in place of loads. Where an entry is None, the load along it
+        decides: ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts. TOML writes
+        'free' for None.
     lubricant : Lubricant
         The oil.
     effects : Effects
@@ -257,7 +259,9 @@ class Scene(Model):
 
     @property
     def ring_is_placed(self) -> tuple[bool, bool, bool, bool, bool]:
-        """Which coordinates of the ring (x, y, z, rotation about x and y) are prescribed; the others follow from loads."""
+        """Which coordinates of the ring (x, y, z, rotation about x and y) are prescribed; the others follow from
+        loads.
+        """
         x, y, z = self.displacement or (None, None, None)
         return x is not None, y is not None, z is not None, self.moment_x is None, self.moment_y is None
 

@@ -76,8 +76,8 @@ class Simulation:
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances.
     instruction_set : str
-        Kernel variant: 'scalar', 'base', 'avx2', 'avx512'; by default the fastest that this machine runs. Results of two
-        variants differ in rounding.
+        Kernel variant: 'scalar', 'base', 'avx2', 'avx512'; by default the fastest that this machine runs. Results of
+        two variants differ in rounding.
     **options
         Fields of `RunOptions` that set the integrator: integrator, rtol, atol_position, atol_angle, atol_velocity,
         atol_spin, max_order, max_step, first_step, rings_share, checkpoint_every.
@@ -113,7 +113,9 @@ class Simulation:
     equilibrium: Equilibrium
     warnings: tuple[str, ...]
     _end: State | None
-    """Where a run has ended, inside the integrator's last step; None where the present state is the end of that step."""
+    """Where a run has ended, inside the integrator's last step; None where the present state is the end of that
+    step.
+    """
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if not abs(time) <= MAX_TIME:
@@ -133,8 +135,8 @@ class Simulation:
         self._end = None
 
     def _stand_at(self, time: float) -> None:
-        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on from there.
-        Where a callback has gone on after that instant, or has set a state, the present state is that one.
+        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on
+        from there. Where a callback has gone on after that instant, or has set a state, the present state is that one.
         """
         self._end = None
         if time != self._core.time:
@@ -157,8 +159,9 @@ class Simulation:
     def time(self) -> float:
         """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
 
-        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the run's end;
-        the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the whole run.
+        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the
+        run's end; the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the
+        whole run.
         """
         return self._core.time if self._end is None else self._end.time
 
@@ -262,7 +265,9 @@ class Simulation:
     def estimate(
         self, *, revolutions: float | None = None, duration: float | None = None, save_every: float | None = None
     ) -> Estimate:
-        """Expected wall time and error of a run from here, by a short probe of a copy; see `trbdyn.estimate.estimate`."""
+        """Expected wall time and error of a run from here, by a short probe of a copy; see
+        `trbdyn.estimate.estimate`.
+        """
         from trbdyn.estimate import estimate
 
         return estimate(self, revolutions=revolutions, duration=duration, save_every=save_every)
@@ -283,10 +288,10 @@ class Simulation:
         Returns
         -------
         dict of str to ndarray
-            ``raceway_<quantity>``, shape (2, Z, n): outer and inner race, roller, node, for interference, load, pressure,
-            films, film parameter, slide-roll ratio, friction coefficient and others; ``rib_<quantity>`` and
-            ``front_rib_<quantity>``, shape (Z,); ``pocket_load``, ``pocket_friction``, ``pocket_interference`` (negative:
-            gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); all SI.
+            ``raceway_<quantity>``, shape (2, Z, n): outer and inner race, roller, node, for interference, load,
+            pressure, films, film parameter, slide-roll ratio, friction coefficient and others; ``rib_<quantity>`` and
+            ``front_rib_<quantity>``, shape (Z,); ``pocket_load``, ``pocket_friction``, ``pocket_interference``
+            (negative: gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); all SI.
         """
         return self._core.contacts(*self._place(vector, time))
 
@@ -333,8 +338,9 @@ class Simulation:
         duration : float, optional
             How far to go (s); one of both must be given.
         save_every : float, optional
-            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3 s, but
-            not longer than a twentieth of a turn of the shaft (`trbdyn.keeping`); ``result.meta["kept"]`` says what was kept.
+            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3
+            s, but not longer than a twentieth of a turn of the shaft (`trbdyn.keeping`); ``result.meta["kept"]`` says
+            what was kept.
         save_groups : sequence of str, optional
             Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
         output : path-like, optional
@@ -342,11 +348,11 @@ class Simulation:
         progress : bool
             Show a progress bar.
         callback : callable, optional
-            Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run too,
-            after the file is closed. It may look at the simulation, but not step, restart or set it.
+            Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run
+            too, after the file is closed. It may look at the simulation, but not step, restart or set it.
         checkpoint_every : float, optional
-            Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options. Together
-            with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
+            Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options.
+            Together with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
         overwrite : bool
             Replace the file `output` if it is there, together with segments and checkpoints of the run that it holds.
 

@@ -95,8 +95,8 @@ class EquilibriumSolver:
         time : float
             Time (s).
         guess : sequence of two Equilibrium, optional
-            Equilibria close by: the search starts from `share` of the way from the first to the second. The loads of what
-            is found are then 0: they are not asked for.
+            Equilibria close by: the search starts from `share` of the way from the first to the second. The loads of
+            what is found are then 0: they are not asked for.
         share : float
             See `guess` (1).
         displacement : ndarray, shape (5,), optional
@@ -158,9 +158,9 @@ class EquilibriumSolver:
 def least_axial_load(scene: Scene, time: float = 0.0) -> float:
     """Axial load (N) below which rollers that orbit press the ring off, without any other load.
 
-    The centrifugal force Fc of a roller presses it against the cup, whose slope pushes it with Fc tan(alpha_o) towards its
-    large end, and there against the rib, whose normal lies at the angle theta to the bearing axis: the inner raceway
-    carries nothing at Fa = Z Fc tan(alpha_o) / [1 + tan(theta) tan(alpha_o)].
+    The centrifugal force Fc of a roller presses it against the cup, whose slope pushes it with Fc tan(alpha_o) towards
+    its large end, and there against the rib, whose normal lies at the angle theta to the bearing axis: the inner
+    raceway carries nothing at Fa = Z Fc tan(alpha_o) / [1 + tan(theta) tan(alpha_o)].
     """
     geometry = scene.bearing.geometry
     orbit = geometry.cage_speed_ratio * value_at(scene.speed_rpm, time) * math.pi / 30.0
@@ -262,8 +262,9 @@ class RingMotion:
 def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibrium]:
     """Prescribed motion of the ring as the core takes it, and the equilibrium at the start.
 
-    The ring stands, or moves, where it is in equilibrium with evenly spaced rollers: rollers that start elsewhere do not
-    shift it, as they pass through every place in turn. The rollers start in equilibrium with that ring where they stand.
+    The ring stands, or moves, where it is in equilibrium with evenly spaced rollers: rollers that start elsewhere do
+    not shift it, as they pass through every place in turn. The rollers start in equilibrium with that ring where they
+    stand.
 
     Raises
     ------

@@ -120,7 +120,9 @@ else:
 
 
 class _Listed(ModelMetaclass):
-    """Lists a model's own names: what pydantic adds to every model is not for users, and would fill ``help`` with pages."""
+    """Lists a model's own names: what pydantic adds to every model is not for users, and would fill ``help`` with
+    pages.
+    """
 
     def __dir__(cls) -> list[str]:
         own = (base for base in cls.__mro__ if issubclass(base, Model))
@@ -166,7 +168,9 @@ class Model(BaseModel, metaclass=_Listed):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Shorten the signature that ``help`` shows: no types, which the docstring tells, and inner models by their names."""
+        """Shorten the signature that ``help`` shows: no types, which the docstring tells, and inner models by their
+        names.
+        """
         super().__pydantic_init_subclass__(**options)
         full = inspect.signature(cls)
         parameters = [
@@ -183,7 +187,9 @@ class Model(BaseModel, metaclass=_Listed):
 
     @classmethod
     def _path_root(cls) -> tuple[str, ...]:
-        """What the names of fields start with in messages: the class's name in small letters, unless it sets `_root`."""
+        """What the names of fields start with in messages: the class's name in small letters, unless it sets
+        `_root`.
+        """
         root = cls.__name__.lower() if cls._root is None else cls._root
         return (root,) if root else ()
 

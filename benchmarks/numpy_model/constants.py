@@ -21,9 +21,9 @@ SLIDING_GUARD = 1e-9
 PASCAL_PER_BAR = 1e5
 
 NORMAL, TRACTION, RESISTANCE, ROLLING_SPEED, PRESSURE, ELASTIC, RIGID, THERMAL_1, THERMAL_2, THERMAL_3 = range(10)
-"""Powers of interference, sliding and mean speed: load (N); traction over sliding speed at S = 1; rolling resistance over
-mean speed; mean speed over half width times viscosity over the floor's half width; mean pressure (bar); both films times
-tau0 over viscosity; the three powers of the thermal factor."""
+"""Powers of interference, sliding and mean speed: load (N); traction over sliding speed at S = 1; rolling resistance
+over mean speed; mean speed over half width times viscosity over the floor's half width; mean pressure (bar); both
+films times tau0 over viscosity; the three powers of the thermal factor."""
 
 
 class Constants:
@@ -121,7 +121,9 @@ class Constants:
         return _core.law("profile_logarithmic", np.stack([station, *(np.full_like(station, x) for x in numbers)]))
 
     def _exponents(self) -> None:
-        """Logarithms of all powers are linear in (ln d, ln sliding, ln mean): a matrix and a constant for races and rib."""
+        """Logarithms of all powers are linear in (ln d, ln sliding, ln mean): a matrix and a constant for races and
+        rib.
+        """
         p, g, modulus = self.p, self.g, self.g.effective_modulus
         eta, tau = log(p["viscosity"]), log(p["eyring_stress"])
         log_g = log(p["pressure_coefficient"] * modulus)

@@ -22,7 +22,12 @@ typedef struct model_object {
   char       variant[16]; /* kernel variant in use */
 } model_object;
 
-extern PyTypeObject trb_model_type, trb_simulation_type;
+/* Types are made when the module is first loaded, from their specifications: with the stable ABI there are no static ones. */
+extern PyTypeObject *trb_model_type, *trb_simulation_type;
+extern PyType_Spec   trb_model_spec, trb_simulation_spec;
+
+/* Memory of an object and its type's reference, given back. */
+void trb_release(PyObject *object);
 
 /* Raise the exception of a status; NULL, so that callers can write: return raise_status(...). */
 PyObject        *trb_raise(trb_status status, const trb_message *message);

@@ -1,7 +1,6 @@
 /* trbdyn._core.Model */
 #include "python/core.h"
 
-#include <structmember.h>
 #include <string.h>
 
 #include "contact/kernels.h"
@@ -33,7 +32,7 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
                                 (int)PyArray_DIM(faces, 0), &model, &message);
     /* a workspace tells whether the variant runs, and which one "" stands for */
     if (status == TRB_OK) status = trb_workspace_create(model, variant, &work, &message);
-    if (status == TRB_OK) self = (model_object *)type->tp_alloc(type, 0);
+    if (status == TRB_OK) self = (model_object *)PyType_GenericAlloc(type, 0);
     if (self != NULL) {
       self->model = model;
       (void)PyOS_snprintf(self->variant, sizeof self->variant, "%s", trb_kernel_variants[work->variant].name);
@@ -43,16 +42,16 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
     }
     trb_workspace_free(work);
   }
-  Py_XDECREF(params);
-  Py_XDECREF(deviation);
-  Py_XDECREF(faces);
+  Py_XDECREF((PyObject *)params);
+  Py_XDECREF((PyObject *)deviation);
+  Py_XDECREF((PyObject *)faces);
   return (PyObject *)self;
 }
 
 static void model_dealloc(PyObject *object)
 {
   trb_model_free(((model_object *)object)->model);
-  Py_TYPE(object)->tp_free(object);
+  trb_release(object);
 }
 
 static PyObject *get_number(PyObject *self, void *closure)
@@ -137,11 +136,11 @@ static int read_doubles(PyObject *object, const char *name, npy_intp n, double *
   if (array == NULL) return -1;
   if (PyArray_DIM(array, 0) != n) {
     PyErr_Format(PyExc_ValueError, "%s: %d values needed, %d given", name, (int)n, (int)PyArray_DIM(array, 0));
-    Py_DECREF(array);
+    Py_DECREF((PyObject *)array);
     return -1;
   }
   memcpy(to, PyArray_DATA(array), (size_t)n * sizeof(double));
-  Py_DECREF(array);
+  Py_DECREF((PyObject *)array);
   return 0;
 }
 
@@ -209,13 +208,15 @@ static PyGetSetDef properties[] = {
     {NULL, NULL, NULL, NULL, NULL},
 };
 
-PyTypeObject trb_model_type = {
-    PyVarObject_HEAD_INIT(NULL, 0).tp_name = "trbdyn._core.Model",
-    .tp_basicsize = sizeof(model_object),
-    .tp_dealloc = model_dealloc,
-    .tp_flags = Py_TPFLAGS_DEFAULT,
-    .tp_doc = "One bearing with its lubricant and effects; immutable.",
-    .tp_methods = methods,
-    .tp_getset = properties,
-    .tp_new = model_new,
+static PyType_Slot slots[] = {
+    {Py_tp_dealloc, model_dealloc}, {Py_tp_doc, "One bearing with its lubricant and effects; immutable."},
+    {Py_tp_methods, methods},       {Py_tp_getset, properties},
+    {Py_tp_new, model_new},         {0, NULL},
+};
+
+PyType_Spec trb_model_spec = {
+    .name = "trbdyn._core.Model",
+    .basicsize = sizeof(model_object),
+    .flags = Py_TPFLAGS_DEFAULT | Py_TPFLAGS_IMMUTABLETYPE,
+    .slots = slots,
 };

@@ -13,6 +13,15 @@
 
 static PyObject *trb_error, *trb_input_error, *trb_load_error;
 PyObject        *trb_step_error;
+PyTypeObject    *trb_model_type, *trb_simulation_type;
+
+void trb_release(PyObject *object)
+{
+  PyTypeObject *type = Py_TYPE(object);
+  freefunc      release = (freefunc)PyType_GetSlot(type, Py_tp_free);
+  release(object);
+  Py_DECREF((PyObject *)type);
+}
 
 PyObject *trb_raise(trb_status status, const trb_message *message)
 {
@@ -130,7 +139,7 @@ static PyObject *law(PyObject *module, PyObject *arguments)
   if (x == NULL) return NULL;
   if (PyArray_DIM(x, 0) != found->n) {
     PyErr_Format(trb_input_error, "law '%s': %d arguments (%s) needed, %d given", name, found->n, found->arguments, (int)PyArray_DIM(x, 0));
-    Py_DECREF(x);
+    Py_DECREF((PyObject *)x);
     return NULL;
   }
   const npy_intp n = PyArray_DIM(x, 1);
@@ -143,7 +152,7 @@ static PyObject *law(PyObject *module, PyObject *arguments)
       to[i] = found->function(row);
     }
   }
-  Py_DECREF(x);
+  Py_DECREF((PyObject *)x);
   return out;
 }
 
@@ -155,11 +164,11 @@ static PyObject *geometry(PyObject *module, PyObject *object)
   trb_message    message = {TRB_OK, ""};
   if (block == NULL) return NULL;
   if (PyArray_DIM(block, 0) != TRB_N_PARAMS) {
-    Py_DECREF(block);
+    Py_DECREF((PyObject *)block);
     return PyErr_Format(trb_input_error, "params: %d values needed", TRB_N_PARAMS);
   }
   const trb_status status = trb_geometry_derive(PyArray_DATA(block), &out, &message);
-  Py_DECREF(block);
+  Py_DECREF((PyObject *)block);
   if (status != TRB_OK) return trb_raise(status, &message);
   return trb_vector((const double *)&out, TRB_N_GEOMETRY);
 }
@@ -227,22 +236,27 @@ static int add_exceptions(PyObject *module)
   return add_exception(module, "CoreStepError", "The integrator could not go on.", trb_error, &trb_step_error);
 }
 
+static int add_type(PyObject *module, const char *name, PyType_Spec *spec, PyTypeObject **to)
+{
+  if (*to == NULL) *to = (PyTypeObject *)PyType_FromSpec(spec); /* one, however often the module is loaded */
+  return *to == NULL ? -1 : PyModule_AddObjectRef(module, name, (PyObject *)*to);
+}
+
 static int execute(PyObject *module)
 {
   /* types and exceptions are static: another interpreter would share them, and NumPy's */
-  if (PyInterpreterState_Get() != PyInterpreterState_Main()) {
+  if (PyInterpreterState_GetID(PyInterpreterState_Get()) != 0) { /* 0 is the main one */
     PyErr_SetString(PyExc_ImportError, "trbdyn works in the main interpreter alone, not in sub-interpreters; use threads or processes");
     return -1;
   }
   import_array1(-1);
-  if (PyType_Ready(&trb_model_type) < 0 || PyType_Ready(&trb_simulation_type) < 0) return -1;
-  if (add_exceptions(module) != 0 || PyModule_AddObjectRef(module, "Model", (PyObject *)&trb_model_type) != 0) return -1;
-  return PyModule_AddObjectRef(module, "Simulation", (PyObject *)&trb_simulation_type);
+  if (add_exceptions(module) != 0 || add_type(module, "Model", &trb_model_spec, &trb_model_type) != 0) return -1;
+  return add_type(module, "Simulation", &trb_simulation_spec, &trb_simulation_type);
 }
 
 static PyModuleDef_Slot slots[] = {
     {Py_mod_exec, execute},
-#if PY_VERSION_HEX >= 0x030C0000
+#if defined(Py_MOD_MULTIPLE_INTERPRETERS_NOT_SUPPORTED) && Py_LIMITED_API + 0 >= 0x030C0000
     {Py_mod_multiple_interpreters, Py_MOD_MULTIPLE_INTERPRETERS_NOT_SUPPORTED},
 #endif
     {0, NULL},

@@ -25,10 +25,10 @@ static int read_settings(PyObject *dictionary, trb_settings *settings, const cha
   *kind = "bdf";
   for (int i = 0; i < TRB_N_SETTINGS; i++) values[i] = trb_setting_table[i].standard;
   while (PyDict_Next(dictionary, &position, &key, &value)) {
-    const char *name = PyUnicode_AsUTF8(key);
+    const char *name = PyUnicode_AsUTF8AndSize(key, NULL);
     if (name == NULL) return -1;
     if (strcmp(name, "integrator") == 0) {
-      if ((*kind = PyUnicode_AsUTF8(value)) == NULL) return -1;
+      if ((*kind = PyUnicode_AsUTF8AndSize(value, NULL)) == NULL) return -1;
       continue;
     }
     int found = -1;
@@ -64,13 +64,13 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
   trb_settings settings;
   const char  *kind;
   trb_message  message = {TRB_OK, ""};
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!|ddd", names, &trb_model_type, &model, &motion_object, &time, &state_object,
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!|ddd", names, trb_model_type, &model, &motion_object, &time, &state_object,
                                    &PyDict_Type, &settings_object, &period, &angle_time, &angle))
     return NULL;
   if (read_settings(settings_object, &settings, &kind) != 0) return NULL;
   PyArrayObject *motion = trb_array(motion_object, 2, "motion");
   if (motion == NULL) return NULL;
-  simulation_object *self = (simulation_object *)type->tp_alloc(type, 0);
+  simulation_object *self = (simulation_object *)PyType_GenericAlloc(type, 0);
   PyArrayObject     *state = NULL;
   if (self != NULL) {
     Py_INCREF(model);
@@ -92,11 +92,11 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
       (void)trb_raise(status, &message);
       Py_CLEAR(self);
     }
-    Py_DECREF(state);
+    Py_DECREF((PyObject *)state);
   } else {
     Py_CLEAR(self);
   }
-  Py_DECREF(motion);
+  Py_DECREF((PyObject *)motion);
   return (PyObject *)self;
 }
 
@@ -107,7 +107,7 @@ static void simulation_dealloc(PyObject *object)
   trb_motion_free(self->motion);
   if (self->inside != NULL) PyThread_free_lock(self->inside);
   Py_XDECREF(self->model);
-  Py_TYPE(object)->tp_free(object);
+  trb_release(object);
 }
 
 /* Longest wait for another thread's look, ms. */
@@ -162,21 +162,21 @@ static PyObject *run(PyObject *object, PyObject *args)
   if (PyArray_TYPE(records) != NPY_DOUBLE || PyArray_NDIM(records) != 2 || !PyArray_IS_C_CONTIGUOUS(records) ||
       !PyArray_ISWRITEABLE(records) || PyArray_DIM(records, 0) < PyArray_DIM(times, 0) || PyArray_DIM(records, 1) != length) {
     PyErr_Format(PyExc_ValueError, "records: must be a writable C-contiguous float64 array with a row of %d a time", length);
-    Py_DECREF(times);
+    Py_DECREF((PyObject *)times);
     return NULL;
   }
   if (enter(self, 1) != 0) {
-    Py_DECREF(times);
+    Py_DECREF((PyObject *)times);
     return NULL;
   }
-  Py_INCREF(records);
+  Py_INCREF((PyObject *)records);
   Py_BEGIN_ALLOW_THREADS
   status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), stop_after, PyArray_DATA(records),
                               max_steps, &rows, &steps, &message);
   Py_END_ALLOW_THREADS
   leave(self, 1);
-  Py_DECREF(records);
-  Py_DECREF(times);
+  Py_DECREF((PyObject *)records);
+  Py_DECREF((PyObject *)times);
   if (status == TRB_OK) return Py_BuildValue("(il)", rows, steps);
   (void)trb_raise(status, &message);
   if (status == TRB_ERR_STEP) {
@@ -231,12 +231,12 @@ static PyObject *set_state(PyObject *object, PyObject *args)
   PyArrayObject *array = state_array(self, values);
   if (array == NULL) return NULL;
   if (enter(self, 0) != 0) {
-    Py_DECREF(array);
+    Py_DECREF((PyObject *)array);
     return NULL;
   }
   const trb_status status = trb_simulation_set_state(self->simulation, time, PyArray_DATA(array), &message);
   leave(self, 0);
-  Py_DECREF(array);
+  Py_DECREF((PyObject *)array);
   if (status != TRB_OK) return trb_raise(status, &message);
   Py_RETURN_NONE;
 }
@@ -274,7 +274,7 @@ static PyObject *observe(PyObject *object, PyObject *args)
   PyObject *out = trb_vector(NULL, trb_record_offset(s->model, TRB_N_FIELDS));
   if (out != NULL) trb_record_fill(s->onlooker, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
   leave(self, 0);
-  Py_DECREF(array);
+  Py_DECREF((PyObject *)array);
   return out;
 }
 
@@ -288,7 +288,7 @@ static PyObject *derivative(PyObject *object, PyObject *args)
   PyObject *out = trb_vector(NULL, s->integrator.n);
   if (out != NULL) trb_dynamics_derivative(s->onlooker, time, PyArray_DATA(array), PyArray_DATA((PyArrayObject *)out));
   leave(self, 0);
-  Py_DECREF(array);
+  Py_DECREF((PyObject *)array);
   return out;
 }
 
@@ -374,7 +374,7 @@ static PyObject *contacts(PyObject *object, PyObject *args)
   PyObject *out = PyDict_New();
   if (out != NULL && (put_detail(s->model, s->detail, out) != 0 || put_loads(s->model, s->onlooker->loads, out) != 0)) Py_CLEAR(out);
   leave(self, 0);
-  Py_DECREF(array);
+  Py_DECREF((PyObject *)array);
   return out;
 }
 
@@ -465,12 +465,12 @@ static PyObject *restore_peaks(PyObject *object, PyObject *values)
   trb_message        message = {TRB_OK, ""};
   PyArrayObject     *array = trb_array(values, 1, "peaks");
   if (array == NULL || enter(self, 0) != 0) {
-    Py_XDECREF(array);
+    Py_XDECREF((PyObject *)array);
     return NULL;
   }
   const trb_status status = trb_simulation_restore_peaks(self->simulation, PyArray_DATA(array), (int)PyArray_DIM(array, 0), &message);
   leave(self, 0);
-  Py_DECREF(array);
+  Py_DECREF((PyObject *)array);
   if (status != TRB_OK) return trb_raise(status, &message);
   Py_RETURN_NONE;
 }
@@ -525,13 +525,18 @@ static PyGetSetDef properties[] = {
     {NULL, NULL, NULL, NULL, NULL},
 };
 
-PyTypeObject trb_simulation_type = {
-    PyVarObject_HEAD_INIT(NULL, 0).tp_name = "trbdyn._core.Simulation",
-    .tp_basicsize = sizeof(simulation_object),
-    .tp_dealloc = simulation_dealloc,
-    .tp_flags = Py_TPFLAGS_DEFAULT,
-    .tp_doc = "One integration: model, prescribed motion, state, integrator.",
-    .tp_methods = methods,
-    .tp_getset = properties,
-    .tp_new = simulation_new,
+static PyType_Slot slots[] = {
+    {Py_tp_dealloc, simulation_dealloc},
+    {Py_tp_doc, "One integration: model, prescribed motion, state, integrator."},
+    {Py_tp_methods, methods},
+    {Py_tp_getset, properties},
+    {Py_tp_new, simulation_new},
+    {0, NULL},
+};
+
+PyType_Spec trb_simulation_spec = {
+    .name = "trbdyn._core.Simulation",
+    .basicsize = sizeof(simulation_object),
+    .flags = Py_TPFLAGS_DEFAULT | Py_TPFLAGS_IMMUTABLETYPE,
+    .slots = slots,
 };

@@ -199,7 +199,9 @@ def pocket_push(sim: Simulation) -> np.ndarray:
 
 
 def test_materials_act_in_every_contact_of_their_body() -> None:
-    """Line contacts: load = 0.356 E' ..., so that loads go with the composite modulus of the pair at the same interference."""
+    """Line contacts: load = 0.356 E' ..., so that loads go with the composite modulus of the pair at the same
+    interference.
+    """
     place = {"axial_load": 0.0, "displacement": (0.0, 0.0, -2e-5)}
     rig = trb.cases.rig_30310()
     steel = Simulation(trb.cases.scene_30310(**place))

@@ -18,7 +18,9 @@ Array = NDArray[np.float64]
 
 
 def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any], None]) -> tuple[Any, Result]:
-    """A run in whose first fifth the cage runs another circle and everything is a thousandfold: no average may hold any of it."""
+    """A run in whose first fifth the cage runs another circle and everything is a thousandfold: no average may hold
+    any of it.
+    """
     run, _ = build(n=4001, duration=0.4)
     change(run)
     late = run.column("time") >= 0.0999

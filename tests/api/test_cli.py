@@ -55,7 +55,16 @@ def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, synthetic: Any) -> typ
     return kind
 
 
-def test_demo_writes_everything(fake: type[FakeSimulation], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_demo_writes_everything(
+    fake: type[FakeSimulation], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # the stub of a simulation has no scene that could be drawn: tests/report/test_demo.py runs the real thing
+    import trbdyn.reporting
+    import trbdyn.viewer
+
+    for module, name in ((trbdyn.reporting, "report"), (trbdyn.viewer, "view")):
+        monkeypatch.setattr(module, name, lambda result, path, **options: Path(path))
+    monkeypatch.setattr("trbdyn.reporting.verdict.what_matters", lambda result, numbers: ["It turns."])
     assert main(["demo", "-o", "out/demo"]) == 0
     folder = tmp_path / "out" / "demo"
     names = {path.name for path in folder.iterdir()}
@@ -72,7 +81,9 @@ def test_demo_writes_everything(fake: type[FakeSimulation], tmp_path: Path, caps
     assert call["scene"].start.eccentricity == 0.9
     assert call["scene"].speed_rpm == 3000.0
     assert call["scene"].axial_load == 4930.0
-    assert "orbit radius of the cage about its mean place" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert said.startswith("A tapered roller bearing 30310 turns at 3000 rpm")
+    assert "1. It turns." in said
 
 
 def test_run_of_a_shipped_case_with_changes(fake: type[FakeSimulation], tmp_path: Path) -> None:

@@ -1,4 +1,6 @@
-"""What is drawn: every curve, bar and mark against the result, where no two panels, faces, sides or components are alike."""
+"""What is drawn: every curve, bar and mark against the result, where no two panels, faces, sides or components are
+alike.
+"""
 
 from __future__ import annotations
 

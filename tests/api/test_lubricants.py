@@ -55,7 +55,9 @@ def test_study_and_toml_change_the_temperature() -> None:
 @pytest.mark.parametrize("name", OILS)
 @pytest.mark.parametrize("temperature", [20.0, 60.0, 120.0])
 def test_one_pressure_law_in_films_and_traction(name: str, temperature: float) -> None:
-    """Slope of the viscosity at pressure at p = 0 is the alpha0 of the films; an own oil kept FVA3's law in traction."""
+    """Slope of the viscosity at pressure at p = 0 is the alpha0 of the films; an own oil kept FVA3's law in
+    traction.
+    """
     oil = OILS[name](temperature_c=temperature)
     slope = math.log(float(contact_viscosity(oil, np.array(1e3))) / oil.viscosity) / 1e3
     assert slope == pytest.approx(oil.pressure_coefficient, rel=1e-4)
@@ -73,7 +75,9 @@ def test_one_pressure_law_in_films_and_traction(name: str, temperature: float) -
 
 @pytest.mark.parametrize("grade", MINERAL)
 def test_grades(grade: int) -> None:
-    """ISO 3448: the grade is the kinematic viscosity at 40 C; every oil is thinner than the next grade at any temperature."""
+    """ISO 3448: the grade is the kinematic viscosity at 40 C; every oil is thinner than the next grade at any
+    temperature.
+    """
     assert 1e6 * iso_vg(grade, 40.0).kinematic_viscosity == pytest.approx(grade, rel=2e-4)
     assert 1e6 * iso_vg(grade, 100.0).kinematic_viscosity == pytest.approx(MINERAL[grade].nu100, rel=2e-4)
     thicker = [other for other in MINERAL if other > grade][:1]

@@ -1,4 +1,6 @@
-"""The paper's operating points: what is run, when it has settled, going on, what is written, how statements are judged."""
+"""The paper's operating points: what is run, when it has settled, going on, what is written, how statements are
+judged.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Whatever comes in, it is used or refused with one of the package's own errors, which says why: never anything else."""
+"""Whatever comes in, it is used or refused with one of the package's own errors, which says why: never anything
+else.
+"""
 
 from __future__ import annotations
 
@@ -67,11 +69,12 @@ RIG = trb.cases.rig_30310()
 
 
 def full_scene() -> trb.Scene:
-    """A scene with pockets, deviations, a history, a displacement and a state of its own."""
+    """A scene with pockets, deviations, estimates, a history, a displacement and a state of its own."""
     pocket = trb.pocket_shapes.one_sided_pocket(RIG)
     bearing = RIG.replace(
         roller=RIG.roller.replace(diameter_deviation=tuple(1e-6 * (j % 3) for j in range(RIG.n_rollers))),
         cage=RIG.cage.replace(pocket=pocket, other_pockets=(trb.pocket.OtherPocket(index=3, pocket=pocket),)),
+        estimates=trb.Bearing.from_catalogue(bore=0.05, outside=0.11, width=0.02925, C=125e3, e=0.35).estimates[:1],
     )
     shift = trb.History(times=(0.0, 1e-3), values=(-40e-6, -42e-6))
     scene = scene_30310(3000.0, 0.0, bearing=bearing, displacement=(0.0, 1e-6, shift), misalignment_x=1e-4)

@@ -1,4 +1,6 @@
-"""Whatever is typed: the command line does it, or says in one line for each problem why not, and ends with exit code 2."""
+"""Whatever is typed: the command line does it, or says in one line for each problem why not, and ends with exit code
+2.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Inputs that Python itself would refuse, or that would take the machine's memory: each is one of the package's own errors."""
+"""Inputs that Python itself would refuse, or that would take the machine's memory: each is one of the package's own
+errors.
+"""
 
 from __future__ import annotations
 

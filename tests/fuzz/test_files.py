@@ -1,4 +1,6 @@
-"""Whatever lies beside a run, and whatever happens to its file: nobody's file is lost, and the run's own records are kept."""
+"""Whatever lies beside a run, and whatever happens to its file: nobody's file is lost, and the run's own records are
+kept.
+"""
 
 from __future__ import annotations
 
@@ -350,7 +352,8 @@ def callback(sim):
 
 if True:
     try:
-        trb.Simulation(scene_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output, callback=callback)
+        trb.Simulation(scene_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output,
+        callback=callback)
     except trb.TrbError as error:
         print("child:", error, flush=True)
         sys.exit(0)

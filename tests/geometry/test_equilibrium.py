@@ -249,7 +249,8 @@ class TestTooMuch:
 
     @pytest.mark.parametrize("speed", [1000.0, 3000.0])
     def test_axial_load_that_does_not_hold_the_rollers_down(self, rig: Bearing, speed: float) -> None:
-        """Centrifugal force drives the rollers up the cup: below the load where they leave the cone the ring is pushed off.
+        """Centrifugal force drives the rollers up the cup: below the load where they leave the cone the ring is pushed
+        off.
 
         There Qo cos(alpha_o) + Qr sin(theta) = Fc and Qo sin(alpha_o) = Qr cos(theta), theta the rib's angle.
         """

@@ -1,4 +1,6 @@
-"""Scenes at the edge of what is allowed: either they are refused, or every rate and every quantity of a contact is a number."""
+"""Scenes at the edge of what is allowed: either they are refused, or every rate and every quantity of a contact is a
+number.
+"""
 
 from __future__ import annotations
 

@@ -5,10 +5,11 @@
     .venv/bin/python tests/mutation/mutate.py --area results
 
 A fault is one changed operator, number, component or function, or one statement taken away, drawn with a seed from the
-sources of an area. The sources are copied to build/mutation; C sources are compiled there again, as far as the fault reaches.
-The Python tests of the area and the C tests run until one fails. Each outcome is a line of
-build/mutation/outcomes.jsonl. A fault that has one is not tried again; --more tries slower tests on those that the first ones
-did not notice. Faults that do not compile are not counted. After a change of the sources, delete build/mutation.
+sources of an area. The sources are copied to build/mutation; C sources are compiled there again, as far as the fault
+reaches. The Python tests of the area and the C tests run until one fails. Each outcome is a line of
+build/mutation/outcomes.jsonl. A fault that has one is not tried again; --more tries slower tests on those that the
+first ones did not notice. Faults that do not compile are not counted. After a change of the sources, delete
+build/mutation.
 
 tests/mutation/survivors.md judges the faults that no test noticed.
 """
@@ -219,7 +220,9 @@ def draw(count: int, seed: int, only: str | None) -> list[Fault]:
 
 
 def prepare() -> None:
-    """A copy of the sources and a build of it, without vectors wider than every machine has: it compiles in half the time."""
+    """A copy of the sources and a build of it, without vectors wider than every machine has: it compiles in half the
+    time.
+    """
     TREE.mkdir(parents=True, exist_ok=True)
     for name in ("csrc", "trbdyn", "tests", "pyproject.toml"):
         source, target = ROOT / name, TREE / name

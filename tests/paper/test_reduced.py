@@ -1,9 +1,9 @@
 """Statements of the paper that runs of a second can tell.
 
-Each limit is the 99 % bound for another run, mean +- 6.5 standard deviations (5.84, t of four runs, times sqrt(1 + 1/4)),
-by the whirling start itself and with rollers off their places by +-3e-4 rad at random, seeds 0, 1, 2. Amplitudes over Cpr:
-3000 rpm, 4930 N: 0.744, 0.762, 0.760, 0.765; 2000 rpm, 4930 N, Fr 8380 N: 0.041, 0.039, 0.045, 0.045; 3000 rpm, 1230 N: 0.020,
-0.008, 0.019, 0.011.
+Each limit is the 99 % bound for another run, mean +- 6.5 standard deviations (5.84, t of four runs, times sqrt(1 +
+1/4)), by the whirling start itself and with rollers off their places by +-3e-4 rad at random, seeds 0, 1, 2.
+Amplitudes over Cpr: 3000 rpm, 4930 N: 0.744, 0.762, 0.760, 0.765; 2000 rpm, 4930 N, Fr 8380 N: 0.041, 0.039, 0.045,
+0.045; 3000 rpm, 1230 N: 0.020, 0.008, 0.019, 0.011.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
-"""The paper's statements, fig. 8 to 18, by shorter runs than the campaign's: 2 to 3 min of processor time in all, with -m slow.
+"""The paper's statements, fig. 8 to 18, by shorter runs than the campaign's: 2 to 3 min of processor time in all, with
+-m slow.
 
-Conditions are the paper's; bearing times are 2 to 10 s where the campaign takes 10 to 60 s, so whirls that take longer to grow
-are started as whirls. Tolerances are `T` times the standard deviation over three seeds of random spacing in the campaign
-(benchmarks/paper/paper.json), or over the seeds of these runs. What we find not to hold is a strict xfail.
+Conditions are the paper's; bearing times are 2 to 10 s where the campaign takes 10 to 60 s, so whirls that take longer
+to grow are started as whirls. Tolerances are `T` times the standard deviation over three seeds of random spacing in
+the campaign (benchmarks/paper/paper.json), or over the seeds of these runs. What we find not to hold is a strict xfail.
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ OTHERS = {
     "8380 N": Condition(2000.0, 4930.0, 8380.0),
 }
 SECONDS = {SLOW: 9.5, LIGHT: 1.5, SCATTERED: 1.5}
-"""Bearing time before the 0.5 s of statistics, 3 s for others: at 1000 rpm a whirl takes this long to die, at 1230 N everything
-is over in a few turns of the cage."""
+"""Bearing time before the 0.5 s of statistics, 3 s for others: at 1000 rpm a whirl takes this long to die, at 1230 N
+everything is over in a few turns of the cage."""
 
 Run = Any
 

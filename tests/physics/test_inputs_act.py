@@ -1,4 +1,6 @@
-"""Every number that reaches the core acts: it is changed, and a force, a film or a coefficient follows as its law says."""
+"""Every number that reaches the core acts: it is changed, and a force, a film or a coefficient follows as its law
+says.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Every recorded field, computed a second time from the state and the contacts, at states where nothing is zero or symmetric; and
-which source each share of torque and power comes from."""
+"""Every recorded field, computed a second time from the state and the contacts, at states where nothing is zero or
+symmetric; and which source each share of torque and power comes from."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""A ring that follows its load lies at the equilibria, between their times too, whatever turns or repeats; the start belongs to
-its own time."""
+"""A ring that follows its load lies at the equilibria, between their times too, whatever turns or repeats; the start
+belongs to its own time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A run starts where the equations of motion balance: equilibrium at speed, pure rolling, a cage that rests, whirls or hangs."""
+"""A run starts where the equations of motion balance: equilibrium at speed, pure rolling, a cage that rests, whirls or
+hangs.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,8 @@ def rates(sim: Any) -> dict[str, float]:
 
 
 def test_start_without_friction_is_in_balance(kit: SimpleNamespace) -> None:
-    """Every rate vanishes but a roller's tilt: the equilibrium takes the gyroscopic moment at the nominal axis, and the axis is
-    tilted by 2e-5, which leaves 1e-4 of it."""
+    """Every rate vanishes but a roller's tilt: the equilibrium takes the gyroscopic moment at the nominal axis, and
+    the axis is tilted by 2e-5, which leaves 1e-4 of it."""
     sim = kit.simulate(FREE)
     found, geometry = rates(sim), sim.scene.bearing.geometry
     mass, transverse = geometry.roller_mass, geometry.roller_inertia_transverse
@@ -62,7 +64,9 @@ def test_start_at_rest_is_in_balance(kit: SimpleNamespace) -> None:
     ids=["radial", "radial_oblique", "misaligned", "moment"],
 )
 def test_contacts_carry_the_load(kit: SimpleNamespace, scenery: dict[str, Any]) -> None:
-    """The ring gets from the rollers the opposite of what the scene puts on it, and rollers are in balance in their planes."""
+    """The ring gets from the rollers the opposite of what the scene puts on it, and rollers are in balance in their
+    planes.
+    """
     sim = kit.simulate(FREE, scenery=scenery)
     record, found = sim.record(), rates(sim)
     direction = np.radians(scenery.get("radial_direction_deg", 90.0))
@@ -105,7 +109,9 @@ def test_cage_rests_the_way_gravity_points(kit: SimpleNamespace) -> None:
 
 
 def test_whirling_start(kit: SimpleNamespace) -> None:
-    """The cage at 0.9 Cpr turns about the bearing axis with its own speed; rollers stand in the middle of their pockets."""
+    """The cage at 0.9 Cpr turns about the bearing axis with its own speed; rollers stand in the middle of their
+    pockets.
+    """
     sim = kit.simulate(Effects.paper(), scenery={"start": Start.whirl(0.9, direction_deg=30.0)})
     record, geometry = sim.record(), sim.scene.bearing.geometry
     place, velocity, play = record["cage_position"], record["cage_velocity"], sim.scene.bearing.cage.play_radial

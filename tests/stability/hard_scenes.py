@@ -37,7 +37,8 @@ class Hard:
     words : str
         What the error's message must say.
     closure : float
-        Bound of the energy audit's closure: residual over dissipated work, or over the largest energy where nothing is lost.
+        Bound of the energy audit's closure: residual over dissipated work, or over the largest energy where nothing is
+        lost.
     twin : float
         Bound of the energy that the scene without friction makes or loses, over the largest energy in it.
     steps : float
@@ -47,7 +48,8 @@ class Hard:
     tolerances : float
         Bound of what two tolerances differ by: mean loss, relative, over `compared`.
     compared : float
-        Bearing time over which two tolerances are compared, and the scene without friction runs (s), if less than `duration`.
+        Bearing time over which two tolerances are compared, and the scene without friction runs (s), if less than
+        `duration`.
     path : float
         Bound of what two methods differ by over `window`: speeds of rollers and cage, over the largest speed.
     window : float
@@ -184,7 +186,9 @@ S = scene_30310
 
 
 def slow_films() -> trb.Effects:
-    """For scenes that stand still: friction turns over slip of 0.5 mm/s and not 10 um/s, which is stick-slip of nanoseconds."""
+    """For scenes that stand still: friction turns over slip of 0.5 mm/s and not 10 um/s, which is stick-slip of
+    nanoseconds.
+    """
     return effects(friction=trb.Effects.paper().friction.replace(speed_floor=0.05))
 
 

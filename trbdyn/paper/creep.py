@@ -230,12 +230,13 @@ def bar_lean(bearing: Bearing) -> float:
 
 
 def creep_time(scene: Scene) -> float:
-    """Time in which creep lets the whirl of the cage change by its own size (s): the scale of every slow change of the motion.
+    """Time in which creep lets the whirl of the cage change by its own size (s): the scale of every slow change of the
+    motion.
 
-    T_c Z/(2 chi) over the larger of q Fn c^4 and c k^2/2, the terms of centrifugal force and weight in `growth_per_turn`
-    (q = Cpc/Cpr, c = cos(gamma), k = q c). Both terms count, as they oppose each other: what is left of them is a difference.
-    Where rollers differ in load, v' is their mean, as each roller comes to every place of the loaded zone; none counts with more
-    than the drift at which it yields within a turn of the cage, chi = 2 Z/c.
+    T_c Z/(2 chi) over the larger of q Fn c^4 and c k^2/2, the terms of centrifugal force and weight in
+    `growth_per_turn` (q = Cpc/Cpr, c = cos(gamma), k = q c). Both terms count, as they oppose each other: what is left
+    of them is a difference. Where rollers differ in load, v' is their mean, as each roller comes to every place of the
+    loaded zone; none counts with more than the drift at which it yields within a turn of the cage, chi = 2 Z/c.
 
     Parameters
     ----------

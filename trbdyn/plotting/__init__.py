@@ -1,7 +1,7 @@
 """Engineers' pictures of a result: ``trb.plot.cage_locus(result)``.
 
-Every function takes a `Result`, and axes to draw into (``ax=``) unless it needs a whole figure; it gives the axes, or the
-figure, back. The style holds for the new picture only: nothing global is changed, and no window is opened.
+Every function takes a `Result`, and axes to draw into (``ax=``) unless it needs a whole figure; it gives the axes, or
+the figure, back. The style holds for the new picture only: nothing global is changed, and no window is opened.
 """
 
 from __future__ import annotations
@@ -18,10 +18,13 @@ from matplotlib.figure import Figure
 
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.own_files import folder_path
+from trbdyn.plotting.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
 from trbdyn.plotting.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
+from trbdyn.plotting.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plotting.energy import energy_audit, power_split, torque_split
 from trbdyn.plotting.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
 from trbdyn.plotting.style import SAVE_DPI, STYLE
+from trbdyn.plotting.whirling import poincare, torque_sources, waterfall
 
 if TYPE_CHECKING:
     from trbdyn.results import Result
@@ -30,22 +33,33 @@ __all__ = [
     "PICTURES",
     "STYLE",
     "all",
+    "attitude",
     "axial_motion",
+    "bearing_drawing",
     "cage_locus",
     "conditions",
     "contact_loads",
+    "contact_map",
     "energy_audit",
+    "film_map",
     "film_parameter",
+    "load_zone",
     "make_folder",
     "orbit_radius",
+    "pocket_drawing",
     "pocket_forces",
+    "pocket_polar",
     "pocket_statistics",
+    "poincare",
     "power_split",
+    "pressure_map",
     "save",
     "spacing_angles",
     "spectrum",
     "tilt",
+    "torque_sources",
     "torque_split",
+    "waterfall",
     "whirl_map",
     "whirl_radius",
 ]
@@ -66,6 +80,13 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
     "torque_split": (torque_split, ("torque",)),
     "power_split": (power_split, ("power",)),
     "energy_audit": (energy_audit, ("energy",)),
+    "load_zone": (load_zone, ("rollers", "contacts")),
+    "pressure_map": (pressure_map, ("cage", "rollers")),
+    "film_map": (film_map, ("cage", "rollers")),
+    "attitude": (attitude, ("rollers",)),
+    "pocket_polar": (pocket_polar, ("pocket",)),
+    "poincare": (poincare, ("cage",)),
+    "torque_sources": (torque_sources, ("torque",)),
 }
 """Pictures of one result, by name, and the groups that each needs."""
 

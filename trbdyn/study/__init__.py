@@ -1,4 +1,4 @@
-"""Parameter studies: many scenes, run side by side, with one result file each and their observables in one dataset.
+"""Parameter studies: many scenes, run side by side, with one result file each and their observables in one dataset::
 
     import trbdyn as trb
 

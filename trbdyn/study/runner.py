@@ -45,20 +45,22 @@ def run(
     study : Study or iterable of Scene
         The cases; scenes may come with run options of their own, as (scene, options).
     folder : path-like, optional
-        Where each case gets its result file, beside ``index.jsonl`` and the dataset ``observables.nc``; without it no files are
-        written.
+        Where each case gets its result file, beside ``index.jsonl`` and the dataset ``observables.nc``; without it no
+        files are written.
     options : RunOptions, optional
         How scenes are run; a study has its own.
     executor : {'processes', 'threads', 'serial'} or object
-        Worker processes of its own (spawned: a script needs ``if __name__ == "__main__":``), threads, this thread; or any
-        executor with ``submit`` as in `concurrent.futures`; or a Dask client, whose workers must see the same folder.
+        Worker processes of its own (spawned: a script needs ``if __name__ == "__main__":``), threads, this thread; or
+        any executor with ``submit`` as in `concurrent.futures`; or a Dask client, whose workers must see the same
+        folder.
     workers : int, optional
         Number of own workers; by default, and at most, the cores.
     observables : mapping of str to callable, optional
-        Functions of a `Result` besides its summary, giving a number, a text or an array; for processes they must pickle.
+        Functions of a `Result` besides its summary, giving a number, a text or an array; for processes they must
+        pickle.
     resume : bool
-        Skip cases that are done: those whose scene and run options have a finished file in the folder. Cases that failed are
-        run again.
+        Skip cases that are done: those whose scene and run options have a finished file in the folder. Cases that
+        failed are run again.
     progress : bool
         Show a progress bar.
 
@@ -119,7 +121,9 @@ def collect(study: Study, folder: str | os.PathLike[str]) -> xarray.Dataset:
 
 
 def _check_pickle(functions: Mapping[str, Observable]) -> None:
-    """Worker processes get observables by pickle, which takes functions of a module alone: say so before anything runs."""
+    """Worker processes get observables by pickle, which takes functions of a module alone: say so before anything
+    runs.
+    """
     for name, function in functions.items():
         try:
             pickle.dumps(function)

@@ -89,7 +89,8 @@ def simulation(scene: Scene, run: RunOptions) -> Simulation:
 def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
     """Run one case.
 
-    A file appears under its name when it is complete. Records of a run that failed on the way are kept under a name of its own.
+    A file appears under its name when it is complete. Records of a run that failed on the way are kept under a name of
+    its own.
 
     Raises
     ------

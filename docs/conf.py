@@ -1,0 +1,43 @@
+"""How the documentation site is built: MyST pages, code cells executed at build, warnings are errors (`make docs`)."""
+
+import os
+
+import trbdyn
+
+os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"  # pictures of code cells stand on the page
+
+project = "trbdyn"
+author = "The trbdyn developers"
+project_copyright = "The trbdyn developers, BSD-3-Clause"
+version = release = trbdyn.__version__
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_copybutton",
+]
+myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build"]
+
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 600
+nb_execution_show_tb = True
+nb_merge_streams = True
+nb_execution_in_temp = True
+suppress_warnings = ["ref.python"]  # a word of a docstring that many classes have as a field
+
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+autodoc_default_options = {"members": True, "undoc-members": False, "exclude-members": "model_config"}
+autodoc_mock_imports = ["dask", "distributed"]
+default_role = "literal"
+
+html_theme = "furo"
+html_title = f"trbdyn {version}"
+html_show_sphinx = False

@@ -1,0 +1,142 @@
+"""The report: what it says agrees with the run, in one file that needs nothing else."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import summary
+from trbdyn.cli import main
+from trbdyn.plotting import PICTURES
+from trbdyn.reporting import converter
+from trbdyn.reporting.inputs import field_texts, rows
+from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
+from trbdyn.reporting.verdict import verdict
+
+
+@pytest.fixture(scope="module")
+def run_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("report") / "run.h5"
+    scene = trb.cases.scene_30310(3000.0, 4930.0, effects=trb.Effects.paper(), start=trb.Start.whirl(0.9))
+    trb.Simulation(scene).run(revolutions=3, output=path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def result(run_file: Path) -> trb.Result:
+    return trb.load(run_file)
+
+
+@pytest.fixture(scope="module")
+def text(result: trb.Result, tmp_path_factory: pytest.TempPathFactory) -> str:
+    return trb.report(result, tmp_path_factory.mktemp("r") / "r.html").read_text(encoding="utf-8")
+
+
+def cells(text: str, words: str) -> list[str]:
+    row = re.search(rf"<tr[^>]*><td>{re.escape(words)}</td>(.*?)</tr>", text)
+    assert row is not None, words
+    return re.findall(r"<td[^>]*>(.*?)</td>", row[1])
+
+
+def test_numbers_units_and_meanings(text: str, result: trb.Result) -> None:
+    values = result.summary()
+    for key in ("torque", "outer_load_mean", "film_parameter_inner", "pocket_force_peak", "power_loss"):
+        words, unit = summary.LABELS[key]
+        number, shown_unit, meaning = cells(text, words)
+        assert float(number) == pytest.approx(values[key], rel=1e-3)
+        assert shown_unit == unit
+        assert len(meaning) > 20
+    assert f"{values['torque']:.3g} N m of friction" in text
+    assert f"{values['pocket_force_peak']:.3g} N" in text
+
+
+def test_every_entry_of_the_summary_and_every_picture_has_its_sentence() -> None:
+    assert set(summary.LABELS) <= set(MEANINGS)
+    assert set(PICTURES) <= set(CAPTIONS)
+
+
+def test_all_pictures_and_drawings_are_inside(text: str) -> None:
+    assert text.count("<img ") == len(PICTURES) + 2
+    assert text.count("src='data:image/png;base64,") == text.count("<img ")
+    assert not re.search(r"(src|href)=['\"]https?:", text)
+
+
+def test_inputs_are_listed_with_their_units_and_the_assumed_ones_marked(text: str, result: trb.Result) -> None:
+    listed = {row.path: row for row in rows(result.scene)}
+    assert (listed["bearing.roller.diameter"].value, listed["bearing.roller.diameter"].unit) == ("0.014", "m")
+    assert listed["bearing.roller.diameter"].mark == ""
+    assert listed["bearing.roller.sphere_ratio"].mark == "assumed"
+    assert cells(text, "bearing.roller.sphere_ratio")[2] == "assumed"
+    changed = result.scene.bearing.roller.replace(sphere_ratio=0.85)
+    scene = result.scene.replace(bearing=result.scene.bearing.replace(roller=changed))
+    assert {row.path: row for row in rows(scene)}["bearing.roller.sphere_ratio"].mark == ""
+    assert listed["speed_rpm"].unit == "rpm"
+    assert field_texts(trb.Scene)["axial_load"].startswith("Axial load Fa (N)")
+
+
+def test_the_verdict_follows_the_run(result: trb.Result) -> None:
+    values = result.summary()
+
+    def said(**changes: object) -> dict[str, str]:
+        return {head: grade for grade, head, _ in verdict(result, values | changes)}
+
+    assert said(cage_motion="circling")["The cage whirls"] == "care"
+    assert said(cage_motion="stable")["The cage does not whirl"] == "good"
+    assert said(cage_motion="unstable")["The cage moves without order"] == "bad"
+    assert said(energy_closure=2e-3)["The energy does not add up"] == "bad"
+    assert said(film_parameter_rib=0.5)["Films are too thin"] == "bad"
+    assert said(film_parameter_rib=2.0)["Films carry, with some contact"] == "care"
+    assert said(inner_pressure_max=5e9)["Pressures"] == "bad"
+    assert said(pocket_force_peak=0.0)["No roller touched the cage"] == "good"
+    assert said(settled=False)["Not settled"] == "care"
+
+
+def test_a_failed_or_partial_run_still_gets_a_report(tmp_path: Path) -> None:
+    scene = trb.cases.scene_30310(1000.0, 3000.0, effects=trb.Effects.paper().replace(bodies="rollers"))
+    short = trb.Simulation(scene).run(revolutions=0.2, save_groups=("rollers", "torque"))
+    text = trb.report(short, tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "Torque" in text
+    assert "The run is short" in text
+    assert "The cage whirls" not in text
+
+
+def test_two_runs_side_by_side(result: trb.Result, tmp_path: Path) -> None:
+    other = trb.Simulation(result.scene.replace(axial_load=3080.0)).run(revolutions=2)
+    text = trb.report(
+        result, tmp_path / "r.html", other=other, names=["as <built>", "lighter"], pictures=["cage_locus", "load_zone"]
+    ).read_text(encoding="utf-8")
+    assert cells(text, "axial_load")[:2] == ["4930", "3080"]
+    assert "as &lt;built&gt;" in text
+    assert "<built>" not in text
+    assert text.count("<img ") == 2 * 2 + 2  # both bearings are equal: drawn once
+    numbers = cells(text, "friction torque of the shaft")
+    assert float(numbers[0]) > float(numbers[1])
+
+
+def test_bad_arguments(result: trb.Result, tmp_path: Path) -> None:
+    with pytest.raises(trb.InputError, match="pictures = 'nothing'"):
+        trb.report(result, tmp_path / "r.html", pictures=["nothing"])
+    with pytest.raises(trb.InputError, match="must be two names"):
+        trb.report(result, tmp_path / "r.html", names=["one"])
+    with pytest.raises(trb.FileError, match="cannot be written"):
+        trb.report(result, tmp_path / "none" / "r.html", pictures=["cage_locus"])
+
+
+def test_the_command(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["report", str(run_file), "--title", "Mine & yours"]) == 0
+    path = Path(capsys.readouterr().out.strip())
+    assert path == run_file.with_name("run_report.html")
+    assert "<h1>Mine &amp; yours</h1>" in path.read_text(encoding="utf-8")
+    assert main(["report", str(run_file.with_name("none.h5"))]) == 2
+
+
+@pytest.mark.skipif(converter() is None, reason="no Chromium is installed: apt-get install chromium")
+def test_pdf(result: trb.Result, tmp_path: Path) -> None:
+    trb.report(result, tmp_path / "r.html", pictures=["cage_locus"], pdf=True)
+    data = (tmp_path / "r.pdf").read_bytes()
+    assert data.startswith(b"%PDF-")
+    assert np.log10(len(data)) > 4

@@ -1,0 +1,186 @@
+"""A result as a moving 3-D view in a browser: one HTML file that needs no network, or an animated glTF file.
+
+The view is drawn by three.js. It was chosen among what can be installed from PyPI by trying: the package
+jupyter-threejs-sage carries three.js itself (0.6 MB, with orbit controls), so that picking, histories, exaggerated
+motion and colours of one's own can be written against it. k3d (a file of 2.6 MB for the program alone) keeps its scene
+to itself and gives no panel of one's own; vtk.js comes with trame only as a finished program that plays no record;
+pythreejs and anythreejs need a Jupyter page.
+"""
+
+from __future__ import annotations
+
+import html as markup
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from trbdyn.errors import FileError, InputError
+from trbdyn.viewer import data as data_of
+from trbdyn.viewer.page import page
+from trbdyn.viewer.shapes import shapes
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+
+__all__ = ["MAX_SIZE_MB", "View", "view"]
+
+MAX_SIZE_MB: Final = 12.0
+"""Largest file that the view writes unless told otherwise (MB)."""
+_FIXED_BYTES: Final = 900_000
+"""Program, three.js and page (bytes)."""
+
+
+class View:
+    """A 3-D view of a result. In a notebook it shows itself.
+
+    Parameters
+    ----------
+    html : str
+        The page.
+    height : int
+        Height in a notebook (pixels).
+
+    Attributes
+    ----------
+    html : str
+        The page: everything that it needs is in it.
+    """
+
+    def __init__(self, html: str, *, height: int = 640) -> None:
+        self.html = html
+        self.height = height
+
+    def __repr__(self) -> str:
+        return f"<View: {len(self.html) / 1e6:.1f} MB; save(path) writes it as one HTML file>"
+
+    def _repr_html_(self) -> str:
+        inside = markup.escape(self.html, quote=True)
+        return f'<iframe srcdoc="{inside}" width="100%" height="{self.height}" style="border:1px solid #ccc"></iframe>'
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the view as one HTML file.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        try:
+            Path(path).write_text(self.html, encoding="utf-8")
+        except OSError as error:
+            raise FileError(f"{path}: the view cannot be written: {error.strerror}") from error
+        return Path(path)
+
+
+def view(
+    result: Result,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    revolutions: float | None = 10.0,
+    max_frames: int = 600,
+    max_size_mb: float = MAX_SIZE_MB,
+    exaggeration: float | None = None,
+    title: str = "",
+    height: int = 640,
+) -> View:
+    """Show a result as a moving 3-D view.
+
+    Rings, rollers with their profile and the cage with the faces of its pockets move as recorded. Motion and
+    clearances of cage and rollers are drawn larger by one factor, which is always shown; so a gap closes in the
+    picture where it closes in the bearing.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time, cage and rollers; colours and arrows come from contacts and pocket.
+    path : path-like, optional
+        HTML file to write.
+    revolutions : float or None
+        Number of last turns of the shaft to show; None shows the whole run.
+    max_frames : int
+        Most records to take. Between two the motion is interpolated; forces in pockets are the largest since the
+        record before.
+    max_size_mb : float
+        Largest size of the file (MB): fewer records are taken if it needs more.
+    exaggeration : float, optional
+        Factor by which motion and clearances are drawn larger at the start, at least 1; by default the radial play of
+        the cage is drawn as about a fifth of the roller's diameter. It is limited so that the bars of the cage stay
+        visible.
+    title : str
+        Title of the page.
+    height : int
+        Height in a notebook (pixels).
+
+    Returns
+    -------
+    View
+        Shows itself in a notebook; ``save(path)`` writes it.
+
+    Raises
+    ------
+    InputError
+        If a group was not recorded or an argument is not allowed.
+    FileError
+        If the file cannot be written, or three.js is not installed.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> scene = trb.cases.scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+    >>> result = trb.Simulation(scene).run(revolutions=0.5)
+    >>> trb.view(result, max_frames=20).html.startswith("<!doctype html>")
+    True
+    """
+    data_of.check(result, revolutions, max_frames)
+    if exaggeration is not None and not 1.0 <= exaggeration <= 1e4:
+        raise InputError.of("exaggeration", exaggeration, "must be from 1 to 10000 (1)")
+    bearing = result.scene.bearing
+    stations = (
+        data_of.stations(result) if len(result) > 1 else np.linspace(-0.5, 0.5, 2) * bearing.roller.effective_length
+    )
+    meshes = shapes(bearing, stations)
+    limit = frames_that_fit(result, max_size_mb, len(meshes.faces), stations.size)
+    taken = data_of.frames(result, revolutions=revolutions, max_frames=min(max_frames, limit))
+    made = View(page(result, meshes, taken, factor=exaggeration, title=title), height=height)
+    if path is not None:
+        made.save(path)
+    return made
+
+
+def frames_that_fit(result: Result, max_size_mb: float, n_faces: int, n_stations: int) -> int:
+    """Number of frames that a file of a size has room for, before compression.
+
+    Raises
+    ------
+    InputError
+        If not even two frames fit.
+    """
+    count, slots = result.scene.bearing.n_rollers, len(result.scene.bearing.slot_names)
+    a_frame = 4 * (14 + 6 * count) + 2 * count * (15 + slots + n_stations)
+    meshes = 32 * (130 * 50 + 300 * count) + 400 * n_faces
+    room = (max_size_mb * 1e6 - _FIXED_BYTES - 0.5 * meshes) * 0.75
+    fit = int(room / a_frame) if np.isfinite(room) else 0
+    if fit < 2:
+        need = (_FIXED_BYTES + 0.5 * meshes + 2 * a_frame / 0.75) / 1e6
+        raise InputError.of("max_size_mb", max_size_mb, f"must be at least {need:.1f} for this bearing (MB)")
+    return fit
+
+
+def __getattr__(name: str) -> Any:
+    if name == "save_gltf":
+        from trbdyn.viewer.gltf import save_gltf
+
+        return save_gltf
+    raise AttributeError(f"module 'trbdyn.viewer' has no attribute {name!r}")

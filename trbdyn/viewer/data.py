@@ -1,0 +1,274 @@
+"""What the 3-D view shows of a result: a thinned record of the motion, and numbers for colours, arrows and histories.
+
+Angles are stored unwrapped and relative to the cage, so that the motion between two frames can be interpolated however
+far they lie apart. Forces in the pockets are stored as the largest since the frame before: thinning hides no hit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.errors import InputError
+from trbdyn.replay import Replay
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+
+Array = NDArray[np.float64]
+
+MAX_STATIONS: Final = 24
+NEEDED: Final = ("cage", "rollers")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something that can be coloured, and plotted for a roller or a pocket face.
+
+    Attributes
+    ----------
+    name : str
+        Key.
+    label : str
+        Words.
+    unit : str
+        Unit of the values as shown.
+    values : ndarray, shape (n, Z), (n, Z, slots) or (n, Z, stations)
+        Values by frame.
+    kind : {'roller', 'pocket', 'station'}
+        What the second and third axis are.
+    note : str
+        What a value is between two frames.
+    """
+
+    name: str
+    label: str
+    unit: str
+    values: Array
+    kind: str = "roller"
+    note: str = "at the moment shown"
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A thinned record.
+
+    Attributes
+    ----------
+    index : ndarray of int, shape (n,)
+        Records that were taken.
+    total : int
+        Records that the shown part of the run has.
+    time, turns : ndarray, shape (n,)
+        Time (s) and turns of the shaft.
+    pose : dict of str to ndarray
+        Scalars, shape (n,): shaft, cage_angle (rad), cage_x, cage_y, cage_z (m), cage_tilt_x, cage_tilt_y (rad),
+        ring_x, ring_y, ring_z (m), ring_tilt_x, ring_tilt_y (rad); of the rollers, shape (n, Z): psi (rad, against
+        their place in an even spacing that turns with the cage), r, z (m, against nominal), skew, tilt, spin (rad).
+    quantities : tuple of Quantity
+        What can be coloured and plotted.
+    """
+
+    index: NDArray[np.int64]
+    total: int
+    time: Array
+    turns: Array
+    pose: dict[str, Array]
+    quantities: tuple[Quantity, ...] = field(default=())
+
+
+def frames(result: Result, *, revolutions: float | None, max_frames: int, along: bool = True) -> Frames:
+    """Take frames from a result.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time, cage and rollers; forces, films and slip are there if contacts and pocket were recorded.
+    revolutions : float, optional
+        Number of last turns of the shaft to take; None takes the whole run.
+    max_frames : int
+        Most frames to take, evenly spread.
+    along : bool
+        Evaluate the pressure along the rollers at every frame.
+
+    Raises
+    ------
+    InputError
+        If a group is missing, there are fewer than two records, or an argument is not allowed.
+    """
+    from trbdyn.plotting.cage import last_turns
+
+    check(result, revolutions, max_frames)
+    shown = last_turns(result, revolutions)
+    if len(shown) < 2:
+        raise InputError.of("revolutions", revolutions, "must hold at least two records")
+    first = len(result) - len(shown)
+    index = np.unique(np.linspace(first, len(result) - 1, min(max_frames, len(shown))).round().astype(np.int64))
+    pose = _pose(result, index)
+    quantities = _quantities(result, index, pose)
+    if along:
+        quantities.append(_along(result, index))
+    time, turns = result["time"][index], np.abs(result["shaft_angle"][index]) / (2.0 * np.pi)
+    return Frames(index, len(shown), time, turns, pose, tuple(quantities))
+
+
+def check(result: Result, revolutions: float | None, max_frames: int) -> None:
+    """Refuse what cannot be shown.
+
+    Raises
+    ------
+    InputError
+        See `frames`.
+    """
+    for group in NEEDED:
+        if group not in result.groups:
+            raise InputError.of(
+                "result", f"groups {', '.join(result.groups)}", f"must have the recorded group {group!r} to be shown"
+            )
+    if len(result) < 2:
+        raise InputError.of("result", len(result), "must have at least two records to be shown")
+    if revolutions is not None and not (isinstance(revolutions, int | float) and 0.0 < revolutions < math.inf):
+        raise InputError.of("revolutions", revolutions, "must be > 0, or None for the whole run (1)")
+    if not isinstance(max_frames, int) or isinstance(max_frames, bool) or not 2 <= max_frames <= 100_000:
+        raise InputError.of("max_frames", max_frames, "must be a whole number from 2 to 100000 (1)")
+
+
+def _pose(result: Result, index: NDArray[np.int64]) -> dict[str, Array]:
+    bearing, geometry = result.scene.bearing, result.scene.bearing.geometry
+    count = bearing.n_rollers
+    orbit, position = result["roller_orbit_angle"][index], result["roller_position"][index]
+    even = 2.0 * np.pi * np.arange(count) / count
+    if result.has_cage:
+        angle, place, tilt = result["cage_angle"][index], result["cage_position"][index], result["cage_tilt"][index]
+    else:
+        angle = (orbit - even).mean(axis=1)
+        place, tilt = np.zeros((index.size, 3)), np.zeros((index.size, 2))
+    ring = result["ring_position"][index] if "ring_position" in result else np.zeros((index.size, 3))
+    turned = _ring_tilt(result, index)
+    pose = {
+        "shaft": result["shaft_angle"][index],
+        "cage_angle": angle,
+        **{f"cage_{axis}": place[:, k] for k, axis in enumerate("xyz")},
+        **{f"cage_tilt_{axis}": tilt[:, k] for k, axis in enumerate("xy")},
+        **{f"ring_{axis}": ring[:, k] for k, axis in enumerate("xyz")},
+        **{f"ring_tilt_{axis}": turned[:, k] for k, axis in enumerate("xy")},
+        "psi": orbit - angle[:, None] - even,
+        "r": np.hypot(position[..., 0], position[..., 1]) - geometry.roller_centre_radius,
+        "z": position[..., 2] - geometry.roller_centre_height,
+        "skew": result["roller_skew"][index],
+        "tilt": result["roller_tilt"][index],
+        "spin": _spin(result)[index],
+    }
+    return {name: np.asarray(values, dtype=float) for name, values in pose.items()}
+
+
+def _spin(result: Result) -> Array:
+    """Angle by which each roller has turned about its own axis against its orbit, unwrapped (rad), shape (T, Z)."""
+    time, speed = result["time"], result["roller_spin_speed"]
+    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)[:, None]
+    return np.vstack([np.zeros((1, speed.shape[1])), np.cumsum(steps, axis=0)])
+
+
+def _ring_tilt(result: Result, index: NDArray[np.int64]) -> Array:
+    """Rotation of the inner ring about x and y (rad): prescribed, or from the equilibrium at the start."""
+    from trbdyn.motion import value_at
+
+    scene = result.scene
+    if scene.moments != (None, None):
+        from trbdyn.simulation import Simulation
+
+        return np.broadcast_to(Simulation(scene).equilibrium.displacement[3:5], (index.size, 2))
+    turns = (scene.misalignment_x, scene.misalignment_y)
+    time = result["time"][index]
+    return np.array([[value_at(turn, float(when)) for turn in turns] for when in time])
+
+
+_CONTACTS: Final = (
+    ("outer_load", "load on the outer raceway", "N", 1.0),
+    ("inner_load", "load on the inner raceway", "N", 1.0),
+    ("rib_load", "load on the back-face rib", "N", 1.0),
+    ("outer_pressure", "largest pressure, outer raceway", "GPa", 1e-9),
+    ("inner_pressure", "largest pressure, inner raceway", "GPa", 1e-9),
+    ("outer_film", "film thickness, outer raceway", "µm", 1e6),
+    ("inner_film", "film thickness, inner raceway", "µm", 1e6),
+    ("outer_film_parameter", "film parameter Λ, outer raceway", "1", 1.0),
+    ("inner_film_parameter", "film parameter Λ, inner raceway", "1", 1.0),
+    ("outer_slide_roll", "slide-roll ratio, outer raceway", "1", 1.0),
+    ("inner_slide_roll", "slide-roll ratio, inner raceway", "1", 1.0),
+    ("rib_slide_roll", "slide-roll ratio, rib", "1", 1.0),
+)
+
+
+def _quantities(result: Result, index: NDArray[np.int64], pose: dict[str, Array]) -> list[Quantity]:
+    out = []
+    if "contacts" in result.groups:
+        out += [Quantity(name, label, unit, factor * result[name][index]) for name, label, unit, factor in _CONTACTS]
+    if "pocket" in result.groups and result.has_cage:
+        held = largest_between(result["pocket_force"], index)
+        out.append(
+            Quantity("pocket_force", "force in the pocket", "N", held, "pocket", "largest since the frame before")
+        )
+    slip = 100.0 * result.roller_slip[index]
+    out.append(Quantity("slip", "slip of the roller's orbit against pure rolling", "%", slip))
+    for name, label in (("skew", "skew"), ("tilt", "tilt")):
+        out.append(Quantity(name, label, "mrad", 1e3 * pose[name]))
+    return out
+
+
+def largest_between(values: Array, index: NDArray[np.int64]) -> Array:
+    """The largest of each value since the frame before, shape (n, ...); at the first frame the value itself.
+
+    Parameters
+    ----------
+    values : ndarray, shape (T, ...)
+        Records.
+    index : ndarray of int, shape (n,)
+        Increasing records of the frames.
+    """
+    starts = np.concatenate([index[:1], index[:-1] + 1])
+    parts = values[: index[-1] + 1]
+    return np.maximum.reduceat(parts, starts, axis=0)
+
+
+def _along(result: Result, index: NDArray[np.int64]) -> Quantity:
+    """Pressure along the rollers at both raceways, evaluated again by the core: the larger of both."""
+    replay = Replay(result)
+    stations = replay.stations
+    keep = np.unique(np.linspace(0, stations.size - 1, min(MAX_STATIONS, stations.size)).round().astype(int))
+    rows = [replay.contacts(int(k))["raceway_pressure"].max(axis=0)[:, keep] for k in index]
+    values = 1e-9 * np.array(rows)
+    return Quantity("pressure_along", "pressure along the roller, larger of both raceways", "GPa", values, "station")
+
+
+def stations(result: Result) -> Array:
+    """Places of the values of ``pressure_along`` along the roller (m)."""
+    every = Replay(result).stations
+    return every[np.unique(np.linspace(0, every.size - 1, min(MAX_STATIONS, every.size)).round().astype(int))]
+
+
+def default_factor(result: Result, largest: float) -> float:
+    """A factor of exaggeration that draws the cage's radial play as about a fifth of a roller's diameter: 1, 2, 5, 10,
+    20, ...
+    """
+    bearing = result.scene.bearing
+    wish = min(0.2 * bearing.roller.diameter / bearing.cage.play_radial, largest)
+    steps = [base * 10**power for power in range(3) for base in (1, 2, 5)]
+    return float(max([step for step in steps if step <= wish], default=1))
+
+
+def facts(result: Result) -> dict[str, Any]:
+    """Words and numbers for the head of the view."""
+    scene = result.scene
+    loads = []
+    for name, label in (("axial_load", "Fa"), ("radial_load", "Fr")):
+        value = getattr(scene, name)
+        if isinstance(value, int | float):
+            loads.append(f"{label} {value:g} N")
+        else:
+            loads.append(f"{label} changes in time")
+    speed = float(np.abs(result["shaft_speed"]).mean()) * 30.0 / np.pi
+    return {"bearing": scene.bearing.name, "speed_rpm": speed, "loads": ", ".join(loads)}

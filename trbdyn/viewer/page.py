@@ -1,0 +1,159 @@
+"""One HTML file with everything in it: three.js, the meshes, the frames and the program that draws them."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import html
+import json
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.viewer.data import Frames, Quantity, default_factor, facts
+from trbdyn.viewer.library import three_js
+from trbdyn.viewer.shapes import AROUND, Mesh, Shapes
+
+if TYPE_CHECKING:
+    from trbdyn.results import Result
+
+FULL = np.iinfo(np.uint16).max
+
+
+class _Block:
+    """Arrays one behind the other, and where each of them lies."""
+
+    def __init__(self) -> None:
+        self.parts: list[bytes] = []
+        self.size = 0
+
+    def add(self, values: NDArray[Any], kind: str) -> dict[str, Any]:
+        data = np.ascontiguousarray(values, dtype={"f4": "<f4", "u4": "<u4", "u2": "<u2"}[kind])
+        text = data.tobytes() + b"\0" * (-data.nbytes % 4)
+        place = {"at": self.size, "count": int(data.size), "kind": kind, "shape": list(data.shape)}
+        self.parts.append(text)
+        self.size += len(text)
+        return place
+
+    def coded(self, values: NDArray[Any]) -> dict[str, Any]:
+        """Numbers as 16-bit steps between their smallest and largest."""
+        low, high = float(np.min(values)), float(np.max(values))
+        step = (high - low) / FULL
+        whole = np.zeros(values.shape) if step == 0.0 else np.rint((values - low) / step)
+        return self.add(whole, "u2") | {"low": low, "step": step, "high": high}
+
+    def text(self) -> str:
+        return base64.b64encode(gzip.compress(b"".join(self.parts), 6, mtime=0)).decode("ascii")
+
+
+def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None = None, title: str = "") -> str:
+    """The HTML of the view.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+    shapes : Shapes
+        Meshes of its bearing.
+    frames : Frames
+        Frames of it.
+    factor : float, optional
+        Factor of exaggeration at the start.
+    title : str
+        Title of the page.
+    """
+    block = _Block()
+    bearing = result.scene.bearing
+    largest = shapes.largest_factor if result.has_cage else 200.0
+    head: dict[str, Any] = {
+        **facts(result),
+        "title": title,
+        "rollers": bearing.n_rollers,
+        "slots": len(bearing.slot_names),
+        "slot_names": [name.replace("_", " ") or f"face {k}" for k, name in enumerate(bearing.slot_names)],
+        "has_cage": result.has_cage,
+        "geometry": {
+            "axis_angle": bearing.geometry.roller_axis_angle,
+            "centre_radius": bearing.geometry.roller_centre_radius,
+            "centre_height": bearing.geometry.roller_centre_height - bearing.geometry.centre_plane,
+            "cup_angle": float(np.radians(bearing.cup_half_angle_deg)),
+            "diameter": bearing.roller.diameter,
+            "length": bearing.roller.effective_length,
+            "outer_radius": float(np.hypot(*shapes.outer.position[:, :2].T).max()),
+            "play_radial": bearing.cage.play_radial,
+        },
+        "factor": min(default_factor(result, largest) if factor is None else factor, largest),
+        "largest_factor": largest,
+        "meshes": {name: _mesh(block, getattr(shapes, name)) for name in ("outer", "inner", "roller", "mark", "cage")},
+        "roller_rows": shapes.roller_rows,
+        "row_size": AROUND + 1,
+        "faces": [
+            {
+                "pocket": face.pocket,
+                "slot": face.slot,
+                "name": face.name.replace("_", " "),
+                "mesh": _mesh(block, face.mesh),
+                "centre": face.centre.tolist(),
+                "normal": face.normal.tolist(),
+                "shift": face.shift.tolist(),
+            }
+            for face in (shapes.faces if result.has_cage else ())
+        ],
+        "frames": int(frames.index.size),
+        "records": frames.total,
+        "time": block.add(_relative(frames.time), "f4") | {"start": float(frames.time[0])},
+        "turns": block.add(frames.turns, "f4"),
+        "pose": {
+            name: block.add(_relative(values) if name == "spin" else values, "f4")
+            for name, values in frames.pose.items()
+        },
+        "quantities": [_quantity(block, quantity) for quantity in frames.quantities],
+        "colours": _colours(),
+    }
+    head["bytes"] = block.size
+    return _fill(head, block.text())
+
+
+def _relative(values: NDArray[Any]) -> NDArray[Any]:
+    return values - values[0]
+
+
+def _mesh(block: _Block, mesh: Mesh) -> dict[str, Any]:
+    out = {
+        "position": block.add(mesh.position, "f4"),
+        "normal": block.add(mesh.normal, "f4"),
+        "index": block.add(mesh.index, "u4"),
+    }
+    return out if mesh.shift is None else out | {"shift": block.add(mesh.shift, "f4")}
+
+
+def _quantity(block: _Block, quantity: Quantity) -> dict[str, Any]:
+    text = {name: getattr(quantity, name) for name in ("name", "label", "unit", "kind", "note")}
+    return text | {"values": block.coded(quantity.values)}
+
+
+def _colours() -> list[list[float]]:
+    """Colours of the scale, dark to light, as the pictures use them."""
+    import matplotlib
+
+    return [list(map(float, row)) for row in matplotlib.colormaps["viridis"](np.linspace(0.0, 1.0, 33))[:, :3]]
+
+
+def _fill(head: dict[str, Any], data: str) -> str:
+    here = files("trbdyn.viewer")
+    names = {"style": "viewer.css", "program": "viewer.js"}
+    parts = {name: here.joinpath(file).read_text(encoding="utf-8") for name, file in names.items()}
+    parts |= {
+        "title": html.escape(head["title"] or head["bearing"]),
+        "three": three_js().replace("</script", "<\\/script"),
+        "head": json.dumps(head, allow_nan=False).replace("</", "<\\/"),
+        "data": data,
+    }
+    text = here.joinpath("viewer.html").read_text(encoding="utf-8")
+    for name, value in parts.items():
+        before, mark, after = text.partition("{{" + name + "}}")
+        assert mark, name
+        text = before + value + after
+    return text
