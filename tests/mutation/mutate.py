@@ -9,8 +9,6 @@ sources of an area. The sources are copied to build/mutation; C sources are comp
 The Python tests of the area and the C tests run until one fails. Each outcome is a line of
 build/mutation/outcomes.jsonl. A fault that has one is not tried again; --more tries slower tests on those that the first ones
 did not notice. Faults that do not compile are not counted. After a change of the sources, delete build/mutation.
-
-tests/mutation/survivors.md judges the faults that no test noticed.
 """
 
 from __future__ import annotations
@@ -116,7 +114,9 @@ C_TOKEN = re.compile(
 CALL = re.compile(r"^[ \t]+[\w.\->\[\]]+(?: = | \+= | -= |\()[^;{}=]*;$", re.M)
 
 
-LOOKS = re.compile(r"linewidth|alpha|figsize|fontsize|pad=|zorder|ncols|markersize|shrink|margins|xytext|height=|offset")
+LOOKS = re.compile(
+    r"linewidth|alpha|figsize|fontsize|pad=|zorder|ncols|markersize|shrink|margins|xytext|height=|offset"
+)
 """Lines that say how a picture looks, not what it shows."""
 
 
@@ -414,6 +414,7 @@ def main() -> int:
     import scipy.spatial.transform  # noqa: F401
     import xarray  # noqa: F401
 
+    sound: set[str] = set()
     done = 0
     for fault in draw(options.count, options.seed, options.area):
         known = outcomes.get(fault.key)
@@ -425,6 +426,13 @@ def main() -> int:
             continue
         if time.monotonic() > end or done >= options.count:
             break
+        if fault.area not in sound:
+            tests = MORE[fault.area] if options.more else AREAS[fault.area][2]
+            failed = python_tests(tests, time.monotonic() + 10 * LONGEST_TEST)
+            if failed:
+                print(f"without any fault, a test of the area {fault.area} fails: {failed}; mend that first")
+                return 1
+            sound.add(fault.area)
         began = time.monotonic()
         noticed = attempt(fault, options.more)
         row = asdict(fault) | {"key": fault.key, "line": fault.line(), "noticed": noticed, "more": options.more}
