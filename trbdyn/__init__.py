@@ -18,15 +18,16 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from trbdyn import animation, cases, errors, laws, lubricants, observables, pocket_shapes, study
     from trbdyn import plotting as plot
-    from trbdyn.bearing import Bearing
+    from trbdyn.bearing import Bearing, Cage, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.effects import Effects
     from trbdyn.errors import FileError, InputError, LoadError, RunWarning, StepError, TrbError
-    from trbdyn.lubricants import Lubricant
+    from trbdyn.lubricants import Lubricant, Oil
     from trbdyn.motion import History
+    from trbdyn.pocket import Face, OtherPocket, Pocket
     from trbdyn.results import Result, load
     from trbdyn.resuming import resume
     from trbdyn.run_options import RunOptions
-    from trbdyn.scene import Scene, Start
+    from trbdyn.scene import RotatingLoad, Scene, Start
     from trbdyn.simulation import Simulation
     from trbdyn.toml_case import load_case
 
@@ -44,15 +45,27 @@ _MODULES = {
 
 _NAMES = {
     "Bearing": "trbdyn.bearing",
+    "Cage": "trbdyn.bearing",
     "Effects": "trbdyn.effects",
+    "Face": "trbdyn.pocket",
     "FileError": "trbdyn.errors",
     "History": "trbdyn.motion",
     "InputError": "trbdyn.errors",
     "LoadError": "trbdyn.errors",
     "Lubricant": "trbdyn.lubricants",
+    "Material": "trbdyn.bearing",
+    "Oil": "trbdyn.lubricants",
+    "OtherPocket": "trbdyn.pocket",
+    "Pocket": "trbdyn.pocket",
+    "Profile": "trbdyn.bearing",
     "Result": "trbdyn.results",
+    "Ribs": "trbdyn.bearing",
+    "Roller": "trbdyn.bearing",
+    "RotatingLoad": "trbdyn.scene",
+    "Roughness": "trbdyn.bearing",
     "RunOptions": "trbdyn.run_options",
     "RunWarning": "trbdyn.errors",
+    "Scatter": "trbdyn.bearing",
     "Scene": "trbdyn.scene",
     "Simulation": "trbdyn.simulation",
     "Start": "trbdyn.scene",
@@ -65,15 +78,27 @@ _NAMES = {
 
 __all__ = [
     "Bearing",
+    "Cage",
     "Effects",
+    "Face",
     "FileError",
     "History",
     "InputError",
     "LoadError",
     "Lubricant",
+    "Material",
+    "Oil",
+    "OtherPocket",
+    "Pocket",
+    "Profile",
     "Result",
+    "Ribs",
+    "Roller",
+    "RotatingLoad",
+    "Roughness",
     "RunOptions",
     "RunWarning",
+    "Scatter",
     "Scene",
     "Simulation",
     "Start",

@@ -69,10 +69,17 @@ class Model:
     peak_length: int
     instruction_set: str
     def equilibrium(
-        self, load: Array, fixed: Array, displacement: Array, shaft_speed: float, angles: Array
+        self,
+        load: Array,
+        fixed: Array,
+        displacement: Array,
+        shaft_speed: float,
+        angles: Array,
+        rollers: Array | None = None,
     ) -> dict[str, Any]:
         """Static equilibrium at speed. load (5,): force (3) and moment about x, y (2) on the ring; fixed (5,): 1 where
-        `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers. Gives displacement (5,), rollers
+        `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers; rollers (3 Z,): with `displacement` a
+        guess close to the solution, from which loads are not asked for and given as 0. Gives displacement (5,), rollers
         (Z, 3: r, z, tilt offsets), loads (Z, 3: outer, inner, rib), residual, iterations."""
     def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of every field of a record."""
@@ -85,10 +92,19 @@ class Simulation:
     """One integration: model, prescribed motion, state, integrator."""
 
     def __init__(
-        self, model: Model, motion: Array, time: float, state: Array, settings: dict[str, float | str]
+        self,
+        model: Model,
+        motion: Array,
+        time: float,
+        state: Array,
+        settings: dict[str, float | str],
+        period: float = 0.0,
+        angle_time: float = ...,
+        angle: float = 0.0,
     ) -> None:
-        """motion (K, 1 + 18): knot time, then value and slope of each channel. settings: integrator ('bdf', 'erk')
-        and those of setting_table()."""
+        """motion (K, 1 + 18): knot time, then value and slope of each channel; after the last knot the last `period`
+        repeats (0: everything stays). The shaft's angle is `angle` at `angle_time` (by default zero at the first knot).
+        settings: integrator ('bdf', 'erk') and those of setting_table()."""
     time: float
     row_length: int
     def run(self, times: Array, records: Array, max_steps: int, stop_after: float = ...) -> tuple[int, int]:

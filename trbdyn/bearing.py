@@ -1,19 +1,21 @@
 """Tapered roller bearings by their catalogue numbers.
 
 Cup, cone and roller cones share one apex; everything else follows from these numbers (`Bearing.geometry`). Lengths in
-m, densities in kg/m3; angles in degrees where a field is called ``*_deg``. Values marked *assumed* are given by no
-source; change them where you know better.
+m, densities in kg/m3; angles in degrees where a field is called ``*_deg``. What is not given is assumed in
+proportion to the bearing's size (`trbdyn.assumed`) and listed by `Bearing.assumed`; change it where you know better.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
+from trbdyn.assumed import RIG, assumed_inputs, with_assumed
 from trbdyn.errors import InputError, Path, Problem
 from trbdyn.geometry import Geometry
 from trbdyn.pocket import Face, OtherPocket, Pocket
@@ -35,15 +37,18 @@ class Profile(Model):
     zm : float
         Drop of the logarithmic profile at the end (m).
     load : float
-        Design load Q of the logarithmic profile (N); assumed.
+        Design load Q of the logarithmic profile (N); by default the one of the 30310 rig times diameter and length of the
+        roller over those of the rig, that is at the same pressure.
     """
+
+    _assumed: ClassVar[bool] = True
 
     kind: Literal["logarithmic", "crowned", "straight"] = "logarithmic"
     crown_radius: Annotated[Number, unit("m", ge=1e-3, le=1e9)] = 100.0
     k1: Annotated[Number, unit("1", ge=0, le=100)] = 1.5
     k2: Annotated[Number, unit("1", ge=0.001, le=1)] = 0.4
     zm: Annotated[Number, unit("m", ge=0, le=1e-3)] = 10e-6
-    load: Annotated[Number, unit("N", ge=1e-3, le=1e9)] = 1833.0
+    load: Annotated[Number, unit("N", ge=1e-3, le=1e9)] = RIG["load"]
 
     @classmethod
     def straight(cls) -> Self:
@@ -56,9 +61,47 @@ class Profile(Model):
         return cls(kind="crowned", crown_radius=radius)
 
     @classmethod
-    def logarithmic(cls, load: float, *, k1: float = 1.5, k2: float = 0.4, zm: float = 10e-6) -> Self:
-        """A logarithmic profile for a design load (N)."""
-        return cls(kind="logarithmic", load=load, k1=k1, k2=k2, zm=zm)
+    def logarithmic(cls, load: float | None = None, *, k1: float = 1.5, k2: float = 0.4, zm: float = 10e-6) -> Self:
+        """A logarithmic profile for a design load (N); without it the one that the roller's size gives."""
+        given = {} if load is None else {"load": load}
+        return cls(kind="logarithmic", k1=k1, k2=k2, zm=zm, **given)
+
+
+class Material(Model):
+    """Elasticity of a body.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        Young's modulus (Pa).
+    poisson_ratio : float
+        Poisson's ratio (1).
+    """
+
+    _assumed: ClassVar[bool] = True
+
+    youngs_modulus: Annotated[Number, unit("Pa", ge=1e8, le=1e13)] = 206e9
+    poisson_ratio: Annotated[Number, unit("1", ge=0, le=0.4999)] = 0.3
+
+    @classmethod
+    def steel(cls) -> Self:
+        """Bearing steel: 206 GPa, 0.3."""
+        return cls(youngs_modulus=206e9, poisson_ratio=0.3)
+
+    @classmethod
+    def silicon_nitride(cls) -> Self:
+        """Silicon nitride of rollers: 310 GPa, 0.26; give the rollers a density of 3200 kg/m3."""
+        return cls(youngs_modulus=310e9, poisson_ratio=0.26)
+
+    @classmethod
+    def polyamide(cls) -> Self:
+        """Polyamide 66 with a quarter of glass fibre at 60 C, conditioned: 3.5 GPa, 0.4; such a cage weighs a sixth of steel."""
+        return cls(youngs_modulus=3.5e9, poisson_ratio=0.4)
+
+    @classmethod
+    def brass(cls) -> Self:
+        """Brass of machined cages: 100 GPa, 0.34."""
+        return cls(youngs_modulus=100e9, poisson_ratio=0.34)
 
 
 class Scatter(Model):
@@ -90,7 +133,8 @@ class Roller(Model):
     effective_length : float
         Lwe, effective length of the contact line (m).
     total_length : float
-        Length over the ends, centred on the effective length (m).
+        Length over the ends, centred on the effective length (m); by default the effective length and a fourteenth of the
+        diameter.
     density : float
         Density (kg/m3).
     profile : Profile
@@ -102,22 +146,28 @@ class Roller(Model):
     sphere_ratio : float
         Radius of the large end's sphere over the distance from the apex to the large end (1); assumed.
     end_stiffness : float
-        k of roller end against a flat, force = k d^1.5 (N/m^1.5); assumed.
+        k of roller end against a flat of the ring, force = k d^1.5 (N/m^1.5); against the cage's walls in the ratio of the
+        composite moduli. By default 1e10 times the root of the diameter over that of the 30310 rig; assumed.
+    material : Material, optional
+        Elasticity of the rollers; that of the bearing by default.
     """
+
+    _assumed: ClassVar[bool] = True
 
     diameter: Length
     effective_length: Length
-    total_length: Length
+    total_length: Length = RIG["total_length"]
     density: Annotated[Number, unit("kg/m3", ge=100, le=30000)] = 7810.0
     profile: Profile = Profile()
     diameter_deviation: tuple[Annotated[Number, unit("m", ge=-1e-3, le=1e-3)], ...] | None = None
     diameter_scatter: Scatter | None = None
     sphere_ratio: Annotated[Number, unit("1", ge=0.05, le=0.999)] = 0.90
-    end_stiffness: Annotated[Number, unit("N/m^1.5", ge=1, le=1e14)] = 1e10
+    end_stiffness: Annotated[Number, unit("N/m^1.5", ge=1, le=1e14)] = RIG["end_stiffness"]
+    material: Material | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.total_length < self.effective_length:
+        if "total_length" in self.model_fields_set and self.total_length < self.effective_length:
             limit = f"must be >= effective_length, {self.effective_length:g} (m)"
             raise InputError.of("total_length", self.total_length, limit)
         if self.diameter_deviation is not None and self.diameter_scatter is not None:
@@ -129,110 +179,111 @@ class Roller(Model):
 
 class Ribs(Model):
     """Back-face rib (against the large ends) and front-face rib of the inner ring. Heights are above the raceway,
-    perpendicular to it.
+    perpendicular to it. What is not given is assumed in proportion to the 30310 rig.
 
     Parameters
     ----------
     contact_height : float
-        Height of the nominal contact of the large end (m).
+        Height of the nominal contact of the large end (m); by default 1.667/14 of the roller's diameter.
     edge_low, edge_high : float
-        Heights of the back-face rib's edges (m); assumed.
+        Heights of the back-face rib's edges (m); by default 0.3/1.667 and 3.5/1.667 of the contact height.
     front_clearance : float
-        Nominal gap between small end and front rib (m); assumed. The front rib's face is perpendicular to the roller's
-        axis.
+        Nominal gap between small end and front rib (m); by default 0.2/14 of the roller's diameter. The front rib's face is
+        perpendicular to the roller's axis.
     front_low, front_high : float
-        Heights of the front rib's edges (m); assumed.
+        Heights of the front rib's edges (m); by default 0.3/14 and 2/14 of the roller's diameter.
     """
 
-    contact_height: Length
-    edge_low: Gap = 0.3e-3
-    edge_high: Length = 3.5e-3
-    front_clearance: Gap = 0.2e-3
-    front_low: Gap = 0.3e-3
-    front_high: Length = 2.0e-3
+    _assumed: ClassVar[bool] = True
+
+    contact_height: Length = RIG["contact_height"]
+    edge_low: Gap = RIG["edge_low"]
+    edge_high: Length = RIG["edge_high"]
+    front_clearance: Gap = RIG["front_clearance"]
+    front_low: Gap = RIG["front_low"]
+    front_high: Length = RIG["front_high"]
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if not self.edge_low < self.contact_height < self.edge_high:
-            limit = f"must lie between the rib's edges, {self.edge_low:g} and {self.edge_high:g} (m)"
+        given = self.model_fields_set
+        if {"contact_height", "edge_low"} <= given and self.edge_low >= self.contact_height:
+            limit = f"must be > edge_low, {self.edge_low:g}: between the rib's edges (m)"
             raise InputError.of("contact_height", self.contact_height, limit)
-        if self.front_high <= self.front_low:
+        if {"contact_height", "edge_high"} <= given and self.edge_high <= self.contact_height:
+            limit = f"must be < edge_high, {self.edge_high:g}: between the rib's edges (m)"
+            raise InputError.of("contact_height", self.contact_height, limit)
+        if {"front_high", "front_low"} <= given and self.front_high <= self.front_low:
             raise InputError.of("front_high", self.front_high, f"must be > front_low, {self.front_low:g} (m)")
         return self
 
 
 class Cage(Model):
-    """The cage and its pockets.
+    """The cage and its pockets. What is not given is assumed in proportion to the 30310 rig: lengths with the roller's
+    diameter unless it is said otherwise.
 
     Parameters
     ----------
     mass : float
-        Mass (kg).
+        Mass (kg); by default 0.2 kg times the pitch diameter squared and the roller's length over those of the rig.
     inertia_axial, inertia_transverse : float
-        Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2).
+        Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2); by default with
+        mass and pitch diameter squared.
     play_radial, play_circumferential : float
         Cpr and Cpc: plays in the x-y plane, radial and circumferential, one-sided, measured to one roller with the cage
-        centred and the roller's large end touching its pocket (m).
+        centred and the roller's large end touching its pocket (m); by default 0.25/14 and 0.12/14 of the diameter.
     play_axial : float
-        Play along the roller's axis from large-end to small-end contact (m); assumed.
+        Play along the roller's axis from large-end to small-end contact (m); by default 0.4/14 of the diameter.
     offset : float
         Axial position of the centre of mass from the roller-centre plane (m); assumed.
     rail_offset : float
-        Axial position of the large-end rail, where sensors look, from the roller-centre plane (m); assumed.
+        Axial position of the large-end rail, where sensors look, from the roller-centre plane (m); by default 12/19.8 of
+        the roller's length.
     bar_width : float
-        Width of the bars' faces across the contact line (m); assumed.
+        Width of the bars' faces across the contact line (m); by default 3/14 of the diameter.
     wall_inner, wall_outer : float
-        The end walls' bands reach from here to here, outward of the roller's axis (m); assumed.
+        The end walls' bands reach from here to here, outward of the roller's axis (m); by default 1.5/14 and 4.5/14 of the
+        diameter, at most 0.3 and 0.9 of the small end's radius.
     wall_half_width : float
-        Half width of the end walls' bands (m); assumed.
+        Half width of the end walls' bands (m); by default 6/14 of the diameter.
     pocket : Pocket, optional
         Faces of every pocket; without it the default pocket of `trbdyn.pocket_shapes` is built from the plays.
     other_pockets : sequence of OtherPocket
         Pockets that differ from the others.
+    material : Material, optional
+        Elasticity of its faces; that of the bearing by default.
     """
 
-    mass: Annotated[Number, unit("kg", gt=0)]
-    inertia_axial: Annotated[Number, unit("kg m2", gt=0)]
-    inertia_transverse: Annotated[Number, unit("kg m2", gt=0)]
-    play_radial: Length
-    play_circumferential: Length
-    play_axial: Gap = 0.4e-3
+    _assumed: ClassVar[bool] = True
+
+    mass: Annotated[Number, unit("kg", gt=0)] = RIG["mass"]
+    inertia_axial: Annotated[Number, unit("kg m2", gt=0)] = RIG["inertia_axial"]
+    inertia_transverse: Annotated[Number, unit("kg m2", gt=0)] = RIG["inertia_transverse"]
+    play_radial: Length = RIG["play_radial"]
+    play_circumferential: Length = RIG["play_circumferential"]
+    play_axial: Gap = RIG["play_axial"]
     offset: Annotated[Number, unit("m", ge=-1, le=1)] = 0.0
-    rail_offset: Annotated[Number, unit("m", ge=-1, le=1)] = 12e-3
-    bar_width: Length = 3e-3
-    wall_inner: Gap = 1.5e-3
-    wall_outer: Length = 4.5e-3
-    wall_half_width: Length = 6e-3
+    rail_offset: Annotated[Number, unit("m", ge=-1, le=1)] = RIG["rail_offset"]
+    bar_width: Length = RIG["bar_width"]
+    wall_inner: Gap = RIG["wall_inner"]
+    wall_outer: Length = RIG["wall_outer"]
+    wall_half_width: Length = RIG["wall_half_width"]
     pocket: Pocket | None = None
     other_pockets: tuple[OtherPocket, ...] = ()
+    material: Material | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.inertia_axial > 2.0 * self.inertia_transverse:
+        given = self.model_fields_set
+        if {"inertia_axial", "inertia_transverse"} <= given and self.inertia_axial > 2.0 * self.inertia_transverse:
             limit = f"must be <= 2 inertia_transverse, {2 * self.inertia_transverse:g} (kg m2): no body has more"
             raise InputError.of("inertia_axial", self.inertia_axial, limit)
-        if self.wall_outer <= self.wall_inner:
+        if {"wall_inner", "wall_outer"} <= given and self.wall_outer <= self.wall_inner:
             raise InputError.of("wall_outer", self.wall_outer, f"must be > wall_inner, {self.wall_inner:g} (m)")
         indices = [other.index for other in self.other_pockets]
         for place, index in enumerate(indices):
             if index in indices[:place]:
                 raise InputError.of(("other_pockets", place, "index"), index, "must differ from the other indices")
         return self
-
-
-class Material(Model):
-    """Elasticity of rings, rollers and cage faces.
-
-    Parameters
-    ----------
-    youngs_modulus : float
-        Young's modulus (Pa).
-    poisson_ratio : float
-        Poisson's ratio (1).
-    """
-
-    youngs_modulus: Annotated[Number, unit("Pa", ge=1e8, le=1e13)] = 206e9
-    poisson_ratio: Annotated[Number, unit("1", ge=0, le=0.4999)] = 0.3
 
 
 class Roughness(Model):
@@ -246,12 +297,15 @@ class Roughness(Model):
         Roller end and back-face rib (m).
     """
 
+    _assumed: ClassVar[bool] = True
+
     raceway: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.16e-6
     rib: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.24e-6
 
 
 class Bearing(Model):
-    """A single-row tapered roller bearing.
+    """A single-row tapered roller bearing. Needed are the number of rollers, their diameter and length, the pitch diameter
+    and the cup's angle; every other number has a default in proportion to the bearing's size, listed by `assumed`.
 
     Parameters
     ----------
@@ -268,7 +322,7 @@ class Bearing(Model):
     cage : Cage
         The cage.
     material : Material
-        Elasticity.
+        Elasticity of the rings, and of rollers and cage unless they have their own.
     roughness : Roughness
         Roughness of the contacts.
     name : str
@@ -278,17 +332,65 @@ class Bearing(Model):
     ------
     InputError
         If a number is not allowed, rollers overlap, or pockets do not fit the rollers.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> bearing = trb.Bearing(
+    ...     n_rollers=15,
+    ...     cup_half_angle_deg=14.0,
+    ...     pitch_diameter=65e-3,
+    ...     roller=trb.Roller(diameter=9e-3, effective_length=14e-3),
+    ... )
+    >>> round(1e3 * bearing.cage.bar_width, 3), "cage.bar_width" in bearing.assumed
+    (1.929, True)
     """
 
     n_rollers: Annotated[Whole, unit("1", ge=3, le=200)]
     cup_half_angle_deg: Annotated[Number, unit("deg", ge=0.6, le=45)]
     pitch_diameter: Length
     roller: Roller
-    ribs: Ribs
-    cage: Cage
+    ribs: Ribs = Ribs()
+    cage: Cage = Cage()
     material: Material = Material()
     roughness: Roughness = Roughness()
     name: Annotated[str, Field(min_length=1)] = "bearing"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill(cls, values: Any) -> Any:
+        return with_assumed(values) if isinstance(values, Mapping) else values
+
+    @property
+    def assumed(self) -> dict[str, float]:
+        """Inputs that were not given: value by path, such as ``{"cage.bar_width": 0.003}``. Lengths in m, SI units."""
+        return assumed_inputs(self)
+
+    def inputs(self) -> dict[str, Any]:
+        """What was given, as plain data: as `to_dict`, without what was assumed."""
+        values = super().to_dict()
+        for path in values.pop("assumed"):
+            *tables, last = path.split(".")
+            table = values
+            for name in tables:
+                table = table[name]
+            table.pop(last, None)
+        return values
+
+    @model_serializer(mode="wrap")
+    def _plain(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        values: dict[str, Any] = handler(self)
+        return {**values, "assumed": list(self.assumed)}
+
+    @property
+    def roller_material(self) -> Material:
+        """Elasticity of the rollers."""
+        return self.roller.material or self.material
+
+    @property
+    def cage_material(self) -> Material:
+        """Elasticity of the cage's faces."""
+        return self.cage.material or self.material
 
     @cached_property
     def geometry(self) -> Geometry:

@@ -106,6 +106,7 @@ def bearing_32216() -> Bearing:
             effective_length=length,
             total_length=length + 1.0e-3,
             profile=Profile.logarithmic(1391.0),
+            end_stiffness=rig.roller.end_stiffness,
         ),
         ribs=Ribs(
             contact_height=scale * rig.ribs.contact_height,

@@ -13,6 +13,7 @@ import os
 import sys
 import tomllib
 import traceback
+import warnings
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -176,7 +177,17 @@ def _parser() -> argparse.ArgumentParser:
     add_paper_parser(commands, [common])
 
     cases = commands.add_parser("cases", parents=[common], help="list the cases that ship with the package")
+    cases.add_argument(
+        "--print", dest="name", metavar="NAME", help="print this case with every number and what it means"
+    )
     cases.set_defaults(command=_cases)
+
+    new = commands.add_parser(
+        "new", parents=[common], help="write a case with every number, to change for your own bearing"
+    )
+    new.add_argument("file", metavar="FILE", help="a TOML file that does not exist yet")
+    new.add_argument("--case", default="rig_30310", metavar="NAME", help="the case to begin with (default: rig_30310)")
+    new.set_defaults(command=_new)
     return parser
 
 
@@ -256,8 +267,6 @@ def _check_summary(summary_file: str | None, output: Path, *, overwrite: bool) -
 
 
 def _resume(options: argparse.Namespace) -> int:
-    import warnings
-
     from trbdyn.resuming import resume
 
     _check_summary(options.summary, file_path(options.file, "file"), overwrite=options.overwrite)
@@ -283,7 +292,12 @@ def _simulate(
     settings = {
         name: getattr(run, name) for name in _SIMULATION_OPTIONS if getattr(run, name) != getattr(default, name)
     }
-    return Simulation(scene, **settings).run(
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always", UserWarning)
+        simulation = Simulation(scene, **settings)
+    for note in notes:
+        print(f"trbdyn: warning: {note.message}", file=sys.stderr)
+    return simulation.run(
         revolutions=run.revolutions,
         duration=run.duration,
         save_every=run.save_every if "save_every" in given else None,
@@ -398,9 +412,32 @@ def _demo(options: argparse.Namespace) -> int:
     return code
 
 
+def _new(options: argparse.Namespace) -> int:
+    from trbdyn.case_text import case_text
+
+    path = Path(options.file)
+    if path.suffix != ".toml":
+        raise InputError.of("FILE", options.file, "must end in .toml")
+    text = case_text(*_load_case(options.case, ()), title=f"Begun from the case {options.case}.")
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            stream.write(text)
+    except FileExistsError:
+        raise FileError(f"{path}: exists already; choose another name, nothing was written") from None
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror or error}") from None
+    print(f"{path} written: change its numbers, then run it with: trbdyn run {path}")
+    return DONE
+
+
 def _cases(options: argparse.Namespace) -> int:
+    from trbdyn.case_text import case_text
     from trbdyn.toml_case import find_case, shipped_cases
 
+    if options.name is not None:
+        first = find_case(options.name).read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
+        print(case_text(*_load_case(options.name, ()), title=first), end="")
+        return DONE
     for name in shipped_cases():
         first = find_case(name).read_text(encoding="utf-8").partition("\n")[0]
         print(f"{name:<16} {first.lstrip('# ')}")

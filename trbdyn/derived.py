@@ -269,13 +269,23 @@ class Derived(ABC):
     def _starting(self, prefix: str) -> dict[str, Array]:
         return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}
 
+    def _needs(self, group: str, what: str) -> None:
+        if group not in {field.group for field in self.fields}:
+            raise InputError.of(what, "not saved", f"needs the group '{group}': put it into save_groups")
+
     @property
     def torque_split(self) -> dict[str, float]:
         """Mean torque of each force on the inner ring, N m; together the shaft's friction torque.
 
         A force that makes torque need not lose power: traction on the inner raceway passes on what rolling resistance takes at
         the outer one. What is lost where is told by `power_split` and `torque_by_loss`.
+
+        Raises
+        ------
+        InputError
+            If the group 'torque' was not saved.
         """
+        self._needs("torque", "torque_split")
         return observables.torque_split(self._starting("inner_torque_"))
 
     @property

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from trbdyn.effects import Effects
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.geometry import Geometry
-from trbdyn.lubricants import Lubricant, vg100
-from trbdyn.motion import History, knot_table, knot_times, value_at
+from trbdyn.lubricants import Dicke, Lubricant, vg100
+from trbdyn.motion import History, knot_table, value_at
 
 if TYPE_CHECKING:
-    from trbdyn.bearing import Bearing
+    from trbdyn.bearing import Bearing, Material
     from trbdyn.pocket import Face
     from trbdyn.scene import Scene
 
@@ -81,8 +81,9 @@ def bearing_entries(bearing: Bearing) -> Entries:
         "front_rib_clearance": Entry(("ribs", "front_clearance"), ribs.front_clearance),
         "front_rib_low": Entry(("ribs", "front_low"), ribs.front_low),
         "front_rib_high": Entry(("ribs", "front_high"), ribs.front_high),
-        "youngs_modulus": Entry(("material", "youngs_modulus"), bearing.material.youngs_modulus),
-        "poisson_ratio": Entry(("material", "poisson_ratio"), bearing.material.poisson_ratio),
+        **_material("", ("material",), bearing.material),
+        **_material("roller_", ("roller", "material") if roller.material else ("material",), bearing.roller_material),
+        **_material("cage_", ("cage", "material") if cage.material else ("material",), bearing.cage_material),
         "roughness_raceway": Entry(("roughness", "raceway"), bearing.roughness.raceway),
         "roughness_rib": Entry(("roughness", "rib"), bearing.roughness.rib),
         "cage_mass": Entry(("cage", "mass"), cage.mass),
@@ -93,8 +94,15 @@ def bearing_entries(bearing: Bearing) -> Entries:
     }
 
 
+def _material(prefix: str, path: Path, material: Material) -> Entries:
+    return {
+        f"{prefix}{name}": Entry((*path, name), getattr(material, name)) for name in ("youngs_modulus", "poisson_ratio")
+    }
+
+
 def lubricant_entries(lubricant: Lubricant) -> Entries:
     """Numbers of a lubricant, by their names in the core's table; paths start at the lubricant."""
+    dicke = lubricant.dicke or Dicke()
     return {
         "viscosity": Entry(("viscosity",), lubricant.viscosity),
         "pressure_coefficient": Entry(("pressure_coefficient",), lubricant.pressure_coefficient),
@@ -102,10 +110,10 @@ def lubricant_entries(lubricant: Lubricant) -> Entries:
         "conductivity": Entry(("conductivity",), lubricant.conductivity),
         "temperature": Entry(("temperature_c",), lubricant.temperature_c),
         "viscosity_law": Entry(("pressure_law",), PRESSURE_LAWS[lubricant.pressure_law]),
-        "dicke_a": Entry(("dicke", "a"), lubricant.dicke.a),
-        "dicke_b": Entry(("dicke", "b"), lubricant.dicke.b),
-        "dicke_c": Entry(("dicke", "c"), lubricant.dicke.c),
-        "dicke_d": Entry(("dicke", "d"), lubricant.dicke.d),
+        "dicke_a": Entry(("dicke", "a"), dicke.a),
+        "dicke_b": Entry(("dicke", "b"), dicke.b),
+        "dicke_c": Entry(("dicke", "c"), dicke.c),
+        "dicke_d": Entry(("dicke", "d"), dicke.d),
         "viscosity_exponent_cap": Entry(("viscosity_exponent_cap",), lubricant.viscosity_exponent_cap),
         "eyring_stress": Entry(("eyring_stress",), lubricant.eyring_stress),
         "shear_modulus_floor": Entry(("shear_modulus_floor",), lubricant.shear_modulus_floor),
@@ -294,68 +302,53 @@ class RingLoad:
 def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
     """What acts on the inner ring at a time (s)."""
     radial, direction = value_at(scene.radial_load, time), math.radians(value_at(scene.radial_direction_deg, time))
-    placed = scene.displacement is not None
-    shift = (
-        [value_at(quantity, time) for quantity in scene.displacement] if scene.displacement is not None else [0.0] * 3
-    )
-    moments = (scene.moment_x, scene.moment_y)
+    force = np.array([radial * math.cos(direction), radial * math.sin(direction), -value_at(scene.axial_load, time)])
+    if scene.rotating_load is not None:
+        size, turned = value_at(scene.rotating_load.load, time), scene.rotating_load_angle(time)
+        force[:2] += size * np.array([math.cos(turned), math.sin(turned)])
+    places = scene.displacement or (None, None, None)
+    moments = scene.moments
     turns = (value_at(scene.misalignment_x, time), value_at(scene.misalignment_y, time))
     return RingLoad(
-        force=np.array([radial * math.cos(direction), radial * math.sin(direction), -value_at(scene.axial_load, time)]),
+        force=force,
         moment=np.array([0.0 if moment is None else value_at(moment, time) for moment in moments]),
-        fixed=np.array([float(placed)] * 3 + [float(moment is None) for moment in moments]),
-        displacement=np.array([*shift, *turns]),
+        fixed=np.array([float(held) for held in scene.ring_is_placed]),
+        displacement=np.array([*(0.0 if place is None else value_at(place, time) for place in places), *turns]),
         shaft_speed=value_at(scene.speed_rpm, time) * math.pi / 30.0,
         gravity=np.array([value_at(quantity, time) for quantity in _gravity(scene)]),
     )
 
 
-def equilibrium_times(scene: Scene, parts: int = 8) -> FloatArray:
-    """Times at which the ring's equilibrium is needed (s), shape (N,), ascending.
-
-    Only 0 if the ring is held. If it follows its load: every knot of what acts on it, and `parts` - 1 times evenly
-    between two knots.
-    """
-    if scene.ring == "held":
-        return np.zeros(1)
-    knots = knot_times(scene.ring_quantities())
-    fractions = np.arange(parts) / parts
-    inside = (knots[:-1, None] + np.diff(knots)[:, None] * fractions).ravel()
-    return np.append(inside, knots[-1])
-
-
-def motion_table(scene: Scene, times: FloatArray, displacements: FloatArray) -> FloatArray:
+def motion_table(scene: Scene, path: Sequence[float | History]) -> FloatArray:
     """Prescribed motion of the inner ring, as the core takes it.
 
     Parameters
     ----------
     scene : Scene
         The scene.
-    times : ndarray, shape (N,)
-        Times of the equilibria (s), `equilibrium_times`.
-    displacements : ndarray, shape (N, 5)
-        Displacement (m) and rotation (rad) of the ring at each of them. What the scene prescribes is taken from the
-        scene instead.
+    path : sequence of float or History, length 5
+        Displacement (m) and rotation (rad) of the ring that were found by equilibria. What the scene prescribes is
+        taken from the scene instead.
 
     Returns
     -------
     ndarray, shape (K, 19)
-        Knot time, then value and slope of each channel of `_core.motion_table()`. The ring's path between two
-        equilibria is a monotone cubic.
+        Knot time, then value and slope of each channel of `_core.motion_table()`; the last `scene.period` repeats.
     """
     from trbdyn import _core
 
-    found = [_path(times, column) for column in np.asarray(displacements, dtype=np.float64).T]
-    shift = list(scene.displacement) if scene.displacement is not None else found[:3]
-    turn_x = scene.misalignment_x if scene.moment_x is None else found[3]
-    turn_y = scene.misalignment_y if scene.moment_y is None else found[4]
+    given = [*(scene.displacement or (None, None, None)), scene.misalignment_x, scene.misalignment_y]
+    ring = [
+        path[axis] if place is None or not held else place
+        for axis, (place, held) in enumerate(zip(given, scene.ring_is_placed, strict=True))
+    ]
     gravity = _gravity(scene)
     channels: dict[str, float | History] = {
-        "displacement_x": shift[0],
-        "displacement_y": shift[1],
-        "displacement_z": shift[2],
-        "rotation_x": turn_x,
-        "rotation_y": turn_y,
+        "displacement_x": ring[0],
+        "displacement_y": ring[1],
+        "displacement_z": ring[2],
+        "rotation_x": ring[3],
+        "rotation_y": ring[4],
         "shaft_speed": _scaled(scene.speed_rpm, math.pi / 30.0),
         "gravity_x": gravity[0],
         "gravity_y": gravity[1],
@@ -364,18 +357,18 @@ def motion_table(scene: Scene, times: FloatArray, displacements: FloatArray) -> 
     names = [name for name, _, _ in _core.motion_table()]
     if set(names) != set(channels):
         raise RuntimeError(f"the core's table of motion and the scene differ in {sorted(set(names) ^ set(channels))}")
-    return knot_table([channels[name] for name in names])
+    return knot_table([channels[name] for name in names], scene.start.time, scene.settled, scene.period)
 
 
 def _gravity(scene: Scene) -> tuple[float | History, float | History, float | History]:
     return scene.gravity if scene.effects.gravity else (0.0, 0.0, 0.0)
 
 
-def _path(times: FloatArray, values: FloatArray) -> float | History:
-    return float(values[0]) if len(values) == 1 else History.table(times, values)
-
-
 def _scaled(quantity: float | History, factor: float) -> float | History:
-    if isinstance(quantity, History):
-        return quantity.replace(values=tuple(factor * value for value in quantity.values))
-    return factor * quantity
+    if not isinstance(quantity, History):
+        return factor * quantity
+    slopes = quantity.slopes
+    return quantity.replace(
+        values=tuple(factor * value for value in quantity.values),
+        slopes=None if slopes is None else tuple(factor * slope for slope in slopes),
+    )

@@ -51,7 +51,9 @@ class Geometry:
     centre_plane : float
         Axial position of the roller-centre plane (mid length) from the apex (m).
     effective_modulus : float
-        E': 2/[(1-v1^2)/E1 + (1-v2^2)/E2] (Pa).
+        E' of roller and ring: 2/[(1-v1^2)/E1 + (1-v2^2)/E2] (Pa).
+    pocket_modulus : float
+        E' of roller and cage (Pa).
     sphere_radius : float
         Rs: radius of the roller's large end (m).
     sphere_centre : float
@@ -107,6 +109,7 @@ class Geometry:
     roller_centre_height: float
     centre_plane: float
     effective_modulus: float
+    pocket_modulus: float
     sphere_radius: float
     sphere_centre: float
     rib_normal_angle: float

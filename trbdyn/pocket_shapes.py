@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from trbdyn.bearing import Bearing
 
 LEADING_BAR, TRAILING_BAR, LARGE_END_WALL, SMALL_END_WALL = 0, 1, 2, 3
+LARGEST_LEAN_DEG = 80.0
+"""Largest lean of a bar (deg): beyond it nothing would hold the roller in its pocket."""
 SIDES = {"leading": 1.0, "trailing": -1.0}
 FloatArray = NDArray[np.float64]
 Outline = list[tuple[float, float]]
@@ -44,7 +46,14 @@ def bar_lean(bearing: Bearing) -> float:
     sine = math.tan(geometry.roller_half_angle) * math.sin(geometry.roller_axis_angle) / amplitude
     if sine >= 1.0:
         raise InputError.of("play_radial", cage.play_radial, "clearances do not fit: no bar gives this radial play (m)")
-    return math.atan2(ratio, math.cos(geometry.roller_axis_angle)) + math.asin(sine)
+    lean = math.atan2(ratio, math.cos(geometry.roller_axis_angle)) + math.asin(sine)
+    if math.degrees(lean) > LARGEST_LEAN_DEG:
+        limit = (
+            f"clearances do not fit: with play_radial = {cage.play_radial:g} m the bars would lean by "
+            f"{math.degrees(lean):.3g} deg, {LARGEST_LEAN_DEG:g} deg at most; less circumferential play, or more radial (m)"
+        )
+        raise InputError.of("play_circumferential", cage.play_circumferential, limit)
+    return lean
 
 
 def default_pocket(bearing: Bearing) -> Pocket:
@@ -65,7 +74,7 @@ def drafted_pocket(bearing: Bearing, lean_deg: float) -> Pocket:
     lean_deg : float
         Angle of the contact line around the roller, from the circumferential direction outward (deg), -80 to 80.
     """
-    lean = math.radians(_between("lean_deg", lean_deg, -80.0, 80.0, "deg"))
+    lean = math.radians(_between("lean_deg", lean_deg, -LARGEST_LEAN_DEG, LARGEST_LEAN_DEG, "deg"))
     bars = [_bar(bearing, side, lean, _rectangle(bearing)) for side in SIDES]
     return Pocket(faces=(*bars, large_end_wall(bearing), small_end_wall(bearing)))
 

@@ -8,7 +8,8 @@ Schema ``trbdyn-result``, version 1:
 - ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
 - ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
   ``kind``, ``dims`` and ``index`` (its place in the record)
-- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and ``final_time``; empty until the run
+- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and ``final_time``;
+  empty until the run
   has ended
 - ``/final_state``: the state vector at ``final_time``; empty until then
 - ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then; missing if

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -159,13 +160,24 @@ class Result(Derived):
             If it was not recorded, or does not exist.
         """
         if name not in self._fields:
-            raise InputError.of("field", name, f"was not recorded; recorded groups: {', '.join(self.groups)}")
+            raise InputError.of("field", name, self._unknown(name))
         return self._source.read(name)
 
     def __getattr__(self, name: str) -> Array:
         if name.startswith("_") or name not in self._fields:
-            raise AttributeError(f"this result has no field or attribute {name!r}")
+            raise AttributeError(f"this result has no {name!r}: {self._unknown(name)}")
         return self[name]
+
+    def _unknown(self, name: str) -> str:
+        """Why there is no such field: its group was not saved, or what the name may have meant."""
+        every = {field.name: field.group for field in field_table.table()}
+        saved = f"saved groups: {', '.join(self.groups)}"
+        if name in every:
+            return f"was not recorded: it belongs to the group '{every[name]}', which save_groups left out; {saved}"
+        derived = [entry for entry in super().__dir__() if not entry.startswith("_")]
+        near = difflib.get_close_matches(str(name), [*every, *derived], n=3)
+        hint = f"did you mean {' or '.join(repr(entry) for entry in near)}? " if near else ""
+        return f"unknown name; {hint}{saved}; `dir(result)` lists every name"
 
     def __contains__(self, name: object) -> bool:
         return name in self._fields

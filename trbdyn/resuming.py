@@ -149,7 +149,7 @@ def _revive(
         sim = Simulation(scene, instruction_set=variant, **settings)
         if found.build != checkpoint.build_digest():
             tell("going on with another build of the core: results may differ in rounding from the uninterrupted run")
-        elif found.motion != checkpoint.digest_of(sim._motion):
+        elif found.motion != checkpoint.digest_of(sim._motion.table):
             tell(
                 "the ring's equilibrium differs in rounding on this machine: results may differ from the uninterrupted run"
             )

@@ -56,7 +56,7 @@ class Run:
         self.times = times
         self.callback = callback
         self.done = done
-        self.notes: list[str] = []
+        self.notes: list[str] = list(sim.warnings)
         self.doubts: list[str] = []
         self.kept: list[Array] = []
         self.filling: Array | None = None
@@ -244,7 +244,7 @@ class Run:
             options=self.options.to_dict(),
             instruction_set=sim.instruction_set,
             build=checkpoint.build_digest(),
-            motion=checkpoint.digest_of(sim._motion),
+            motion=checkpoint.digest_of(sim._motion.table),
             start=float(self.times[0]),
             end=float(self.times[-1]),
             time=sim.time,

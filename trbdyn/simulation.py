@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, p
 from trbdyn.keeping import kept_by_default
 from trbdyn.motion import MAX_TIME
 from trbdyn.own_files import output_path
+from trbdyn.plausible import UnusualInput, unusual
 from trbdyn.results import Result
 from trbdyn.run_options import Group, RunOptions
 from trbdyn.running import Callback, Run, output_times
@@ -41,10 +43,13 @@ class State:
         Time (s).
     vector : ndarray, shape (n_state,)
         The core's state vector.
+    shaft_angle : float, optional
+        Angle of the shaft (rad).
     """
 
     time: float
     vector: Array
+    shaft_angle: float | None = None
 
 
 def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
@@ -83,6 +88,11 @@ class Simulation:
         If the scene or an option cannot be used.
     LoadError
         If the bearing cannot carry the load.
+
+    Warns
+    -----
+    UnusualInput
+        Where numbers are allowed but can hardly be meant; the texts are kept in `warnings` and in the result's notes.
     """
 
     def __init__(self, scene: Scene, *, accuracy: str = "standard", instruction_set: str = "", **options: Any) -> None:
@@ -91,6 +101,9 @@ class Simulation:
         self._model = build_model(scene, instruction_set)
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
+        self.warnings = unusual(scene, self.equilibrium)
+        for text in self.warnings:
+            warnings.warn(text, UnusualInput, stacklevel=2)
         self._running = False
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
@@ -98,14 +111,18 @@ class Simulation:
         self._reached = scene.start.time
 
     equilibrium: Equilibrium
+    warnings: tuple[str, ...]
     _end: State | None
     """Where a run has ended, inside the integrator's last step; None where the present state is the end of that step."""
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if not abs(time) <= MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
+        first = self.scene.start.time
+        if time < first and len(self._motion.table) > 1:
+            raise InputError.of("time", time, f"must be >= {first:g}, the start: histories are known from there on (s)")
         try:
-            return _core.Simulation(self._model, self._motion, time, vector, self.options.settings())
+            return self._motion.open(self._model, time, vector, self.options.settings())
         except ValueError as error:
             raise InputError.of("state", "given", str(error)) from None
 
@@ -154,8 +171,10 @@ class Simulation:
     def state(self) -> State:
         """A copy of the present state, at `time`."""
         if self._end is not None:
-            return State(self._end.time, self._end.vector.copy())
-        return State(self._core.time, self._core.state())
+            time, vector = self._end.time, self._end.vector.copy()
+        else:
+            time, vector = self._core.time, self._core.state()
+        return State(time, vector, self.scene.start_shaft_angle + self.scene.shaft_turn(time))
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
@@ -347,6 +366,8 @@ class Simulation:
         """
         self._check_not_running("run")
         path = None if output is None else output_path(output, overwrite=overwrite)
+        if path is not None:
+            _check_output(path)
         changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
         changes |= {} if save_every is None else {"save_every": save_every}
         changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
@@ -360,6 +381,18 @@ class Simulation:
         if path is not None:
             run.write_to(path, overwrite=overwrite)
         return run.go(progress=progress)
+
+
+_OTHER_FORMATS = frozenset(
+    (".csv", ".txt", ".json", ".toml", ".npy", ".npz", ".mat", ".xlsx", ".parquet", ".png", ".gif", ".nc")
+)
+
+
+def _check_output(path: Path) -> None:
+    """Records are written as HDF5: a name that says something else would mislead."""
+    if path.suffix.lower() in _OTHER_FORMATS:
+        limit = f"must end in .h5 or .hdf5: records are written as HDF5, not as {path.suffix}"
+        raise InputError.of("output", str(path), limit)
 
 
 def _numbers(values: ArrayLike) -> Array:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,8 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError, LoadError
-from trbdyn.flatten import equilibrium_times, motion_table, ring_load
-from trbdyn.motion import value_at
+from trbdyn.flatten import (
+    RingLoad,
+    block_of,
+    diameter_deviation,
+    effects_entries,
+    face_rows,
+    motion_table,
+    ring_load,
+    scene_entries,
+)
+from trbdyn.motion import History, is_constant, value_at
 
 if TYPE_CHECKING:
     from trbdyn import _core
@@ -53,27 +64,138 @@ class Equilibrium:
     iterations: int
 
 
-def solve_equilibrium(model: _core.Model, scene: Scene, angles: Array, time: float = 0.0) -> Equilibrium:
-    """Equilibrium of the ring under the scene's load at a time, with rollers at the given orbit angles.
+class EquilibriumSolver:
+    """Solves for the equilibrium of a scene's ring and rollers.
 
-    Raises
-    ------
-    LoadError
-        If the bearing cannot carry the load.
+    Parameters
+    ----------
+    model : _core.Model
+        The scene's model.
+    scene : Scene
+        The scene.
+    angles : ndarray, shape (Z,)
+        Orbit angles at which the rollers stand (rad).
     """
-    from trbdyn import _core
 
-    load = ring_load(scene, time)
-    try:
-        found = model.equilibrium(
-            np.concatenate([load.force, load.moment]), load.fixed, load.displacement, load.shaft_speed, angles
+    def __init__(self, model: _core.Model, scene: Scene, angles: Array) -> None:
+        self.model, self.scene, self.angles = model, scene, angles
+
+    def solve(
+        self,
+        time: float,
+        *,
+        guess: Sequence[Equilibrium] | None = None,
+        share: float = 0.0,
+        displacement: Array | None = None,
+    ) -> Equilibrium:
+        """The equilibrium under the load at a time.
+
+        Parameters
+        ----------
+        time : float
+            Time (s).
+        guess : sequence of two Equilibrium, optional
+            Equilibria close by: the search starts from `share` of the way from the first to the second. The loads of what
+            is found are then 0: they are not asked for.
+        share : float
+            See `guess` (1).
+        displacement : ndarray, shape (5,), optional
+            The ring stands here (m, rad), whatever the load is: only the rollers are free.
+
+        Raises
+        ------
+        LoadError
+            If the bearing cannot carry the load.
+        """
+        from trbdyn import _core
+
+        load = ring_load(self.scene, time)
+        fixed = load.fixed if displacement is None else np.ones(5)
+        place, rollers = load.displacement if displacement is None else displacement, None
+        if guess is not None:
+            first, second = guess
+            near = first.displacement + share * (second.displacement - first.displacement)
+            place = np.where(fixed > 0.0, place, near)
+            rollers = (first.rollers + share * (second.rollers - first.rollers)).ravel()
+        force = np.concatenate([load.force, load.moment])
+        found = None
+        try:
+            found = self.model.equilibrium(force, fixed, place, load.shaft_speed, self.angles, rollers)
+        except _core.CoreLoadError as error:
+            for trial in (load.displacement, self._pushed(load)) if displacement is None else ():
+                with contextlib.suppress(_core.CoreLoadError):
+                    guessed = None if trial is load.displacement else self._along_cup(float(trial[2]))
+                    found = self.model.equilibrium(force, fixed, trial, load.shaft_speed, self.angles, guessed)
+                    break
+            if found is None:
+                raise LoadError(_why_not(self.scene, time, str(error))) from None
+        outer, inner, rib = np.asarray(found["loads"]).T
+        return Equilibrium(
+            displacement=found["displacement"],
+            angles=self.angles,
+            rollers=found["rollers"],
+            outer_load=outer,
+            inner_load=inner,
+            rib_load=rib,
+            residual=found["residual"],
+            iterations=found["iterations"],
         )
-    except _core.CoreLoadError as error:
-        raise LoadError(str(error)) from None
-    outer, inner, rib = np.asarray(found["loads"]).T
-    return Equilibrium(
-        found["displacement"], angles, found["rollers"], outer, inner, rib, found["residual"], found["iterations"]
-    )
+
+    def _pushed(self, load: RingLoad) -> Array:
+        """A guess of the ring's place: where its axial position is given with play, pushed to the side by its load."""
+        place, push = load.displacement.copy(), float(np.hypot(*load.force[:2]))
+        gap = max(place[2], 0.0) * math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
+        if push > 0.0:
+            place[:2] = np.where(load.fixed[:2] > 0.0, place[:2], gap * load.force[:2] / push)
+        return place
+
+    def _along_cup(self, shift: float) -> Array:
+        """Rollers that went along the cup by this axial distance (m), as a guess."""
+        slope = math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
+        return np.tile([shift * slope, shift, 0.0], self.angles.size)
+
+
+def least_axial_load(scene: Scene, time: float = 0.0) -> float:
+    """Axial load (N) below which rollers that orbit press the ring off, without any other load.
+
+    The centrifugal force Fc of a roller presses it against the cup, whose slope pushes it with Fc tan(alpha_o) towards its
+    large end, and there against the rib, whose normal lies at the angle theta to the bearing axis: the inner raceway
+    carries nothing at Fa = Z Fc tan(alpha_o) / [1 + tan(theta) tan(alpha_o)].
+    """
+    geometry = scene.bearing.geometry
+    orbit = geometry.cage_speed_ratio * value_at(scene.speed_rpm, time) * math.pi / 30.0
+    centrifugal = geometry.roller_mass * orbit**2 * geometry.roller_centre_radius
+    slope = math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    return scene.bearing.n_rollers * centrifugal * slope / (1.0 + math.tan(geometry.rib_normal_angle) * slope)
+
+
+def _why_not(scene: Scene, time: float, said: str) -> str:
+    """Why there is no equilibrium, as far as it can be told."""
+    changes = any(not is_constant(quantity) for quantity in scene.ring_quantities().values())
+    when = f" at {time:.6g} s" if changes or scene.rotating_load is not None else ""
+    load, z = ring_load(scene, time), scene.ring_is_placed[2]
+    axial, radial, speed = -load.force[2], float(np.hypot(*load.force[:2])), value_at(scene.speed_rpm, time)
+    if z:
+        place = load.displacement[2]
+        return (
+            f"no equilibrium{when} with the ring held at z = {place:g} m under a radial load of {radial:g} N: "
+            f"{'move it towards -z, so that rollers and rings touch' if place >= 0.0 else 'the load is too large'}; {said}"
+        )
+    least = least_axial_load(scene, time) if scene.effects.back_rib else 0.0
+    if axial < least:
+        return (
+            f"no equilibrium{when}: axial_load = {axial:g} N is less than the rollers' centrifugal force needs at {speed:g} rpm; "
+            f"axial_load must be at least {least:.4g} N at this speed, or the speed at most "
+            f"{abs(speed) * math.sqrt(axial / least):.4g} rpm"
+        )
+    most = axial / math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    bounds = f"axial_load at least {least:.4g} N at {speed:g} rpm, radial load below {most:.4g} N"
+    if radial > 0.9 * most:
+        return (
+            f"no equilibrium{when}: the radial load of {radial:g} N is too close to all that axial_load = {axial:g} N can hold "
+            f"({bounds}): raise axial_load, or lower radial_load; {said}"
+        )
+    return f"no equilibrium{when} under axial_load = {axial:g} N, radial load {radial:g} N (needed: {bounds}); {said}"
 
 
 def nominal_angles(scene: Scene) -> Array:
@@ -97,23 +219,88 @@ def start_angles(scene: Scene) -> Array:
     return even
 
 
-def ring_motion(model: _core.Model, scene: Scene) -> tuple[Array, Equilibrium]:
+@dataclass(frozen=True)
+class RingMotion:
+    """Prescribed motion of the ring as the core takes it.
+
+    Attributes
+    ----------
+    table : ndarray, shape (K, 19)
+        Knot time, then value and slope of each channel of `_core.motion_table()`.
+    period : float
+        After the last knot the last part of the table, this long, repeats (s); 0: everything stays.
+    start : float
+        Time of the start (s).
+    angle_time, shaft_angle : float
+        A time (s), and the angle of the shaft then (rad).
+    """
+
+    table: Array
+    period: float
+    start: float
+    angle_time: float
+    shaft_angle: float
+
+    def open(
+        self, model: _core.Model, time: float, vector: Array, settings: dict[str, float | str]
+    ) -> _core.Simulation:
+        """The core's simulation of this motion from a time (s) and state on."""
+        from trbdyn import _core
+
+        return _core.Simulation(
+            model,
+            self.table,
+            time,
+            vector,
+            settings,
+            period=self.period,
+            angle_time=self.angle_time,
+            angle=self.shaft_angle,
+        )
+
+
+def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibrium]:
     """Prescribed motion of the ring as the core takes it, and the equilibrium at the start.
 
-    A ring that follows its load goes through the equilibria of evenly spaced rollers.
+    The ring stands, or moves, where it is in equilibrium with evenly spaced rollers: rollers that start elsewhere do not
+    shift it, as they pass through every place in turn. The rollers start in equilibrium with that ring where they stand.
 
     Raises
     ------
     LoadError
         If the bearing cannot carry the load.
     """
-    times = equilibrium_times(scene)
-    at_start = solve_equilibrium(model, scene, start_angles(scene), float(times[0]))
-    if times.size == 1:
-        return motion_table(scene, times, at_start.displacement[None, :]), at_start
-    even = nominal_angles(scene)
-    path = [solve_equilibrium(model, scene, even, float(time)).displacement for time in times]
-    return motion_table(scene, times, np.array(path)), at_start
+    from trbdyn.ring_path import find_path
+
+    even, angles, time = nominal_angles(scene), start_angles(scene), scene.start.time
+    at_start = EquilibriumSolver(model, scene, even).solve(time)
+    path: list[float | History] = list(at_start.displacement)
+    if scene.ring == "follows":
+        path = find_path(scene, EquilibriumSolver(_normal_contacts(scene), scene, even), at_start)
+    table = motion_table(scene, path)
+    moves = len(table) > 1
+    # a saved state of a shaft at constant speed: its angle is counted from t = 0, without any rounding
+    from_zero = not moves and scene.start.kind == "state" and scene.start.shaft_angle is None
+    motion = RingMotion(
+        table=table,
+        period=(scene.period or 0.0) if moves else 0.0,
+        start=time,
+        angle_time=0.0 if from_zero else time,
+        shaft_angle=0.0 if from_zero else scene.start_shaft_angle,
+    )
+    if not np.array_equal(angles, even):
+        at_start = EquilibriumSolver(model, scene, angles).solve(time, displacement=at_start.displacement)
+    return motion, at_start
+
+
+def _normal_contacts(scene: Scene) -> _core.Model:
+    """The scene's model without friction and films, which act on nothing at rest and take most of the time."""
+    from trbdyn import _core
+
+    quiet = {"lubrication": "full_film", "traction": "none", "thermal": False}
+    quiet |= {"rolling_resistance": False, "rolling_pressure_force": False}
+    entries = {**scene_entries(scene), **effects_entries(scene.effects.replace(**quiet))}
+    return _core.Model(block_of(entries), diameter_deviation(scene), face_rows(scene))
 
 
 class StateView:
@@ -147,7 +334,7 @@ class StateView:
         self[name][...] = value
 
 
-def start_state(model: _core.Model, scene: Scene, motion: Array, equilibrium: Equilibrium) -> Array:
+def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibrium: Equilibrium) -> Array:
     """The state vector at the start, shape (n_state,).
 
     Raises
@@ -182,7 +369,9 @@ def start_state(model: _core.Model, scene: Scene, motion: Array, equilibrium: Eq
     return vector
 
 
-def _place_cage(model: _core.Model, scene: Scene, motion: Array, state: StateView, vector: Array, orbit: float) -> None:
+def _place_cage(
+    model: _core.Model, scene: Scene, motion: RingMotion, state: StateView, vector: Array, orbit: float
+) -> None:
     start, cage = scene.start, scene.bearing.cage
     # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with them
     rest, rollers = RESTING_AXIAL_SHARE * cage.play_axial, float(np.mean(state["roller_z"]))
@@ -200,16 +389,14 @@ def _place_cage(model: _core.Model, scene: Scene, motion: Array, state: StateVie
 
 
 def _lay_down(
-    model: _core.Model, motion: Array, state: StateView, vector: Array, direction: Array, play: float
+    model: _core.Model, motion: RingMotion, state: StateView, vector: Array, direction: Array, play: float
 ) -> None:
     """Move the cage along a direction until a face touches, by bisection on the smallest gap."""
-    from trbdyn import _core
-
-    onlooker = _core.Simulation(model, motion, float(motion[0, 0]), vector, {})
+    onlooker = motion.open(model, motion.start, vector, {})
 
     def touches(distance: float) -> bool:
         state["cage_x"], state["cage_y"] = distance * direction
-        found = onlooker.contacts(float(motion[0, 0]), vector)
+        found = onlooker.contacts(motion.start, vector)
         return float(np.max(found["pocket_interference"])) > 0.0
 
     low, high = 0.0, 4.0 * play

@@ -7,7 +7,7 @@ something known and then change it:
 - ``[bearing] case = "30310"``: a bearing that ships with the package;
 - ``[bearing.cage.pocket] shape = "drafted"``: a builder of `trbdyn.pocket_shapes`, its arguments beside it; as well in
   ``[[bearing.cage.other_pockets]]``;
-- ``[lubricant] oil = "vg100"``: an oil of `trbdyn.lubricants` at ``temperature_c``;
+- ``[lubricant] oil = "vg100"``: an oil of `trbdyn.lubricants.OILS` at ``temperature_c``, or the table of an `Oil`;
 - ``[effects] preset = "paper"``: a preset of `Effects`.
 
 A quantity that changes in time is a table of ``times`` (s) and ``values``.
@@ -27,7 +27,7 @@ from trbdyn.cases import BEARINGS
 from trbdyn.effects import PRESETS, Effects
 from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
 from trbdyn.errors import Path as FieldPath
-from trbdyn.lubricants import OILS, Lubricant, vg100
+from trbdyn.lubricants import Lubricant, vg100
 from trbdyn.own_files import file_path, read_text
 from trbdyn.pocket import Pocket
 from trbdyn.pocket_shapes import SHAPES
@@ -154,7 +154,7 @@ def bearing_from_table(table: Table) -> Bearing:
     """
     path = ("bearing",)
     _check_names(table, {*Bearing.model_fields, "case"}, path)
-    base = _choose(table, "case", BEARINGS, path)().to_dict() if "case" in table else {}
+    base = _choose(table, "case", BEARINGS, path)().inputs() if "case" in table else {}
     values = _merged(base, _without(table, "case"))
     cage = values.get("cage")
     if not isinstance(cage, dict) or not _has_shapes(cage):
@@ -212,14 +212,7 @@ def _pocket(bearing: Bearing, table: Table, path: FieldPath) -> Pocket:
 
 
 def _lubricant(table: Table) -> Lubricant:
-    path = ("lubricant",)
-    _check_names(table, {*Lubricant.model_fields, "oil"}, path)
-    if "oil" not in table:
-        return _build(Lubricant, table, path)
-    oil = _choose(table, "oil", OILS, path)
-    with _located(path):
-        base = oil(temperature_c=table["temperature_c"]) if "temperature_c" in table else oil()
-    return _build(Lubricant, _merged(base.to_dict(), _without(table, "oil", "temperature_c")), path)
+    return _build(Lubricant, table, ("lubricant",))
 
 
 def _effects(table: Table) -> Effects:

@@ -6,12 +6,49 @@ import hashlib
 import inspect
 import json
 import numbers
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, ValidationError
 
-from trbdyn.errors import InputError, from_validation_error
+from trbdyn.errors import InputError, Path, from_validation_error, join_path, unknown_name
+
+_PART = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
+
+
+def split_paths(changes: Mapping[str, Any]) -> dict[Path, Any]:
+    """Paths such as ``cage.other_pockets[0].index`` in parts."""
+    if not isinstance(changes, Mapping):
+        raise InputError.of("replace", changes, "must be a mapping of paths to values, or name=value")
+    found: dict[Path, Any] = {}
+    for path, value in changes.items():
+        parts = [int(index) if index else name for index, name in _PART.findall(path)] if isinstance(path, str) else []
+        if not parts or join_path(parts) != path:
+            raise InputError.of("replace", path, "must be a path such as 'bearing.cage.mass' or 'gravity[1]'")
+        found[tuple(parts)] = value
+    return found
+
+
+def _changed_value(before: Any, changes: Mapping[Path, Any]) -> Any:
+    """A value with what lies below it changed."""
+    if () in changes:
+        return changes[()]
+    if isinstance(before, Model):
+        return before.replace(**before._changed(changes))
+    where, value = next(iter(changes.items()))
+    if isinstance(before, tuple):
+        entries = list(before)
+        for path, new in changes.items():
+            place = path[0]
+            if not isinstance(place, int) or place >= len(entries):
+                raise InputError.of(
+                    path, new, f"must name one of the {len(entries)} entries, [0] to [{len(entries) - 1}]"
+                )
+            entries[place] = _changed_value(entries[place], {path[1:]: new})
+        return tuple(entries)
+    limit = "has nothing below it: it is not given" if before is None else f"has nothing below it: it is {before!r}"
+    raise InputError.of(where, value, f"{limit}; give the whole")
 
 
 def unit(symbol: str, **bounds: float) -> Any:
@@ -124,6 +161,8 @@ class Model(BaseModel, metaclass=_Listed):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
     _root: ClassVar[str | None] = None
+    _assumed: ClassVar[bool] = False
+    """Whether fields that were not given are assumed by the model that this one belongs to, anew after each change."""
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
@@ -162,15 +201,41 @@ class Model(BaseModel, metaclass=_Listed):
         except ValidationError as error:
             raise from_validation_error(error, cls.model_fields, cls._path_root()) from None
 
-    def replace(self, **changes: Any) -> Self:
+    def replace(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Self:
         """A copy with some fields changed, validated again.
+
+        Parameters
+        ----------
+        changes : mapping of str to object, optional
+            Values by path, for what lies deeper: ``scene.replace({"bearing.cage.mass": 0.1, "gravity[1]": 0.0})``.
+        **fields
+            Values by name.
 
         Raises
         ------
         InputError
             If a name is unknown or a value not allowed.
         """
-        return type(self)(**{**{name: getattr(self, name) for name in type(self).model_fields}, **changes})
+        if changes is not None:
+            fields = {**self._changed(split_paths(changes)), **fields}
+        kept = self.model_fields_set if self._assumed else type(self).model_fields
+        return type(self)(**{**{name: getattr(self, name) for name in kept}, **fields})
+
+    def _changed(self, changes: Mapping[Path, Any]) -> dict[str, Any]:
+        """New values of the fields that changes by path lead to."""
+        groups: dict[str | int, dict[Path, Any]] = {}
+        for path, value in changes.items():
+            groups.setdefault(path[0], {})[path[1:]] = value
+        found: dict[str, Any] = {}
+        for name, group in groups.items():
+            if name not in type(self).model_fields:
+                value = next(iter(group.values()))
+                raise InputError.of(str(name), value, unknown_name(str(name), type(self).model_fields))
+            try:
+                found[str(name)] = _changed_value(getattr(self, str(name)), group)
+            except InputError as error:
+                raise error.under((name,)) from None
+        return found
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy; changed fields are validated."""

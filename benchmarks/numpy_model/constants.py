@@ -43,7 +43,7 @@ class Constants:
     def __init__(self, scene: Scene) -> None:
         self.p = {name: float(entry.value) for name, entry in scene_entries(scene).items()}
         self.g = scene.bearing.geometry
-        motion, _ = ring_motion(build_model(scene), scene)
+        motion = ring_motion(build_model(scene), scene)[0].table
         self.check(motion)
         self.n_rollers = int(self.p["n_rollers"])
         self.n_nodes = int(self.p["n_slices"])

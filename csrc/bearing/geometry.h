@@ -25,7 +25,8 @@
   X(roller_centre_radius,    "m",     "radius of the roller's centre of mass from the bearing axis") \
   X(roller_centre_height,    "m",     "axial position of the roller's centre of mass from the apex") \
   X(centre_plane,            "m",     "axial position of the roller-centre plane (mid length) from the apex") \
-  X(effective_modulus,       "Pa",    "E': 2/[(1-v1^2)/E1 + (1-v2^2)/E2]") \
+  X(effective_modulus,       "Pa",    "E' of roller and ring: 2/[(1-v1^2)/E1 + (1-v2^2)/E2]") \
+  X(pocket_modulus,          "Pa",    "E' of roller and cage") \
   X(sphere_radius,           "m",     "Rs: radius of the roller's large end") \
   X(sphere_centre,           "m",     "distance from the apex to the large-end sphere's centre, along the roller axis") \
   X(rib_normal_angle,        "rad",   "angle of the rib face's normal to the bearing axis") \

@@ -197,7 +197,8 @@ static void fill_constants(trb_model *m)
   m->rib_cosine = cos(g->rib_normal_angle);
   m->log_modulus = log(g->effective_modulus);
   m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->effective_length);
-  m->palmgren = exp(m->log_palmgren);
+  m->pocket_palmgren = exp(trb_line_log_load(0.0, g->pocket_modulus, p->effective_length));
+  m->wall_stiffness = p->end_stiffness * (g->pocket_modulus / g->effective_modulus);
   m->roller_tangent = tan(g->roller_half_angle);
   m->roller_cosine = cos(g->roller_half_angle);
   m->axis_sine = sin(g->roller_axis_angle);

@@ -48,7 +48,9 @@ typedef struct trb_model {
   int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
   /* constants of the laws */
   double     log_modulus;                   /* ln E' */
-  double     log_palmgren, palmgren;        /* load per length at d = 1 m, its ln and itself */
+  double     log_palmgren;                  /* ln of the load per length of roller and ring at d = 1 m */
+  double     pocket_palmgren;               /* load per length of roller and cage at d = 1 m */
+  double     wall_stiffness;                /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
   double     roller_tangent, roller_cosine; /* of nu */
   double     axis_sine, axis_cosine;        /* of the roller axis' angle */
   double     log_g;                         /* ln G */

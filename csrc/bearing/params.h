@@ -19,8 +19,12 @@
   X(total_length,             "m",      1e-4,   1.0,    "length of the roller over its ends, centred on the effective length") \
   X(pitch_diameter,           "m",      1e-3,   10.0,   "Dpw: pitch diameter at roller mid length") \
   X(roller_density,           "kg/m3",  100,    30000,  "density of the rollers") \
-  X(youngs_modulus,           "Pa",     1e8,    1e13,   "Young's modulus of rings, rollers and cage faces") \
-  X(poisson_ratio,            "1",      0,      0.4999, "Poisson's ratio") \
+  X(youngs_modulus,           "Pa",     1e8,    1e13,   "Young's modulus of the rings") \
+  X(poisson_ratio,            "1",      0,      0.4999, "Poisson's ratio of the rings") \
+  X(roller_youngs_modulus,    "Pa",     1e8,    1e13,   "Young's modulus of the rollers") \
+  X(roller_poisson_ratio,     "1",      0,      0.4999, "Poisson's ratio of the rollers") \
+  X(cage_youngs_modulus,      "Pa",     1e8,    1e13,   "Young's modulus of the cage's faces") \
+  X(cage_poisson_ratio,       "1",      0,      0.4999, "Poisson's ratio of the cage's faces") \
   X(sphere_ratio,             "1",      0.05,   0.999,  "large-end sphere radius over the apex distance of the roller's large end") \
   X(rib_contact_height,       "m",      0,      0.1,    "height of the nominal rib contact above the inner raceway, perpendicular to it") \
   X(rib_edge_low,             "m",      0,      0.1,    "height of the back-face rib's lower edge above the raceway") \
@@ -28,7 +32,7 @@
   X(front_rib_clearance,      "m",      0,      0.1,    "nominal gap between the roller's small end and the front rib") \
   X(front_rib_low,            "m",      0,      0.1,    "height of the front rib's lower edge above the raceway") \
   X(front_rib_high,           "m",      0,      0.1,    "height of the front rib's upper edge above the raceway") \
-  X(end_stiffness,            "N/m^1.5",1,      1e14,   "stiffness of roller end against a flat: force = k d^1.5") \
+  X(end_stiffness,            "N/m^1.5",1,      1e14,   "stiffness of roller end against a flat of the ring: force = k d^1.5; of the cage: times E' ratio") \
   X(roughness_raceway,        "m",      1e-10,  1e-3,   "composite rms roughness of roller and raceway") \
   X(roughness_rib,            "m",      1e-10,  1e-3,   "composite rms roughness of roller end and rib") \
   /* roller profile and quadrature along the contact */ \

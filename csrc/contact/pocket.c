@@ -154,7 +154,7 @@ static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_v
                           trb_roller_load *load, pocket_sums *sums)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double  stiffness = m->palmgren * f->face.stiffness_factor[0], *weight = m->race[TRB_RACE_OUTER].weight;
+  const double  stiffness = m->pocket_palmgren * f->face.stiffness_factor[0], *weight = m->race[TRB_RACE_OUTER].weight;
   const double  middle = height(f, p->x), along = trb_dot(p->a, f->normal);
   for (int k = 0; k < m->n_nodes; k++) {
     const double h = middle + centre[k] * along;
@@ -185,7 +185,7 @@ static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
   const double        d = sphere_on_face(m, f, c, height(f, c), g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
-  const double       q = m->params.end_stiffness * f->face.stiffness_factor[0] * d * sqrt(d);
+  const double       q = m->wall_stiffness * f->face.stiffness_factor[0] * d * sqrt(d);
   const pocket_touch touch = {trb_axpy(c, g->sphere_radius - 0.5 * d, normal), normal, d, q, TRB_POINT_EXPONENT, trb_sub(c, p->x), 0};
   push(m, f, p, &touch, counters, load, sums);
 }
@@ -205,7 +205,7 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
                               pocket_sums *sums)
 {
   const trb_vec3 end = small_end(m, p), normal = trb_scale(-1.0, p->a);
-  const double   stiffness = m->params.end_stiffness * f->face.stiffness_factor[0] / f->n;
+  const double   stiffness = m->wall_stiffness * f->face.stiffness_factor[0] / f->n;
   for (int i = 0; i < f->n; i++) {
     const trb_vec3 point = vertex_of(f, i);
     const double   d = trb_dot(trb_sub(point, end), p->a);

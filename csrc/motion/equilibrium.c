@@ -10,6 +10,8 @@ enum { MOST_STEPS = 300 };
 /* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */
 #define TRB_BALANCE_SHARE 1e-10
 #define TRB_BALANCE_FORCE 1e-7
+/* Share of the imbalance that may be left after a step with a stiffness that is kept for the next one. */
+#define TRB_KEEP_STIFFNESS 0.05
 /* Steps of differences. */
 #define TRB_STEP_LENGTH 1e-10
 #define TRB_STEP_ANGLE 1e-8
@@ -229,16 +231,19 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
 {
   trb_equilibrium *e = s->e;
   const int        n = s->m->n_rollers;
-  double           damping = 1e-3, ring_trial[TRB_RING_FREEDOMS];
+  int              known = 0; /* the stiffness is still good enough */
+  double           damping = e->warm ? 0.0 : 1e-3, ring_trial[TRB_RING_FREEDOMS];
   s->energy = evaluate(s, e->rollers, e->displacement, s->forces, s->ring);
   sum_ring(s);
   double off = imbalance(s);
   for (e->iterations = 0; e->iterations < MOST_STEPS; e->iterations++) {
     e->residual = off;
     if (off < fmax(TRB_BALANCE_FORCE, TRB_BALANCE_SHARE * largest_load(s))) return TRB_OK;
-    differentiate(s);
-    int accepted = 0;
-    for (int attempt = 0; attempt < 40 && !accepted; attempt++) {
+    if (!known) differentiate(s);
+    int          accepted = 0;
+    const int    reused = known;
+    const double before = off;
+    for (int attempt = 0; attempt < (reused ? 1 : 40) && !accepted; attempt++) {
       if (!newton_step(s, damping, step_rollers, step_ring)) {
         damping = fmax(10.0 * damping, 1e-12);
         continue;
@@ -268,7 +273,10 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
         damping = fmax(10.0 * damping, 1e-10);
       }
     }
-    if (!accepted) break;
+    if (!accepted && !reused) break;
+    if (!accepted) damping = 0.0;
+    /* close to the solution the stiffness is kept as long as each step takes most of the imbalance away */
+    known = e->warm && accepted && off < TRB_KEEP_STIFFNESS * before;
   }
   e->residual = off;
   if (off < 1e-5 * fmax(largest_load(s), 1e-3)) return TRB_OK;
@@ -326,7 +334,7 @@ trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_mes
     at += n * sizes[i];
   }
   status = iterate(&s, at, step_ring, message);
-  if (status == TRB_OK) status = read_loads(&s, message);
+  if (status == TRB_OK && e->loads != NULL) status = read_loads(&s, message);
   free(block);
   trb_dynamics_free(s.d);
   return status;

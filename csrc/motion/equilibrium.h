@@ -16,8 +16,9 @@ typedef struct trb_equilibrium {
   double  displacement[TRB_RING_FREEDOMS]; /* in: prescribed values and the guess; out: m and rad */
   double  shaft_speed;                     /* in: rad/s */
   double *angles;                          /* in: orbit angles of the rollers, rad */
+  int     warm;                            /* in: 1 where displacement and rollers are a guess close to the solution */
   double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt) offsets */
-  double *loads;                           /* out: n_rollers rows of (outer, inner, rib) normal loads, N */
+  double *loads;                           /* out: n_rollers rows of (outer, inner, rib) normal loads, N; NULL: not wanted */
   double  residual;                        /* out: largest unbalanced force, N */
   int     iterations;                      /* out */
 } trb_equilibrium;

@@ -18,6 +18,7 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
   trb_motion *m = calloc(1, sizeof *m);
   if (m == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for prescribed motion");
   m->n = n;
+  m->tail = n - 1;
   m->table = malloc((size_t)n * TRB_MOTION_COLUMNS * sizeof(double));
   m->angle = calloc((size_t)n, sizeof(double));
   if (m->table == NULL || m->angle == NULL) {
@@ -40,6 +41,49 @@ void trb_motion_free(trb_motion *motion)
   free(motion->table);
   free(motion->angle);
   free(motion);
+}
+
+static const double *row_of(const trb_motion *motion, int i) { return motion->table + (size_t)i * TRB_MOTION_COLUMNS; }
+static double        knot(const trb_motion *motion, int i) { return row_of(motion, i)[0]; }
+static double        first_time(const trb_motion *motion) { return knot(motion, 0); }
+static double        last_time(const trb_motion *motion) { return knot(motion, motion->n - 1); }
+static int           repeats(const trb_motion *motion) { return motion->tail < motion->n - 1; }
+
+/* Times of knots that belong together differ by rounding at most: this share of an interval. */
+#define TRB_SAME_TIME 1e-9
+
+trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *message)
+{
+  const int     last = motion->n - 1;
+  const double *end = row_of(motion, last);
+  int           tail = last - 1;
+  if (!(period > 0.0) || last < 1)
+    return trb_fail(message, TRB_ERR_INPUT, "motion: period = %g s: must be > 0, with at least two knots", period);
+  while (tail > 0 && end[0] - knot(motion, tail) < period * (1.0 - TRB_SAME_TIME)) tail--;
+  if (fabs(end[0] - knot(motion, tail) - period) > TRB_SAME_TIME * period)
+    return trb_fail(message, TRB_ERR_INPUT, "motion: period = %g s: there must be a knot this long before the last one", period);
+  for (int c = 1; c < TRB_MOTION_COLUMNS; c++)
+    if (row_of(motion, tail)[c] != end[c])
+      return trb_fail(message, TRB_ERR_INPUT, "motion: column %d is %g at the start of the period and %g at its end: must be the same", c,
+                      row_of(motion, tail)[c], end[c]);
+  motion->tail = tail;
+  return TRB_OK;
+}
+
+/* Time within the table, of which a time after the last knot is a repetition; turns: how many periods lie between them. */
+static double time_in_table(const trb_motion *motion, double time, double *turns)
+{
+  *turns = 0.0;
+  if (!repeats(motion) || time < last_time(motion)) return time;
+  const double begin = knot(motion, motion->tail), period = last_time(motion) - begin;
+  *turns = floor((time - begin) / period);
+  double inside = time - *turns * period;
+  /* rounding never leaves a time just before the last knot, from where no step could get on */
+  if (inside >= last_time(motion) - TRB_SAME_TIME * (last_time(motion) - knot(motion, motion->n - 2))) {
+    inside -= period;
+    *turns += 1.0;
+  }
+  return fmax(inside, begin);
 }
 
 typedef struct hermite {
@@ -89,8 +133,6 @@ void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity
 /* Steps that an interval between two knots takes at least. */
 enum { STEPS_AN_INTERVAL = 8 };
 
-static double knot(const trb_motion *motion, int i) { return motion->table[(size_t)i * TRB_MOTION_COLUMNS]; }
-
 /* Index of the last knot at or before a time between the first and the last. */
 static int interval_of(const trb_motion *motion, double time)
 {
@@ -105,38 +147,59 @@ static int interval_of(const trb_motion *motion, double time)
 
 double trb_motion_stop(const trb_motion *motion, double time)
 {
-  const double first = knot(motion, 0), last = knot(motion, motion->n - 1);
-  if (motion->n == 1 || time >= last) return INFINITY;
-  if (time < first) return first;
-  const int    low = interval_of(motion, time);
-  const double next = knot(motion, low + 1), part = time + (next - knot(motion, low)) / STEPS_AN_INTERVAL;
+  double turns;
+  if (motion->n == 1 || (time >= last_time(motion) && !repeats(motion))) return INFINITY;
+  if (time < first_time(motion)) return first_time(motion);
+  double       inside = time_in_table(motion, time, &turns);
+  const double shift = turns * (last_time(motion) - knot(motion, motion->tail));
+  int          low = interval_of(motion, inside);
+  /* in a repetition a step that ended at a knot may lie before it by rounding */
+  if (turns > 0.0 && low + 2 < motion->n && knot(motion, low + 1) - inside < TRB_SAME_TIME * (knot(motion, low + 1) - knot(motion, low)))
+    inside = knot(motion, ++low);
+  const double next = knot(motion, low + 1), part = inside + (next - knot(motion, low)) / STEPS_AN_INTERVAL;
   /* no sliver of a step is left before the knot */
-  return part < next - 0.5 * (part - time) ? part : next;
+  return shift + (part < next - 0.5 * (part - inside) ? part : next);
 }
 
 int trb_motion_changes(const trb_motion *motion, double from, double to)
 {
-  return motion->n > 1 && to > knot(motion, 0) && from < knot(motion, motion->n - 1);
+  return motion->n > 1 && to > first_time(motion) && (repeats(motion) || from < last_time(motion));
 }
 
 int trb_motion_under_way(const trb_motion *motion, double time) { return trb_motion_changes(motion, time, time); }
 
+/* Channels at a time, and the angle that the shaft has turned by. */
+static double channels_at(const trb_motion *motion, double time, hermite c[TRB_N_CHANNELS])
+{
+  double       turns;
+  const int    last = motion->n - 1;
+  const double inside = time_in_table(motion, time, &turns);
+  if (inside <= first_time(motion) || inside >= last_time(motion) || last == 0) {
+    const int     late = inside >= last_time(motion);
+    const double *row = row_of(motion, late ? last : 0);
+    for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = (hermite){row[1 + 2 * i], inside == row[0] ? row[2 + 2 * i] : 0.0};
+    return motion->angle[late ? last : 0] + row[1 + 2 * TRB_CHANNEL_shaft_speed] * (inside - row[0]) +
+           turns * (motion->angle[last] - motion->angle[motion->tail]);
+  }
+  const int     low = interval_of(motion, inside);
+  const double *a = row_of(motion, low);
+  const double  h = a[TRB_MOTION_COLUMNS] - a[0], s = (inside - a[0]) / h;
+  for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = channel_at(a, i, s, h);
+  return motion->angle[low] + channel_integral(a, TRB_CHANNEL_shaft_speed, s, h) +
+         turns * (motion->angle[last] - motion->angle[motion->tail]);
+}
+
+void trb_motion_set_angle(trb_motion *motion, double time, double angle)
+{
+  hermite      c[TRB_N_CHANNELS];
+  const double shift = angle - channels_at(motion, time, c);
+  for (int i = 0; i < motion->n; i++) motion->angle[i] += shift;
+}
+
 void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive)
 {
-  hermite       c[TRB_N_CHANNELS];
-  const double *table = motion->table, *last = table + (size_t)(motion->n - 1) * TRB_MOTION_COLUMNS;
-  if (time <= table[0] || time >= last[0] || motion->n == 1) {
-    const int     late = time >= last[0];
-    const double *row = late ? last : table;
-    for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = (hermite){row[1 + 2 * i], 0.0};
-    drive->shaft_angle = (late ? motion->angle[motion->n - 1] : 0.0) + row[1 + 2 * TRB_CHANNEL_shaft_speed] * (time - row[0]);
-  } else {
-    const int     low = interval_of(motion, time);
-    const double *a = table + (size_t)low * TRB_MOTION_COLUMNS;
-    const double  h = a[TRB_MOTION_COLUMNS] - a[0], s = (time - a[0]) / h;
-    for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = channel_at(a, i, s, h);
-    drive->shaft_angle = motion->angle[low] + channel_integral(a, TRB_CHANNEL_shaft_speed, s, h);
-  }
+  hermite c[TRB_N_CHANNELS];
+  drive->shaft_angle = channels_at(motion, time, c);
   const double ratio = m->geometry.cage_speed_ratio;
   drive->time = time;
   drive->shaft_speed = c[TRB_CHANNEL_shaft_speed].value;

@@ -1,5 +1,6 @@
 /* What is prescribed in time: the inner ring's displacement, misalignment and speed, and gravity. Cubic Hermite between knots, so that
- * velocities are continuous; constant (slope zero) outside. The shaft's angle is the exact integral of its speed. */
+ * velocities are continuous. Before the first knot everything is constant; after the last knot too, or the last part of the table repeats.
+ * The shaft's angle is the exact integral of its speed. */
 #ifndef TRB_MOTION_RING_MOTION_H
 #define TRB_MOTION_RING_MOTION_H
 
@@ -11,16 +12,23 @@ enum { TRB_MOTION_COLUMNS = 1 + 2 * TRB_N_CHANNELS };
 typedef struct trb_motion {
   int     n;     /* knots */
   double *table; /* n rows: time, then value and slope of each channel */
-  double *angle; /* shaft angle at each knot, rad; zero at the first */
+  double *angle; /* shaft angle at each knot, rad */
+  int     tail;  /* knot at which the part that repeats begins; n - 1: nothing repeats */
 } trb_motion;
 
 /* table: n rows of TRB_MOTION_COLUMNS, times increasing. Constant motion is one knot. */
 trb_status trb_motion_create(const double *table, int n, trb_motion **motion, trb_message *message);
 void       trb_motion_free(trb_motion *motion);
 
-/* Whether speed, ring or gravity are between two knots of their histories. */
+/* After the last knot the motion repeats what lies between the knot `period` before the last and the last one; both must have the same
+ * values and slopes. */
+trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *message);
+/* Sets where the shaft's angle is counted from: it is `angle` at `time`. Without it the angle is zero at the first knot. */
+void trb_motion_set_angle(trb_motion *motion, double time, double angle);
+
+/* Whether speed, ring or gravity change at a time. */
 int trb_motion_under_way(const trb_motion *motion, double time);
-/* Whether they are so at any time between two. */
+/* Whether they change at any time between two. */
 int trb_motion_changes(const trb_motion *motion, double from, double to);
 /* Where a step from a time on must end at the latest, so that no part of a history is stepped over: the next knot, and within an interval
  * a part of it. INFINITY where nothing changes any more. */

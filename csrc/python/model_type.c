@@ -155,13 +155,14 @@ static PyObject *columns(const double *values, int rows, int width)
 
 static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 {
-  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", NULL};
+  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", NULL};
   const trb_model *m = ((model_object *)self)->model;
-  PyObject        *load, *fixed, *displacement, *angles;
+  PyObject        *load, *fixed, *displacement, *angles, *rollers = Py_None;
   trb_equilibrium  e = {0};
   trb_message      message = {TRB_OK, ""};
   double           held[TRB_RING_FREEDOMS];
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO", names, &load, &fixed, &displacement, &e.shaft_speed, &angles)) return NULL;
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|O", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers))
+    return NULL;
   if (read_doubles(load, "load", TRB_RING_FREEDOMS, e.load) != 0 || read_doubles(fixed, "fixed", TRB_RING_FREEDOMS, held) != 0 ||
       read_doubles(displacement, "displacement", TRB_RING_FREEDOMS, e.displacement) != 0)
     return NULL;
@@ -171,9 +172,11 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
   if (block == NULL) return PyErr_NoMemory();
   e.angles = block;
   e.rollers = block + n;
-  e.loads = block + 4 * n;
   PyObject *out = NULL;
-  if (read_doubles(angles, "angles", m->n_rollers, e.angles) == 0) {
+  e.warm = rollers != Py_None;
+  e.loads = e.warm ? NULL : block + 4 * n;
+  if (read_doubles(angles, "angles", m->n_rollers, e.angles) == 0 &&
+      (!e.warm || read_doubles(rollers, "rollers", 3 * m->n_rollers, e.rollers) == 0)) {
     trb_status status;
     Py_BEGIN_ALLOW_THREADS
     status = trb_equilibrium_solve(m, &e, &message);
@@ -181,7 +184,7 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
     if (status != TRB_OK) (void)trb_raise(status, &message);
     else
       out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
-                          columns(e.rollers, m->n_rollers, 3), "loads", columns(e.loads, m->n_rollers, 3), "residual", e.residual,
+                          columns(e.rollers, m->n_rollers, 3), "loads", columns(block + 4 * n, m->n_rollers, 3), "residual", e.residual,
                           "iterations", e.iterations);
   }
   PyMem_Free(block);

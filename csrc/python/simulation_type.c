@@ -1,6 +1,7 @@
 /* trbdyn._core.Simulation */
 #include "python/core.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "contact/kernels.h"
@@ -57,14 +58,14 @@ static PyArrayObject *state_array(const simulation_object *self, PyObject *objec
 
 static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
-  static char *names[] = {"model", "motion", "time", "state", "settings", NULL};
+  static char *names[] = {"model", "motion", "time", "state", "settings", "period", "angle_time", "angle", NULL};
   PyObject    *model, *motion_object, *state_object, *settings_object;
-  double       time;
+  double       time, period = 0.0, angle_time = NAN, angle = 0.0;
   trb_settings settings;
   const char  *kind;
   trb_message  message = {TRB_OK, ""};
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!", names, &trb_model_type, &model, &motion_object, &time, &state_object,
-                                   &PyDict_Type, &settings_object))
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!|ddd", names, &trb_model_type, &model, &motion_object, &time, &state_object,
+                                   &PyDict_Type, &settings_object, &period, &angle_time, &angle))
     return NULL;
   if (read_settings(settings_object, &settings, &kind) != 0) return NULL;
   PyArrayObject *motion = trb_array(motion_object, 2, "motion");
@@ -82,6 +83,8 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
     if (PyArray_DIM(motion, 1) != TRB_MOTION_COLUMNS)
       status = trb_fail(&message, TRB_ERR_INPUT, "motion: %d columns needed, %d given", TRB_MOTION_COLUMNS, (int)PyArray_DIM(motion, 1));
     else status = trb_motion_create(PyArray_DATA(motion), (int)PyArray_DIM(motion, 0), &self->motion, &message);
+    if (status == TRB_OK && period != 0.0) status = trb_motion_repeat(self->motion, period, &message);
+    if (status == TRB_OK && isfinite(angle_time)) trb_motion_set_angle(self->motion, angle_time, angle);
     if (status == TRB_OK)
       status = trb_simulation_create(model_of(self), self->motion, kind, ((model_object *)model)->variant, &settings, time,
                                      PyArray_DATA(state), &self->simulation, &message);

@@ -53,7 +53,7 @@ static double closing_speed(const trb_roller_pose *r, const trb_cage_pose *cage)
 static double interference_of(const trb_model *m, double speed)
 {
   const double depth = 1e-6, roller = m->geometry.roller_mass, cage = m->params.cage_mass;
-  const double stiffness = m->palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
+  const double stiffness = m->pocket_palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
   return speed * sqrt(roller * cage / ((roller + cage) * stiffness));
 }
 

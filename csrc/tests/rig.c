@@ -12,7 +12,8 @@ trb_params rig_params(void)
   p.n_rollers = 12;
   p.cup_half_angle = (12.0 + 57.0 / 60.0 + 10.0 / 3600.0) * TRB_PI / 180.0;
   p.roller_diameter = 14.0e-3, p.effective_length = 19.8e-3, p.total_length = 20.8e-3, p.pitch_diameter = 82.389e-3;
-  p.roller_density = 7810, p.youngs_modulus = 206e9, p.poisson_ratio = 0.3, p.sphere_ratio = 0.9;
+  p.roller_density = 7810, p.youngs_modulus = p.roller_youngs_modulus = p.cage_youngs_modulus = 206e9;
+  p.poisson_ratio = p.roller_poisson_ratio = p.cage_poisson_ratio = 0.3, p.sphere_ratio = 0.9;
   p.rib_contact_height = 1.667e-3, p.rib_edge_low = 0.3e-3, p.rib_edge_high = 3.5e-3;
   p.front_rib_clearance = 0.2e-3, p.front_rib_low = 0.3e-3, p.front_rib_high = 2e-3, p.end_stiffness = 1e10;
   p.roughness_raceway = 0.16e-6, p.roughness_rib = 0.24e-6;

@@ -201,6 +201,54 @@ static void test_bad_tables(void)
   table[3][4] = value;
 }
 
+/* After the last knot the part from the second knot on repeats: curves, the shaft's turn and the stops, for thousands of periods. */
+static void test_repetition(const trb_model *m)
+{
+  const double begin = knot_times[1], period = knot_times[KNOTS - 1] - begin;
+  trb_motion  *motion;
+  trb_message  message = {TRB_OK, ""};
+  trb_drive    d, again, end, start;
+  double       keep[TRB_MOTION_COLUMNS];
+  if (!CHECK(trb_motion_create(&table[0][0], KNOTS, &motion, NULL) == TRB_OK)) return;
+  CHECK(trb_motion_repeat(motion, period, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "must be the same");
+  CHECK(trb_motion_repeat(motion, 0.9 * period, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "there must be a knot this long before the last one");
+  CHECK(trb_motion_repeat(motion, -1.0, &message) == TRB_ERR_INPUT);
+  trb_motion_free(motion);
+  for (int c = 1; c < TRB_MOTION_COLUMNS; c++) keep[c] = table[KNOTS - 1][c], table[KNOTS - 1][c] = table[1][c];
+  if (!CHECK(trb_motion_create(&table[0][0], KNOTS, &motion, NULL) == TRB_OK)) return;
+  CHECK(trb_motion_repeat(motion, period, &message) == TRB_OK);
+  trb_motion_set_angle(motion, 0.3, 7.0);
+  trb_motion_at(motion, m, 0.3, &d);
+  CHECK_NEAR(d.shaft_angle, 7.0, 1e-14);
+  trb_motion_at(motion, m, begin, &start);
+  trb_motion_at(motion, m, begin + period, &end);
+  const double turned = end.shaft_angle - start.shaft_angle;
+  for (int i = 0; i < 500; i++) {
+    const double count = i < 250 ? 1.0 : 1.0 + (i % 7) * 1000.0, t = begin + period * (0.5 + 0.5 * rig_random(&seed)), size = 1e-13 * count;
+    trb_motion_at(motion, m, t, &d);
+    trb_motion_at(motion, m, t + count * period, &again);
+    for (int c = 0; c < TRB_N_CHANNELS; c++) {
+      if (c == TRB_CHANNEL_rotation_x || c == TRB_CHANNEL_rotation_y) continue;
+      CHECK_NEAR(value_of(&again, c), value_of(&d, c), 3e5 * size);
+    }
+    CHECK_NEAR(again.inner.axis.x, d.inner.axis.x, 3e3 * size);
+    CHECK_NEAR(again.inner.velocity.y, d.inner.velocity.y, 3e3 * size);
+    CHECK_NEAR(again.shaft_angle, d.shaft_angle + count * turned, 1e5 * size);
+    CHECK(trb_motion_changes(motion, t + count * period, t + count * period + 1e-9));
+  }
+  double time = begin + 5e4 * period;
+  for (int i = 0; i < 20000; i++) {
+    const double stop = trb_motion_stop(motion, time);
+    if (!CHECK(stop > time + 1e-4 && stop < time + 0.2)) break;
+    time = stop;
+  }
+  CHECK(time > begin + 5e4 * period + 400.0 * period);
+  for (int c = 1; c < TRB_MOTION_COLUMNS; c++) table[KNOTS - 1][c] = keep[c];
+  trb_motion_free(motion);
+}
+
 int main(void)
 {
   const trb_params params = rig_params();
@@ -214,6 +262,7 @@ int main(void)
   test_pose(m, motion);
   test_rotation_vectors(m);
   test_stops(motion);
+  test_repetition(m);
   test_bad_tables();
   trb_motion_free(motion);
   trb_model_free(m);

@@ -113,8 +113,11 @@ class TestOverrides:
 
     def test_an_oil_at_another_temperature_is_another_oil(self) -> None:
         base = Base.of(trb.cases.scene_30310(), OPTIONS)
+        scene, _ = base.build({"lubricant.temperature_c": 80.0})
+        assert scene.lubricant == trb.lubricants.vg100(80.0)
+        numbers = trb.lubricants.vg100().replace(viscosity=0.05)
         with pytest.raises(InputError, match="viscosities"):
-            base.build({"lubricant.temperature_c": 80.0})
+            Base.of(trb.cases.scene_30310(lubricant=numbers), OPTIONS).build({"lubricant.temperature_c": 80.0})
         scene, _ = base.build({"lubricant.oil": "vg100", "lubricant.temperature_c": 80.0})
         assert scene.lubricant == trb.lubricants.vg100(80.0)
         scene, _ = Base.of("rig_30310").build({"lubricant.temperature_c": 80.0})
@@ -318,9 +321,26 @@ class TestFailures:
         assert np.all(study.run(small(), tmp_path, executor="serial").status == "done")
 
     def test_an_observable_that_fails(self, tmp_path: Path) -> None:
-        data = study.run(small(), tmp_path, executor="threads", observables={"wrong": lambda result: 1 / 0})
-        assert np.all(data.status == "failed")
-        assert "ZeroDivisionError" in str(data.message.values[0, 0])
+        wrong = {"wrong": lambda result: 1 / 0, "right": lambda result: float(len(result))}
+        data = study.run(small(), tmp_path, executor="threads", observables=wrong)
+        assert np.all(data.status == "done")
+        assert "the observable 'wrong' failed: ZeroDivisionError" in str(data.message.values[0, 0])
+        assert np.all(data["right"] > 1)
+        assert np.all(np.isfinite(data["mean_friction_torque"] if "mean_friction_torque" in data else data["wall_s"]))
+        wrong["wrong"] = lambda result: 7.0
+        again = study.run(small(), tmp_path, executor="threads", observables=wrong)
+        assert np.all(again["wrong"] == 7.0)
+        assert "failed" not in str(again.message.values[0, 0])
+
+    def test_a_lambda_for_processes_is_told_at_once(self) -> None:
+        with pytest.raises(InputError, match="top level of a module") as caught:
+            study.run(small(), observables={"top": lambda result: 1.0})
+        assert caught.value.field == "observables.top"
+
+    def test_a_number_in_place_of_values(self) -> None:
+        with pytest.raises(InputError, match="must be a sequence of values") as caught:
+            study.grid(trb.cases.scene_30310(), {"bearing.cage.mass": 0.1}, OPTIONS)
+        assert caught.value.field == "bearing.cage.mass"
 
     def test_nothing_half_written_stays(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         def interrupted(scene: Any, run: Any) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from trbdyn import Effects, InputError, Scene, Simulation, cases, laws
-from trbdyn.lubricants import Lubricant, vg100
+from trbdyn.lubricants import Dicke, Lubricant, vg100
 
 
 def assert_finite(scene: Scene) -> None:
@@ -55,7 +55,13 @@ def test_every_quantity_is_a_number(changes: dict[str, Any]) -> None:
 
 def test_dicke_beyond_its_pole() -> None:
     """Below -14.7 C the constants of FVA3 give a viscosity that is infinite at a finite pressure: 0.45 GPa at -80 C."""
-    oil = {"viscosity": 1.0, "pressure_coefficient": 2e-8, "temperature_coefficient": 0.04, "temperature_c": -80.0}
+    oil = {
+        "viscosity": 1.0,
+        "pressure_coefficient": 2e-8,
+        "temperature_coefficient": 0.04,
+        "temperature_c": -80.0,
+        "dicke": Dicke(),
+    }
     try:
         scene = cases.scene_30310(300.0, lubricant=Lubricant(**oil))
     except InputError:

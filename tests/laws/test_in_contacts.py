@@ -102,6 +102,7 @@ def log_ratio(oil: Any, pressure: Any) -> Any:
         return laws.viscosity_barus(pressure, oil.pressure_coefficient, oil.viscosity_exponent_cap)
     if oil.pressure_law == "roelands":
         return laws.viscosity_roelands(pressure, oil.pressure_coefficient, oil.viscosity, oil.viscosity_exponent_cap)
+    assert oil.dicke is not None
     return laws.viscosity_dicke(pressure, oil.temperature_c, oil.dicke.a, oil.dicke.b, oil.dicke.c, oil.dicke.d)
 
 

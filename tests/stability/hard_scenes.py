@@ -421,7 +421,7 @@ HARD: tuple[Hard, ...] = (
         "centrifugal force of the rollers lifts the ring: no equilibrium",
         lambda: S(3000.0, 1.0),
         error=LoadError,
-        words="cannot carry this load",
+        words="axial_load must be at least",
     ),
     Hard(
         "load_1_N",

@@ -72,6 +72,7 @@ def contact_viscosity(oil: Lubricant, pressure: Array) -> Array:
     """Viscosity (Pa s) of an oil at a pressure (Pa), by its pressure law."""
     if oil.pressure_law == "dicke":
         law = oil.dicke
+        assert law is not None
         exponent = laws.viscosity_dicke(pressure, oil.temperature_c, law.a, law.b, law.c, law.d)
     elif oil.pressure_law == "roelands":
         exponent = laws.viscosity_roelands(

@@ -62,7 +62,8 @@ class Base:
         elif isinstance(base, Scene):
             values = base.to_dict()
             own = {name: values.pop(name) for name in ("bearing", "lubricant", "effects", "start")}
-            made = cls({**own, "scene": values}, whole=True)
+            # what was assumed follows the bearing's size in every case
+            made = cls({**own, "bearing": base.bearing.inputs(), "scene": values}, whole=True)
         elif isinstance(base, Mapping):
             made = cls(dict(base))
         else:
@@ -78,19 +79,21 @@ class Base:
             If a path leads nowhere or a value is not allowed.
         """
         tables = copy.deepcopy(self.tables)
+        self._check_oil(overrides)
         if self.whole:
-            self._check_whole(overrides)
             for table, chooser in _CHOOSERS.items():
                 if f"{table}.{chooser}" in overrides:
-                    tables[table] = {}
+                    kept = tables[table].get("temperature_c")
+                    tables[table] = {} if kept is None else {"temperature_c": kept}
         for path in sorted(overrides, key=lambda name: (name.count(".") + name.count("["), name)):
             put(tables, path, plain(overrides[path]))
         return case_from_dict(tables)
 
-    @staticmethod
-    def _check_whole(overrides: Overrides) -> None:
-        name = "lubricant.temperature_c"
-        if name in overrides and not {"lubricant.oil", "lubricant"} & set(overrides):
+    def _check_oil(self, overrides: Overrides) -> None:
+        """Numbers of a lubricant without oil belong to its temperature."""
+        name, lubricant = "lubricant.temperature_c", self.tables.get("lubricant") or {}
+        others = {"lubricant.oil", "lubricant", "lubricant.viscosity"}
+        if name in overrides and "viscosity" in lubricant and not others & set(overrides):
             raise InputError.of(
                 name,
                 overrides[name],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing
 from datetime import UTC, datetime
@@ -18,7 +19,7 @@ from trbdyn.study.definition import Case, Study
 from trbdyn.study.design import of_scenes
 from trbdyn.study.executors import Outcome, execute
 from trbdyn.study.index import INDEX, Entry, Index
-from trbdyn.study.work import Observable, Report, Task, as_plain, run_case, said
+from trbdyn.study.work import Observable, Report, Task, apply, as_plain, run_case, said
 
 if TYPE_CHECKING:
     import xarray
@@ -80,6 +81,8 @@ def run(
             f"{place / DATASET}: belongs to no study of this folder, and would be replaced; give another folder"
         )
     index, functions = Index(place), dict(observables or {})
+    if executor == "processes":
+        _check_pickle(functions)
     waiting = {case.fingerprint: case for case in study.cases}
     if resume:
         waiting = {key: case for key, case in waiting.items() if not index.done(key)}
@@ -113,6 +116,19 @@ def collect(study: Study, folder: str | os.PathLike[str]) -> xarray.Dataset:
     """
     index = Index(folder_path(folder, "folder"))
     return gather.dataset(study, [index.entries.get(case.fingerprint) for case in study.cases])
+
+
+def _check_pickle(functions: Mapping[str, Observable]) -> None:
+    """Worker processes get observables by pickle, which takes functions of a module alone: say so before anything runs."""
+    for name, function in functions.items():
+        try:
+            pickle.dumps(function)
+        except Exception as error:
+            limit = (
+                "must be a function at the top level of a module for executor = 'processes', not a lambda or an inner function "
+                f"({error}); or give executor = 'threads'"
+            )
+            raise InputError.of(("observables", name), function, limit) from None
 
 
 def _bar(total: int, done: int, show: bool) -> Any:
@@ -167,7 +183,8 @@ def _observed(index: Index, case: Case, functions: Mapping[str, Observable]) -> 
     from trbdyn.results import load
 
     result = load(index.folder / entry.file)
-    values = entry.values | {name: as_plain(function(result)) for name, function in missing.items()}
-    entry = Entry(**{**entry.__dict__, "values": values})
+    values, mistakes = apply(result, missing)
+    message = "; ".join([entry.message.partition("; the observable")[0], *mistakes])
+    entry = Entry(**{**entry.__dict__, "values": entry.values | values, "message": message})
     index.add(entry)
     return entry

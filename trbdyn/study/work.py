@@ -115,10 +115,9 @@ def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
             result = load(kept)
     values: dict[str, Any] = {}
     if result is not None and report.status == "done":
-        try:
-            values = observe(result, task.observables)
-        except Exception as error:
-            report = Report("failed", f"an observable failed: {said(error)}")
+        values, mistakes = observe(result, task.observables)
+        if mistakes:
+            report = Report(report.status, "; ".join([report.message, *mistakes]))
     return Report(report.status, report.message, file, values, clock.perf_counter() - began)
 
 
@@ -160,15 +159,31 @@ def said(error: Exception) -> str:
     return f"{type(error).__name__}: {error}{place}"
 
 
-def observe(result: Result, functions: Mapping[str, Observable]) -> dict[str, Any]:
-    """Summary and further observables of a result, as plain data; tables of the summary become ``table_entry``."""
+def observe(result: Result, functions: Mapping[str, Observable]) -> tuple[dict[str, Any], list[str]]:
+    """Summary and further observables of a result, as plain data; tables of the summary become ``table_entry``.
+
+    An observable that fails has no value, and a sentence says why: it costs neither the run nor the other observables.
+    """
     values: dict[str, Any] = {}
     for name, value in result.summary().items():
         if isinstance(value, Mapping):
             values |= {f"{name}_{part}": entry for part, entry in value.items()}
         elif name not in NOT_OBSERVABLE:
             values[name] = value
-    return values | {name: as_plain(function(result)) for name, function in functions.items()}
+    found, mistakes = apply(result, functions)
+    return values | found, mistakes
+
+
+def apply(result: Result, functions: Mapping[str, Observable]) -> tuple[dict[str, Any], list[str]]:
+    """Observables of a result as plain data, and a sentence for each that failed."""
+    values: dict[str, Any] = {}
+    mistakes: list[str] = []
+    for name, function in functions.items():
+        try:
+            values[name] = as_plain(function(result))
+        except Exception as error:
+            mistakes.append(f"the observable {name!r} failed: {said(error)}")
+    return values, mistakes
 
 
 def as_plain(value: Any) -> Any:
