@@ -322,7 +322,11 @@ class Lubricant(Model):
             if name == "pressure_coefficient" and own is not None:
                 right = own.pressure_coefficient(temperature)
             given = found.setdefault(name, right)
-            if isinstance(given, int | float) and abs(given - right) > _SAME_OIL * abs(right):
+            try:
+                number = as_number(given)
+            except ValueError:
+                continue  # told with its field
+            if abs(number - right) > _SAME_OIL * abs(right):
                 limit = (
                     f"must be left out: {oil.name} has {right:.6g} at {temperature:g} C; for an oil of your own give "
                     f"{', '.join(_OF_THE_OIL)} without oil ({symbol})"

@@ -5,6 +5,7 @@ alike.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import matplotlib as mpl
@@ -77,13 +78,16 @@ def test_axial_motion(uneven: Result) -> None:
 
 def test_whirl_radius(uneven: Result) -> None:
     ax = plotting.whirl_radius(uneven)
-    x, y = data(ax.lines[0])
+    start, place = uneven.settling().index, uneven.cage_position[:, :2] / 0.25e-3
+    x, y = curve(ax, "distance from the bearing axis")
     np.testing.assert_allclose(x, turns(uneven))
-    np.testing.assert_allclose(y, np.hypot(*uneven.cage_position[:, :2].T) / 0.25e-3)
-    start = uneven.settling().index
-    ends, level = data(ax.lines[1])
+    np.testing.assert_allclose(y, np.hypot(*place.T))
+    x, y = curve(ax, "orbit radius about the mean place")
+    np.testing.assert_allclose(x, turns(uneven))
+    np.testing.assert_allclose(y, np.hypot(*(place - place[start:].mean(axis=0)).T))
+    ends, level = curve(ax, "rms after the transient")
     np.testing.assert_allclose(ends, [x[start], x[-1]])
-    np.testing.assert_allclose(level, [y[start:].mean()] * 2)
+    np.testing.assert_allclose(level, [np.sqrt(np.mean(y[start:] ** 2))] * 2)
 
 
 @pytest.mark.parametrize("plane", ["centre", "rail"])
@@ -101,24 +105,21 @@ def test_cage_locus(uneven: Result, plane: Any) -> None:
     np.testing.assert_allclose(np.column_stack(data(one)), expected)
 
 
-def test_pocket_forces(uneven: Result) -> None:
-    """Every panel its own pocket, every curve its own face."""
+@pytest.mark.parametrize("pockets", [None, [7, 2]])
+def test_pocket_forces(uneven: Result, pockets: list[int] | None) -> None:
+    """A panel for each face that is touched, a row for each pocket: the largest force within each stretch of time."""
     names = [name.replace("_", " ") for name in uneven.slot_names]
-    figure = plotting.pocket_forces(uneven, last=None)
-    panels = [ax for ax in figure.axes if ax.get_visible()]
-    assert len(panels) == 12
-    for pocket, ax in enumerate(panels):
-        assert ax.get_title(loc="right") == f"pocket {pocket + 1}"
-        assert len(ax.lines) == 3, "a face that is never touched has no curve"
-        for slot, line in enumerate(ax.lines):
-            assert line.get_label() == names[slot]
-            x, y = data(line)
-            np.testing.assert_allclose(x, turns(uneven))
-            np.testing.assert_allclose(y, uneven.pocket_force[:, pocket, slot])
-    chosen = [ax for ax in plotting.pocket_forces(uneven, pockets=[7, 2]).axes if ax.get_visible()]
-    for pocket, ax in zip((7, 2), chosen, strict=True):
-        assert ax.get_title(loc="right") == f"pocket {pocket + 1}"
-        np.testing.assert_allclose(data(ax.lines[1])[1], uneven.pocket_force[:, pocket, 1])
+    figure = plotting.pocket_forces(uneven, pockets=pockets, last=None)
+    chosen, force = list(range(12)) if pockets is None else pockets, uneven.pocket_force
+    panels = [ax for ax in figure.axes if ax.get_title(loc="left")]
+    assert [ax.get_title(loc="left") for ax in panels] == names[:3], "a face that is never touched has no panel"
+    for slot, ax in enumerate(panels):
+        shown = np.asarray(ax.collections[0].get_array()).reshape(len(chosen), -1)
+        edges = np.unique(np.linspace(0, 400, shown.shape[1] + 1).astype(int))
+        for row, pocket in enumerate(chosen):
+            largest = [force[a:b, pocket, slot].max() for a, b in pairwise(edges)]
+            np.testing.assert_allclose(shown[row], largest)
+        assert [label.get_text() for label in ax.get_yticklabels()] == [str(pocket + 1) for pocket in chosen]
 
 
 def test_pocket_statistics(uneven: Result) -> None:
@@ -175,7 +176,7 @@ def test_spacing_angles(uneven: Result) -> None:
 
 def test_bars_of_the_splits(uneven: Result) -> None:
     for draw, split, unit in (
-        (plotting.torque_split, uneven.torque_split, "N m"),
+        (plotting.torque_split, uneven.torque_by_loss, "N m"),
         (plotting.power_split, uneven.power_split, "W"),
     ):
         ax = draw(uneven)
@@ -183,11 +184,12 @@ def test_bars_of_the_splits(uneven: Result) -> None:
         labels = [label.get_text() for label in ax.get_yticklabels()]
         assert {label: bar.get_width() for label, bar in zip(labels, ax.patches, strict=True)} == pytest.approx(shown)
         assert [abs(bar.get_width()) for bar in ax.patches] == sorted(abs(value) for value in shown.values())
-        total = uneven.inner_torque.mean() if unit == "N m" else sum(split.values())
+        total = sum(split.values())
         texts = [text.get_text() for text in ax.texts]
         for bar, text in zip(ax.patches, texts, strict=True):
             assert text == f"{bar.get_width():.3g} {unit} ({100.0 * bar.get_width() / total:.3g} %)"
-        assert f"{total:.4g} {unit} in all" in ax.get_xlabel()
+        whole = uneven.inner_torque.mean() if unit == "N m" else total
+        assert f"{whole:.4g} {unit} in all" in ax.get_xlabel()
 
 
 def test_energy_audit(uneven: Result) -> None:
@@ -200,9 +202,13 @@ def test_energy_audit(uneven: Result) -> None:
     }
     for label, values in parts.items():
         x, y = curve(ax, label)
-        size = np.abs(values)
-        np.testing.assert_allclose(y, size[size > 0.0])
-        np.testing.assert_allclose(x, turns(uneven)[size > 0.0])
+        size, shaft = np.abs(values), turns(uneven)
+        assert len(y) > 200
+        assert y.max() == pytest.approx(size.max(), rel=1e-12)
+        # each point is the largest of its own short stretch
+        for place, value in list(zip(x, y, strict=True))[5:-5:10]:
+            near = size[np.abs(shaft - place) < 1.6 * (shaft[1] - shaft[0])]
+            assert np.isclose(near, value, rtol=1e-12).any(), label
 
 
 def test_spectrum(uneven: Result) -> None:

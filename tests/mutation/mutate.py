@@ -5,13 +5,10 @@
     .venv/bin/python tests/mutation/mutate.py --area results
 
 A fault is one changed operator, number, component or function, or one statement taken away, drawn with a seed from the
-sources of an area. The sources are copied to build/mutation; C sources are compiled there again, as far as the fault
-reaches. The Python tests of the area and the C tests run until one fails. Each outcome is a line of
-build/mutation/outcomes.jsonl. A fault that has one is not tried again; --more tries slower tests on those that the
-first ones did not notice. Faults that do not compile are not counted. After a change of the sources, delete
-build/mutation.
-
-tests/mutation/survivors.md judges the faults that no test noticed.
+sources of an area. The sources are copied to build/mutation; C sources are compiled there again, as far as the fault reaches.
+The Python tests of the area and the C tests run until one fails. Each outcome is a line of
+build/mutation/outcomes.jsonl. A fault that has one is not tried again; --more tries slower tests on those that the first ones
+did not notice. Faults that do not compile are not counted. After a change of the sources, delete build/mutation.
 """
 
 from __future__ import annotations
@@ -220,9 +217,7 @@ def draw(count: int, seed: int, only: str | None) -> list[Fault]:
 
 
 def prepare() -> None:
-    """A copy of the sources and a build of it, without vectors wider than every machine has: it compiles in half the
-    time.
-    """
+    """A copy of the sources and a build of it, without vectors wider than every machine has: it compiles in half the time."""
     TREE.mkdir(parents=True, exist_ok=True)
     for name in ("csrc", "trbdyn", "tests", "pyproject.toml"):
         source, target = ROOT / name, TREE / name
@@ -419,6 +414,7 @@ def main() -> int:
     import scipy.spatial.transform  # noqa: F401
     import xarray  # noqa: F401
 
+    sound: set[str] = set()
     done = 0
     for fault in draw(options.count, options.seed, options.area):
         known = outcomes.get(fault.key)
@@ -430,6 +426,13 @@ def main() -> int:
             continue
         if time.monotonic() > end or done >= options.count:
             break
+        if fault.area not in sound:
+            tests = MORE[fault.area] if options.more else AREAS[fault.area][2]
+            failed = python_tests(tests, time.monotonic() + 10 * LONGEST_TEST)
+            if failed:
+                print(f"without any fault, a test of the area {fault.area} fails: {failed}; mend that first")
+                return 1
+            sound.add(fault.area)
         began = time.monotonic()
         noticed = attempt(fault, options.more)
         row = asdict(fault) | {"key": fault.key, "line": fault.line(), "noticed": noticed, "more": options.more}

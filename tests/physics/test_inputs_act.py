@@ -32,13 +32,21 @@ def unchanged(scene: Scene) -> Scene:
     return scene
 
 
-def changed(scene: Scene, name: str, value: float) -> Scene:
-    """The scene with another value of a number of the core, and everything that is derived from it."""
+def changed(scene: Scene, name: str, value: float | None) -> Scene:
+    """The scene with another value of a number of the core, and everything that is derived from it; None: as it is."""
+    if value is None:
+        return scene
     path = scene_entries(scene)[name].path
     values = scene.to_dict()
     place = values
     for part in path[:-1]:
         place = place[part]
+    if path[0] == "lubricant" and place.pop("oil", None) is not None:
+        # an oil's values follow from its temperature: one's own values take their place
+        own = ("viscosity", "pressure_coefficient", "temperature_coefficient", "density")
+        place |= {key: getattr(scene.lubricant, key) for key in own}
+    if name in ("pressure_coefficient", "temperature"):
+        place["pressure_law"] = "roelands"  # the law of Dicke has its own slope at each temperature
     assert path[-1] in place, path
     place[path[-1]] = value
     return Scene.from_dict(values)
@@ -276,6 +284,10 @@ SHOWS: dict[str, tuple[float, str]] = {
     "temperature": (80.0, "inner_traction"),
     "rolling_blend": (0.9, "inner_traction"),
     "crown_radius": (50.0, "outer_load"),
+    "cage_youngs_modulus": (1e11, "pocket_force"),
+    "cage_poisson_ratio": (0.2, "pocket_force"),
+    "roller_youngs_modulus": (1e11, "outer_load"),
+    "roller_poisson_ratio": (0.2, "outer_load"),
 }
 """Another value of a number, and the recorded field in which it shows at the same state."""
 
@@ -289,7 +301,10 @@ def test_a_number_shows(kit: SimpleNamespace, name: str) -> None:
         scene = scene.replace(bearing=scene.bearing.replace(roller=roller))
     if name == "rolling_blend":
         scene = scene.replace(lubricant=scene.lubricant.replace(viscosity=1e-3))
-    one, two = (Simulation(s).record(vector, 0.0)[field] for s in (scene, changed(scene, name, value)))
+    one, two = (
+        Simulation(changed(scene, name, number)).record(vector, 0.0)[field]
+        for number in (scene_entries(scene)[name].value if name == "temperature" else None, value)
+    )
     assert np.abs(two - one).max() > 1e-9 * np.abs(one).max()
 
 
