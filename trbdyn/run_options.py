@@ -56,7 +56,7 @@ ACCURACY: Final = {
 }
 """Presets, chosen on the front that benchmarks/work_precision.py draws."""
 
-RINGS_SHARE: Final = {"fast": 0.3, "standard": 0.3, "reference": 0.1}
+RINGS_SHARE: Final = {"fast": 0.1, "standard": 0.1, "reference": 0.03}
 """`RunOptions.rings_share` of the presets: no accuracy is lost that shows."""
 
 

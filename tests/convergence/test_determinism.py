@@ -142,7 +142,7 @@ def test_a_copy_leaves_the_original_alone(kit: SimpleNamespace, reference: tuple
 
 SCRIPT = """
 import hashlib, trbdyn as trb
-sim = trb.Simulation(trb.Scene(trb.cases.rig_30310(), speed_rpm=3000.0, axial_load=4930.0))
+sim = trb.Simulation(trb.Scene(trb.cases.rig_30310(), speed_rpm=3000.0, axial_load=4930.0, effects=trb.Effects.paper()))
 sim.run(duration=2e-3)
 print(hashlib.sha256(sim.state.vector.tobytes()).hexdigest())
 """

@@ -100,6 +100,6 @@ def test_tight_tolerances_start(kit: SimpleNamespace, integrator: str, seed: int
             state[f"cage_{name}"] += random.uniform(-size, size)
     state["cage_z"] += random.uniform(0.0, 2e-4)
     sim.set_state(vector)
-    for _ in range(20):
+    for _ in range(24):
         sim.step()
     assert sim.time > 1e-8

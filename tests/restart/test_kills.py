@@ -77,6 +77,9 @@ def test_random_kills_change_no_bit(tmp_path: Path, uninterrupted: trb.Result, s
             np.testing.assert_array_equal(partial.time, uninterrupted.time[: len(partial)])
         if checkpoint.checkpoint_path(path).exists():
             script = runs.RESUME
+        else:
+            # killed before its first checkpoint: nothing to resume, and a new run replaces no file unasked
+            path.unlink(missing_ok=True)
     process = start(script, path)
     _, said = process.communicate()
     assert process.returncode == 0, said.decode()

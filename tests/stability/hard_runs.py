@@ -118,6 +118,8 @@ def _look_at(hard: Hard, result: trb.Result, watched: Array, verdict: Verdict) -
     verdict.demand(result.success, f"did not finish: {result.message}")
     for entry in result.fields:
         values = result[entry.name]
+        if "film_parameter_min" in entry.name:
+            values = values[~np.isnan(values)]  # no film carried a load
         verdict.demand(bool(np.isfinite(values).all()), f"{entry.name} is not finite")
         if entry.kind in ("quaternion", "roller_quat"):
             norm = np.linalg.norm(values, axis=-1)
