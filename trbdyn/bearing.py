@@ -426,9 +426,9 @@ class Bearing(Model):
         --------
         >>> import trbdyn as trb
         >>> bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43,
-        name="32216")
+        ...                                     name="32216")
         >>> print(bearing.estimated[0])
-        cup_half_angle_deg = 15.99 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
+        cup_half_angle_deg = 16 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
         """
         from trbdyn.catalogue import bearing_from_catalogue
 

@@ -93,7 +93,7 @@ def test_pocket_polar_shows_the_peaks() -> None:
     scene = trb.cases.scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
     result = trb.Simulation(scene).run(revolutions=2)
     heights = [bar.get_height() for bar in trb.plot.pocket_polar(result).patches]
-    assert max(heights) == pytest.approx(result.pocket_force.max())
+    assert max(heights) == pytest.approx(result.peaks["pocket_force_peak"].max())
     quiet = result.window(stop=0.0)
     trb.plot.pocket_polar(quiet)
 

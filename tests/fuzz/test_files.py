@@ -413,10 +413,13 @@ def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
         process.stdin.flush()
     began = time.monotonic()
     said = [process.communicate() for process in both]
-    assert sorted(process.returncode for process in both) == [0, 1], (said, time.monotonic() - began)
-    refused = next(err for (_, err), process in zip(said, both, strict=True) if process.returncode)
-    assert "FileError" in refused
-    assert "exists already" in refused or "another run is writing it" in refused
+    # one that comes after the other has ended finds the run complete, and is given it
+    codes = sorted(process.returncode for process in both)
+    assert codes in ([0, 1], [0, 0]), (said, time.monotonic() - began)
+    for (_, refused), process in zip(said, both, strict=True):
+        if process.returncode:
+            assert "FileError" in refused
+            assert "exists already" in refused or "another run is writing it" in refused
     result = trb.load(path)
     assert result.success
     assert "records of it are missing" in result.message

@@ -24,6 +24,8 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 COMMAND = re.compile(r"`((?:\.venv/bin/|\.ci/|make |pip |python3? )[^`]*)`")
 
 WHOLE = {
+    "make docs",
+    "make wheels",
     "make test",
     "make lint",
     "make bench",
