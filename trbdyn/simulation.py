@@ -234,7 +234,7 @@ class Simulation:
             raise InputError([Problem((what,), MISSING, allowed)])
 
     def restart(self) -> None:
-        """Start the integrator anew at the present state, as a checkpoint does.
+        """Start the integrator again at the present state, as a checkpoint does.
 
         Raises
         ------

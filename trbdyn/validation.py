@@ -164,7 +164,7 @@ class Model(BaseModel, metaclass=_Listed):
 
     _root: ClassVar[str | None] = None
     _assumed: ClassVar[bool] = False
-    """Whether fields that were not given are assumed by the model that this one belongs to, anew after each change."""
+    """Whether fields that were not given are assumed by the model that this one belongs to, and again after each change."""
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:

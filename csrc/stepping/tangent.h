@@ -29,7 +29,7 @@ typedef struct trb_tangent {
   double per[TRB_TANGENT_IN];   /* what measures distances: one over the tolerances there, so that the sum of squares is their mean */
   double reach;                 /* distance up to which it is used */
   double margin[TRB_N_MARGINS]; /* of the contacts at the origin, m */
-  double usual;                 /* evaluations that an origin serves, running mean */
+  double usual;                 /* evaluations that an origin is used for, running mean */
   int    served;                /* by this origin */
   int    known;                 /* 0: there is no origin */
 } trb_tangent;
@@ -43,7 +43,7 @@ typedef struct trb_tangents {
   int            *beyond;                                             /* scratch: whether a roller is beyond its reach */
   int            *touching;                                           /* scratch: rollers that may touch their pockets */
   trb_margin_arms arms;                                               /* what bounds the change of an interference */
-  double          time;                                               /* at which slopes were last evaluated anew, s */
+  double          time;                                               /* at which slopes were last evaluated, s */
   int             has_slopes;                                         /* whether they were at all */
 } trb_tangents;
 

@@ -1,10 +1,10 @@
 """A result as a moving 3-D view in a browser: one HTML file that needs no network, or an animated glTF file.
 
-The view is drawn by three.js. It was chosen among what can be installed from PyPI by trying: the package
+The view is drawn by three.js. It was chosen by looking into the packages that can be installed from PyPI: the package
 jupyter-threejs-sage carries three.js itself (0.6 MB, with orbit controls), so that picking, histories, exaggerated
 motion and colours of one's own can be written against it. k3d (a file of 2.6 MB for the program alone) keeps its scene
 to itself and gives no panel of one's own; vtk.js comes with trame only as a finished program that plays no record;
-pythreejs and anythreejs need a Jupyter page.
+anythreejs needs a Jupyter page. Nothing was drawn with these.
 """
 
 from __future__ import annotations
