@@ -7,7 +7,11 @@
  *
  * Here a step is accepted only if F itself, before the last correction, is below the tolerance of Newton's method. F is what the step lacks in
  * velocity because forces and accelerations do not balance. For forces that do not increase with speed, |error of y| <= |F| holds however
- * stiff they are (Dahlquist 1979; Hairer and Wanner, Solving ODEs II, IV.12), so nothing else has to be known about J.
+ * stiff they are (Dahlquist 1979; Hairer and Wanner, Solving ODEs II, IV.12), so nothing else has to be known about J. Where friction falls
+ * with slip (boundary friction beyond 1 %) the bound is weaker by the step times that slope.
+ *
+ * F must also have fallen by a correction, or be negligible. Else a slope that is too large leaves nearly all of it in every step: steps of
+ * nanoseconds then carry the same error on for ever, each of them within the tolerance.
  *
  * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
  * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and two
