@@ -66,6 +66,7 @@ typedef struct trb_model {
   int        friction;                      /* any friction at raceways and ribs at all */
   int        pocket_friction;               /* any friction in the pockets */
   int        film;                          /* films are needed */
+  unsigned   pairs_left_out;                /* bit by row of the table of pairs (contact/pair.h): pairs that do not act; 0: none */
 } trb_model;
 
 /* A checked, immutable copy of everything given. deviation: a roller's diameter over nominal, n_rollers values; faces: n_faces rows. */

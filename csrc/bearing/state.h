@@ -7,6 +7,7 @@
 #define TRB_BEARING_STATE_H
 
 #include "base/vec3.h"
+#include "bearing/losses.h"
 #include "bearing/model.h"
 #include "laws/smooth.h"
 
@@ -38,10 +39,10 @@
   X(omega_t, SPIN,     "angular velocity along t, rad/s") \
   X(omega_a, SPIN,     "angular velocity along the axis, minus kinematic, rad/s")
 
-/* Quadratures of the energy audit (physics: section 10); each has its field loss_* or work_* in a record. */
-#define TRB_QUADRATURES(X) \
-  X(work_shaft) X(work_ring) X(work_gravity) X(loss_traction_outer) X(loss_traction_inner) X(loss_rolling) \
-  X(loss_rolling_pressure) X(loss_rib) X(loss_front_rib) X(loss_pocket) X(loss_damping)
+/* Quadratures of the energy audit (physics: section 10): works, then losses; each has its field of the same name in a record. */
+#define TRB_QUADRATURE_OF_WORK(X, name, text) X(work_##name)
+#define TRB_QUADRATURE_OF_LOSS(X, name, sense, text) X(loss_##name)
+#define TRB_QUADRATURES(X) TRB_WORKS(TRB_QUADRATURE_OF_WORK, X) TRB_LOSSES(TRB_QUADRATURE_OF_LOSS, X)
 
 typedef enum trb_tolerance {
   TRB_TOL_POSITION,
@@ -70,7 +71,8 @@ enum {
 #define TRB_QUADRATURE_ENUM(name) TRB_Q_##name,
   TRB_QUADRATURES(TRB_QUADRATURE_ENUM)
 #undef TRB_QUADRATURE_ENUM
-      TRB_N_QUADRATURES
+      TRB_N_QUADRATURES,
+  TRB_Q_losses = TRB_N_QUADRATURES - TRB_N_LOSSES /* the first of them */
 };
 
 /* State vector: rollers, cage, then the tail: a spin angle per roller, the quadratures. */

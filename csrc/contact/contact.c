@@ -1,4 +1,4 @@
-#include "contact/contact.h"
+#include "contact/pair.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -43,7 +43,6 @@ static trb_status choose_variant(const char *name, int *variant, trb_message *me
 
 trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_workspace **work, trb_message *message)
 {
-  (void)m;
   int chosen;
   *work = NULL;
   const trb_status status = choose_variant(variant, &chosen, message);
@@ -57,6 +56,7 @@ trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_wor
   }
   w->lanes = lanes;
   w->variant = chosen;
+  trb_pairs_choose(m, w);
   *work = w;
   return TRB_OK;
 }
@@ -66,50 +66,6 @@ void trb_workspace_free(trb_workspace *work)
   if (work == NULL) return;
   free(work->lanes);
   free(work);
-}
-
-typedef struct contact_pair {
-  trb_contact_function *function;
-  int (*is_on)(const trb_model *m);
-  int with_cage; /* depends on the cage's pose */
-} contact_pair;
-
-static int always(const trb_model *m) { return m != NULL; }
-static int has_rib(const trb_model *m) { return m->params.back_rib > 0.0; }
-static int has_front_rib(const trb_model *m) { return m->params.front_rib > 0.0; }
-static int has_pocket(const trb_model *m) { return m->first_face[m->n_rollers] > 0; }
-
-static const contact_pair trb_contact_pairs[] = {
-    {trb_contact_raceway, always, 0},
-    {trb_contact_rib, has_rib, 0},
-    {trb_contact_front_rib, has_front_rib, 0},
-    {trb_contact_pocket, has_pocket, 1},
-};
-
-enum { N_PAIRS = (int)(sizeof trb_contact_pairs / sizeof trb_contact_pairs[0]) };
-
-static void clear(const trb_instant *at, trb_roller_load *loads)
-{
-  for (int k = 0; k < at->n; k++) {
-    memset(&loads[at->chosen[k]], 0, sizeof *loads);
-    for (int i = 0; i < TRB_N_MARGINS; i++) loads[at->chosen[k]].margin[i] = TRB_NO_CONTACT;
-  }
-}
-
-void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
-{
-  clear(at, loads);
-  work->counters.force_evaluations++;
-  for (int i = 0; i < N_PAIRS; i++)
-    if (trb_contact_pairs[i].is_on(m) && (at->cage != NULL || !trb_contact_pairs[i].with_cage))
-      trb_contact_pairs[i].function(m, at, work, loads, detail);
-}
-
-void trb_contact_rings_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads)
-{
-  clear(at, loads);
-  for (int i = 0; i < N_PAIRS; i++)
-    if (!trb_contact_pairs[i].with_cage && trb_contact_pairs[i].is_on(m)) trb_contact_pairs[i].function(m, at, work, loads, NULL);
 }
 
 static size_t lane_total(const trb_model *m) { return (size_t)TRB_N_LANE_FIELDS * TRB_N_RACES * (size_t)m->n_rollers * (size_t)m->n_lanes; }

@@ -1,4 +1,4 @@
-/* Contacts: every pair of surfaces is one file with one function of the same signature; trb_contact_pairs lists them.
+/* What contacts read, and what they give. contact/pair.h says what a pair of bodies is; contact/pairs.c lists all of them.
  *
  * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
  * the power lost, by kind. It knows no time and keeps no state. */
@@ -8,24 +8,16 @@
 #include "bearing/model.h"
 #include "bearing/state.h"
 
-/* Power lost in a contact: minus the power of its forces on both bodies, less what is stored elastically. */
-typedef enum trb_power {
-  TRB_POWER_TRACTION_OUTER,
-  TRB_POWER_TRACTION_INNER,
-  TRB_POWER_ROLLING,
-  TRB_POWER_ROLLING_PRESSURE,
-  TRB_POWER_RIB,
-  TRB_POWER_FRONT_RIB,
-  TRB_POWER_POCKET,
-  TRB_POWER_DAMPING,
-  TRB_N_POWERS
-} trb_power;
+/* The pairs of bodies that can act on each other, a row each: X(name). Row `name` is trb_pair_<name>, at the end of the pair's file. The
+ * rows are evaluated in this order. */
+#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(pocket)
 
-/* Contacts of a roller with the rings, by how its motion changes their interference. */
-typedef enum trb_margin { TRB_MARGIN_RACES, TRB_MARGIN_RIB, TRB_MARGIN_FRONT_RIB, TRB_N_MARGINS } trb_margin;
-
-/* Share of the torque that the rollers put on the inner ring about its axis. */
-typedef enum trb_torque { TRB_TORQUE_TRACTION, TRB_TORQUE_ROLLING, TRB_TORQUE_RIB, TRB_TORQUE_FRONT_RIB, TRB_N_TORQUES } trb_torque;
+enum {
+#define TRB_PAIR_ENUM(name) TRB_PAIR_##name,
+  TRB_PAIRS(TRB_PAIR_ENUM)
+#undef TRB_PAIR_ENUM
+      TRB_N_PAIRS
+};
 
 /* What was evaluated, counted; an effect that is off stays at zero. X(name, text) */
 #define TRB_COUNTERS(X) \
@@ -69,9 +61,9 @@ typedef struct trb_roller_load {
   trb_vec3 cage_force;            /* on the cage, in R, N */
   trb_vec3 cage_moment;           /* on the cage about its centre of mass, N m */
   double   elastic;               /* J */
-  double   margin[TRB_N_MARGINS]; /* of raceways and ribs: least distance of a contact from its onset or end, m */
-  double   torque[TRB_N_TORQUES]; /* on the inner ring about its axis, N m */
-  double   power[TRB_N_POWERS];   /* lost, W */
+  double   margin[TRB_N_PAIRS];   /* of slow pairs: least distance of the contact from its onset or end, m */
+  double   torque[TRB_N_TORQUES]; /* shares of the torque on the inner ring about its axis, N m */
+  double   power[TRB_N_LOSSES];   /* lost: minus the power of the forces on both bodies, less what is stored elastically, W */
 } trb_roller_load;
 
 /* Everything that a contact can see at an instant. */
@@ -120,17 +112,25 @@ typedef struct trb_detail {
   double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
 } trb_detail;
 
-/* Scratch of one thread. */
+struct trb_pair;
+struct trb_batch;
+
+enum { TRB_MOST_TOGETHER = 2 };
+/* Rows of the table that one function evaluates together. */
+typedef struct trb_batch {
+  const struct trb_pair *pairs[TRB_MOST_TOGETHER];
+  int                    index[TRB_MOST_TOGETHER]; /* their rows */
+  int                    n;
+} trb_batch;
+
+/* Scratch of one thread, and the pairs that the model has. */
 typedef struct trb_workspace {
-  struct trb_lanes *lanes;    /* scratch of the raceway kernel */
-  int               variant;  /* kernel variant, index into trb_kernel_variants */
+  struct trb_lanes *lanes;                /* scratch of the raceway kernel */
+  int               variant;              /* kernel variant, index into trb_kernel_variants */
+  trb_batch         batches[TRB_N_PAIRS]; /* pairs that are on */
+  int               n_batches;
   trb_counters      counters; /* of this workspace */
 } trb_workspace;
-
-typedef void trb_contact_function(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads,
-                                  trb_detail *detail);
-
-trb_contact_function trb_contact_raceway, trb_contact_rib, trb_contact_front_rib, trb_contact_pocket;
 
 /* variant: name of a kernel variant, "" for the fastest that this machine runs. */
 trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_workspace **work, trb_message *message);
@@ -139,33 +139,30 @@ void       trb_workspace_free(trb_workspace *work);
 /* Zero the chosen rollers' loads and sum every pair that the scene has. */
 void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail);
 
-/* Zero the chosen rollers' loads and sum the pairs of rollers and rings only. */
-void trb_contact_rings_only(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads);
+/* Zero the chosen rollers' loads and sum the slow pairs only. */
+void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads);
+
 typedef struct trb_wrench {
   trb_vec3 force;  /* N */
   trb_vec3 moment; /* N m */
 } trb_wrench;
 
-/* How the wrench on a roller, about its centre of mass, follows its motion relative to its pocket: a column for a translation along each
- * axis, then for a turn about each, the pocket at rest. Left out is that the normal at an edge turns, load over radius beside stiffness. */
-typedef struct trb_pocket_slopes {
+/* How the wrench on a roller, about its centre of mass, follows its motion relative to the other body: a column for a translation along
+ * each axis, then for a turn about each, the other body at rest. Left out is that the normal at an edge turns, load over radius beside
+ * stiffness. */
+typedef struct trb_slopes {
   trb_frame  axes;        /* in the roller's cylindrical frame, for motions and wrenches */
   trb_wrench place[6];    /* per m and rad */
   trb_wrench velocity[6]; /* per m/s and rad/s */
-} trb_pocket_slopes;
+} trb_slopes;
 
-/* Lower bounds of the gaps between a roller and its pocket, m: of its flank, and of its ends. Not above 0: it may touch. */
+/* Lower bounds of the gaps between a roller and another body, m: of its flank, and of its ends. Not above 0: it may touch. */
 enum { TRB_GAP_FLANK, TRB_GAP_ENDS, TRB_N_GAPS };
-typedef struct trb_pocket_gaps {
+typedef struct trb_gaps {
   double of[TRB_N_GAPS];
-} trb_pocket_gaps;
+} trb_gaps;
 
-static inline int trb_pocket_clear(const trb_pocket_gaps *gaps) { return gaps->of[TRB_GAP_FLANK] > 0.0 && gaps->of[TRB_GAP_ENDS] > 0.0; }
-
-/* What one roller and its pocket do to each other. The load is written only where they may touch, or with a detail that wants
- * interferences, and so are slopes, if they are wanted. A detail's forces are added to. */
-trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
-                                      trb_pocket_slopes *slopes, trb_detail *detail);
+static inline int trb_gaps_clear(const trb_gaps *gaps) { return gaps->of[TRB_GAP_FLANK] > 0.0 && gaps->of[TRB_GAP_ENDS] > 0.0; }
 
 /* Buffers of every intermediate quantity; freed by trb_detail_free. */
 trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message);

@@ -5,11 +5,11 @@
  * each. The force is along the roller's axis, the gradient of an energy. */
 #include <math.h>
 
-#include "contact/contact.h"
 #include "contact/friction.h"
+#include "contact/pair.h"
 
-static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, trb_counters *counters,
-                        trb_roller_load *load, trb_point_detail *c)
+static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_batch *batch,
+                        trb_counters *counters, trb_roller_load *load, trb_point_detail *c)
 {
   const trb_geometry *g = &m->geometry;
   const trb_vec3      a = r->frame.a, end = trb_axpy(r->x, g->small_end_station - g->roller_mass_offset, a);
@@ -19,7 +19,7 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   const double        d = trb_dot(trb_sub(centre, end), a) + m->front_rib_radius[edge] * lean;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
-  load->margin[TRB_MARGIN_FRONT_RIB] = trb_min(load->margin[TRB_MARGIN_FRONT_RIB], fabs(d));
+  load->margin[batch->index[0]] = trb_min(load->margin[batch->index[0]], fabs(d));
   if (!(d > 0.0)) return;
   counters->front_rib_contacts++;
   const trb_vec3  point = trb_axpy(centre, m->front_rib_radius[edge] / lean, across), arm = trb_sub(point, r->x),
@@ -34,22 +34,68 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   load->moment = trb_add(load->moment, trb_cross(arm, force));
   load->ring_force = trb_sub(load->ring_force, force);
   load->ring_moment = trb_sub(load->ring_moment, torque);
-  load->torque[TRB_TORQUE_FRONT_RIB] -= trb_dot(torque, ring->axis);
+  trb_book_torque(batch->pairs[0], TRB_BY_SLIDING, -trb_dot(torque, ring->axis), load);
   load->elastic += 0.4 * elastic * d;
-  load->power[TRB_POWER_FRONT_RIB] += drag * trb_dot(touch.sliding, touch.sliding);
-  load->power[TRB_POWER_DAMPING] += (q - elastic) * touch.rate;
+  trb_book_loss(batch->pairs[0], TRB_BY_SLIDING, drag * trb_dot(touch.sliding, touch.sliding), load);
+  trb_book_loss(batch->pairs[0], TRB_BY_DAMPING, (q - elastic) * touch.rate, load);
   c->load += q;
   c->friction += q * mu;
   c->friction_coefficient = mu;
   c->sliding_speed = touch.speed;
 }
 
-void trb_contact_front_rib(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
+void trb_contact_front_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                           trb_detail *detail)
 {
   for (int k = 0; k < at->n; k++) {
     const int        j = at->chosen[k];
     trb_point_detail c = {0};
-    for (int edge = 0; edge < 2; edge++) edge_on_end(m, &at->rollers[j], &at->inner[j], edge, &work->counters, &loads[j], &c);
+    for (int edge = 0; edge < 2; edge++) edge_on_end(m, &at->rollers[j], &at->inner[j], edge, batch, &work->counters, &loads[j], &c);
     if (detail != NULL) detail->front_rib[j] = c;
   }
 }
+
+static int is_on(const trb_model *m) { return m->params.front_rib > 0.0; }
+
+static trb_margin_arm margin_of(const trb_model *m)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        arm = hypot(fabs(g->small_end_station) + fabs(g->roller_mass_offset), g->outer_race_radius);
+  return (trb_margin_arm){.arm = arm, .ring = arm + g->outer_race_radius + m->params.total_length};
+}
+
+/* The deepest point wanders round the end: the arm is that of the rib's edge. */
+static trb_hold_arms hold_of(const trb_model *m)
+{
+  const double arm = 2.0 * m->geometry.roller_centre_radius;
+  return (trb_hold_arms){1.0, 1.0, arm, arm, m->params.total_length + m->params.roller_diameter, 1e-12};
+}
+
+static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                    trb_detail *detail, double share, trb_contact_look *looks)
+{
+  trb_contact_front_rib(m, at, batch, work, loads, detail);
+  for (int k = 0; k < at->n; k++) {
+    const trb_point_detail *c = &detail->front_rib[at->chosen[k]];
+    looks[k] = (trb_contact_look){.load = c->load, .way = c->interference > 0.0 ? -1.0 : trb_look_way(c, share), .speed = INFINITY};
+  }
+}
+
+static void view_of(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
+{
+  (void)m;
+  *view = (trb_contact_view){.load = detail->front_rib[roller].load};
+}
+
+const trb_pair trb_pair_front_rib = {.name = "front_rib",
+                                     .text = "roller's small end on the front rib",
+                                     .a = TRB_BODY_ROLLER,
+                                     .b = TRB_BODY_INNER_RING,
+                                     .pace = TRB_PACE_SLOW,
+                                     .is_on = is_on,
+                                     .evaluate = trb_contact_front_rib,
+                                     .margin = margin_of,
+                                     .hold = hold_of,
+                                     .look = look_at,
+                                     .view = view_of,
+                                     .books = {.loss = TRB_LOSES_BY_SLIDING(front_rib), .torque = TRB_TURNS_BY_SLIDING(front_rib)}};

@@ -89,9 +89,6 @@ typedef struct trb_race_output {
   int      loaded; /* 0: no interference, all forces are zero */
 } trb_race_output;
 
-/* One contact alone; its nodes are the first lanes of the workspace, if it is loaded. */
-void trb_contact_raceway_of(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, trb_race_output *output);
-
 typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,
                                 trb_race_output *outputs);
 

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/contact.h"
 #include "contact/friction.h"
+#include "contact/pair.h"
 #include "laws/interference.h"
 #include "laws/line_contact.h"
 
@@ -21,7 +21,7 @@ typedef struct pocket_view {
   trb_vec3  force, moment;                /* on the roller, about its centre of mass */
   trb_vec3  cage_force, cage_moment;      /* on the cage, about its centre of mass */
 
-  trb_pocket_slopes *slopes; /* or NULL */
+  trb_slopes *slopes; /* or NULL */
 } pocket_view;
 
 /* What a face carries. */
@@ -83,7 +83,7 @@ static void add_carried(trb_wrench *w, int k, trb_vec3 unit, const pocket_touch 
 
 /* d(-q n - q mu(v) s/v) for every motion: the load follows interference and its rate, friction the load, and the sliding s of speed v. */
 static void add_slopes(const trb_model *m, const pocket_touch *c, const trb_touch *touch, trb_vec3 arm, double q, double factor,
-                       trb_pocket_slopes *slopes)
+                       trb_slopes *slopes)
 {
   const double   step = 1e-6 * touch->speed, mu = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed) : 0.0;
   const double   more = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed + step) : 0.0;
@@ -121,8 +121,8 @@ static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, c
   p->cage_force = trb_sub(p->cage_force, force);
   p->cage_moment = trb_sub(p->cage_moment, trb_cross(cage_arm, force));
   load->elastic += c->elastic * c->interference / (1.0 + c->exponent);
-  load->power[TRB_POWER_POCKET] += drag * trb_dot(touch.sliding, touch.sliding);
-  load->power[TRB_POWER_DAMPING] += (q - c->elastic) * touch.rate;
+  trb_book_loss(&trb_pair_pocket, TRB_BY_SLIDING, drag * trb_dot(touch.sliding, touch.sliding), load);
+  trb_book_loss(&trb_pair_pocket, TRB_BY_DAMPING, (q - c->elastic) * touch.rate, load);
   sums->force += q;
   sums->friction += q * mu;
   counters->pocket_nodes++;
@@ -270,31 +270,31 @@ static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f,
 }
 
 /* A face's gap among those of its kind. */
-static void note_gap(trb_pocket_gaps *gaps, const trb_pocket_face *f, double gap)
+static void note_gap(trb_gaps *gaps, const trb_pocket_face *f, double gap)
 {
   double *of = &gaps->of[f->part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS];
   *of = trb_min(*of, gap);
 }
 
-trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
-                                      trb_pocket_slopes *slopes, trb_detail *detail)
+trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
+                               trb_slopes *slopes, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
   const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
-  const trb_pocket_gaps  far = {{INFINITY, INFINITY}};
+  const trb_gaps         far = {{INFINITY, INFINITY}};
   const int              exact = detail != NULL && detail->pocket_interference != NULL;
   pocket_view            p;
-  trb_pocket_gaps        gaps = far;
+  trb_gaps               gaps = far;
   view_places(m, r, at->cage, roller, &p);
   counters->pocket_tests += end - first;
   for (const trb_pocket_face *f = first; f < end; f++) note_gap(&gaps, f, face_gap(m, f, &p, roller));
-  if (trb_pocket_clear(&gaps) && !exact) {
+  if (trb_gaps_clear(&gaps) && !exact) {
     counters->pocket_culled += end - first;
     return gaps;
   }
   view_motions(r, at->cage, &m->pocket_origin[roller], &p);
   memset(load, 0, sizeof *load);
-  if (slopes != NULL) *slopes = (trb_pocket_slopes){.axes = p.axes};
+  if (slopes != NULL) *slopes = (trb_slopes){.axes = p.axes};
   p.slopes = slopes;
   gaps = far;
   for (const trb_pocket_face *f = first; f < end; f++) {
@@ -322,15 +322,16 @@ static void add_load(const trb_roller_load *load, trb_roller_load *to)
   to->cage_force = trb_add(to->cage_force, load->cage_force);
   to->cage_moment = trb_add(to->cage_moment, load->cage_moment);
   to->elastic += load->elastic;
-  to->power[TRB_POWER_POCKET] += load->power[TRB_POWER_POCKET];
-  to->power[TRB_POWER_DAMPING] += load->power[TRB_POWER_DAMPING];
+  for (int k = 0; k < TRB_N_LOSSES; k++) to->power[k] += load->power[k];
 }
 
-void trb_contact_pocket(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
+void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                        trb_detail *detail)
 {
+  (void)batch;
   for (int k = 0; k < at->n; k++) {
-    trb_roller_load       load;
-    const trb_pocket_gaps gaps = trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail);
-    if (!trb_pocket_clear(&gaps)) add_load(&load, &loads[at->chosen[k]]);
+    trb_roller_load load;
+    const trb_gaps  gaps = trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail);
+    if (!trb_gaps_clear(&gaps)) add_load(&load, &loads[at->chosen[k]]);
   }
 }

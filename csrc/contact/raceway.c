@@ -3,12 +3,16 @@
 #include <string.h>
 
 #include "contact/kernels.h"
+#include "contact/pair.h"
+#include "laws/line_contact.h"
 
 static const trb_ring_pose fixed_ring = {{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 
-static trb_race_input race_input(const trb_model *m, const trb_instant *at, int contact)
+static int race_of(const trb_pair *pair) { return pair->b == TRB_BODY_OUTER_RING ? TRB_RACE_OUTER : TRB_RACE_INNER; }
+
+static trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, int race)
 {
-  const int roller = at->chosen[contact / TRB_N_RACES], race = contact % TRB_N_RACES, outer = race == TRB_RACE_OUTER;
+  const int outer = race == TRB_RACE_OUTER;
   return (trb_race_input){&at->rollers[roller],
                           outer ? &fixed_ring : &at->inner[roller],
                           m->centre + (size_t)roller * (size_t)m->n_lanes,
@@ -19,38 +23,42 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
                           outer ? 1.0 : -1.0};
 }
 
-static void add_output(const trb_race_output *out, int race, trb_roller_load *load)
+static void add_output(const trb_race_output *out, const trb_pair *pair, int row, trb_roller_load *load)
 {
-  load->margin[TRB_MARGIN_RACES] = trb_min(load->margin[TRB_MARGIN_RACES], fabs(out->depth));
+  load->margin[row] = trb_min(load->margin[row], fabs(out->depth));
   load->force = trb_add(load->force, out->force);
   load->moment = trb_add(load->moment, out->moment);
   load->elastic += out->elastic;
-  load->power[TRB_POWER_ROLLING] += out->power_rolling;
-  load->power[TRB_POWER_ROLLING_PRESSURE] += out->power_pressure;
-  load->power[TRB_POWER_DAMPING] += out->power_damping;
-  if (race == TRB_RACE_OUTER) {
+  trb_book_loss(pair, TRB_BY_SLIDING, out->power_traction, load);
+  trb_book_loss(pair, TRB_BY_ROLLING, out->power_rolling, load);
+  trb_book_loss(pair, TRB_BY_ROLLING_PRESSURE, out->power_pressure, load);
+  trb_book_loss(pair, TRB_BY_DAMPING, out->power_damping, load);
+  trb_book_torque(pair, TRB_BY_SLIDING, out->torque_traction, load);
+  trb_book_torque(pair, TRB_BY_ROLLING, out->torque_rolling, load);
+  if (pair->b == TRB_BODY_OUTER_RING) {
     load->outer_force = trb_add(load->outer_force, out->ring_force);
     load->outer_moment = trb_add(load->outer_moment, out->ring_moment);
-    load->power[TRB_POWER_TRACTION_OUTER] += out->power_traction;
     return;
   }
   load->ring_force = trb_add(load->ring_force, out->ring_force);
   load->ring_moment = trb_add(load->ring_moment, out->ring_moment);
-  load->torque[TRB_TORQUE_TRACTION] += out->torque_traction;
-  load->torque[TRB_TORQUE_ROLLING] += out->torque_rolling;
-  load->power[TRB_POWER_TRACTION_INNER] += out->power_traction;
 }
 
-void trb_contact_raceway_of(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, trb_race_output *output)
+/* One contact alone; its nodes are the first lanes of the workspace, if it is loaded. */
+static void raceway_of(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, trb_race_output *output)
 {
-  trb_instant one = *at;
-  one.chosen = &roller;
-  const trb_race_input input = race_input(m, &one, race);
+  const trb_race_input input = race_input(m, at, roller, race);
   trb_kernel_variants[work->variant].raceway(m, &input, 1, work->lanes, &work->counters, output);
 }
 
+/* A contact of a roller with a race. */
+typedef struct contact {
+  int             roller, race, row;
+  const trb_pair *pair;
+} contact;
+
 /* Lane fields of the tile's loaded contacts, in the order in which the kernel packed them. */
-static void copy_detail(const trb_model *m, const int *chosen, const trb_lanes *lanes, const trb_race_output *outputs, int first, int n,
+static void copy_detail(const trb_model *m, const contact *contacts, const trb_lanes *lanes, const trb_race_output *outputs, int n,
                         trb_detail *detail)
 {
   const size_t  lane_count = (size_t)m->n_lanes, field_size = (size_t)(TRB_N_RACES * m->n_rollers) * lane_count;
@@ -58,8 +66,7 @@ static void copy_detail(const trb_model *m, const int *chosen, const trb_lanes *
   int           packed = 0;
   for (int c = 0; c < n; c++) {
     if (!outputs[c].loaded) continue;
-    const int    roller = chosen[(first + c) / TRB_N_RACES], race = (first + c) % TRB_N_RACES;
-    const size_t to = ((size_t)race * (size_t)m->n_rollers + (size_t)roller) * lane_count;
+    const size_t to = ((size_t)contacts[c].race * (size_t)m->n_rollers + (size_t)contacts[c].roller) * lane_count;
     for (int f = 0; f < TRB_N_LANE_FIELDS; f++)
       memcpy(detail->lanes + (size_t)f * field_size + to, from + (size_t)f * TRB_LANE_STRIDE + (size_t)packed * lane_count,
              lane_count * sizeof(double));
@@ -67,17 +74,151 @@ static void copy_detail(const trb_model *m, const int *chosen, const trb_lanes *
   }
 }
 
-void trb_contact_raceway(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
+/* The races of a roller follow each other, so that a tile has both. */
+void trb_contact_raceway(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                         trb_detail *detail)
 {
   enum { MOST = TRB_TILE_LANES / TRB_LANE_PAD };
-  const int       total = at->n * TRB_N_RACES, per_tile = m->n_lanes < TRB_TILE_FILL ? TRB_TILE_FILL / m->n_lanes : 1;
+  const int       total = at->n * batch->n, per_tile = m->n_lanes < TRB_TILE_FILL ? TRB_TILE_FILL / m->n_lanes : 1;
+  contact         contacts[MOST];
   trb_race_input  inputs[MOST];
   trb_race_output outputs[MOST];
   for (int first = 0; first < total; first += per_tile) {
     const int n = total - first < per_tile ? total - first : per_tile;
-    for (int c = 0; c < n; c++) inputs[c] = race_input(m, at, first + c);
+    for (int c = 0; c < n; c++) {
+      const int side = (first + c) % batch->n;
+      contacts[c] = (contact){at->chosen[(first + c) / batch->n], race_of(batch->pairs[side]), batch->index[side], batch->pairs[side]};
+      inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].race);
+    }
     trb_kernel_variants[work->variant].raceway(m, inputs, n, work->lanes, &work->counters, outputs);
-    for (int c = 0; c < n; c++) add_output(&outputs[c], (first + c) % TRB_N_RACES, &loads[at->chosen[(first + c) / TRB_N_RACES]]);
-    if (detail != NULL) copy_detail(m, at->chosen, work->lanes, outputs, first, n, detail);
+    for (int c = 0; c < n; c++) add_output(&outputs[c], contacts[c].pair, contacts[c].row, &loads[contacts[c].roller]);
+    if (detail != NULL) copy_detail(m, contacts, work->lanes, outputs, n, detail);
   }
 }
+
+/* Farthest sphere from a roller's centre of mass. */
+static double chain_length(const trb_model *m)
+{
+  double length = 0.0;
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int k = 0; k < m->n_nodes; k++) length = fmax(length, fabs(m->centre[j * m->n_lanes + k]));
+  return length;
+}
+
+static trb_margin_arm margin_of(const trb_model *m)
+{
+  const double chain = chain_length(m);
+  return (trb_margin_arm){.arm = chain, .ring = chain + m->geometry.outer_race_radius + m->params.total_length};
+}
+
+/* Of both races. */
+static trb_hold_arms hold_of(const trb_model *m)
+{
+  const double          chain = chain_length(m);
+  const trb_race_nodes *outer = &m->race[TRB_RACE_OUTER], *inner = &m->race[TRB_RACE_INNER];
+  return (trb_hold_arms){fmax(outer->cosine, inner->cosine),
+                         fmax(outer->sine, inner->sine),
+                         chain,
+                         chain,
+                         m->params.total_length + m->params.roller_diameter,
+                         0.5 * m->geometry.roller_centre_radius};
+}
+
+static void look_at_race(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, double share,
+                         trb_contact_look *look)
+{
+  const trb_lanes *l = work->lanes;
+  double           parameter = 0.0, slope = 0.0, slowest = INFINITY;
+  trb_race_output  out;
+  *look = (trb_contact_look){.way = -1.0};
+  raceway_of(m, at, roller, race, work, &out);
+  for (int k = 0; out.loaded && k < m->n_nodes; k++) {
+    const double q = l->load[k];
+    if (!(q > 0.0)) continue;
+    look->load += q;
+    look->pressure = fmax(look->pressure, l->pressure[k]);
+    slope += TRB_PALMGREN_EXPONENT * q / l->interference[k];
+    slowest = fmin(slowest, l->mean_speed[k]);
+    if (m->film) parameter += q * l->film_parameter[k];
+  }
+  look->speed = trb_look_speed(m, slowest, share);
+  if (!(look->load > 0.0)) return;
+  look->way = share * look->load / slope;
+  look->film_parameter = parameter / look->load;
+}
+
+static void look_at_races(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                          trb_detail *detail, double share, trb_contact_look *looks)
+{
+  (void)loads;
+  (void)detail;
+  for (int k = 0; k < at->n; k++)
+    for (int i = 0; i < batch->n; i++) look_at_race(m, at, at->chosen[k], race_of(batch->pairs[i]), work, share, &looks[k * batch->n + i]);
+}
+
+/* Sums over the nodes of a contact; means are weighted by load. */
+static void view_of(const trb_model *m, const trb_detail *detail, int race, int roller, trb_contact_view *out)
+{
+  const double *field[TRB_N_LANE_FIELDS];
+  *out = (trb_contact_view){0};
+  for (int f = 0; f < TRB_N_LANE_FIELDS; f++) field[f] = trb_detail_lane(m, detail, f, race, roller);
+  for (int k = 0; k < m->n_nodes; k++) {
+    const double q = field[TRB_LANE_load][k];
+    if (!(q > 0.0)) continue;
+    out->load += q;
+    out->pressure = fmax(out->pressure, field[TRB_LANE_pressure][k]);
+    out->film += q * field[TRB_LANE_film][k];
+    out->film_parameter += q * field[TRB_LANE_film_parameter][k];
+    /* sliding along rolling: the mean velocity's direction */
+    const double along = field[TRB_LANE_sx][k] * field[TRB_LANE_mx][k] + field[TRB_LANE_sy][k] * field[TRB_LANE_my][k] +
+                         field[TRB_LANE_sz][k] * field[TRB_LANE_mz][k];
+    const double mean = field[TRB_LANE_mean_speed][k];
+    out->slide_roll += q * along / (mean * mean);
+    out->traction -= q * field[TRB_LANE_friction_coefficient][k] / field[TRB_LANE_sliding_speed][k] * field[TRB_LANE_sy][k] +
+                     field[TRB_LANE_rolling][k] / mean * field[TRB_LANE_my][k];
+  }
+  if (out->load > 0.0) {
+    out->film /= out->load;
+    out->film_parameter /= out->load;
+    out->slide_roll /= out->load;
+  }
+}
+
+static void view_outer(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
+{
+  view_of(m, detail, TRB_RACE_OUTER, roller, view);
+}
+
+static void view_inner(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
+{
+  view_of(m, detail, TRB_RACE_INNER, roller, view);
+}
+
+#define RACEWAY \
+  .a = TRB_BODY_ROLLER, .pace = TRB_PACE_SLOW, .is_on = trb_pair_always, .evaluate = trb_contact_raceway, .margin = margin_of, \
+  .hold = hold_of, .look = look_at_races
+
+const trb_pair trb_pair_outer = {.name = "outer",
+                                 .text = "roller on the outer raceway",
+                                 RACEWAY,
+                                 .b = TRB_BODY_OUTER_RING,
+                                 .view = view_outer,
+                                 .books = {.loss = {[TRB_BY_SLIDING] = TRB_LOSS_traction_outer,
+                                                    [TRB_BY_ROLLING] = TRB_LOSS_rolling,
+                                                    [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_rolling_pressure,
+                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping},
+                                           .torque = TRB_NO_TORQUE}};
+
+const trb_pair trb_pair_inner = {.name = "inner",
+                                 .text = "roller on the inner raceway",
+                                 RACEWAY,
+                                 .b = TRB_BODY_INNER_RING,
+                                 .view = view_inner,
+                                 .books = {.loss = {[TRB_BY_SLIDING] = TRB_LOSS_traction_inner,
+                                                    [TRB_BY_ROLLING] = TRB_LOSS_rolling,
+                                                    [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_rolling_pressure,
+                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping},
+                                           .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_traction,
+                                                      [TRB_BY_ROLLING] = TRB_TORQUE_rolling,
+                                                      [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none,
+                                                      [TRB_BY_DAMPING] = TRB_TORQUE_none}}};

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "contact/kernels.h"
+#include "contact/pair.h"
 #include "laws/smooth.h"
 
 /* Height of a contact point above the inner raceway. */
@@ -43,8 +44,11 @@ static void fill_detail(const trb_model *m, const trb_ring_pose *ring, int lane,
   c->film_parameter = l->film_parameter[lane];
 }
 
-void trb_contact_rib(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
+void trb_contact_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                     trb_detail *detail)
 {
+  const trb_pair *pair = batch->pairs[0];
+  const int       row = batch->index[0];
   trb_race_output outputs[TRB_TILE_LANES];
   trb_kernel_variants[work->variant].rib(m, at, work->lanes, &work->counters, outputs);
   for (int k = 0; k < at->n; k++) {
@@ -52,15 +56,85 @@ void trb_contact_rib(const trb_model *m, const trb_instant *at, trb_workspace *w
     const trb_race_output *out = &outputs[k];
     trb_roller_load       *load = &loads[j];
     if (detail != NULL) fill_detail(m, &at->inner[j], k, work->lanes, out, &detail->rib[j]);
-    load->margin[TRB_MARGIN_RIB] = trb_min(load->margin[TRB_MARGIN_RIB], fabs(out->depth));
+    load->margin[row] = trb_min(load->margin[row], fabs(out->depth));
     if (!out->loaded) continue;
     load->force = trb_add(load->force, out->force);
     load->moment = trb_add(load->moment, out->moment);
     load->ring_force = trb_add(load->ring_force, out->ring_force);
     load->ring_moment = trb_add(load->ring_moment, out->ring_moment);
-    load->torque[TRB_TORQUE_RIB] += out->torque_traction;
+    trb_book_torque(pair, TRB_BY_SLIDING, out->torque_traction, load);
     load->elastic += out->elastic;
-    load->power[TRB_POWER_RIB] += out->power_traction;
-    load->power[TRB_POWER_DAMPING] += out->power_damping;
+    trb_book_loss(pair, TRB_BY_SLIDING, out->power_traction, load);
+    trb_book_loss(pair, TRB_BY_DAMPING, out->power_damping, load);
   }
 }
+
+static int is_on(const trb_model *m) { return m->params.back_rib > 0.0; }
+
+static trb_margin_arm margin_of(const trb_model *m)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        arm = fabs(g->sphere_centre - g->apex_to_mid) + fabs(g->roller_mass_offset);
+  return (trb_margin_arm){.arm = arm,
+                          .ring = arm + g->outer_race_radius + m->params.total_length,
+                          .on_end = 1,
+                          .normal_sine = fabs(m->rib_sine),
+                          .normal_lean = fabs(sin(g->rib_normal_angle - g->roller_axis_angle)),
+                          .sphere_offset = fabs(g->sphere_centre) * sin(g->roller_axis_angle)};
+}
+
+/* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
+static trb_hold_arms hold_of(const trb_model *m)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        station = g->sphere_centre - g->apex_to_mid - g->roller_mass_offset;
+  const double        lean = fabs(m->rib_sine * m->axis_cosine - m->rib_cosine * m->axis_sine);
+  return (trb_hold_arms){fabs(m->rib_sine),
+                         fabs(m->rib_cosine),
+                         lean * fabs(station),
+                         fabs(station),
+                         m->params.total_length + m->params.roller_diameter,
+                         fabs(g->roller_centre_radius + station * m->axis_sine)};
+}
+
+static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                    trb_detail *detail, double share, trb_contact_look *looks)
+{
+  trb_contact_rib(m, at, batch, work, loads, detail);
+  for (int k = 0; k < at->n; k++) {
+    const trb_point_detail *c = &detail->rib[at->chosen[k]];
+    looks[k] = (trb_contact_look){.load = c->load,
+                                  .pressure = c->pressure,
+                                  .film_parameter = c->film_parameter,
+                                  .way = trb_look_way(c, share),
+                                  .speed = c->load > 0.0 ? trb_look_speed(m, c->mean_speed, share) : (double)INFINITY};
+  }
+}
+
+static void view_of(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
+{
+  const trb_point_detail *c = &detail->rib[roller];
+  (void)m;
+  *view = (trb_contact_view){.load = c->load,
+                             .pressure = c->pressure,
+                             .film = c->film,
+                             .film_parameter = c->film_parameter,
+                             .slide_roll = c->slide_roll,
+                             .friction = c->friction,
+                             .height = c->height,
+                             .overhang = c->overhang};
+}
+
+const trb_pair trb_pair_rib = {.name = "rib",
+                               .text = "roller's large end on the back-face rib",
+                               .a = TRB_BODY_ROLLER,
+                               .b = TRB_BODY_INNER_RING,
+                               .pace = TRB_PACE_SLOW,
+                               .seats = 1,
+                               .is_on = is_on,
+                               .evaluate = trb_contact_rib,
+                               .margin = margin_of,
+                               .hold = hold_of,
+                               .look = look_at,
+                               .view = view_of,
+                               .books = {.loss = TRB_LOSES_BY_SLIDING(rib), .torque = TRB_TURNS_BY_SLIDING(rib)}};

@@ -3,6 +3,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
+/* The fast pairs of the workspace. */
+static int choose_fast(trb_dynamics *d)
+{
+  for (int i = 0; i < d->work->n_batches; i++)
+    for (int k = 0; k < d->work->batches[i].n; k++) {
+      const trb_pair *pair = d->work->batches[i].pairs[k];
+      if (pair->pace != TRB_PACE_FAST) continue;
+      trb_fast_pair *fast = &d->fast[d->n_fast];
+      fast->pair = pair;
+      fast->clearances = calloc((size_t)d->model->n_rollers, sizeof *fast->clearances);
+      if (fast->clearances == NULL) return 0;
+      d->n_fast++;
+      pair->clearance(d->model, fast->arms);
+    }
+  return 1;
+}
+
 trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
                                trb_message *message)
 {
@@ -16,19 +35,22 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
   d->inner = calloc(n, sizeof *d->inner);
   d->loads = calloc(n, sizeof *d->loads);
   d->everyone = calloc(n, sizeof *d->everyone);
-  d->clearances = calloc(n, sizeof *d->clearances);
+  d->flows = trb_zeros(n, sizeof *d->flows);
+  d->exact = calloc(n, sizeof *d->exact);
+  d->near = calloc(n, sizeof *d->near);
   trb_status status = TRB_OK;
-  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL || d->everyone == NULL || d->clearances == NULL) {
+  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
+      d->near == NULL) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   } else {
     for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
     status = trb_workspace_create(m, variant, &d->work, message);
+    if (status == TRB_OK && !choose_fast(d)) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   }
   if (status != TRB_OK) {
     trb_dynamics_free(d);
     return status;
   }
-  trb_clearance_arms_of(m, d->arms);
   *dynamics = d;
   return TRB_OK;
 }
@@ -41,7 +63,10 @@ void trb_dynamics_free(trb_dynamics *d)
   free(d->inner);
   free(d->loads);
   free(d->everyone);
-  free(d->clearances);
+  for (int f = 0; f < d->n_fast; f++) free(d->fast[f].clearances);
+  free(d->flows);
+  free(d->exact);
+  free(d->near);
   free(d);
 }
 
@@ -171,7 +196,7 @@ void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_r
     flow[TRB_ROLLER_omega_n] += per_transverse * moment.x;
     flow[TRB_ROLLER_omega_t] += per_transverse * moment.y;
   }
-  for (int k = 0; k < TRB_N_POWERS; k++) flow[TRB_FLOW_quadrature + TRB_Q_loss_traction_outer + k] += load->power[k];
+  for (int k = 0; k < TRB_N_LOSSES; k++) flow[TRB_FLOW_quadrature + TRB_Q_losses + k] += load->power[k];
 }
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow)
@@ -211,8 +236,6 @@ void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 fo
   rates[TRB_CAGE_omega_t] = turn.spin.y;
 }
 
-_Static_assert(TRB_Q_loss_traction_outer + TRB_N_POWERS == TRB_N_QUADRATURES, "a quadrature for every power, in the same order");
-
 void trb_dynamics_start(const trb_dynamics *d, double *rates)
 {
   const trb_model *m = d->model;
@@ -232,43 +255,39 @@ void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, dou
   for (int k = 0; k < TRB_N_QUADRATURES; k++) q[k] += flow[TRB_FLOW_quadrature + k];
 }
 
-int trb_dynamics_clear(const trb_dynamics *d, int roller, const double *y)
+unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)
 {
   const trb_model *m = d->model;
-  const int        faces = m->first_face[roller + 1] - m->first_face[roller];
-  if (faces == 0) return 1;
-  if (!trb_clearance_holds(&d->clearances[roller], d->arms, y + trb_state_roller(roller), y + trb_state_cage(m))) return 0;
-  d->work->counters.pocket_tests += faces;
-  d->work->counters.pocket_culled += faces;
-  return 1;
-}
-
-void trb_dynamics_pocket(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment)
-{
-  const trb_instant     at = trb_dynamics_instant(d);
-  trb_roller_load       load;
-  const trb_pocket_gaps gaps = trb_contact_pocket_of(d->model, &at, roller, &d->work->counters, &load, NULL, NULL);
-  trb_clearance_set(d->model, &d->clearances[roller], &gaps, y + trb_state_roller(roller), y + trb_state_cage(d->model));
-  if (trb_pocket_clear(&gaps)) return;
-  trb_dynamics_roller_response(d, roller, &load, flow);
-  *cage_force = trb_add(*cage_force, load.cage_force);
-  *cage_moment = trb_add(*cage_moment, load.cage_moment);
-}
-
-void trb_dynamics_derivative(trb_dynamics *d, double time, const double *y, double *rates)
-{
-  const trb_model  *m = d->model;
-  const trb_instant at = trb_dynamics_instant(d);
-  trb_vec3          force = {0, 0, 0}, moment = {0, 0, 0};
-  trb_dynamics_pose(d, time, y);
-  trb_dynamics_start(d, rates);
-  trb_contact_rings_only(m, &at, d->work, d->loads);
-  d->work->counters.force_evaluations++;
-  for (int j = 0; j < m->n_rollers; j++) {
-    double flow[TRB_FLOW_SIZE];
-    trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
-    if (!trb_dynamics_clear(d, j, y)) trb_dynamics_pocket(d, j, y, flow, &force, &moment);
-    trb_dynamics_put(d, j, flow, rates);
+  unsigned         near = 0;
+  for (int f = 0; f < d->n_fast; f++) {
+    const trb_fast_pair *fast = &d->fast[f];
+    if (fast->pair->surfaces(m, roller) == 0) continue;
+    if (trb_clearance_holds(&fast->clearances[roller], fast->arms, y + trb_state_roller(roller), y + trb_state_cage(m)))
+      fast->pair->count_clear(m, roller, &d->work->counters);
+    else near |= 1U << f;
   }
-  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));
+  return near;
+}
+
+trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_roller_load *load, trb_slopes *slopes,
+                            trb_detail *detail)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_fast_pair    *pair = &d->fast[fast];
+  const trb_gaps    gaps = pair->pair->touch(d->model, &at, roller, &d->work->counters, load, slopes, detail);
+  trb_clearance_set(d->model, &pair->clearances[roller], &gaps, y + trb_state_roller(roller), y + trb_state_cage(d->model));
+  return gaps;
+}
+
+void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment)
+{
+  for (int f = 0; f < d->n_fast; f++) {
+    trb_roller_load load;
+    if (!(d->near[roller] >> f & 1U)) continue;
+    const trb_gaps gaps = trb_dynamics_touch(d, f, roller, y, &load, NULL, NULL);
+    if (trb_gaps_clear(&gaps)) continue;
+    trb_dynamics_roller_response(d, roller, &load, flow);
+    *cage_force = trb_add(*cage_force, load.cage_force);
+    *cage_moment = trb_add(*cage_moment, load.cage_moment);
+  }
 }

@@ -1,23 +1,41 @@
-/* Equations of motion: y' = f(t, y). Newton-Euler for every roller and the cage, in frames that orbit with them. */
+/* Newton-Euler for every roller and the cage, in frames that orbit with them: what motion/rhs.h makes the right-hand side of. */
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
 
-#include "contact/contact.h"
 #include "motion/clearance.h"
 #include "motion/ring_motion.h"
 
-typedef struct trb_dynamics {
-  const trb_model   *model;
-  const trb_motion  *motion;
-  trb_workspace     *work;
-  trb_drive          drive;   /* at the last time evaluated */
-  trb_roller_pose   *rollers; /* at the last state evaluated */
-  trb_ring_pose     *inner;   /* the inner ring in each roller's frame */
-  trb_cage_pose      cage;
-  trb_roller_load   *loads;
-  int               *everyone; /* 0, 1, ...: all rollers */
-  trb_clearance     *clearances;
+/* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures (physics: section 10).
+ * It is affine in the loads: what inertia and gravity give, and the response to a load. */
+enum {
+  TRB_FLOW_spin = TRB_ROLLER_SIZE,
+  TRB_FLOW_quadrature = TRB_ROLLER_SIZE + 1,
+  TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_N_QUADRATURES,
+  TRB_FLOW_ROOM = (TRB_FLOW_SIZE + 7) / 8 * 8 /* padded, so that loops over it have no remainder */
+};
+
+/* A pair that is evaluated at every instant, and what is proven of every roller in it. */
+typedef struct trb_fast_pair {
+  const trb_pair    *pair;
+  trb_clearance     *clearances; /* n_rollers */
   trb_clearance_arms arms[TRB_N_GAPS];
+} trb_fast_pair;
+
+typedef struct trb_dynamics {
+  const trb_model  *model;
+  const trb_motion *motion;
+  trb_workspace    *work;
+  trb_drive         drive;   /* at the last time evaluated */
+  trb_roller_pose  *rollers; /* at the last state evaluated */
+  trb_ring_pose    *inner;   /* the inner ring in each roller's frame */
+  trb_cage_pose     cage;
+  trb_roller_load  *loads;
+  int              *everyone; /* 0, 1, ...: all rollers */
+  trb_fast_pair     fast[TRB_N_PAIRS];
+  int               n_fast;
+  double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
+  int      *exact;                /* rollers to evaluate exactly */
+  unsigned *near;                 /* of every roller: bit by fast pair, those that may touch */
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */
@@ -34,13 +52,6 @@ void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
 /* What the contacts read. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
-/* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures (physics: section 10).
- * It is affine in the loads: what inertia and gravity give, and the response to a load. */
-enum {
-  TRB_FLOW_spin = TRB_ROLLER_SIZE,
-  TRB_FLOW_quadrature = TRB_ROLLER_SIZE + 1,
-  TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_N_QUADRATURES
-};
 void trb_dynamics_roller_inertia(const trb_dynamics *d, int roller, double *flow);
 /* Added to a flow; the load is one that puts nothing on the inner ring. */
 void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow);
@@ -50,13 +61,14 @@ void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_rolle
 /* A right-hand side is started, has every roller's flow put in, and the cage's rates. */
 void trb_dynamics_start(const trb_dynamics *d, double *rates);
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
-/* Whether a roller is proven not to touch its pocket at a state. */
-int trb_dynamics_clear(const trb_dynamics *d, int roller, const double *y);
-/* What a roller, whose pose is kept, and its pocket do to each other, added to the roller's flow and to the sums of the cage. */
-void trb_dynamics_pocket(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment);
+/* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
+unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
+/* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
+trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_roller_load *load, trb_slopes *slopes,
+                            trb_detail *detail);
+/* What a roller does in the fast pairs in which it is near, added to its flow and to the sums of the cage. */
+void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment);
 /* Rates of the cage under the sum of what the rollers put on it. */
 void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y_cage, trb_vec3 force, trb_vec3 moment, double *rates);
-/* Right-hand side of everything. */
-void trb_dynamics_derivative(trb_dynamics *d, double time, const double *y, double *rates);
 
 #endif

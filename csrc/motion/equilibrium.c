@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/kernels.h"
+#include "contact/pair.h"
 
 enum { MOST_STEPS = 300 };
 /* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */
@@ -32,6 +32,7 @@ typedef struct solver {
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS]; /* of the ring at fixed rollers */
   double           total[TRB_RING_FREEDOMS];                         /* generalised force on the ring with its load */
   double           energy;
+  int              seated; /* a pair holds rollers along their axes */
 } solver;
 
 static const double difference[TRB_ROLLER_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE};
@@ -77,8 +78,8 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
     const trb_roller_pose *r = &s->d->rollers[j];
     const double           moment = trb_dot(l->moment, r->frame.t);
     forces[3 * j] = l->force.x + g->roller_mass * orbit * orbit * r->radius;
-    /* without a back-face rib nothing but friction holds a roller along its axis: it is held where it is */
-    forces[3 * j + 1] = m->params.back_rib > 0.0 ? l->force.z : 0.0;
+    /* without a pair that seats it nothing but friction holds a roller along its axis: it is held where it is */
+    forces[3 * j + 1] = s->seated ? l->force.z : 0.0;
     forces[3 * j + 2] = moment - gyro;
     energy += l->elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[3 * j + 2];
     const trb_vec3 force = trb_turn_z(l->ring_force, r->cosine, r->sine), torque = trb_turn_z(l->ring_moment, r->cosine, r->sine);
@@ -187,7 +188,7 @@ static int newton_step(solver *s, double damping, double *step_rollers, double *
       for (int c = 0; c < 5; c++) a[9 * i + 3 + c] = s->to_ring[15 * j + 5 * i + c];
       a[9 * i + 8] = s->forces[3 * j + i];
     }
-    if (s->m->params.back_rib <= 0.0) hold_row(a + 9, 9, 1);
+    if (!s->seated) hold_row(a + 9, 9, 1);
     if (!eliminate(a, 3, 6)) return 0;
     for (int i = 0; i < 3; i++)
       for (int c = 0; c < 6; c++) s->solved[18 * j + 6 * i + c] = a[9 * i + 3 + c];
@@ -298,17 +299,12 @@ static trb_status read_loads(solver *s, trb_message *message)
   trb_instant at = trb_dynamics_instant(s->d);
   at.cage = NULL;
   trb_contact_all(s->m, &at, s->d->work, s->d->loads, detail);
-  for (int j = 0; j < s->m->n_rollers; j++) {
-    const double *outer = trb_detail_lane(s->m, detail, TRB_LANE_load, TRB_RACE_OUTER, j);
-    const double *inner = trb_detail_lane(s->m, detail, TRB_LANE_load, TRB_RACE_INNER, j);
-    double       *to = s->e->loads + 3 * j;
-    to[0] = to[1] = 0.0;
-    for (int k = 0; k < s->m->n_lanes; k++) {
-      to[0] += outer[k];
-      to[1] += inner[k];
+  for (int j = 0; j < s->m->n_rollers; j++)
+    for (int row = 0; row < TRB_EQUILIBRIUM_LOADS; row++) {
+      trb_contact_view view = {0};
+      trb_pair_table[row]->view(s->m, detail, j, &view);
+      s->e->loads[TRB_EQUILIBRIUM_LOADS * j + row] = view.load;
     }
-    to[2] = detail->rib[j].load;
-  }
   trb_detail_free(detail);
   return TRB_OK;
 }
@@ -316,7 +312,7 @@ static trb_status read_loads(solver *s, trb_message *message)
 trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_message *message)
 {
   const size_t n = (size_t)m->n_rollers;
-  solver       s = {.m = m, .e = e};
+  solver       s = {.m = m, .e = e, .seated = trb_pairs_seat(m)};
   trb_status   status = trb_dynamics_create(m, NULL, "scalar", &s.d, message);
   if (status != TRB_OK) return status;
   enum { DOUBLES = 3 + 5 + 3 + 5 + 9 + 15 + 15 + 18 + 3 + 3 };

@@ -8,7 +8,7 @@
 
 #include "motion/dynamics.h"
 
-enum { TRB_RING_FREEDOMS = 5, TRB_ROLLER_FREEDOMS = 3 };
+enum { TRB_RING_FREEDOMS = 5, TRB_ROLLER_FREEDOMS = 3, TRB_EQUILIBRIUM_LOADS = 3 };
 
 typedef struct trb_equilibrium {
   double  load[TRB_RING_FREEDOMS];         /* in: force (3), N, and moment about x, y (2), N m, applied to the ring */
@@ -18,9 +18,9 @@ typedef struct trb_equilibrium {
   double *angles;                          /* in: orbit angles of the rollers, rad */
   int     warm;                            /* in: 1 where displacement and rollers are a guess close to the solution */
   double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt) offsets */
-  double *loads;                           /* out: n_rollers rows of (outer, inner, rib) normal loads, N; NULL: not wanted */
-  double  residual;                        /* out: largest unbalanced force, N */
-  int     iterations;                      /* out */
+  double *loads;      /* out: n_rollers rows of normal loads of the first three pairs (outer, inner, rib), N; NULL: not wanted */
+  double  residual;   /* out: largest unbalanced force, N */
+  int     iterations; /* out */
 } trb_equilibrium;
 
 trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_message *message);

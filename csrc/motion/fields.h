@@ -5,6 +5,8 @@
 #ifndef TRB_MOTION_FIELDS_H
 #define TRB_MOTION_FIELDS_H
 
+#include "bearing/losses.h"
+
 typedef enum trb_field_kind {
   TRB_FIELD_SCALAR,      /* ()        */
   TRB_FIELD_VEC2,        /* (2,)      */
@@ -15,6 +17,39 @@ typedef enum trb_field_kind {
   TRB_FIELD_ROLLER_QUAT, /* (Z, 4)    */
   TRB_FIELD_POCKET_FACE  /* (Z, slots) */
 } trb_field_kind;
+
+/* Quantities of the rollers' contacts with the rings: F(X, pair, quantity, unit, text). Field <pair>_<quantity> is `quantity` of the view
+ * of that row of the table of pairs (contact/pair.h). */
+#define TRB_CONTACT_FIELDS(F, X) \
+  F(X, outer,     load,            "N",   "normal load, roller on outer raceway") \
+  F(X, inner,     load,            "N",   "normal load, roller on inner raceway") \
+  F(X, rib,       load,            "N",   "normal load, large end on back-face rib") \
+  F(X, front_rib, load,            "N",   "normal load, small end on front rib") \
+  F(X, outer,     pressure,        "Pa",  "largest Hertz pressure at the outer raceway") \
+  F(X, inner,     pressure,        "Pa",  "largest Hertz pressure at the inner raceway") \
+  F(X, rib,       pressure,        "Pa",  "largest Hertz pressure at the rib") \
+  F(X, outer,     film,            "m",   "central film thickness at the outer raceway, mean weighted by load") \
+  F(X, inner,     film,            "m",   "central film thickness at the inner raceway, mean weighted by load") \
+  F(X, rib,       film,            "m",   "central film thickness at the rib") \
+  F(X, outer,     film_parameter,  "1",   "film parameter Lambda at the outer raceway, mean weighted by load") \
+  F(X, inner,     film_parameter,  "1",   "film parameter Lambda at the inner raceway, mean weighted by load") \
+  F(X, rib,       film_parameter,  "1",   "film parameter Lambda at the rib") \
+  F(X, outer,     slide_roll,      "1",   "slide-roll ratio along rolling at the outer raceway, weighted by load; positive: roller faster") \
+  F(X, inner,     slide_roll,      "1",   "slide-roll ratio along rolling at the inner raceway, weighted by load; positive: roller faster") \
+  F(X, rib,       slide_roll,      "1",   "slide-roll ratio at the rib") \
+  F(X, outer,     traction,        "N",   "tangential force on the roller in the orbit's direction, outer raceway (friction and rolling)") \
+  F(X, inner,     traction,        "N",   "tangential force on the roller in the orbit's direction, inner raceway (friction and rolling)") \
+  F(X, rib,       friction,        "N",   "magnitude of the friction force at the rib") \
+  F(X, rib,       height,          "m",   "height of the rib contact above the raceway") \
+  F(X, rib,       overhang,        "1",   "share of the rib's contact ellipse (along the face) that lies beyond the rib's edges")
+
+#define TRB_FIELD_OF_CONTACT(X, pair, quantity, unit, text) X(pair##_##quantity, contacts, ROLLER, unit, text)
+
+/* Of the lists of bearing/losses.h. */
+#define TRB_FIELD_OF_TORQUE(X, name, text) X(inner_torque_##name, torque, SCALAR, "N m", "share of " text " in the shaft's torque")
+#define TRB_FIELD_OF_POWER(X, name, sense, text) X(power_##name, power, SCALAR, "W", "loss " text)
+#define TRB_FIELD_OF_WORK(X, name, text) X(work_##name, energy, SCALAR, "J", text)
+#define TRB_FIELD_OF_LOSS(X, name, sense, text) X(loss_##name, energy, SCALAR, "J", "energy lost " text)
 
 #define TRB_FIELDS(X) \
   X(time,                        time,     SCALAR,      "s",     "time") \
@@ -38,27 +73,7 @@ typedef enum trb_field_kind {
   X(roller_spin_speed,           rollers,  ROLLER,      "rad/s", "speed of rotation about the roller's own axis, relative to the orbit") \
   X(roller_skew,                 rollers,  ROLLER,      "rad",   "skew: axis turned in the tangential direction") \
   X(roller_tilt,                 rollers,  ROLLER,      "rad",   "tilt: axis turned in the axial plane, against the nominal axis") \
-  X(outer_load,                  contacts, ROLLER,      "N",     "normal load, roller on outer raceway") \
-  X(inner_load,                  contacts, ROLLER,      "N",     "normal load, roller on inner raceway") \
-  X(rib_load,                    contacts, ROLLER,      "N",     "normal load, large end on back-face rib") \
-  X(front_rib_load,              contacts, ROLLER,      "N",     "normal load, small end on front rib") \
-  X(outer_pressure,              contacts, ROLLER,      "Pa",    "largest Hertz pressure at the outer raceway") \
-  X(inner_pressure,              contacts, ROLLER,      "Pa",    "largest Hertz pressure at the inner raceway") \
-  X(rib_pressure,                contacts, ROLLER,      "Pa",    "largest Hertz pressure at the rib") \
-  X(outer_film,                  contacts, ROLLER,      "m",     "central film thickness at the outer raceway, mean weighted by load") \
-  X(inner_film,                  contacts, ROLLER,      "m",     "central film thickness at the inner raceway, mean weighted by load") \
-  X(rib_film,                    contacts, ROLLER,      "m",     "central film thickness at the rib") \
-  X(outer_film_parameter,        contacts, ROLLER,      "1",     "film parameter Lambda at the outer raceway, mean weighted by load") \
-  X(inner_film_parameter,        contacts, ROLLER,      "1",     "film parameter Lambda at the inner raceway, mean weighted by load") \
-  X(rib_film_parameter,          contacts, ROLLER,      "1",     "film parameter Lambda at the rib") \
-  X(outer_slide_roll,            contacts, ROLLER,      "1",     "slide-roll ratio along rolling at the outer raceway, weighted by load; positive: roller faster") \
-  X(inner_slide_roll,            contacts, ROLLER,      "1",     "slide-roll ratio along rolling at the inner raceway, weighted by load; positive: roller faster") \
-  X(rib_slide_roll,              contacts, ROLLER,      "1",     "slide-roll ratio at the rib") \
-  X(outer_traction,              contacts, ROLLER,      "N",     "tangential force on the roller in the orbit's direction, outer raceway (friction and rolling)") \
-  X(inner_traction,              contacts, ROLLER,      "N",     "tangential force on the roller in the orbit's direction, inner raceway (friction and rolling)") \
-  X(rib_friction,                contacts, ROLLER,      "N",     "magnitude of the friction force at the rib") \
-  X(rib_height,                  contacts, ROLLER,      "m",     "height of the rib contact above the raceway") \
-  X(rib_overhang,                contacts, ROLLER,      "1",     "share of the rib's contact ellipse (along the face) that lies beyond the rib's edges") \
+  TRB_CONTACT_FIELDS(TRB_FIELD_OF_CONTACT, X) \
   X(pocket_force,                pocket,   POCKET_FACE, "N",     "normal force between roller and each face of its pocket") \
   X(pocket_friction,             pocket,   POCKET_FACE, "N",     "magnitude of the friction force at each face") \
   X(ring_position,               ring,     VEC3,        "m",     "displacement of the inner ring") \
@@ -66,31 +81,12 @@ typedef enum trb_field_kind {
   X(ring_moment,                 ring,     VEC3,        "N m",   "moment of the rollers on the inner ring, about the roller-centre plane") \
   X(inner_torque,                torque,   SCALAR,      "N m",   "friction torque that the shaft overcomes") \
   X(outer_torque,                torque,   SCALAR,      "N m",   "friction torque on the outer ring, in the direction of the shaft's speed") \
-  X(inner_torque_traction,       torque,   SCALAR,      "N m",   "share of raceway sliding friction in the shaft's torque") \
-  X(inner_torque_rolling,        torque,   SCALAR,      "N m",   "share of rolling resistance in the shaft's torque") \
-  X(inner_torque_rib,            torque,   SCALAR,      "N m",   "share of the back-face rib in the shaft's torque") \
-  X(inner_torque_front_rib,      torque,   SCALAR,      "N m",   "share of the front rib in the shaft's torque") \
+  TRB_TORQUES(TRB_FIELD_OF_TORQUE, X) \
   X(power_loss,                  power,    SCALAR,      "W",     "sum of all losses") \
-  X(power_traction_outer,        power,    SCALAR,      "W",     "loss by sliding at the outer raceway") \
-  X(power_traction_inner,        power,    SCALAR,      "W",     "loss by sliding at the inner raceway") \
-  X(power_rolling,               power,    SCALAR,      "W",     "loss by rolling resistance") \
-  X(power_rolling_pressure,      power,    SCALAR,      "W",     "power drawn by the rolling film's pressure force") \
-  X(power_rib,                   power,    SCALAR,      "W",     "loss at the back-face rib") \
-  X(power_front_rib,             power,    SCALAR,      "W",     "loss at the front rib") \
-  X(power_pocket,                power,    SCALAR,      "W",     "loss by friction in the pockets") \
-  X(power_damping,               power,    SCALAR,      "W",     "loss by normal damping") \
+  TRB_LOSSES(TRB_FIELD_OF_POWER, X) \
   X(kinetic_energy,              energy,   SCALAR,      "J",     "kinetic energy of rollers and cage") \
   X(elastic_energy,              energy,   SCALAR,      "J",     "elastic energy of all contacts") \
-  X(work_shaft,                  energy,   SCALAR,      "J",     "work put in by the shaft's torque") \
-  X(work_ring,                   energy,   SCALAR,      "J",     "work put in by motion of the inner ring's position") \
-  X(work_gravity,                energy,   SCALAR,      "J",     "work of gravity (minus the change of potential energy)") \
-  X(loss_traction_outer,         energy,   SCALAR,      "J",     "energy lost by sliding at the outer raceway") \
-  X(loss_traction_inner,         energy,   SCALAR,      "J",     "energy lost by sliding at the inner raceway") \
-  X(loss_rolling,                energy,   SCALAR,      "J",     "energy lost by rolling resistance") \
-  X(loss_rolling_pressure,       energy,   SCALAR,      "J",     "energy drawn by the rolling film's pressure force") \
-  X(loss_rib,                    energy,   SCALAR,      "J",     "energy lost at the back-face rib") \
-  X(loss_front_rib,              energy,   SCALAR,      "J",     "energy lost at the front rib") \
-  X(loss_pocket,                 energy,   SCALAR,      "J",     "energy lost by friction in the pockets") \
-  X(loss_damping,                energy,   SCALAR,      "J",     "energy lost by normal damping")
+  TRB_WORKS(TRB_FIELD_OF_WORK, X) \
+  TRB_LOSSES(TRB_FIELD_OF_LOSS, X)
 
 #endif

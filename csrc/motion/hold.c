@@ -3,35 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-static double size_of_roller(const trb_model *m) { return m->params.total_length + m->params.roller_diameter; }
-
-trb_hold_arms trb_hold_arms_raceway(const trb_model *m)
-{
-  double reach = 0.0;
-  for (int j = 0; j < m->n_rollers; j++)
-    for (int k = 0; k < m->n_nodes; k++) reach = fmax(reach, fabs(m->centre[j * m->n_lanes + k]));
-  const trb_race_nodes *outer = &m->race[TRB_RACE_OUTER], *inner = &m->race[TRB_RACE_INNER];
-  return (trb_hold_arms){fmax(outer->cosine, inner->cosine),    fmax(outer->sine, inner->sine), reach, reach, size_of_roller(m),
-                         0.5 * m->geometry.roller_centre_radius};
-}
-
-/* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
-trb_hold_arms trb_hold_arms_rib(const trb_model *m)
-{
-  const trb_geometry *g = &m->geometry;
-  const double        station = g->sphere_centre - g->apex_to_mid - g->roller_mass_offset;
-  const double        lean = fabs(m->rib_sine * m->axis_cosine - m->rib_cosine * m->axis_sine);
-  return (trb_hold_arms){fabs(m->rib_sine), fabs(m->rib_cosine), lean * fabs(station),
-                         fabs(station),     size_of_roller(m),   fabs(g->roller_centre_radius + station * m->axis_sine)};
-}
-
-/* The deepest point wanders round the end: the arm is that of the rib's edge. */
-trb_hold_arms trb_hold_arms_front_rib(const trb_model *m)
-{
-  const double arm = 2.0 * m->geometry.roller_centre_radius;
-  return (trb_hold_arms){1.0, 1.0, arm, arm, size_of_roller(m), 1e-12};
-}
-
 /* Across the bearing's axis. */
 static double across(trb_vec3 v) { return fabs(v.x) + fabs(v.y); }
 

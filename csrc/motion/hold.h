@@ -5,7 +5,7 @@
 #ifndef TRB_MOTION_HOLD_H
 #define TRB_MOTION_HOLD_H
 
-#include "bearing/state.h"
+#include "contact/bounds.h"
 
 typedef struct trb_hold {
   double way;   /* displacement up to which it holds, m; negative: it does not hold */
@@ -20,18 +20,6 @@ typedef struct trb_hold_ring {
   double place; /* m */
   double speed; /* m/s */
 } trb_hold_ring;
-
-/* What the coordinates of a roller do to one kind of contact. */
-typedef struct trb_hold_arms {
-  double radial, axial; /* parts of the normal, 1 */
-  double tilt, skew;    /* arms of tilt along the normal, and of skew across it, m */
-  double reach;         /* of the surface from the roller's centre of mass, m */
-  double off;           /* distance of the contact's centre of curvature from the ring's axis, m: skew moves it round the ring */
-} trb_hold_arms;
-
-trb_hold_arms trb_hold_arms_raceway(const trb_model *m);
-trb_hold_arms trb_hold_arms_rib(const trb_model *m);
-trb_hold_arms trb_hold_arms_front_rib(const trb_model *m);
 
 trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_drive *drive);
 /* turn: of the roller about the bearing's axis, rad. */

@@ -4,44 +4,37 @@
 
 trb_margin_arms trb_margin_arms_of(const trb_model *m)
 {
-  const trb_geometry *g = &m->geometry;
-  const double        offset = fabs(g->roller_mass_offset), sphere = fabs(g->sphere_centre - g->apex_to_mid) + offset;
-  const double        end = hypot(fabs(g->small_end_station) + offset, g->outer_race_radius);
-  double              chain = 0.0;
-  trb_margin_arms     arms;
-  for (int j = 0; j < m->n_rollers; j++)
-    for (int k = 0; k < m->n_nodes; k++) chain = fmax(chain, fabs(m->centre[j * m->n_lanes + k]));
-  arms.arm[TRB_MARGIN_RACES] = chain;
-  arms.arm[TRB_MARGIN_RIB] = sphere;
-  arms.arm[TRB_MARGIN_FRONT_RIB] = end;
-  for (int i = 0; i < TRB_N_MARGINS; i++) arms.ring[i] = arms.arm[i] + g->outer_race_radius + m->params.total_length;
-  arms.rib_sine = fabs(m->rib_sine);
-  arms.rib_lean = fabs(sin(g->rib_normal_angle - g->roller_axis_angle));
-  arms.sphere_offset = fabs(g->sphere_centre) * sin(g->roller_axis_angle);
+  trb_margin_arms arms = {.n = 0};
+  for (int row = 0; row < TRB_N_PAIRS; row++) {
+    if (trb_pair_table[row]->margin == NULL || !trb_pair_is_on(m, row)) continue;
+    arms.of[arms.n] = trb_pair_table[row]->margin(m);
+    arms.row[arms.n++] = row;
+  }
   return arms;
 }
 
 /* Interference of a sphere and a cone changes with the sphere's centre along the cone's normal. The centre of the large end's sphere lies
  * far from the roller's centre of mass, but the normal nearly along the roller's axis: a turn moves it across the normal. What is left:
  * the angle of both, the skew, and the normal's turn about the bearing axis, which the sphere's centre is close to. */
-static double turned_at_rib(const trb_margin_arms *a, const double *place, const double *step, double lean)
+static double turned_on_end(const trb_margin_arm *a, const double *place, const double *step, double lean)
 {
   const double skewed = fabs(step[TRB_ROLLER_skew]), tilted = fabs(step[TRB_ROLLER_tilt]);
   const double skew = fabs(place[TRB_ROLLER_skew]) + skewed, tilt = fabs(place[TRB_ROLLER_tilt]) + tilted;
-  const double arm = a->arm[TRB_MARGIN_RIB], across = arm * (skew + tilt + lean) / (0.5 * a->sphere_offset);
-  const double sine = a->rib_sine * trb_min(across, 1.0);
-  return arm * (skewed * (sine + skew + lean) + tilted * (a->rib_lean + sine + tilt + lean));
+  const double arm = a->arm, across = arm * (skew + tilt + lean) / (0.5 * a->sphere_offset);
+  const double sine = a->normal_sine * trb_min(across, 1.0);
+  return arm * (skewed * (sine + skew + lean) + tilted * (a->normal_lean + sine + tilt + lean));
 }
 
-int trb_margin_holds(const trb_margin_arms *a, const trb_drive *drive, const double *margin, double share, const double *place,
+int trb_margin_holds(const trb_margin_arms *arms, const trb_drive *drive, const double *margin, double share, const double *place,
                      const double *step, double turn)
 {
   const double lean = hypot(drive->inner.axis.x, drive->inner.axis.y), aside = hypot(drive->displacement.x, drive->displacement.y);
   const double around = fabs(step[TRB_ROLLER_psi]) + fabs(turn), shift = fabs(step[TRB_ROLLER_r]) + fabs(step[TRB_ROLLER_z]);
   const double turned = fabs(step[TRB_ROLLER_skew]) + fabs(step[TRB_ROLLER_tilt]);
-  const double by_turn[TRB_N_MARGINS] = {a->arm[TRB_MARGIN_RACES] * turned, turned_at_rib(a, place, step, lean),
-                                         a->arm[TRB_MARGIN_FRONT_RIB] * turned};
-  for (int i = 0; i < TRB_N_MARGINS; i++)
-    if (!(shift + by_turn[i] + around * (aside + lean * a->ring[i]) <= share * margin[i])) return 0;
+  for (int i = 0; i < arms->n; i++) {
+    const trb_margin_arm *a = &arms->of[i];
+    const double          by_turn = a->on_end ? turned_on_end(a, place, step, lean) : a->arm * turned;
+    if (!(shift + by_turn + around * (aside + lean * a->ring) <= share * margin[arms->row[i]])) return 0;
+  }
   return 1;
 }

@@ -6,20 +6,18 @@
 #ifndef TRB_MOTION_MARGIN_H
 #define TRB_MOTION_MARGIN_H
 
-#include "contact/contact.h"
+#include "contact/pair.h"
 
-/* Lengths and angles of the bounds. */
+/* Of the slow pairs that are on. */
 typedef struct trb_margin_arms {
-  double arm[TRB_N_MARGINS];  /* largest distance of what can touch from the roller's centre of mass, m */
-  double ring[TRB_N_MARGINS]; /* and from the inner ring's centre, m */
-  double rib_sine;            /* of the angle between the rib's normal and the bearing axis */
-  double rib_lean;            /* sine of the angle between the rib's normal and the roller's axis */
-  double sphere_offset;       /* of the large end's sphere, its centre from the bearing axis, m */
+  trb_margin_arm of[TRB_N_PAIRS];
+  int            row[TRB_N_PAIRS]; /* in the table of pairs */
+  int            n;
 } trb_margin_arms;
 
 trb_margin_arms trb_margin_arms_of(const trb_model *m);
 /* Whether every contact is proven to change its interference by less than a share of its margin. place: the roller's state at which the
- * margins hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
+ * margins, one a row of the table of pairs, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
 int trb_margin_holds(const trb_margin_arms *arms, const trb_drive *drive, const double *margin, double share, const double *place,
                      const double *step, double turn);
 

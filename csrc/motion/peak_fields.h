@@ -17,18 +17,25 @@ typedef enum trb_peak_take {
   TRB_TAKE_IMPULSE  /* time integral */
 } trb_peak_take;
 
+/* Of the rollers' contacts with the rings: F(X, pair, quantity, sense). <pair>_<quantity> is `quantity` of the look of that row of the table
+ * of pairs (contact/pair.h); the smallest value is wanted of films, which are there in scenes with films and under a load only. */
+#define TRB_PEAK_CONTACTS(F, X) \
+  F(X, outer,     load,            MOST) \
+  F(X, inner,     load,            MOST) \
+  F(X, rib,       load,            MOST) \
+  F(X, front_rib, load,            MOST) \
+  F(X, outer,     pressure,        MOST) \
+  F(X, inner,     pressure,        MOST) \
+  F(X, rib,       pressure,        MOST) \
+  F(X, outer,     film_parameter,  LEAST) \
+  F(X, inner,     film_parameter,  LEAST) \
+  F(X, rib,       film_parameter,  LEAST)
+
+#define TRB_PEAK_OF_CONTACT(X, pair, quantity, sense) X(pair##_##quantity, ROLLER, sense)
+
 #define TRB_PEAK_QUANTITIES(X) \
   X(pocket_force,         POCKET_FACE, MOST) \
-  X(outer_load,           ROLLER,      MOST) \
-  X(inner_load,           ROLLER,      MOST) \
-  X(rib_load,             ROLLER,      MOST) \
-  X(front_rib_load,       ROLLER,      MOST) \
-  X(outer_pressure,       ROLLER,      MOST) \
-  X(inner_pressure,       ROLLER,      MOST) \
-  X(rib_pressure,         ROLLER,      MOST) \
-  X(outer_film_parameter, ROLLER,      LEAST) \
-  X(inner_film_parameter, ROLLER,      LEAST) \
-  X(rib_film_parameter,   ROLLER,      LEAST) \
+  TRB_PEAK_CONTACTS(TRB_PEAK_OF_CONTACT, X) \
   X(skew,                 ROLLER,      MOST) \
   X(spacing_largest,      ROLLER,      MOST) \
   X(spacing_smallest,     ROLLER,      LEAST)

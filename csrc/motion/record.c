@@ -1,9 +1,10 @@
 #include "motion/record.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
-#include "contact/kernels.h"
+#include "contact/pair.h"
 #include "motion/audit.h"
 
 const trb_field_info trb_field_table[TRB_N_FIELDS] = {
@@ -140,60 +141,36 @@ static void put_roller(writer *w, int j, const double *y, double spin_offset)
   PUT(roller_tilt, j) = y[TRB_ROLLER_tilt];
 }
 
-typedef struct race_means {
-  double load, pressure, film, film_parameter, slide_roll, traction;
-} race_means;
-
-/* Sums over the nodes of a contact; means are weighted by load. */
-static race_means race_mean(const trb_model *m, const trb_detail *detail, int race, int roller)
-{
-  const double *field[TRB_N_LANE_FIELDS];
-  race_means    out = {0};
-  for (int f = 0; f < TRB_N_LANE_FIELDS; f++) field[f] = trb_detail_lane(m, detail, f, race, roller);
-  for (int k = 0; k < m->n_nodes; k++) {
-    const double q = field[TRB_LANE_load][k];
-    if (!(q > 0.0)) continue;
-    out.load += q;
-    out.pressure = fmax(out.pressure, field[TRB_LANE_pressure][k]);
-    out.film += q * field[TRB_LANE_film][k];
-    out.film_parameter += q * field[TRB_LANE_film_parameter][k];
-    /* sliding along rolling: the mean velocity's direction */
-    const double along = field[TRB_LANE_sx][k] * field[TRB_LANE_mx][k] + field[TRB_LANE_sy][k] * field[TRB_LANE_my][k] +
-                         field[TRB_LANE_sz][k] * field[TRB_LANE_mz][k];
-    const double mean = field[TRB_LANE_mean_speed][k];
-    out.slide_roll += q * along / (mean * mean);
-    out.traction -= q * field[TRB_LANE_friction_coefficient][k] / field[TRB_LANE_sliding_speed][k] * field[TRB_LANE_sy][k] +
-                    field[TRB_LANE_rolling][k] / mean * field[TRB_LANE_my][k];
-  }
-  if (out.load > 0.0) {
-    out.film /= out.load;
-    out.film_parameter /= out.load;
-    out.slide_roll /= out.load;
-  }
-  return out;
-}
-
-#define PUT_RACE(side, means) \
-  PUT(side##_load, j) = means.load, PUT(side##_pressure, j) = means.pressure, PUT(side##_film, j) = means.film, \
-  PUT(side##_film_parameter, j) = means.film_parameter, PUT(side##_slide_roll, j) = means.slide_roll, PUT(side##_traction, j) = means.traction
+/* Where each quantity of a contact is in its view, and goes in a record. */
+static const struct {
+  int    pair;
+  size_t from;
+  int    field;
+} contact_fields[] = {
+#define ROW(X, pair, quantity, unit, text) {TRB_PAIR_##pair, offsetof(trb_contact_view, quantity), TRB_FIELD_AT_##pair##_##quantity},
+    TRB_CONTACT_FIELDS(ROW, 0)
+#undef ROW
+};
 
 static void put_contacts(writer *w, int j)
 {
-  const trb_model        *m = w->d->model;
-  const race_means        outer = race_mean(m, w->detail, TRB_RACE_OUTER, j), inner = race_mean(m, w->detail, TRB_RACE_INNER, j);
-  const trb_point_detail *rib = &w->detail->rib[j];
-  PUT_RACE(outer, outer);
-  PUT_RACE(inner, inner);
-  PUT(rib_load, j) = rib->load;
-  PUT(rib_pressure, j) = rib->pressure;
-  PUT(rib_film, j) = rib->film;
-  PUT(rib_film_parameter, j) = rib->film_parameter;
-  PUT(rib_slide_roll, j) = rib->slide_roll;
-  PUT(rib_friction, j) = rib->friction;
-  PUT(rib_height, j) = rib->height;
-  PUT(rib_overhang, j) = rib->overhang;
-  PUT(front_rib_load, j) = w->detail->front_rib[j].load;
+  trb_contact_view views[TRB_N_PAIRS] = {{0}};
+  for (int row = 0; row < TRB_N_PAIRS; row++)
+    if (trb_pair_table[row]->view != NULL) trb_pair_table[row]->view(w->d->model, w->detail, j, &views[row]);
+  for (size_t i = 0; i < sizeof contact_fields / sizeof contact_fields[0]; i++)
+    w->at[contact_fields[i].field][j] = *(const double *)((const char *)&views[contact_fields[i].pair] + contact_fields[i].from);
 }
+
+/* Fields of the lists of bearing/losses.h. */
+#define TORQUE(X, name, text) TRB_FIELD_AT_inner_torque_##name,
+#define POWER(X, name, sense, text) TRB_FIELD_AT_power_##name,
+#define QUADRATURE(name) TRB_FIELD_AT_##name,
+static const int torque_fields[] = {TRB_TORQUES(TORQUE, 0)};
+static const int power_fields[] = {TRB_LOSSES(POWER, 0)};
+static const int quadrature_fields[] = {TRB_QUADRATURES(QUADRATURE)};
+#undef TORQUE
+#undef POWER
+#undef QUADRATURE
 
 static void put_ring(writer *w)
 {
@@ -215,30 +192,24 @@ static void put_ring(writer *w)
   put3(&PUT(ring_moment, 0), moment);
   PUT(inner_torque, 0) = -sign * all;
   PUT(outer_torque, 0) = sign * outer;
-  PUT(inner_torque_traction, 0) = -sign * torque[TRB_TORQUE_TRACTION];
-  PUT(inner_torque_rolling, 0) = -sign * torque[TRB_TORQUE_ROLLING];
-  PUT(inner_torque_rib, 0) = -sign * torque[TRB_TORQUE_RIB];
-  PUT(inner_torque_front_rib, 0) = -sign * torque[TRB_TORQUE_FRONT_RIB];
+  for (int k = 0; k < TRB_N_TORQUES; k++) w->at[torque_fields[k]][0] = -sign * torque[k];
 }
 
 static void put_energy(writer *w, const double *quadratures)
 {
   const trb_dynamics *d = w->d;
-  double             *power = &PUT(power_traction_outer, 0), total = 0.0;
-  for (int k = 0; k < TRB_N_POWERS; k++) {
-    power[k] = 0.0;
-    for (int j = 0; j < d->model->n_rollers; j++) power[k] += d->loads[j].power[k];
-    total += power[k];
+  double              total = 0.0;
+  for (int k = 0; k < TRB_N_LOSSES; k++) {
+    double power = 0.0;
+    for (int j = 0; j < d->model->n_rollers; j++) power += d->loads[j].power[k];
+    w->at[power_fields[k]][0] = power;
+    total += power;
   }
   PUT(power_loss, 0) = total;
   PUT(kinetic_energy, 0) = trb_audit_kinetic(d);
   PUT(elastic_energy, 0) = trb_audit_elastic(d);
-  memcpy(&PUT(work_shaft, 0), quadratures, TRB_N_QUADRATURES * sizeof(double));
+  for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = quadratures[k];
 }
-
-/* Losses stand in a record as in the state and in the list of powers, one after the other. */
-_Static_assert(TRB_FIELD_AT_loss_damping - TRB_FIELD_AT_work_shaft + 1 == TRB_N_QUADRATURES, "a field for every quadrature, in order");
-_Static_assert(TRB_FIELD_AT_power_damping - TRB_FIELD_AT_power_traction_outer + 1 == TRB_N_POWERS, "a field for every power, in order");
 
 void trb_record_fill(trb_dynamics *d, double time, const double *y, trb_detail *detail, double *record)
 {

@@ -286,7 +286,7 @@ static PyObject *derivative(PyObject *object, PyObject *args)
   PyArrayObject     *array = look(self, args, &time);
   if (array == NULL) return NULL;
   PyObject *out = trb_vector(NULL, s->integrator.n);
-  if (out != NULL) trb_dynamics_derivative(s->onlooker, time, PyArray_DATA(array), PyArray_DATA((PyArrayObject *)out));
+  if (out != NULL) trb_rhs(s->onlooker, NULL, time, PyArray_DATA(array), PyArray_DATA((PyArrayObject *)out));
   leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;
@@ -348,7 +348,7 @@ static int put_loads(const trb_model *m, const trb_roller_load *loads, PyObject 
                {"cage_force", offsetof(trb_roller_load, cage_force), 3},
                {"cage_moment", offsetof(trb_roller_load, cage_moment), 3},
                {"elastic_energy", offsetof(trb_roller_load, elastic), 1},
-               {"power", offsetof(trb_roller_load, power), TRB_N_POWERS}};
+               {"power", offsetof(trb_roller_load, power), TRB_N_LOSSES}};
   for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++) {
     npy_intp  shape[2] = {m->n_rollers, parts[p].width};
     PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);

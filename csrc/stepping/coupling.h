@@ -2,7 +2,7 @@
 #ifndef TRB_STEPPING_COUPLING_H
 #define TRB_STEPPING_COUPLING_H
 
-#include "contact/contact.h"
+#include "contact/pair.h"
 
 /* In the roller's cylindrical frame. */
 typedef struct trb_coupling {
@@ -10,7 +10,7 @@ typedef struct trb_coupling {
   const trb_cage_pose   *cage;
   trb_vec3               arm;           /* from the cage's centre of mass to the roller's, m */
   trb_vec3               force, moment; /* on the roller, about its centre of mass, N and N m */
-  trb_pocket_slopes      slopes;
+  trb_slopes             slopes;
 } trb_coupling;
 
 /* Bodies and load that the slopes, given before, belong to. */

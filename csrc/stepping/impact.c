@@ -9,7 +9,6 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "laws/line_contact.h"
 
 /* Steps ahead in which a gap may close. */
 static const double ahead = 3.0;
@@ -50,11 +49,24 @@ static double closing_speed(const trb_roller_pose *r, const trb_cage_pose *cage)
 
 /* Interference that a roller and the cage reach when they meet: speed over the frequency of both on a linear spring, as stiff as the flank's
  * contact is at a micrometre. */
-static double interference_of(const trb_model *m, double speed)
+static double interference_of(const trb_model *m, const trb_pair *pair, double speed)
 {
-  const double depth = 1e-6, roller = m->geometry.roller_mass, cage = m->params.cage_mass;
-  const double stiffness = m->pocket_palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
+  const double roller = m->geometry.roller_mass, cage = m->params.cage_mass, stiffness = pair->stiffness(m, 1e-6);
   return speed * sqrt(roller * cage / ((roller + cage) * stiffness));
+}
+
+/* A roller and the cage in a fast pair: the factor of their tolerances. */
+static double factor_of(trb_impacts *impacts, const trb_model *m, const trb_pair *pair, int j, double left, double speed, double step,
+                        const trb_impact_measure *measure)
+{
+  if (left > ahead * step * speed) {
+    impacts->speed[j] = INFINITY;
+    return 1.0;
+  }
+  /* in contact: the largest speed since they met */
+  impacts->speed[j] = left <= 0.0 && isfinite(impacts->speed[j]) ? trb_max(impacts->speed[j], speed) : speed;
+  const double finer = trb_min(impacts->speed[j] / measure->velocity, interference_of(m, pair, impacts->speed[j]) / measure->position);
+  return trb_clamp(measure->share * finer, measure->least, 1.0);
 }
 
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
@@ -68,25 +80,20 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
   int              posed = 0;
   for (int j = 0; j < m->n_rollers; j++) {
     const double *y_roller = y + trb_state_roller(j);
-    const double  left = trb_clearance_left(&d->clearances[j], d->arms, y_roller, y_cage);
     impacts->factor[j] = 1.0;
-    if (m->first_face[j + 1] == m->first_face[j]) continue;
-    if (!posed) {
-      trb_motion_at(motion, m, time, &drive);
-      trb_cage_pose_unpack(m, &drive, y_cage, &cage);
-      posed = 1;
+    for (int f = 0; f < d->n_fast; f++) {
+      const trb_fast_pair *fast = &d->fast[f];
+      if (fast->pair->surfaces(m, j) == 0) continue;
+      if (!posed) {
+        trb_motion_at(motion, m, time, &drive);
+        trb_cage_pose_unpack(m, &drive, y_cage, &cage);
+        posed = 1;
+      }
+      trb_roller_pose r;
+      trb_roller_pose_unpack(m, &drive, j, y_roller, &r);
+      const double left = trb_clearance_left(&fast->clearances[j], fast->arms, y_roller, y_cage);
+      impacts->factor[j] = trb_min(impacts->factor[j], factor_of(impacts, m, fast->pair, j, left, closing_speed(&r, &cage), step, measure));
     }
-    trb_roller_pose r;
-    trb_roller_pose_unpack(m, &drive, j, y_roller, &r);
-    const double speed = closing_speed(&r, &cage);
-    if (left > ahead * step * speed) {
-      impacts->speed[j] = INFINITY;
-      continue;
-    }
-    /* in contact: the largest speed since they met */
-    impacts->speed[j] = left <= 0.0 && isfinite(impacts->speed[j]) ? trb_max(impacts->speed[j], speed) : speed;
-    const double finer = trb_min(impacts->speed[j] / measure->velocity, interference_of(m, impacts->speed[j]) / measure->position);
-    impacts->factor[j] = trb_clamp(measure->share * finer, measure->least, 1.0);
     least = trb_min(least, impacts->factor[j]);
   }
   impacts->factor[m->n_rollers] = least;

@@ -43,7 +43,7 @@ int trb_integrator_finite(const trb_integrator *it, const double *rates)
 
 int trb_integrator_rates(trb_integrator *it, double time, const double *y, double *rates)
 {
-  trb_dynamics_derivative(it->dynamics, time, y, rates);
+  trb_rhs(it->dynamics, NULL, time, y, rates);
   return trb_integrator_finite(it, rates) ? 0 : 1;
 }
 

@@ -2,7 +2,7 @@
 #ifndef TRB_STEPPING_INTEGRATOR_H
 #define TRB_STEPPING_INTEGRATOR_H
 
-#include "motion/dynamics.h"
+#include "motion/rhs.h"
 #include "stepping/impact.h"
 
 /* Settings of an integration. X(name, default, lower, upper, text) */

@@ -47,9 +47,9 @@ typedef struct cage_loads {
   trb_vec3 force[TRB_NC], moment[TRB_NC];
 } cage_loads;
 
-/* What a pocket in contact adds to its roller's block, to both borders, and to the cage's loads. still: rates of a cage without loads. */
-static void add_pocket(const trb_dynamics *d, int j, const trb_coupling *k, const double *y_cage, const double *still,
-                       trb_arrow_block *block, trb_arrow_border *border, cage_loads *sums)
+/* What a fast pair in contact adds to its roller's block, to both borders, and to the cage's loads. still: rates of a cage without loads. */
+static void add_fast(const trb_dynamics *d, int j, const trb_coupling *k, const double *y_cage, const double *still, trb_arrow_block *block,
+                     trb_arrow_border *border, cage_loads *sums)
 {
   double change[TRB_NR], rates[TRB_NC];
   for (int c = 0; c < TRB_NR; c++) {
@@ -57,12 +57,12 @@ static void add_pocket(const trb_dynamics *d, int j, const trb_coupling *k, cons
     roller_response(d, j, &load, change);
     trb_dynamics_cage_rates(d, y_cage, load.cage_force, load.cage_moment, rates);
     for (int i = 0; i < TRB_NR; i++) block->own[c][i] += change[i];
-    for (int i = 0; i < TRB_NC; i++) border->from[c][i] = rates[i] - still[i];
+    for (int i = 0; i < TRB_NC; i++) border->from[c][i] += rates[i] - still[i];
   }
   for (int c = 0; c < TRB_NC; c++) {
     const trb_roller_load load = trb_coupling_of_cage(k, c);
     roller_response(d, j, &load, change);
-    for (int i = 0; i < TRB_NR; i++) border->to_cage[c][i] = change[i];
+    for (int i = 0; i < TRB_NR; i++) border->to_cage[c][i] += change[i];
     sums->force[c] = trb_add(sums->force[c], load.cage_force);
     sums->moment[c] = trb_add(sums->moment[c], load.cage_moment);
   }
@@ -105,15 +105,20 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   double            still[TRB_NC];
   trb_dynamics_cage_rates(d, y_cage, force, moment, still);
   for (int j = 0; j < m->n_rollers; j++) {
-    trb_coupling          k;
-    trb_roller_load       load;
-    const trb_pocket_gaps gaps = trb_contact_pocket_of(m, &at, j, &d->work->counters, &load, &k.slopes, NULL);
-    arrow->borders[j].coupled = !trb_pocket_clear(&gaps) && trb_norm(load.cage_force) > 0.0;
-    if (!arrow->borders[j].coupled) continue;
-    trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
-    force = trb_add(force, load.cage_force);
-    moment = trb_add(moment, load.cage_moment);
-    add_pocket(d, j, &k, y_cage, still, &arrow->rollers[j], &arrow->borders[j], &changes);
+    trb_arrow_border *border = &arrow->borders[j];
+    border->coupled = 0;
+    for (int f = 0; f < d->n_fast; f++) {
+      trb_coupling    k;
+      trb_roller_load load;
+      const trb_gaps  gaps = d->fast[f].pair->touch(m, &at, j, &d->work->counters, &load, &k.slopes, NULL);
+      if (trb_gaps_clear(&gaps) || !(trb_norm(load.cage_force) > 0.0)) continue;
+      if (!border->coupled) memset(border, 0, sizeof *border);
+      border->coupled = 1;
+      trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
+      force = trb_add(force, load.cage_force);
+      moment = trb_add(moment, load.cage_moment);
+      add_fast(d, j, &k, y_cage, still, &arrow->rollers[j], border, &changes);
+    }
   }
   cage_block(jac, y, force, moment, &changes, arrow);
 }

@@ -1,8 +1,8 @@
 /* Jacobian of the right-hand side.
  *
- * It is the sum of two parts. Rings: what raceways and ribs do to each roller, and the roller's own inertia, by differences; it changes
- * slowly and costs one evaluation of these contacts a column, for all rollers at once. Pockets: it changes with every impact; only rollers
- * that touch their pockets have it, and it comes with their evaluation. Both are kept apart, and the first is reused while it serves. */
+ * It is the sum of two parts. Slow pairs: what they do to each roller, and the roller's own inertia, by differences; it changes slowly and
+ * costs one evaluation of these pairs a column, for all rollers at once. Fast pairs: it changes with every impact; only rollers that touch
+ * have it, and it comes with their evaluation. Both are kept apart, and the first is reused until it is old or Newton's method fails. */
 #ifndef TRB_STEPPING_JACOBIAN_H
 #define TRB_STEPPING_JACOBIAN_H
 

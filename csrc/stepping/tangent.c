@@ -20,11 +20,12 @@ static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, 
 /* Sliding and damping never give energy: beside zero, where their powers curve most, a tangent may. */
 static void set_bounds(trb_tangents *t)
 {
-  static const trb_power taken[] = {TRB_POWER_TRACTION_OUTER, TRB_POWER_TRACTION_INNER, TRB_POWER_RIB, TRB_POWER_FRONT_RIB,
-                                    TRB_POWER_DAMPING};
+#define SENSE(X, name, sense, text) TRB_SENSE_##sense,
+  static const trb_sense senses[] = {TRB_LOSSES(SENSE, 0)};
+#undef SENSE
   for (int i = 0; i < TRB_TANGENT_OUT; i++) t->least[i] = t->anything[i] = -INFINITY;
-  for (int k = 0; k < (int)(sizeof taken / sizeof taken[0]); k++)
-    t->least[TRB_FLOW_quadrature + TRB_Q_loss_traction_outer + taken[k]] = 0.0;
+  for (int k = 0; k < TRB_N_LOSSES; k++)
+    if (senses[k] == TRB_SENSE_TAKES) t->least[TRB_FLOW_quadrature + TRB_Q_losses + k] = 0.0;
 }
 
 trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message)
@@ -35,12 +36,9 @@ trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_
   if (t != NULL) {
     t->model = m;
     t->rollers = trb_zeros(n, sizeof *t->rollers);
-    t->flows = trb_zeros(n, sizeof *t->flows);
-    t->far = calloc(n, sizeof *t->far);
-    t->touching = calloc(n, sizeof *t->touching);
     t->beyond = calloc(n, sizeof *t->beyond);
   }
-  if (t == NULL || t->rollers == NULL || t->flows == NULL || t->far == NULL || t->touching == NULL || t->beyond == NULL) {
+  if (t == NULL || t->rollers == NULL || t->beyond == NULL) {
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
@@ -54,9 +52,6 @@ void trb_tangents_free(trb_tangents *tangents)
 {
   if (tangents == NULL) return;
   free(tangents->rollers);
-  free(tangents->flows);
-  free(tangents->far);
-  free(tangents->touching);
   free(tangents->beyond);
   free(tangents);
 }
@@ -70,7 +65,7 @@ void trb_tangents_forget(trb_tangents *t)
 static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
 {
   const trb_instant at = trb_dynamics_instant(d);
-  trb_contact_rings_only(d->model, &at, d->work, d->loads);
+  trb_contact_slow(d->model, &at, d->work, d->loads);
   for (int j = 0; j < d->model->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
     double       flow[TRB_FLOW_SIZE];
@@ -94,7 +89,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   const trb_model  *m = d->model;
   const trb_instant at = trb_dynamics_instant(d);
   const double      time = d->drive.time, frame_speed = d->drive.frame_speed;
-  trb_contact_rings_only(m, &at, d->work, d->loads);
+  trb_contact_slow(m, &at, d->work, d->loads);
   for (int j = 0; j < m->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
@@ -193,21 +188,6 @@ static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measur
   r->known = 1;
 }
 
-/* Flows of the rollers whose tangents do not serve, exactly. */
-static void evaluate_far(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, int n_far, const double *y)
-{
-  trb_instant at = trb_dynamics_instant(d);
-  at.chosen = t->far;
-  at.n = n_far;
-  trb_contact_rings_only(d->model, &at, d->work, d->loads);
-  for (int k = 0; k < n_far; k++) {
-    const int j = t->far[k];
-    trb_dynamics_roller_flow(d, j, &d->loads[j], t->flows[j]);
-    if (t->beyond[j] && t->has_slopes && measure->factors->gamma > 0.0)
-      learn(t, j, measure, y + trb_state_roller(j), d->drive.frame_angle, t->flows[j], d->loads[j].margin);
-  }
-}
-
 /* Whether a roller has slipped away from its origin by no more than a share of the mean rolling speed. */
 static int slips_little(const trb_dynamics *d, double share, const double *step)
 {
@@ -219,44 +199,43 @@ static int slips_little(const trb_dynamics *d, double share, const double *step)
   return slid <= share * trb_max(speed, p->speed_floor);
 }
 
+/* No tangent holds while the prescribed motion is under way. */
+static void begin(void *self, const trb_dynamics *d, double time)
+{
+  trb_tangents *t = self;
+  t->under_way = trb_motion_under_way(d->motion, time);
+  for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
+}
+
+static int follow(void *self, const trb_dynamics *d, int roller, const double *y, double *flow)
+{
+  trb_tangents              *t = self;
+  trb_tangent               *r = &t->rollers[roller];
+  const trb_tangent_measure *measure = t->measure;
+  const trb_block_kernels   *kernels = measure->factors->kernels;
+  double                     step[TRB_TANGENT_IN] = {0};
+  if (t->under_way) return 0;
+  const double distance2 = r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) : (double)INFINITY;
+  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step) ||
+                      !trb_margin_holds(&t->arms, &d->drive, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
+  r->served += !t->beyond[roller];
+  if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
+  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, flow);
+  return 1;
+}
+
+static void learn_exact(void *self, const trb_dynamics *d, int roller, const double *y, const double *flow)
+{
+  trb_tangents *t = self;
+  if (t->under_way || !t->beyond[roller] || !t->has_slopes || !(t->measure->factors->gamma > 0.0)) return;
+  learn(t, roller, t->measure, y, d->drive.frame_angle, flow, d->loads[roller].margin);
+}
+
 void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,
                              double *rates)
 {
-  const trb_model         *m = d->model;
-  const trb_block_kernels *kernels = measure->factors->kernels;
-  trb_vec3                 force = {0, 0, 0}, moment = {0, 0, 0};
-  int                      n_far = 0;
-  if (trb_motion_under_way(d->motion, time)) {
-    for (int j = 0; j < m->n_rollers; j++) t->rollers[j].known = 0;
-    trb_dynamics_derivative(d, time, y, rates);
-    return;
-  }
-  trb_motion_at(d->motion, m, time, &d->drive);
-  trb_cage_pose_unpack(m, &d->drive, y + trb_state_cage(m), &d->cage);
-  trb_dynamics_start(d, rates);
-  d->work->counters.force_evaluations++;
-  for (int j = 0; j < m->n_rollers; j++) {
-    trb_tangent *r = &t->rollers[j];
-    double       step[TRB_TANGENT_IN] = {0};
-    const double distance2 =
-        r->known ? kernels->step_from(r->origin, r->per, y + trb_state_roller(j), d->drive.frame_angle, step) : (double)INFINITY;
-    t->beyond[j] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step) ||
-                   !trb_margin_holds(&t->arms, &d->drive, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
-    t->touching[j] = !trb_dynamics_clear(d, j, y);
-    r->served += !t->beyond[j];
-    const int follows = !t->beyond[j] && (r->usual >= enough || r->served > enough_now);
-    if (follows) {
-      kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, t->flows[j]);
-    } else {
-      t->far[n_far++] = j;
-    }
-    if (!follows || t->touching[j]) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
-  }
-  d->work->counters.tangent_rollers += m->n_rollers - n_far;
-  if (n_far > 0) evaluate_far(t, d, measure, n_far, y);
-  for (int j = 0; j < m->n_rollers; j++) {
-    if (t->touching[j]) trb_dynamics_pocket(d, j, y, t->flows[j], &force, &moment);
-    trb_dynamics_put(d, j, t->flows[j], rates);
-  }
-  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));
+  const trb_approximation tangents = {.self = t, .begin = begin, .follow = follow, .learn = learn_exact};
+  t->measure = measure;
+  trb_rhs(d, &tangents, time, y, rates);
+  t->measure = NULL;
 }

@@ -12,13 +12,13 @@
 #ifndef TRB_STEPPING_TANGENT_H
 #define TRB_STEPPING_TANGENT_H
 
-#include "motion/dynamics.h"
 #include "motion/margin.h"
+#include "motion/rhs.h"
 #include "stepping/arrow.h"
 
 /* Place of the frame's angle in an origin. */
 enum { TRB_TANGENT_TURN = TRB_NR };
-_Static_assert(TRB_TANGENT_IN == TRB_NR + 1 && (int)TRB_FLOW_SIZE <= (int)TRB_TANGENT_OUT,
+_Static_assert(TRB_TANGENT_IN == TRB_NR + 1 && (int)TRB_FLOW_ROOM == (int)TRB_TANGENT_OUT,
                "room for a roller's state, an angle and its flow");
 
 typedef struct trb_tangent {
@@ -26,25 +26,24 @@ typedef struct trb_tangent {
   double found[TRB_NR][TRB_NR];                  /* rates' slopes as differences gave them, column by column */
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
-  double per[TRB_TANGENT_IN];   /* what measures distances: one over the tolerances there, so that the sum of squares is their mean */
-  double reach;                 /* distance up to which it is used */
-  double margin[TRB_N_MARGINS]; /* of the contacts at the origin, m */
-  double usual;                 /* evaluations that an origin is used for, running mean */
-  int    served;                /* by this origin */
-  int    known;                 /* 0: there is no origin */
+  double per[TRB_TANGENT_IN]; /* what measures distances: one over the tolerances there, so that the sum of squares is their mean */
+  double reach;               /* distance up to which it is used */
+  double margin[TRB_N_PAIRS]; /* of the contacts at the origin, m */
+  double usual;               /* evaluations that an origin is used for, running mean */
+  int    served;              /* by this origin */
+  int    known;               /* 0: there is no origin */
 } trb_tangent;
 
 typedef struct trb_tangents {
   const trb_model *model;
   trb_tangent     *rollers;
   double           least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT]; /* lower bounds of flows that are followed, and none */
-  double (*flows)[TRB_TANGENT_OUT];                                   /* scratch: of every roller */
-  int            *far;                                                /* scratch: rollers to evaluate */
-  int            *beyond;                                             /* scratch: whether a roller is beyond its reach */
-  int            *touching;                                           /* scratch: rollers that may touch their pockets */
-  trb_margin_arms arms;                                               /* what bounds the change of an interference */
-  double          time;                                               /* at which slopes were last evaluated, s */
-  int             has_slopes;                                         /* whether they were at all */
+  const struct trb_tangent_measure *measure;                          /* of the evaluation under way */
+  int                               under_way;                        /* the prescribed motion is: everything is exact */
+  int                              *beyond;                           /* scratch: whether a roller is beyond its reach */
+  trb_margin_arms                   arms;                             /* what bounds the change of an interference */
+  double                            time;                             /* at which slopes were last evaluated, s */
+  int                               has_slopes;                       /* whether they were at all */
 } trb_tangents;
 
 /* What the error of a tangent is measured with. */

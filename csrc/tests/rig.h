@@ -2,7 +2,7 @@
 #ifndef TRB_TESTS_RIG_H
 #define TRB_TESTS_RIG_H
 
-#include "motion/dynamics.h"
+#include "motion/rhs.h"
 #include "stepping/simulation.h"
 
 enum { RIG_FACES = 4, RIG_SLICES = 24 };

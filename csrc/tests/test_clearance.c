@@ -11,13 +11,13 @@ enum { MOST = 512 };
 static unsigned long long seed = 23;
 
 /* Lower bounds of a roller's gaps at a state, and whether its pocket pushes. */
-static trb_pocket_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touches)
+static trb_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touches)
 {
   trb_roller_load load = {0};
   trb_counters    counters = {0};
   trb_dynamics_pose(d, 0.0, y);
-  const trb_instant     at = trb_dynamics_instant(d);
-  const trb_pocket_gaps gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL, NULL);
+  const trb_instant at = trb_dynamics_instant(d);
+  const trb_gaps    gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL, NULL);
   *touches = trb_norm(load.cage_force) > 0.0 || counters.pocket_nodes > 0;
   return gaps;
 }
@@ -27,7 +27,7 @@ static void walk(const trb_model *m, trb_dynamics *d, const double *start, const
 {
   trb_clearance_arms arms[TRB_N_GAPS];
   double             direction[MOST] = {0}, y[MOST];
-  trb_clearance_arms_of(m, arms);
+  trb_pair_pocket.clearance(m, arms);
   const int only = (int)(11.0 * (0.5 + 0.5 * rig_random(&seed))), alone = rig_random(&seed) > 0.0;
   for (int i = 0; i < TRB_CLEARANCE_CAGE; i++) direction[trb_state_cage(m) + i] = unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
   for (int j = 0; j < m->n_rollers; j++)
@@ -36,10 +36,10 @@ static void walk(const trb_model *m, trb_dynamics *d, const double *start, const
     trb_clearance c;
     int           touches;
     memcpy(y, start, sizeof y);
-    const trb_pocket_gaps gaps = gaps_at(d, j, y, &touches);
-    CHECK(!(trb_pocket_clear(&gaps) && touches));
+    const trb_gaps gaps = gaps_at(d, j, y, &touches);
+    CHECK(!(trb_gaps_clear(&gaps) && touches));
     trb_clearance_set(m, &c, &gaps, y + trb_state_roller(j), y + trb_state_cage(m));
-    if (!trb_pocket_clear(&gaps)) {
+    if (!trb_gaps_clear(&gaps)) {
       CHECK(!trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + trb_state_cage(m)));
       continue;
     }
@@ -49,12 +49,12 @@ static void walk(const trb_model *m, trb_dynamics *d, const double *start, const
           y[trb_state_cage(m) + i] = start[trb_state_cage(m) + i] + along * direction[trb_state_cage(m) + i];
       for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++)
         if (!alone || only == i) y[trb_state_roller(j) + i] = start[trb_state_roller(j) + i] + along * direction[trb_state_roller(j) + i];
-      const int             holds = trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + trb_state_cage(m));
-      const trb_pocket_gaps now = gaps_at(d, j, y, &touches);
+      const int      holds = trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + trb_state_cage(m));
+      const trb_gaps now = gaps_at(d, j, y, &touches);
       if (holds) {
         ++*held;
         CHECK(!touches);
-        CHECK(trb_pocket_clear(&now));
+        CHECK(trb_gaps_clear(&now));
       } else {
         *reached += touches;
         if (touches) break;
@@ -90,13 +90,13 @@ static void check_scene(const trb_params *params)
 /* Not a number, and displacements beyond those that the arms are made for, prove nothing. */
 static void test_limits(void)
 {
-  const trb_params      p = rig_params();
-  trb_model            *m = rig_model(&p);
-  trb_clearance_arms    arms[TRB_N_GAPS];
-  const trb_pocket_gaps near = {{1e-4, 1e-4}}, unknown = {{1e-4, (double)NAN}};
-  double                roller[TRB_ROLLER_SIZE] = {0}, cage[TRB_CAGE_SIZE] = {0};
-  trb_clearance         c;
-  trb_clearance_arms_of(m, arms);
+  const trb_params   p = rig_params();
+  trb_model         *m = rig_model(&p);
+  trb_clearance_arms arms[TRB_N_GAPS];
+  const trb_gaps     near = {{1e-4, 1e-4}}, unknown = {{1e-4, (double)NAN}};
+  double             roller[TRB_ROLLER_SIZE] = {0}, cage[TRB_CAGE_SIZE] = {0};
+  trb_clearance      c;
+  trb_pair_pocket.clearance(m, arms);
   trb_clearance_set(m, &c, &near, roller, cage);
   CHECK(trb_clearance_holds(&c, arms, roller, cage));
   trb_clearance_set(m, &c, &unknown, roller, cage);

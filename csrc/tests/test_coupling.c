@@ -29,13 +29,13 @@ static void rows_of(const trb_frame *frame, const trb_roller_load *load, double 
   memcpy(rows, all, sizeof all);
 }
 
-static int loads_at(trb_dynamics *d, int roller, const double *y, trb_roller_load *load, trb_pocket_slopes *slopes)
+static int loads_at(trb_dynamics *d, int roller, const double *y, trb_roller_load *load, trb_slopes *slopes)
 {
   trb_counters counters = {0};
   trb_dynamics_pose(d, 0.01, y);
-  const trb_instant     at = trb_dynamics_instant(d);
-  const trb_pocket_gaps gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, load, slopes, NULL);
-  return !trb_pocket_clear(&gaps) && trb_norm(load->cage_force) > 0.0;
+  const trb_instant at = trb_dynamics_instant(d);
+  const trb_gaps    gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, load, slopes, NULL);
+  return !trb_gaps_clear(&gaps) && trb_norm(load->cage_force) > 0.0;
 }
 
 static int entry_of(const trb_model *m, int roller, int column)

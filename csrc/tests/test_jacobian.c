@@ -26,9 +26,9 @@ static void differentiate(trb_dynamics *d, double time, const double *y, double 
   for (int c = 0; c < n; c++) {
     const double scale = unit[trb_state_tolerance(m, c)], h = share * scale;
     moved[c] = y[c] + h;
-    trb_dynamics_derivative(d, time, moved, high);
+    trb_rhs(d, NULL, time, moved, high);
     moved[c] = y[c] - h;
-    trb_dynamics_derivative(d, time, moved, low);
+    trb_rhs(d, NULL, time, moved, low);
     moved[c] = y[c];
     for (int i = 0; i < n; i++) dense[i][c] = (high[i] - low[i]) / (2.0 * h) * scale / unit[trb_state_tolerance(m, i)];
   }

@@ -52,7 +52,7 @@ static void compare(const trb_model *m, const char *variant, const trb_dynamics 
     near_vector("outer_moment", variant, b->outer_moment, a->outer_moment, load * LENGTH, bound);
     near("elastic", variant, b->elastic, a->elastic, load * fmax(deepest, 1e-7), 3.0 * bound);
     for (int k = 0; k < TRB_N_TORQUES; k++) near("torque", variant, b->torque[k], a->torque[k], load * arm, bound);
-    for (int k = 0; k < TRB_N_POWERS; k++) near("power", variant, b->power[k], a->power[k], load * speed, bound);
+    for (int k = 0; k < TRB_N_LOSSES; k++) near("power", variant, b->power[k], a->power[k], load * speed, bound);
   }
 }
 
@@ -63,7 +63,7 @@ static void check_choice(trb_dynamics *d)
   trb_instant      at = trb_dynamics_instant(d);
   trb_roller_load  all[12], some[12];
   int              chosen[12], taken[12] = {0};
-  trb_contact_rings_only(m, &at, d->work, all);
+  trb_contact_slow(m, &at, d->work, all);
   memset(some, 0x55, sizeof some);
   at.chosen = chosen;
   at.n = 0;
@@ -71,7 +71,7 @@ static void check_choice(trb_dynamics *d)
     taken[j] = rig_random(&seed) > 0.3;
     if (taken[j]) chosen[at.n++] = j;
   }
-  trb_contact_rings_only(m, &at, d->work, some);
+  trb_contact_slow(m, &at, d->work, some);
   for (int j = 0; j < m->n_rollers; j++) {
     const double   *one = (const double *)&all[j], *other = (const double *)&some[j];
     trb_roller_load untouched;

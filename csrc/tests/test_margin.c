@@ -15,7 +15,7 @@ static void look(trb_dynamics *d, double turn_time, const double *y, trb_roller_
 {
   trb_dynamics_pose(d, turn_time, y);
   const trb_instant at = trb_dynamics_instant(d);
-  trb_contact_rings_only(d->model, &at, d->work, loads);
+  trb_contact_slow(d->model, &at, d->work, loads);
 }
 
 /* A step of a roller's coordinates, of a size between nanometres and tens of micrometres. */
@@ -56,7 +56,7 @@ static void walk(double aside, double lean, double *held, double *tightest)
       for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(j) + c] - place[trb_state_roller(j) + c];
       if (!trb_margin_holds(&arms, &d->drive, before[j].margin, share, place + trb_state_roller(j), step, turn)) continue;
       ++*held;
-      for (int i = 0; i < TRB_N_MARGINS; i++) {
+      for (int i = 0; i < TRB_N_PAIRS; i++) {
         const double change = fabs(after[j].margin[i] - before[j].margin[i]);
         if (before[j].margin[i] == TRB_NO_CONTACT) continue;
         CHECK(change <= share * before[j].margin[i] * (1.0 + 1e-9));

@@ -98,7 +98,7 @@ static void test_origin(const trb_params *params)
   /* the first evaluation is exact and becomes the origin, the second follows the tangents from it */
   for (int k = 0; k < 2; k++) {
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
-    trb_dynamics_derivative(b.d, 0.0, b.y, exact);
+    trb_rhs(b.d, NULL, 0.0, b.y, exact);
     CHECK(b.d->work->counters.tangent_rollers == k * b.model->n_rollers);
     for (int i = 0; i < trb_state_size(b.model); i++) CHECK_NEAR(found[i], exact[i], 1e-13 * fabs(exact[i]) + 1e-12);
   }
@@ -121,7 +121,7 @@ static void test_order(const trb_params *params)
     }
     place(&b, k == 0 ? 40.0 : 20.0, y);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
-    trb_dynamics_derivative(b.d, 0.0, y, exact);
+    trb_rhs(b.d, NULL, 0.0, y, exact);
     const int power = trb_state_quadrature(b.model) + TRB_Q_loss_traction_inner;
     off[k] = distance(&b, found, exact);
     lost[k] = fabs(found[power] - exact[power]) / fabs(exact[power]);
@@ -143,7 +143,7 @@ static void test_learning(const trb_params *params)
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, before);
   place(&b, 300.0, y);
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
-  trb_dynamics_derivative(b.d, 0.0, y, exact);
+  trb_rhs(b.d, NULL, 0.0, y, exact);
   for (int i = 0; i < trb_state_size(b.model); i++) CHECK_NEAR(found[i], exact[i], 1e-13 * fabs(exact[i]) + 1e-12);
   CHECK(b.d->work->counters.tangent_rollers == 0);
   for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].reach = 1e6;
@@ -166,7 +166,7 @@ static void test_reach(const trb_params *params)
     place(&b, 40.0 * sin(0.01 * k) * sin(0.0037 * k), y);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
     const long long now = b.d->work->counters.tangent_rollers;
-    trb_dynamics_derivative(b.d, 0.0, y, exact);
+    trb_rhs(b.d, NULL, 0.0, y, exact);
     for (int j = 0; j < b.model->n_rollers; j++) {
       const double off = roller_distance(&b, j, found, exact);
       wide += off > 2.0 * share;
@@ -191,7 +191,8 @@ static void test_bounds(const trb_params *params)
     for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = b.tangents->rollers[i].usual = 1e9;
     const long long before = b.d->work->counters.tangent_rollers;
     const int       j = 3 + k;
-    const double    margin = fmin(b.tangents->rollers[j].margin[TRB_MARGIN_RACES], b.tangents->rollers[j].margin[TRB_MARGIN_RIB]);
+    const double   *margins = b.tangents->rollers[j].margin;
+    const double    margin = fmin(fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]), margins[TRB_PAIR_rib]);
     const double    rolling = 0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI;
     memcpy(y, b.y, sizeof y);
     y[trb_state_roller(j) + (k == 0 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] += k == 0 ? 0.51 * margin : 1.01e-3 * fabs(rolling);
@@ -218,7 +219,7 @@ static void test_under_way(const trb_params *params)
   const double times[] = {1e-9, 0.5, 1.0 - 1e-12};
   for (int k = 0; k < 3; k++) {
     trb_tangents_derivative(b.tangents, b.d, &b.measure, times[k], b.y, found);
-    trb_dynamics_derivative(b.d, times[k], b.y, exact);
+    trb_rhs(b.d, NULL, times[k], b.y, exact);
     CHECK(memcmp(found, exact, (size_t)trb_state_size(b.model) * sizeof *found) == 0);
   }
   CHECK(b.d->work->counters.tangent_rollers == 0);
@@ -238,7 +239,7 @@ static void test_seldom(const trb_params *params)
   for (int k = 0; k < 400; k++) {
     place(&b, k % 2 == 0 ? 3e4 : -3e4, y);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
-    trb_dynamics_derivative(b.d, 0.0, y, exact);
+    trb_rhs(b.d, NULL, 0.0, y, exact);
     for (int i = 0; i < trb_state_size(b.model); i++) CHECK_NEAR(found[i], exact[i], 1e-13 * fabs(exact[i]) + 1e-12);
   }
   CHECK(b.d->work->counters.tangent_rollers == 0);
@@ -263,7 +264,7 @@ static void test_not_finite(const trb_params *params)
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
   CHECK(!isfinite(found[trb_state_roller(2) + TRB_ROLLER_v_t]));
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
-  trb_dynamics_derivative(b.d, 0.0, b.y, exact);
+  trb_rhs(b.d, NULL, 0.0, b.y, exact);
   CHECK(distance(&b, found, exact) < 1e-6);
   y[trb_state_roller(2) + TRB_ROLLER_v_t] = 1e300;
   trb_dynamics_pose(b.d, 0.0, y);

@@ -1,0 +1,39 @@
+/* Bounds of how far the motion of bodies can change a contact. A pair gives the lengths and angles; motion/margin.h, motion/hold.h and
+ * motion/clearance.h use them. */
+#ifndef TRB_CONTACT_BOUNDS_H
+#define TRB_CONTACT_BOUNDS_H
+
+#include "bearing/state.h"
+
+/* What a roller's motion does to the interference with a ring, at most. */
+typedef struct trb_margin_arm {
+  double arm;           /* largest distance of what can touch from the roller's centre of mass, m */
+  double ring;          /* and from the inner ring's centre, m */
+  int    on_end;        /* 1: the contact is on the roller's end, its normal nearly along the roller's axis */
+  double normal_sine;   /* of an end: of the angle between the normal and the bearing axis */
+  double normal_lean;   /* of an end: sine of the angle between the normal and the roller's axis */
+  double sphere_offset; /* of an end: the end's sphere, its centre from the bearing axis, m */
+} trb_margin_arm;
+
+/* What the coordinates of a roller do to one kind of contact, to first order. */
+typedef struct trb_hold_arms {
+  double radial, axial; /* parts of the normal, 1 */
+  double tilt, skew;    /* arms of tilt along the normal, and of skew across it, m */
+  double reach;         /* of the surface from the roller's centre of mass, m */
+  double off;           /* distance of the contact's centre of curvature from the ring's axis, m: skew moves it round the ring */
+} trb_hold_arms;
+
+/* Coordinates that come first in a roller's and in the cage's state. */
+enum { TRB_CLEARANCE_ROLLER = TRB_ROLLER_tilt + 1, TRB_CLEARANCE_CAGE = TRB_CAGE_psi + 1 };
+
+/* How far a unit of each coordinate moves what can touch, at most, m/m or m/rad. The large end's sphere has its centre far from the roller:
+ * flanks, which come nearer, have shorter arms. */
+typedef struct trb_clearance_arms {
+  double roller[TRB_CLEARANCE_ROLLER];
+  double cage[TRB_CLEARANCE_CAGE];
+} trb_clearance_arms;
+
+/* Displacements and gaps within which the arms of clearances hold, m. */
+static inline double trb_clearance_play(const trb_model *m) { return 0.5 * m->params.roller_diameter; }
+
+#endif

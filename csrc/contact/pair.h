@@ -1,0 +1,133 @@
+/* A pair: two bodies that act on each other, a row of the table of contact/pairs.c. Everything that evaluates forces, their slopes, records
+ * or peaks loops over the rows that are on and names none: what a pair can do stands in its row. */
+#ifndef TRB_CONTACT_PAIR_H
+#define TRB_CONTACT_PAIR_H
+
+#include <math.h>
+
+#include "contact/bounds.h"
+#include "contact/contact.h"
+
+typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE } trb_body;
+
+/* How a pair's forces change. Those of a slow pair follow the roller's motion smoothly; between exact evaluations a tangent may stand for
+ * them (stepping/tangent.h). Those of a fast pair come and go with impacts: a roller's are evaluated at every instant, unless the bodies
+ * are proven not to touch. */
+typedef enum trb_pace { TRB_PACE_SLOW, TRB_PACE_FAST } trb_pace;
+
+/* How a pair loses energy. */
+typedef enum trb_mechanism { TRB_BY_SLIDING, TRB_BY_ROLLING, TRB_BY_ROLLING_PRESSURE, TRB_BY_DAMPING, TRB_N_MECHANISMS } trb_mechanism;
+
+/* Where the pair's mechanisms are booked: entries of the lists of bearing/losses.h, or none. */
+typedef struct trb_bookings {
+  int loss[TRB_N_MECHANISMS];
+  int torque[TRB_N_MECHANISMS]; /* share of the torque on the inner ring */
+} trb_bookings;
+
+#define TRB_NO_TORQUE {TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none}
+/* Of a pair that only slides and damps. */
+#define TRB_LOSES_BY_SLIDING(name) \
+  {[TRB_BY_SLIDING] = TRB_LOSS_##name, \
+   [TRB_BY_ROLLING] = TRB_LOSS_none, \
+   [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_none, \
+   [TRB_BY_DAMPING] = TRB_LOSS_damping}
+#define TRB_TURNS_BY_SLIDING(name) \
+  {[TRB_BY_SLIDING] = TRB_TORQUE_##name, \
+   [TRB_BY_ROLLING] = TRB_TORQUE_none, \
+   [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none, \
+   [TRB_BY_DAMPING] = TRB_TORQUE_none}
+
+/* A roller's contact as records see it: what one contact has, the others leave at zero. */
+typedef struct trb_contact_view {
+  double load, pressure, film, film_parameter, slide_roll, traction, friction, height, overhang;
+} trb_contact_view;
+
+/* A roller's contact as peaks see it, and how far it holds. */
+typedef struct trb_contact_look {
+  double load;           /* N */
+  double pressure;       /* largest, Pa */
+  double film_parameter; /* mean weighted by load */
+  double way;            /* displacement that changes the load by a share, m; negative: unknown */
+  double speed;          /* change of velocity that changes film or damping by a share, m/s */
+} trb_contact_look;
+
+/* The pairs of a batch, all chosen rollers at once; added to the loads. detail may be NULL. */
+typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work,
+                               trb_roller_load *loads, trb_detail *detail);
+/* The same for peaks; looks: a row of batch->n a chosen roller; share: see trb_contact_look. Loads are scratch. */
+typedef void trb_pair_look(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+                           trb_detail *detail, double share, trb_contact_look *looks);
+/* A roller's contact out of a detail. */
+typedef void trb_pair_view(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view);
+/* What one roller and the other body do to each other, of a fast pair. The load is written only where they may touch, or with a detail
+ * that wants interferences, and so are slopes, if they are wanted. A detail's forces are added to. */
+typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
+                                trb_slopes *slopes, trb_detail *detail);
+
+typedef struct trb_pair {
+  const char *name;
+  const char *text;
+  trb_body    a, b; /* the bodies; a is the roller where there is one */
+  trb_pace    pace;
+  int         seats; /* 1: under load it holds a roller along the roller's axis */
+  int (*is_on)(const trb_model *m);
+  trb_pair_evaluate *evaluate;
+  trb_bookings       books;
+  /* of slow pairs */
+  trb_margin_arm (*margin)(const trb_model *m);
+  trb_hold_arms (*hold)(const trb_model *m);
+  trb_pair_look *look;
+  trb_pair_view *view;
+  /* of fast pairs */
+  trb_pair_touch *touch;
+  int (*surfaces)(const trb_model *m, int roller);                       /* that it tests for a roller; 0: they never touch */
+  void (*count_clear)(const trb_model *m, int roller, trb_counters *to); /* counts a roller that is proven clear */
+  void (*clearance)(const trb_model *m, trb_clearance_arms *arms);       /* TRB_N_GAPS of them */
+  double (*stiffness)(const trb_model *m, double depth);                 /* load over interference at an interference, N/m */
+} trb_pair;
+
+/* A power lost, and a share of the torque on the inner ring, by a mechanism of a pair. */
+static inline void trb_book_loss(const trb_pair *pair, trb_mechanism by, double power, trb_roller_load *load)
+{
+  if (pair->books.loss[by] != TRB_LOSS_none) load->power[pair->books.loss[by]] += power;
+}
+static inline void trb_book_torque(const trb_pair *pair, trb_mechanism by, double torque, trb_roller_load *load)
+{
+  if (pair->books.torque[by] != TRB_TORQUE_none) load->torque[pair->books.torque[by]] += torque;
+}
+
+/* Change of velocity that films and damping of a contact with a ring may bear, m/s. */
+static inline double trb_look_speed(const trb_model *m, double mean_speed, double share)
+{
+  double speed = m->film ? share * mean_speed : (double)INFINITY;
+  if (m->params.damping > 0.0 && m->params.damping_race > 0.0) speed = fmin(speed, share / m->params.damping_race);
+  return speed;
+}
+
+/* How far a point contact, with a load that goes with the interference to the power 1.5, or without a load, may go. */
+static inline double trb_look_way(const trb_point_detail *c, double share)
+{
+  return c->interference > 0.0 ? share * c->interference / 1.5 : -c->interference;
+}
+
+#define TRB_PAIR_DECLARE(name) extern const trb_pair trb_pair_##name;
+TRB_PAIRS(TRB_PAIR_DECLARE)
+#undef TRB_PAIR_DECLARE
+
+extern const trb_pair *const trb_pair_table[TRB_N_PAIRS];
+
+/* Whether a row is on: its effect is, and the model does not leave it out. */
+int trb_pair_is_on(const trb_model *m, int row);
+/* Bodies of a pair. */
+static inline int trb_pair_joins(const trb_pair *pair, trb_body body) { return pair->a == body || pair->b == body; }
+/* Puts the rows that are on into a workspace. */
+void trb_pairs_choose(const trb_model *m, trb_workspace *work);
+/* Whether a pair that is on holds rollers along their axes. */
+int trb_pairs_seat(const trb_model *m);
+/* For rows without a switch. */
+int trb_pair_always(const trb_model *m);
+
+trb_pair_evaluate trb_contact_raceway, trb_contact_rib, trb_contact_front_rib, trb_contact_pocket;
+trb_pair_touch    trb_contact_pocket_of;
+
+#endif

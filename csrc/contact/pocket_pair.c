@@ -1,0 +1,81 @@
+/* The pocket's row of the table of pairs: where it is on, and what bounds the change of its gaps. */
+#include <math.h>
+
+#include "contact/pair.h"
+#include "laws/line_contact.h"
+
+/* Farthest vertex of a kind of faces from their pocket's origin. */
+static double pocket_size(const trb_model *m, int flanks)
+{
+  double size = 0.0;
+  for (int i = 0; i < m->first_face[m->n_rollers]; i++) {
+    const trb_face *f = &m->faces[i].face;
+    const double    origin = sqrt(f->origin[0] * f->origin[0] + f->origin[1] * f->origin[1] + f->origin[2] * f->origin[2]);
+    if ((m->faces[i].part == TRB_PART_FLANK) != flanks) continue;
+    for (int k = 0; k < m->faces[i].n; k++) size = fmax(size, origin + hypot(f->outline[2 * k], f->outline[2 * k + 1]));
+  }
+  return size;
+}
+
+/* Farthest sphere of the flank from the roller's centre of mass. */
+static double chain_length(const trb_model *m)
+{
+  double length = 0.0;
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int k = 0; k < m->n_nodes; k++) length = fmax(length, fabs(m->centre[j * m->n_lanes + k]));
+  return length;
+}
+
+/* roller, pocket: largest distances of what can touch, in the roller from its centre of mass, in the pocket from its origin; ring: of what
+ * can touch in either from the roller's place, across the bearing's axis. */
+static trb_clearance_arms arms_from(const trb_model *m, double roller, double pocket, double ring)
+{
+  const trb_geometry *g = &m->geometry;
+  /* about the roller's centre; about the bearing's or the cage's axis; about the cage's centre */
+  const double turn = fmax(roller, pocket), orbit = g->roller_centre_radius + ring + 4.0 * trb_clearance_play(m);
+  const double lean = g->roller_centre_radius + turn + fabs(m->params.cage_offset) + 4.0 * trb_clearance_play(m);
+  return (trb_clearance_arms){{1.0, orbit, 1.0, turn, turn}, {1.0, 1.0, 1.0, lean, lean, orbit}};
+}
+
+/* A gap is a distance between things fixed in either body: centres of spheres and the small end's plane here, outlines there. It changes
+ * by no more than the arm of any of them about the axis of a turn. */
+static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        offset = fabs(g->roller_mass_offset), chain = chain_length(m);
+  const double        length = fmax(fabs(g->small_end_station), fabs(g->large_end_station)) + offset;
+  const double        sphere = fabs(g->sphere_centre - g->apex_to_mid) + offset;
+  const double flanks = pocket_size(m, 1) + offset + trb_clearance_play(m), ends = pocket_size(m, 0) + offset + trb_clearance_play(m);
+  arms[TRB_GAP_FLANK] = arms_from(m, chain, flanks, fmax(chain, flanks));
+  arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));
+}
+
+static int is_on(const trb_model *m) { return m->first_face[m->n_rollers] > 0; }
+
+static int faces_of(const trb_model *m, int roller) { return m->first_face[roller + 1] - m->first_face[roller]; }
+
+static void count_clear(const trb_model *m, int roller, trb_counters *to)
+{
+  to->pocket_tests += faces_of(m, roller);
+  to->pocket_culled += faces_of(m, roller);
+}
+
+/* Of the flank. */
+static double stiffness_of(const trb_model *m, double depth)
+{
+  return m->pocket_palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
+}
+
+const trb_pair trb_pair_pocket = {.name = "pocket",
+                                  .text = "roller in its pocket of the cage",
+                                  .a = TRB_BODY_ROLLER,
+                                  .b = TRB_BODY_CAGE,
+                                  .pace = TRB_PACE_FAST,
+                                  .is_on = is_on,
+                                  .evaluate = trb_contact_pocket,
+                                  .touch = trb_contact_pocket_of,
+                                  .surfaces = faces_of,
+                                  .count_clear = count_clear,
+                                  .clearance = clearance_of,
+                                  .stiffness = stiffness_of,
+                                  .books = {.loss = TRB_LOSES_BY_SLIDING(pocket), .torque = TRB_NO_TORQUE}};

@@ -1,0 +1,56 @@
+#include "motion/rhs.h"
+
+/* Poses of the bodies, but for rollers whose forces are approximated and that touch nothing: they need none. Gives how many rollers are to
+ * be evaluated exactly; they are d->exact, and d->near says which fast pairs of a roller may touch. */
+static int place(trb_dynamics *d, const trb_approximation *instead, double time, const double *y)
+{
+  const trb_model *m = d->model;
+  int              n_exact = 0;
+  trb_motion_at(d->motion, m, time, &d->drive);
+  trb_cage_pose_unpack(m, &d->drive, y + trb_state_cage(m), &d->cage);
+  if (instead != NULL) instead->begin(instead->self, d, time);
+  for (int j = 0; j < m->n_rollers; j++) {
+    const double *own = y + trb_state_roller(j);
+    d->near[j] = trb_dynamics_near(d, j, y);
+    const int follows = instead != NULL && instead->follow(instead->self, d, j, own, d->flows[j]);
+    if (!follows) d->exact[n_exact++] = j;
+    if (!follows || d->near[j] != 0) trb_dynamics_pose_roller(d, j, own);
+  }
+  d->work->counters.tangent_rollers += m->n_rollers - n_exact;
+  return n_exact;
+}
+
+/* Flows under the slow pairs' exact forces. */
+static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int n_exact, const double *y)
+{
+  trb_instant at = trb_dynamics_instant(d);
+  at.chosen = d->exact;
+  at.n = n_exact;
+  if (n_exact == 0) return;
+  trb_contact_slow(d->model, &at, d->work, d->loads);
+  for (int k = 0; k < n_exact; k++) {
+    const int j = d->exact[k];
+    trb_dynamics_roller_flow(d, j, &d->loads[j], d->flows[j]);
+    if (instead != NULL) instead->learn(instead->self, d, j, y + trb_state_roller(j), d->flows[j]);
+  }
+}
+
+void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, const double *y, double *rates)
+{
+  const trb_model *m = d->model;
+  trb_vec3         force = {0, 0, 0}, moment = {0, 0, 0};
+  d->work->counters.force_evaluations++;
+  /* poses */
+  const int n_exact = place(d, instead, time, y);
+  trb_dynamics_start(d, rates);
+  /* slow pairs, exactly or approximated */
+  evaluate_slow(d, instead, n_exact, y);
+  for (int j = 0; j < m->n_rollers; j++) {
+    /* fast pairs that are not proven clear */
+    if (d->near[j] != 0) trb_dynamics_add_fast(d, j, y, d->flows[j], &force, &moment);
+    /* rates of rollers */
+    trb_dynamics_put(d, j, d->flows[j], rates);
+  }
+  /* rates of the cage */
+  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));
+}

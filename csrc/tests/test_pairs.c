@@ -1,0 +1,267 @@
+/* The table of pairs drives everything: a row that is taken out is gone from forces, margins, Jacobian, records, peaks and audit alike,
+ * and nothing else changes. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "motion/equilibrium.h"
+#include "motion/peak_look.h"
+#include "rig.h"
+#include "stepping/jacobian.h"
+
+enum { MOST = 512, MOST_FIELDS = 4096 };
+
+static unsigned long long seed = 17;
+
+/* All that is seen of a state by a model with some rows only. */
+typedef struct seen {
+  double           rates[MOST], record[MOST_FIELDS], peaks[MOST_FIELDS];
+  trb_roller_load *loads;
+  trb_arrow       *arrow;
+  int              bounds; /* pairs that have margins */
+} seen;
+
+static trb_params params_of_test(void)
+{
+  trb_params p = rig_params();
+  p.damping = 1, p.rolling_pressure_force = 1, p.front_rib_clearance = 5e-6;
+  return p;
+}
+
+/* Every pair touches somewhere: some rollers stand at the front rib, the others at the back one; the cage is against its rollers. */
+static trb_motion *make_state(double *y)
+{
+  const trb_params p = params_of_test();
+  trb_model       *m = rig_model(&p);
+  const double     speed = 100.0 * TRB_PI;
+  trb_motion      *motion = rig_motion(rig_state(m, 4930.0, speed, y), speed);
+  rig_disturb(m, &seed, y);
+  for (int j = 0; j < m->n_rollers; j += 3) y[trb_state_roller(j) + TRB_ROLLER_z] -= 10e-6;
+  trb_model_free(m);
+  return motion;
+}
+
+static void look(const trb_motion *motion, const double *y, unsigned left_out, seen *s)
+{
+  const trb_params p = params_of_test();
+  trb_model       *m = rig_model(&p);
+  trb_dynamics    *d;
+  trb_detail      *detail;
+  trb_jacobian    *jac;
+  trb_peak_look   *peaks;
+  m->pairs_left_out = left_out;
+  memset(s, 0, sizeof *s);
+  s->loads = calloc((size_t)m->n_rollers, sizeof *s->loads);
+  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_detail_create(m, &detail, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_jacobian_create(m, motion, "scalar", &jac, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_arrow_create(m->n_rollers, 1, &s->arrow, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_peak_look_create(m, motion, "scalar", &peaks, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_record_offset(m, TRB_N_FIELDS) <= MOST_FIELDS && trb_peak_look_sizes(m).all <= MOST_FIELDS)) exit(1);
+  trb_rhs(d, NULL, 0.01, y, s->rates);
+  trb_record_fill(d, 0.01, y, detail, s->record);
+  memcpy(s->loads, d->loads, (size_t)m->n_rollers * sizeof *s->loads);
+  trb_jacobian_fill(jac, 0.01, y, 1, s->arrow);
+  trb_peak_look_at(peaks, 0.01, y, s->peaks);
+  s->bounds = trb_margin_arms_of(m).n;
+  trb_peak_look_free(peaks);
+  trb_jacobian_free(jac);
+  trb_detail_free(detail);
+  trb_dynamics_free(d);
+  trb_model_free(m);
+}
+
+static void forget(seen *s)
+{
+  free(s->loads);
+  trb_arrow_free(s->arrow);
+}
+
+/* a - b = c - d within a share of the largest of the four, and how much a pair makes of it. */
+static double check_share(const char *what, double a, double b, double c, double d, double share, double floor)
+{
+  const double largest = fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(d)));
+  if (!CHECK_NEAR((a - b) - (c - d), 0.0, share * largest + floor)) printf("  %s: %g %g %g %g\n", what, a, b, c, d);
+  return fabs(c - d) > share * largest + floor ? fabs(c - d) : 0.0;
+}
+
+/* Rates are affine in forces: what a row makes is the same whatever the other rows do. */
+static void check_rates(const seen *full, const seen *out, const seen *alone, const seen *none, int size)
+{
+  double made = 0.0;
+  for (int i = 0; i < size; i++) made += check_share("rate", full->rates[i], out->rates[i], alone->rates[i], none->rates[i], 1e-9, 1e-6);
+  CHECK(made > 0.0);
+}
+
+static void check_jacobian(const seen *full, const seen *out, const seen *alone, const seen *none, int n)
+{
+  double made = 0.0;
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < TRB_NR; i++) {
+      double largest = 0.0;
+      for (int c = 0; c < TRB_NR; c++) largest = fmax(largest, fabs(full->arrow->rollers[j].own[c][i]));
+      for (int c = 0; c < TRB_NR; c++)
+        made += check_share("slope", full->arrow->rollers[j].own[c][i], out->arrow->rollers[j].own[c][i],
+                            alone->arrow->rollers[j].own[c][i], none->arrow->rollers[j].own[c][i], 1e-3, 1e-5 * largest);
+    }
+  CHECK(made > 0.0);
+}
+
+/* The row's own fields are there with it and zero without it; those of the other rows are as they were. */
+static void check_records(const trb_model *m, int row, const seen *full, const seen *out)
+{
+  const char  *name = trb_pair_table[row]->name;
+  const size_t length = strlen(name);
+  double       made = 0.0;
+  for (int f = 0; f < TRB_N_FIELDS; f++) {
+    const trb_field_info *field = &trb_field_table[f];
+    const int             from = trb_record_offset(m, f), to = trb_record_offset(m, f + 1);
+    const int             contact = strcmp(field->group, "contacts") == 0 || strcmp(field->group, "pocket") == 0;
+    const int             own = contact && strncmp(field->name, name, length) == 0 && field->name[length] == '_';
+    for (int i = from; i < to && contact; i++) {
+      made += own ? fabs(full->record[i]) : 0.0;
+      CHECK(out->record[i] == (own ? 0.0 : full->record[i]));
+    }
+  }
+  CHECK(made > 0.0);
+}
+
+/* Losses, elastic energy and torques are sums over rows. */
+static void check_audit(const trb_model *m, const seen *full, const seen *out, const seen *alone)
+{
+  static const char *const groups[] = {"power", "torque", "energy", "ring"};
+  double                   made = 0.0;
+  for (int f = 0; f < TRB_N_FIELDS; f++) {
+    const trb_field_info *field = &trb_field_table[f];
+    const int             at = trb_record_offset(m, f);
+    int                   summed = strcmp(field->name, "kinetic_energy") != 0 && strcmp(field->name, "ring_position") != 0;
+    int                   found = 0;
+    for (size_t g = 0; g < sizeof groups / sizeof groups[0]; g++) found |= strcmp(field->group, groups[g]) == 0;
+    summed &= found && strncmp(field->name, "work_", 5) != 0 && strncmp(field->name, "loss_", 5) != 0;
+    for (int i = at; i < trb_record_offset(m, f + 1) && summed; i++)
+      made += check_share(field->name, full->record[i], out->record[i], alone->record[i], 0.0, 1e-9, 1e-9);
+  }
+  CHECK(made > 0.0);
+}
+
+static void check_loads(const trb_model *m, int row, const seen *full, const seen *out, const seen *alone)
+{
+  double elastic = 0.0, force = 0.0;
+  for (int j = 0; j < m->n_rollers; j++) {
+    const trb_roller_load *a = &full->loads[j], *b = &out->loads[j], *c = &alone->loads[j];
+    CHECK_NEAR(a->elastic, b->elastic + c->elastic, 1e-12 * a->elastic);
+    CHECK_NEAR(trb_norm(trb_sub(trb_sub(a->force, b->force), c->force)), 0.0, 1e-9 * (trb_norm(b->force) + trb_norm(c->force)) + 1e-9);
+    elastic += c->elastic;
+    force += trb_norm(c->force);
+    if (trb_pair_table[row]->margin == NULL) continue;
+    CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
+  }
+  CHECK(elastic > 0.0 && force > 1.0);
+  CHECK(full->bounds == out->bounds + (trb_pair_table[row]->margin != NULL) && alone->bounds == full->bounds - out->bounds);
+}
+
+/* Loads among the peaks: gone with the row. */
+static void check_peaks(const trb_model *m, int row, const seen *full, const seen *out)
+{
+  static const int of_row[TRB_N_PAIRS] = {[TRB_PAIR_outer] = TRB_PEAK_outer_load,
+                                          [TRB_PAIR_inner] = TRB_PEAK_inner_load,
+                                          [TRB_PAIR_rib] = TRB_PEAK_rib_load,
+                                          [TRB_PAIR_front_rib] = TRB_PEAK_front_rib_load,
+                                          [TRB_PAIR_pocket] = TRB_PEAK_pocket_force};
+  double           made = 0.0;
+  for (int other = 0; other < TRB_N_PAIRS; other++)
+    for (int i = trb_peak_look_offset(m, of_row[other]); i < trb_peak_look_offset(m, of_row[other] + 1); i++) {
+      made += other == row ? full->peaks[i] : 0.0;
+      CHECK(out->peaks[i] == (other == row ? 0.0 : full->peaks[i]));
+    }
+  CHECK(made > 0.0);
+}
+
+static void test_rows(void)
+{
+  double           y[MOST];
+  trb_motion      *motion = make_state(y);
+  const trb_params p = params_of_test();
+  trb_model       *m = rig_model(&p);
+  static seen      full, none, out, alone;
+  const unsigned   all = (1U << TRB_N_PAIRS) - 1U;
+  look(motion, y, 0, &full);
+  look(motion, y, all, &none);
+  for (int row = 0; row < TRB_N_PAIRS; row++) {
+    look(motion, y, 1U << row, &out);
+    look(motion, y, all & ~(1U << row), &alone);
+    check_rates(&full, &out, &alone, &none, trb_state_size(m));
+    check_jacobian(&full, &out, &alone, &none, m->n_rollers);
+    check_loads(m, row, &full, &out, &alone);
+    check_records(m, row, &full, &out);
+    check_audit(m, &full, &out, &alone);
+    check_peaks(m, row, &full, &out);
+    for (int j = 0; j < m->n_rollers; j++)
+      if (trb_pair_joins(trb_pair_table[row], TRB_BODY_CAGE)) CHECK(!out.arrow->borders[j].coupled);
+    forget(&out);
+    forget(&alone);
+  }
+  forget(&full);
+  forget(&none);
+  trb_model_free(m);
+  trb_motion_free(motion);
+}
+
+static void run(const trb_params *params, unsigned left_out, const trb_motion *motion, const double *start, double *end)
+{
+  trb_model         *m = rig_model(params);
+  const trb_settings settings = rig_settings();
+  trb_simulation    *s;
+  m->pairs_left_out = left_out;
+  if (!CHECK(trb_simulation_create(m, motion, "bdf", "scalar", &settings, 0.0, start, &s, NULL) == TRB_OK)) exit(1);
+  for (int i = 0; i < 60; i++) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
+  memcpy(end, s->integrator.y, (size_t)trb_state_size(m) * sizeof *end);
+  trb_simulation_free(s);
+  trb_model_free(m);
+}
+
+/* Where an effect of the scene switches a pair off, a run is the same to the bit without the pair's row. */
+static void test_switches(void)
+{
+  double      y[MOST], with[MOST] = {0}, without[MOST] = {0}, row[MOST] = {0};
+  trb_motion *motion = make_state(y);
+  for (int k = 0; k < 3; k++) {
+    trb_params     on = params_of_test(), off = on;
+    const unsigned rows[] = {1U << TRB_PAIR_rib, 1U << TRB_PAIR_front_rib, 1U << TRB_PAIR_pocket};
+    if (k == 0) off.back_rib = 0;
+    if (k == 1) off.front_rib = 0;
+    if (k == 2) off.pocket_bars = off.pocket_ends = 0;
+    run(&on, 0, motion, y, with);
+    run(&off, 0, motion, y, without);
+    run(&on, rows[k], motion, y, row);
+    CHECK(memcmp(row, without, sizeof row) == 0);
+    CHECK(memcmp(row, with, sizeof row) != 0);
+  }
+  trb_motion_free(motion);
+}
+
+/* Without the pair that seats rollers the equilibrium is that of a bearing without a back-face rib. */
+static void test_equilibrium(void)
+{
+  trb_params       off = rig_params();
+  const trb_params on = rig_params();
+  double           angles[12], rollers[2][36] = {{0}}, loads[2][36];
+  off.back_rib = 0;
+  for (int k = 0; k < 2; k++) {
+    trb_model      *m = rig_model(k == 0 ? &off : &on);
+    trb_equilibrium e = {.load = {0, 0, -4930, 0, 0}, .fixed = {0, 0, 0, 1, 1}, .angles = angles, .rollers = rollers[k], .loads = loads[k]};
+    for (int j = 0; j < 12; j++) angles[j] = trb_nominal_angle(m, j);
+    if (k == 1) m->pairs_left_out = 1U << TRB_PAIR_rib;
+    CHECK(trb_equilibrium_solve(m, &e, NULL) == TRB_OK);
+    trb_model_free(m);
+  }
+  CHECK(memcmp(rollers[0], rollers[1], sizeof rollers[0]) == 0 && memcmp(loads[0], loads[1], sizeof loads[0]) == 0);
+  for (int j = 0; j < 12; j++) CHECK(loads[1][3 * j] > 0.0 && loads[1][3 * j + 2] == 0.0);
+}
+
+int main(void)
+{
+  test_rows();
+  test_switches();
+  test_equilibrium();
+  return check_report();
+}
