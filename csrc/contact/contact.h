@@ -51,20 +51,40 @@ typedef struct trb_counters {
 /* Margin where there is no such contact, m. */
 #define TRB_NO_CONTACT 1e30
 
-typedef struct trb_roller_load {
-  trb_vec3 force;                 /* on the roller, in its cylindrical frame, N */
-  trb_vec3 moment;                /* on the roller about its centre of mass, N m */
-  trb_vec3 ring_force;            /* on the inner ring, in the same frame, N */
-  trb_vec3 ring_moment;           /* on the inner ring about its centre, N m */
-  trb_vec3 outer_force;           /* on the outer ring, in the same frame, N */
-  trb_vec3 outer_moment;          /* on the outer ring about the apex, N m */
-  trb_vec3 cage_force;            /* on the cage, in R, N */
-  trb_vec3 cage_moment;           /* on the cage about its centre of mass, N m */
-  double   elastic;               /* J */
-  double   margin[TRB_N_PAIRS];   /* of slow pairs: least distance of the contact from its onset or end, m */
-  double   torque[TRB_N_TORQUES]; /* shares of the torque on the inner ring about its axis, N m */
-  double   power[TRB_N_LOSSES];   /* lost: minus the power of the forces on both bodies, less what is stored elastically, W */
-} trb_roller_load;
+/* Kinds of bodies that a pair can join. */
+typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE, TRB_BODY_OIL, TRB_N_BODIES } trb_body;
+
+/* How a pair loses energy. */
+typedef enum trb_mechanism { TRB_BY_SLIDING, TRB_BY_ROLLING, TRB_BY_ROLLING_PRESSURE, TRB_BY_DAMPING, TRB_N_MECHANISMS } trb_mechanism;
+
+typedef struct trb_wrench {
+  trb_vec3 force;  /* N */
+  trb_vec3 moment; /* N m */
+} trb_wrench;
+
+/* What the two bodies of a pair do to each other. Wrenches on a roller and on the rings are in the roller's cylindrical frame, those on the
+ * cage and of pairs without a roller in R; moments are about the centre of mass, the inner ring's centre, the apex for the outer ring. */
+typedef struct trb_load {
+  trb_wrench on_a, on_b;
+  double     elastic;                  /* J */
+  double     lost[TRB_N_MECHANISMS];   /* power of minus the forces on both bodies, less what is stored elastically, W */
+  double     torque[TRB_N_MECHANISMS]; /* on a ring about its axis, N m */
+} trb_load;
+
+/* The sum over pairs that act on a roller, or over those without a roller. */
+typedef struct trb_loads {
+  trb_wrench on[TRB_N_BODIES];
+  double     elastic;               /* J */
+  double     margin[TRB_N_PAIRS];   /* of slow pairs: least distance of the contact from its onset or end, m */
+  double     torque[TRB_N_TORQUES]; /* shares of the torque on the inner ring about its axis, N m */
+  double     power[TRB_N_LOSSES];   /* lost, W */
+} trb_loads;
+
+static inline void trb_add_wrench(trb_wrench *to, const trb_wrench *w)
+{
+  to->force = trb_add(to->force, w->force);
+  to->moment = trb_add(to->moment, w->moment);
+}
 
 /* Everything that a contact can see at an instant. */
 typedef struct trb_instant {
@@ -137,15 +157,10 @@ trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_wor
 void       trb_workspace_free(trb_workspace *work);
 
 /* Zero the chosen rollers' loads and sum every pair that the scene has. */
-void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail);
+void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
 
 /* Zero the chosen rollers' loads and sum the slow pairs only. */
-void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads);
-
-typedef struct trb_wrench {
-  trb_vec3 force;  /* N */
-  trb_vec3 moment; /* N m */
-} trb_wrench;
+void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads);
 
 /* How the wrench on a roller, about its centre of mass, follows its motion relative to the other body: a column for a translation along
  * each axis, then for a turn about each, the other body at rest. Left out is that the normal at an edge turns, load over radius beside

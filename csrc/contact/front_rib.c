@@ -9,7 +9,7 @@
 #include "contact/pair.h"
 
 static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_batch *batch,
-                        trb_counters *counters, trb_roller_load *load, trb_point_detail *c)
+                        trb_counters *counters, trb_loads *to, trb_point_detail *c)
 {
   const trb_geometry *g = &m->geometry;
   const trb_vec3      a = r->frame.a, end = trb_axpy(r->x, g->small_end_station - g->roller_mass_offset, a);
@@ -19,7 +19,7 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   const double        d = trb_dot(trb_sub(centre, end), a) + m->front_rib_radius[edge] * lean;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
-  load->margin[batch->index[0]] = trb_min(load->margin[batch->index[0]], fabs(d));
+  to->margin[batch->index[0]] = trb_min(to->margin[batch->index[0]], fabs(d));
   if (!(d > 0.0)) return;
   counters->front_rib_contacts++;
   const trb_vec3  point = trb_axpy(centre, m->front_rib_radius[edge] / lean, across), arm = trb_sub(point, r->x),
@@ -30,21 +30,20 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d), q = trb_damped(m, elastic, m->params.damping_race, touch.rate);
   const double   mu = m->pocket_friction ? trb_sliding_coefficient(m, touch.speed) : 0.0, drag = q * mu / touch.speed;
   const trb_vec3 force = trb_axpy(trb_scale(-q, normal), -drag, touch.sliding), torque = trb_cross(ring_arm, force);
-  load->force = trb_add(load->force, force);
-  load->moment = trb_add(load->moment, trb_cross(arm, force));
-  load->ring_force = trb_sub(load->ring_force, force);
-  load->ring_moment = trb_sub(load->ring_moment, torque);
-  trb_book_torque(batch->pairs[0], TRB_BY_SLIDING, -trb_dot(torque, ring->axis), load);
-  load->elastic += 0.4 * elastic * d;
-  trb_book_loss(batch->pairs[0], TRB_BY_SLIDING, drag * trb_dot(touch.sliding, touch.sliding), load);
-  trb_book_loss(batch->pairs[0], TRB_BY_DAMPING, (q - elastic) * touch.rate, load);
+  const trb_load load = {
+      .on_a = {force, trb_cross(arm, force)},
+      .on_b = {trb_scale(-1.0, force), trb_scale(-1.0, torque)},
+      .elastic = 0.4 * elastic * d,
+      .lost = {[TRB_BY_SLIDING] = drag * trb_dot(touch.sliding, touch.sliding), [TRB_BY_DAMPING] = (q - elastic) * touch.rate},
+      .torque = {[TRB_BY_SLIDING] = -trb_dot(torque, ring->axis)}};
+  trb_add_load(batch->pairs[0], &load, to);
   c->load += q;
   c->friction += q * mu;
   c->friction_coefficient = mu;
   c->sliding_speed = touch.speed;
 }
 
-void trb_contact_front_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+void trb_contact_front_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                            trb_detail *detail)
 {
   for (int k = 0; k < at->n; k++) {
@@ -71,7 +70,7 @@ static trb_hold_arms hold_of(const trb_model *m)
   return (trb_hold_arms){1.0, 1.0, arm, arm, m->params.total_length + m->params.roller_diameter, 1e-12};
 }
 
-static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                     trb_detail *detail, double share, trb_contact_look *looks)
 {
   trb_contact_front_rib(m, at, batch, work, loads, detail);

@@ -89,6 +89,18 @@ typedef struct trb_race_output {
   int      loaded; /* 0: no interference, all forces are zero */
 } trb_race_output;
 
+static inline trb_load trb_load_of_output(const trb_race_output *out)
+{
+  return (trb_load){.on_a = {out->force, out->moment},
+                    .on_b = {out->ring_force, out->ring_moment},
+                    .elastic = out->elastic,
+                    .lost = {[TRB_BY_SLIDING] = out->power_traction,
+                             [TRB_BY_ROLLING] = out->power_rolling,
+                             [TRB_BY_ROLLING_PRESSURE] = out->power_pressure,
+                             [TRB_BY_DAMPING] = out->power_damping},
+                    .torque = {[TRB_BY_SLIDING] = out->torque_traction, [TRB_BY_ROLLING] = out->torque_rolling}};
+}
+
 typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,
                                 trb_race_output *outputs);
 

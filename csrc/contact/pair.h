@@ -8,15 +8,10 @@
 #include "contact/bounds.h"
 #include "contact/contact.h"
 
-typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE } trb_body;
-
 /* How a pair's forces change. Those of a slow pair follow the roller's motion smoothly; between exact evaluations a tangent may stand for
  * them (stepping/tangent.h). Those of a fast pair come and go with impacts: a roller's are evaluated at every instant, unless the bodies
  * are proven not to touch. */
 typedef enum trb_pace { TRB_PACE_SLOW, TRB_PACE_FAST } trb_pace;
-
-/* How a pair loses energy. */
-typedef enum trb_mechanism { TRB_BY_SLIDING, TRB_BY_ROLLING, TRB_BY_ROLLING_PRESSURE, TRB_BY_DAMPING, TRB_N_MECHANISMS } trb_mechanism;
 
 /* Where the pair's mechanisms are booked: entries of the lists of bearing/losses.h, or none. */
 typedef struct trb_bookings {
@@ -52,16 +47,16 @@ typedef struct trb_contact_look {
 } trb_contact_look;
 
 /* The pairs of a batch, all chosen rollers at once; added to the loads. detail may be NULL. */
-typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work,
-                               trb_roller_load *loads, trb_detail *detail);
+typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
+                               trb_detail *detail);
 /* The same for peaks; looks: a row of batch->n a chosen roller; share: see trb_contact_look. Loads are scratch. */
-typedef void trb_pair_look(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+typedef void trb_pair_look(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                            trb_detail *detail, double share, trb_contact_look *looks);
 /* A roller's contact out of a detail. */
 typedef void trb_pair_view(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view);
 /* What one roller and the other body do to each other, of a fast pair. The load is written only where they may touch, or with a detail
  * that wants interferences, and so are slopes, if they are wanted. A detail's forces are added to. */
-typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
+typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
                                 trb_slopes *slopes, trb_detail *detail);
 
 typedef struct trb_pair {
@@ -86,14 +81,16 @@ typedef struct trb_pair {
   double (*stiffness)(const trb_model *m, double depth);                 /* load over interference at an interference, N/m */
 } trb_pair;
 
-/* A power lost, and a share of the torque on the inner ring, by a mechanism of a pair. */
-static inline void trb_book_loss(const trb_pair *pair, trb_mechanism by, double power, trb_roller_load *load)
+/* Adds what a pair does to the sums. */
+static inline void trb_add_load(const trb_pair *pair, const trb_load *load, trb_loads *to)
 {
-  if (pair->books.loss[by] != TRB_LOSS_none) load->power[pair->books.loss[by]] += power;
-}
-static inline void trb_book_torque(const trb_pair *pair, trb_mechanism by, double torque, trb_roller_load *load)
-{
-  if (pair->books.torque[by] != TRB_TORQUE_none) load->torque[pair->books.torque[by]] += torque;
+  trb_add_wrench(&to->on[pair->a], &load->on_a);
+  trb_add_wrench(&to->on[pair->b], &load->on_b);
+  to->elastic += load->elastic;
+  for (int by = 0; by < TRB_N_MECHANISMS; by++) {
+    if (pair->books.loss[by] != TRB_LOSS_none) to->power[pair->books.loss[by]] += load->lost[by];
+    if (pair->books.torque[by] != TRB_TORQUE_none) to->torque[pair->books.torque[by]] += load->torque[by];
+  }
 }
 
 /* Change of velocity that films and damping of a contact with a ring may bear, m/s. */

@@ -37,7 +37,7 @@ int trb_pairs_seat(const trb_model *m)
   return seats;
 }
 
-static void clear(const trb_instant *at, trb_roller_load *loads)
+static void clear(const trb_instant *at, trb_loads *loads)
 {
   for (int k = 0; k < at->n; k++) {
     memset(&loads[at->chosen[k]], 0, sizeof *loads);
@@ -45,7 +45,7 @@ static void clear(const trb_instant *at, trb_roller_load *loads)
   }
 }
 
-void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads, trb_detail *detail)
+void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail)
 {
   clear(at, loads);
   work->counters.force_evaluations++;
@@ -55,7 +55,7 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
   }
 }
 
-void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_roller_load *loads)
+void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads)
 {
   clear(at, loads);
   for (int i = 0; i < work->n_batches; i++) {

@@ -106,7 +106,7 @@ static void add_slopes(const trb_model *m, const pocket_touch *c, const trb_touc
 
 /* Adds the wrench of one point. */
 static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, const pocket_touch *c, trb_counters *counters,
-                 trb_roller_load *load, pocket_sums *sums)
+                 trb_load *load, pocket_sums *sums)
 {
   const trb_vec3  arm = trb_sub(c->point, p->x), cage_arm = trb_sub(c->point, p->cage);
   const trb_touch touch =
@@ -121,8 +121,8 @@ static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, c
   p->cage_force = trb_sub(p->cage_force, force);
   p->cage_moment = trb_sub(p->cage_moment, trb_cross(cage_arm, force));
   load->elastic += c->elastic * c->interference / (1.0 + c->exponent);
-  trb_book_loss(&trb_pair_pocket, TRB_BY_SLIDING, drag * trb_dot(touch.sliding, touch.sliding), load);
-  trb_book_loss(&trb_pair_pocket, TRB_BY_DAMPING, (q - c->elastic) * touch.rate, load);
+  load->lost[TRB_BY_SLIDING] += drag * trb_dot(touch.sliding, touch.sliding);
+  load->lost[TRB_BY_DAMPING] += (q - c->elastic) * touch.rate;
   sums->force += q;
   sums->friction += q * mu;
   counters->pocket_nodes++;
@@ -151,7 +151,7 @@ static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_v
 static double height(const trb_pocket_face *f, trb_vec3 point) { return trb_dot(trb_sub(point, array_vector(f->face.origin)), f->normal); }
 
 static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
-                          trb_roller_load *load, pocket_sums *sums)
+                          trb_load *load, pocket_sums *sums)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
   const double  stiffness = m->pocket_palmgren * f->face.stiffness_factor[0], *weight = m->race[TRB_RACE_OUTER].weight;
@@ -177,7 +177,7 @@ static trb_vec3 end_sphere(const trb_model *m, const pocket_view *p)
 }
 
 static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int exact, trb_counters *counters,
-                              trb_roller_load *load, pocket_sums *sums)
+                              trb_load *load, pocket_sums *sums)
 {
   const trb_geometry *g = &m->geometry;
   const trb_vec3      c = end_sphere(m, p);
@@ -201,7 +201,7 @@ static trb_vec3 vertex_of(const trb_pocket_face *f, int i)
   return trb_axpy(trb_axpy(array_vector(f->face.origin), vertex[0], array_vector(f->face.u)), vertex[1], array_vector(f->face.v));
 }
 
-static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_counters *counters, trb_roller_load *load,
+static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_counters *counters, trb_load *load,
                               pocket_sums *sums)
 {
   const trb_vec3 end = small_end(m, p), normal = trb_scale(-1.0, p->a);
@@ -251,7 +251,7 @@ static double face_gap(const trb_model *m, const trb_pocket_face *f, const pocke
 }
 
 static pocket_sums face_forces(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
-                               trb_roller_load *load)
+                               trb_load *load)
 {
   pocket_sums sums = {0.0, 0.0, -INFINITY};
   if (f->part == TRB_PART_FLANK) flank_on_face(m, f, p, roller, exact, counters, load, &sums);
@@ -276,7 +276,7 @@ static void note_gap(trb_gaps *gaps, const trb_pocket_face *f, double gap)
   *of = trb_min(*of, gap);
 }
 
-trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
+trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
                                trb_slopes *slopes, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
@@ -308,30 +308,19 @@ trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int ro
     note_gap(&gaps, f, f->part == TRB_PART_FLANK ? least : -sums.deepest);
     if (detail != NULL) add_detail(m, roller, f, &sums, detail);
   }
-  load->force = trb_from_frame(&p.axes, p.force);
-  load->moment = trb_from_frame(&p.axes, p.moment);
-  load->cage_force = trb_turn_z(trb_from_frame(&p.axes, p.cage_force), r->cosine, r->sine);
-  load->cage_moment = trb_turn_z(trb_from_frame(&p.axes, p.cage_moment), r->cosine, r->sine);
+  load->on_a.force = trb_from_frame(&p.axes, p.force);
+  load->on_a.moment = trb_from_frame(&p.axes, p.moment);
+  load->on_b.force = trb_turn_z(trb_from_frame(&p.axes, p.cage_force), r->cosine, r->sine);
+  load->on_b.moment = trb_turn_z(trb_from_frame(&p.axes, p.cage_moment), r->cosine, r->sine);
   return gaps;
 }
 
-static void add_load(const trb_roller_load *load, trb_roller_load *to)
-{
-  to->force = trb_add(to->force, load->force);
-  to->moment = trb_add(to->moment, load->moment);
-  to->cage_force = trb_add(to->cage_force, load->cage_force);
-  to->cage_moment = trb_add(to->cage_moment, load->cage_moment);
-  to->elastic += load->elastic;
-  for (int k = 0; k < TRB_N_LOSSES; k++) to->power[k] += load->power[k];
-}
-
-void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                         trb_detail *detail)
 {
-  (void)batch;
   for (int k = 0; k < at->n; k++) {
-    trb_roller_load load;
-    const trb_gaps  gaps = trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail);
-    if (!trb_gaps_clear(&gaps)) add_load(&load, &loads[at->chosen[k]]);
+    trb_load       load;
+    const trb_gaps gaps = trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail);
+    if (!trb_gaps_clear(&gaps)) trb_add_load(batch->pairs[0], &load, &loads[at->chosen[k]]);
   }
 }

@@ -23,25 +23,11 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
                           outer ? 1.0 : -1.0};
 }
 
-static void add_output(const trb_race_output *out, const trb_pair *pair, int row, trb_roller_load *load)
+static void add_output(const trb_race_output *out, const trb_pair *pair, int row, trb_loads *loads)
 {
-  load->margin[row] = trb_min(load->margin[row], fabs(out->depth));
-  load->force = trb_add(load->force, out->force);
-  load->moment = trb_add(load->moment, out->moment);
-  load->elastic += out->elastic;
-  trb_book_loss(pair, TRB_BY_SLIDING, out->power_traction, load);
-  trb_book_loss(pair, TRB_BY_ROLLING, out->power_rolling, load);
-  trb_book_loss(pair, TRB_BY_ROLLING_PRESSURE, out->power_pressure, load);
-  trb_book_loss(pair, TRB_BY_DAMPING, out->power_damping, load);
-  trb_book_torque(pair, TRB_BY_SLIDING, out->torque_traction, load);
-  trb_book_torque(pair, TRB_BY_ROLLING, out->torque_rolling, load);
-  if (pair->b == TRB_BODY_OUTER_RING) {
-    load->outer_force = trb_add(load->outer_force, out->ring_force);
-    load->outer_moment = trb_add(load->outer_moment, out->ring_moment);
-    return;
-  }
-  load->ring_force = trb_add(load->ring_force, out->ring_force);
-  load->ring_moment = trb_add(load->ring_moment, out->ring_moment);
+  const trb_load load = trb_load_of_output(out);
+  loads->margin[row] = trb_min(loads->margin[row], fabs(out->depth));
+  trb_add_load(pair, &load, loads);
 }
 
 /* One contact alone; its nodes are the first lanes of the workspace, if it is loaded. */
@@ -75,7 +61,7 @@ static void copy_detail(const trb_model *m, const contact *contacts, const trb_l
 }
 
 /* The races of a roller follow each other, so that a tile has both. */
-void trb_contact_raceway(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+void trb_contact_raceway(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                          trb_detail *detail)
 {
   enum { MOST = TRB_TILE_LANES / TRB_LANE_PAD };
@@ -147,7 +133,7 @@ static void look_at_race(const trb_model *m, const trb_instant *at, int roller, 
   look->film_parameter = parameter / look->load;
 }
 
-static void look_at_races(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+static void look_at_races(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                           trb_detail *detail, double share, trb_contact_look *looks)
 {
   (void)loads;

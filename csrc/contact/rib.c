@@ -44,28 +44,21 @@ static void fill_detail(const trb_model *m, const trb_ring_pose *ring, int lane,
   c->film_parameter = l->film_parameter[lane];
 }
 
-void trb_contact_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+void trb_contact_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                      trb_detail *detail)
 {
-  const trb_pair *pair = batch->pairs[0];
   const int       row = batch->index[0];
   trb_race_output outputs[TRB_TILE_LANES];
   trb_kernel_variants[work->variant].rib(m, at, work->lanes, &work->counters, outputs);
   for (int k = 0; k < at->n; k++) {
     const int              j = at->chosen[k];
     const trb_race_output *out = &outputs[k];
-    trb_roller_load       *load = &loads[j];
+    trb_loads             *to = &loads[j];
     if (detail != NULL) fill_detail(m, &at->inner[j], k, work->lanes, out, &detail->rib[j]);
-    load->margin[row] = trb_min(load->margin[row], fabs(out->depth));
+    to->margin[row] = trb_min(to->margin[row], fabs(out->depth));
     if (!out->loaded) continue;
-    load->force = trb_add(load->force, out->force);
-    load->moment = trb_add(load->moment, out->moment);
-    load->ring_force = trb_add(load->ring_force, out->ring_force);
-    load->ring_moment = trb_add(load->ring_moment, out->ring_moment);
-    trb_book_torque(pair, TRB_BY_SLIDING, out->torque_traction, load);
-    load->elastic += out->elastic;
-    trb_book_loss(pair, TRB_BY_SLIDING, out->power_traction, load);
-    trb_book_loss(pair, TRB_BY_DAMPING, out->power_damping, load);
+    const trb_load load = trb_load_of_output(out);
+    trb_add_load(batch->pairs[0], &load, to);
   }
 }
 
@@ -97,7 +90,7 @@ static trb_hold_arms hold_of(const trb_model *m)
                          fabs(g->roller_centre_radius + station * m->axis_sine)};
 }
 
-static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_roller_load *loads,
+static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                     trb_detail *detail, double share, trb_contact_look *looks)
 {
   trb_contact_rib(m, at, batch, work, loads, detail);

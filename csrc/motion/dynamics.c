@@ -180,7 +180,7 @@ void trb_dynamics_roller_inertia(const trb_dynamics *d, int roller, double *flow
   d->work->counters.gravity_bodies++;
 }
 
-void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow)
+void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_wrench *load, double *flow)
 {
   const trb_geometry    *g = &d->model->geometry;
   const trb_roller_pose *r = &d->rollers[roller];
@@ -196,21 +196,21 @@ void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_r
     flow[TRB_ROLLER_omega_n] += per_transverse * moment.x;
     flow[TRB_ROLLER_omega_t] += per_transverse * moment.y;
   }
-  for (int k = 0; k < TRB_N_LOSSES; k++) flow[TRB_FLOW_quadrature + TRB_Q_losses + k] += load->power[k];
 }
 
-void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow)
+void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow)
 {
   const trb_ring_pose *ring = &d->inner[roller];
-  const double         shaft = -trb_dot(load->ring_moment, ring->axis) * d->drive.shaft_speed;
+  const trb_wrench    *on_ring = &loads->on[TRB_BODY_INNER_RING];
+  const double         shaft = -trb_dot(on_ring->moment, ring->axis) * d->drive.shaft_speed;
   trb_dynamics_roller_inertia(d, roller, flow);
-  trb_dynamics_roller_response(d, roller, load, flow);
+  trb_dynamics_roller_response(d, roller, &loads->on[TRB_BODY_ROLLER], flow);
+  for (int k = 0; k < TRB_N_LOSSES; k++) flow[TRB_FLOW_quadrature + TRB_Q_losses + k] += loads->power[k];
   flow[TRB_FLOW_quadrature + TRB_Q_work_shaft] += shaft;
-  flow[TRB_FLOW_quadrature + TRB_Q_work_ring] +=
-      -trb_dot(load->ring_force, ring->velocity) - trb_dot(load->ring_moment, ring->omega) - shaft;
+  flow[TRB_FLOW_quadrature + TRB_Q_work_ring] += -trb_dot(on_ring->force, ring->velocity) - trb_dot(on_ring->moment, ring->omega) - shaft;
 }
 
-void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 force, trb_vec3 moment, double *rates)
+void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, const trb_wrench *load, double *rates)
 {
   const trb_model     *m = d->model;
   const trb_drive     *drive = &d->drive;
@@ -219,19 +219,19 @@ void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y, trb_vec3 fo
   if (m->params.with_cage <= 0.0) return;
   const double     w = drive->frame_speed, per_mass = 1.0 / m->params.cage_mass;
   const trb_vec3   g = has_gravity(drive) ? gravity_in(drive, 1.0, 0.0) : trb_v(0, 0, 0);
-  const turn_rates turn =
-      euler(&c->frame, c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial, trb_to_frame(&c->frame, moment));
+  const turn_rates turn = euler(&c->frame, c->omega_frame, w, m->params.cage_inertia_transverse, m->params.cage_inertia_axial,
+                                trb_to_frame(&c->frame, load->moment));
   rates[TRB_CAGE_x] = c->v.x + w * y[TRB_CAGE_y];
   rates[TRB_CAGE_y] = c->v.y - w * y[TRB_CAGE_x];
   rates[TRB_CAGE_psi] = c->omega_frame.z - turn.frame_a;
-  rates[TRB_CAGE_v_x] = per_mass * force.x + g.x + w * c->v.y;
-  rates[TRB_CAGE_v_y] = per_mass * force.y + g.y - w * c->v.x;
+  rates[TRB_CAGE_v_x] = per_mass * load->force.x + g.x + w * c->v.y;
+  rates[TRB_CAGE_v_y] = per_mass * load->force.y + g.y - w * c->v.x;
   rates[TRB_CAGE_omega_a] = turn.spin.z - drive->frame_rate;
   if (m->params.planar > 0.0) return;
   rates[TRB_CAGE_z] = c->v.z;
   rates[TRB_CAGE_skew] = turn.skew;
   rates[TRB_CAGE_tilt] = turn.tilt;
-  rates[TRB_CAGE_v_z] = per_mass * force.z + g.z;
+  rates[TRB_CAGE_v_z] = per_mass * load->force.z + g.z;
   rates[TRB_CAGE_omega_n] = turn.spin.x;
   rates[TRB_CAGE_omega_t] = turn.spin.y;
 }
@@ -269,8 +269,7 @@ unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)
   return near;
 }
 
-trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_roller_load *load, trb_slopes *slopes,
-                            trb_detail *detail)
+trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail)
 {
   const trb_instant at = trb_dynamics_instant(d);
   trb_fast_pair    *pair = &d->fast[fast];
@@ -279,15 +278,17 @@ trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double 
   return gaps;
 }
 
-void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment)
+void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *on_cage)
 {
   for (int f = 0; f < d->n_fast; f++) {
-    trb_roller_load load;
+    const trb_pair *pair = d->fast[f].pair;
+    trb_load        load;
     if (!(d->near[roller] >> f & 1U)) continue;
     const trb_gaps gaps = trb_dynamics_touch(d, f, roller, y, &load, NULL, NULL);
     if (trb_gaps_clear(&gaps)) continue;
-    trb_dynamics_roller_response(d, roller, &load, flow);
-    *cage_force = trb_add(*cage_force, load.cage_force);
-    *cage_moment = trb_add(*cage_moment, load.cage_moment);
+    trb_dynamics_roller_response(d, roller, &load.on_a, flow);
+    for (int by = 0; by < TRB_N_MECHANISMS; by++)
+      if (pair->books.loss[by] != TRB_LOSS_none) flow[TRB_FLOW_quadrature + TRB_Q_losses + pair->books.loss[by]] += load.lost[by];
+    trb_add_wrench(on_cage, &load.on_b);
   }
 }

@@ -29,7 +29,7 @@ typedef struct trb_dynamics {
   trb_roller_pose  *rollers; /* at the last state evaluated */
   trb_ring_pose    *inner;   /* the inner ring in each roller's frame */
   trb_cage_pose     cage;
-  trb_roller_load  *loads;
+  trb_loads        *loads;
   int              *everyone; /* 0, 1, ...: all rollers */
   trb_fast_pair     fast[TRB_N_PAIRS];
   int               n_fast;
@@ -53,10 +53,10 @@ void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 void trb_dynamics_roller_inertia(const trb_dynamics *d, int roller, double *flow);
-/* Added to a flow; the load is one that puts nothing on the inner ring. */
-void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow);
-/* Both, and the work of the inner ring. */
-void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow);
+/* Added to a flow: what a wrench on the roller does. */
+void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_wrench *load, double *flow);
+/* Both, the losses and the work of the inner ring. */
+void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
 
 /* A right-hand side is started, has every roller's flow put in, and the cage's rates. */
 void trb_dynamics_start(const trb_dynamics *d, double *rates);
@@ -64,11 +64,10 @@ void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, dou
 /* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
-trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_roller_load *load, trb_slopes *slopes,
-                            trb_detail *detail);
+trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
 /* What a roller does in the fast pairs in which it is near, added to its flow and to the sums of the cage. */
-void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment);
+void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *on_cage);
 /* Rates of the cage under the sum of what the rollers put on it. */
-void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y_cage, trb_vec3 force, trb_vec3 moment, double *rates);
+void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y_cage, const trb_wrench *load, double *rates);
 
 #endif

@@ -74,15 +74,15 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
   at.cage = NULL;
   trb_contact_all(m, &at, s->d->work, s->d->loads, NULL);
   for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_load *l = &s->d->loads[j];
+    const trb_wrench      *l = &s->d->loads[j].on[TRB_BODY_ROLLER], *on_ring = &s->d->loads[j].on[TRB_BODY_INNER_RING];
     const trb_roller_pose *r = &s->d->rollers[j];
     const double           moment = trb_dot(l->moment, r->frame.t);
     forces[3 * j] = l->force.x + g->roller_mass * orbit * orbit * r->radius;
     /* without a pair that seats it nothing but friction holds a roller along its axis: it is held where it is */
     forces[3 * j + 1] = s->seated ? l->force.z : 0.0;
     forces[3 * j + 2] = moment - gyro;
-    energy += l->elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[3 * j + 2];
-    const trb_vec3 force = trb_turn_z(l->ring_force, r->cosine, r->sine), torque = trb_turn_z(l->ring_moment, r->cosine, r->sine);
+    energy += s->d->loads[j].elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[3 * j + 2];
+    const trb_vec3 force = trb_turn_z(on_ring->force, r->cosine, r->sine), torque = trb_turn_z(on_ring->moment, r->cosine, r->sine);
     double        *q = ring + TRB_RING_FREEDOMS * j;
     q[0] = force.x, q[1] = force.y, q[2] = force.z, q[3] = torque.x, q[4] = torque.y;
   }
@@ -224,7 +224,7 @@ static double largest_load(const solver *s)
 {
   double largest = 0.0;
   for (int i = 0; i < 3; i++) largest = fmax(largest, fabs(s->e->load[i]));
-  for (int j = 0; j < s->m->n_rollers; j++) largest = fmax(largest, fabs(s->d->loads[j].force.x));
+  for (int j = 0; j < s->m->n_rollers; j++) largest = fmax(largest, fabs(s->d->loads[j].on[TRB_BODY_ROLLER].force.x));
   return largest;
 }
 

@@ -180,7 +180,7 @@ static void look_at_fast(trb_peak_look *p, const double *y, double *values)
     if (near == 0) continue;
     pose(p, j, y);
     for (int f = 0; f < p->d->n_fast; f++) {
-      trb_roller_load load;
+      trb_load load;
       if (near >> f & 1U) (void)trb_dynamics_touch(p->d, f, j, y, &load, NULL, &forces);
     }
   }

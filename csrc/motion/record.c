@@ -106,8 +106,8 @@ static void put_cage(writer *w, const double *y)
   const trb_frame body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};
   trb_vec3        force = {0, 0, 0}, moment = {0, 0, 0};
   for (int j = 0; j < m->n_rollers; j++) {
-    force = trb_add(force, d->loads[j].cage_force);
-    moment = trb_add(moment, d->loads[j].cage_moment);
+    force = trb_add(force, d->loads[j].on[TRB_BODY_CAGE].force);
+    moment = trb_add(moment, d->loads[j].on[TRB_BODY_CAGE].moment);
   }
   put3(&PUT(cage_position, 0), trb_sub(trb_axpy(centre, -m->params.cage_offset, axis), plane));
   put3(&PUT(cage_rail_position, 0), trb_sub(trb_axpy(centre, m->params.cage_rail_offset - m->params.cage_offset, axis), rail));
@@ -179,11 +179,12 @@ static void put_ring(writer *w)
   trb_vec3            force = {0, 0, 0}, moment = {0, 0, 0};
   double              torque[TRB_N_TORQUES] = {0}, outer = 0.0, all = 0.0;
   for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_load *l = &d->loads[j];
-    force = trb_add(force, from_orbit(&d->drive, &d->rollers[j], l->ring_force));
-    moment = trb_add(moment, from_orbit(&d->drive, &d->rollers[j], l->ring_moment));
-    all += trb_dot(l->ring_moment, d->inner[j].axis);
-    outer += l->outer_moment.z;
+    const trb_loads  *l = &d->loads[j];
+    const trb_wrench *on_ring = &l->on[TRB_BODY_INNER_RING];
+    force = trb_add(force, from_orbit(&d->drive, &d->rollers[j], on_ring->force));
+    moment = trb_add(moment, from_orbit(&d->drive, &d->rollers[j], on_ring->moment));
+    all += trb_dot(on_ring->moment, d->inner[j].axis);
+    outer += l->on[TRB_BODY_OUTER_RING].moment.z;
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += l->torque[k];
   }
   const double sign = d->drive.shaft_speed < 0.0 ? -1.0 : 1.0;

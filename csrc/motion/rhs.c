@@ -38,7 +38,7 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
 void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, const double *y, double *rates)
 {
   const trb_model *m = d->model;
-  trb_vec3         force = {0, 0, 0}, moment = {0, 0, 0};
+  trb_wrench       on_cage = {{0, 0, 0}, {0, 0, 0}};
   d->work->counters.force_evaluations++;
   /* poses */
   const int n_exact = place(d, instead, time, y);
@@ -47,10 +47,10 @@ void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, con
   evaluate_slow(d, instead, n_exact, y);
   for (int j = 0; j < m->n_rollers; j++) {
     /* fast pairs that are not proven clear */
-    if (d->near[j] != 0) trb_dynamics_add_fast(d, j, y, d->flows[j], &force, &moment);
+    if (d->near[j] != 0) trb_dynamics_add_fast(d, j, y, d->flows[j], &on_cage);
     /* rates of rollers */
     trb_dynamics_put(d, j, d->flows[j], rates);
   }
   /* rates of the cage */
-  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, rates + trb_state_cage(m));
+  trb_dynamics_cage_rates(d, y + trb_state_cage(m), &on_cage, rates + trb_state_cage(m));
 }

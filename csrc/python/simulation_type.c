@@ -332,23 +332,23 @@ static int put_detail(const trb_model *m, const trb_detail *detail, PyObject *ou
   return 0;
 }
 
-/* Wrenches of every roller's contacts, in the frames that trb_roller_load documents, shape (roller, width). */
-static int put_loads(const trb_model *m, const trb_roller_load *loads, PyObject *out)
+/* Wrenches of every roller's contacts, in the frames that trb_load documents, shape (roller, width). */
+static int put_loads(const trb_model *m, const trb_loads *loads, PyObject *out)
 {
   const struct {
     const char *key;
     size_t      offset;
     int         width;
-  } parts[] = {{"force", offsetof(trb_roller_load, force), 3},
-               {"moment", offsetof(trb_roller_load, moment), 3},
-               {"ring_force", offsetof(trb_roller_load, ring_force), 3},
-               {"ring_moment", offsetof(trb_roller_load, ring_moment), 3},
-               {"outer_force", offsetof(trb_roller_load, outer_force), 3},
-               {"outer_moment", offsetof(trb_roller_load, outer_moment), 3},
-               {"cage_force", offsetof(trb_roller_load, cage_force), 3},
-               {"cage_moment", offsetof(trb_roller_load, cage_moment), 3},
-               {"elastic_energy", offsetof(trb_roller_load, elastic), 1},
-               {"power", offsetof(trb_roller_load, power), TRB_N_LOSSES}};
+  } parts[] = {{"force", offsetof(trb_loads, on[TRB_BODY_ROLLER].force), 3},
+               {"moment", offsetof(trb_loads, on[TRB_BODY_ROLLER].moment), 3},
+               {"ring_force", offsetof(trb_loads, on[TRB_BODY_INNER_RING].force), 3},
+               {"ring_moment", offsetof(trb_loads, on[TRB_BODY_INNER_RING].moment), 3},
+               {"outer_force", offsetof(trb_loads, on[TRB_BODY_OUTER_RING].force), 3},
+               {"outer_moment", offsetof(trb_loads, on[TRB_BODY_OUTER_RING].moment), 3},
+               {"cage_force", offsetof(trb_loads, on[TRB_BODY_CAGE].force), 3},
+               {"cage_moment", offsetof(trb_loads, on[TRB_BODY_CAGE].moment), 3},
+               {"elastic_energy", offsetof(trb_loads, elastic), 1},
+               {"power", offsetof(trb_loads, power), TRB_N_LOSSES}};
   for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++) {
     npy_intp  shape[2] = {m->n_rollers, parts[p].width};
     PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);

@@ -66,40 +66,40 @@ static trb_wrench wrench_of(const trb_coupling *k, rigid motion, int is_place)
 }
 
 /* Loads of roller and cage from the change of the wrench; shift: of the roller from the cage's centre, which is an arm of the force. */
-static trb_roller_load loads_of(const trb_coupling *k, trb_wrench change, trb_vec3 shift)
+static trb_load loads_of(const trb_coupling *k, trb_wrench change, trb_vec3 shift)
 {
-  trb_roller_load load;
+  trb_load load;
   memset(&load, 0, sizeof load);
-  load.force = change.force;
-  load.moment = change.moment;
-  load.cage_force = to_cage(k, trb_scale(-1.0, change.force));
-  load.cage_moment =
+  load.on_a.force = change.force;
+  load.on_a.moment = change.moment;
+  load.on_b.force = to_cage(k, trb_scale(-1.0, change.force));
+  load.on_b.moment =
       to_cage(k, trb_scale(-1.0, trb_add(change.moment, trb_add(trb_cross(k->arm, change.force), trb_cross(shift, k->force)))));
   return load;
 }
 
-void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_cage_pose *cage, const trb_roller_load *load)
+void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_cage_pose *cage, const trb_load *load)
 {
   k->roller = roller;
   k->cage = cage;
   k->arm = trb_sub(roller->x, to_roller(k, cage->x));
-  k->force = load->force;
-  k->moment = load->moment;
+  k->force = load->on_a.force;
+  k->moment = load->on_a.moment;
 }
 
-trb_roller_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
+trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
 {
-  const int       is_place = coordinate < TRB_ROLLER_v_r;
-  const rigid     motion = roller_motion(k->roller, coordinate);
-  trb_roller_load load = loads_of(k, wrench_of(k, motion, is_place), is_place ? motion.shift : none);
+  const int   is_place = coordinate < TRB_ROLLER_v_r;
+  const rigid motion = roller_motion(k->roller, coordinate);
+  trb_load    load = loads_of(k, wrench_of(k, motion, is_place), is_place ? motion.shift : none);
   if (!is_place) return load;
   /* the frames that the roller's force and moment are written in turn with it */
-  if (coordinate == TRB_ROLLER_psi) load.force = trb_sub(load.force, trb_cross(third, k->force));
-  load.moment = trb_sub(load.moment, trb_cross(motion.turn, k->moment));
+  if (coordinate == TRB_ROLLER_psi) load.on_a.force = trb_sub(load.on_a.force, trb_cross(third, k->force));
+  load.on_a.moment = trb_sub(load.on_a.moment, trb_cross(motion.turn, k->moment));
   return load;
 }
 
-trb_roller_load trb_coupling_of_cage(const trb_coupling *k, int coordinate)
+trb_load trb_coupling_of_cage(const trb_coupling *k, int coordinate)
 {
   const int      is_place = coordinate < TRB_CAGE_v_x;
   const rigid    cage = cage_motion(k->cage, coordinate);

@@ -14,9 +14,9 @@ typedef struct trb_coupling {
 } trb_coupling;
 
 /* Bodies and load that the slopes, given before, belong to. */
-void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_cage_pose *cage, const trb_roller_load *load);
+void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_cage_pose *cage, const trb_load *load);
 /* Slope of the loads of roller and cage with a coordinate of the roller, and of the cage. */
-trb_roller_load trb_coupling_of_roller(const trb_coupling *k, int coordinate);
-trb_roller_load trb_coupling_of_cage(const trb_coupling *k, int coordinate);
+trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate);
+trb_load trb_coupling_of_cage(const trb_coupling *k, int coordinate);
 
 #endif

@@ -35,7 +35,7 @@ void trb_jacobian_free(trb_jacobian *jacobian)
 }
 
 /* What a load adds to the rates of a roller. */
-static void roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates)
+static void roller_response(const trb_dynamics *d, int roller, const trb_wrench *load, double *rates)
 {
   double flow[TRB_FLOW_SIZE] = {0};
   trb_dynamics_roller_response(d, roller, load, flow);
@@ -44,7 +44,7 @@ static void roller_response(const trb_dynamics *d, int roller, const trb_roller_
 
 /* Change of the cage's loads with each of its coordinates. */
 typedef struct cage_loads {
-  trb_vec3 force[TRB_NC], moment[TRB_NC];
+  trb_wrench by[TRB_NC];
 } cage_loads;
 
 /* What a fast pair in contact adds to its roller's block, to both borders, and to the cage's loads. still: rates of a cage without loads. */
@@ -53,33 +53,33 @@ static void add_fast(const trb_dynamics *d, int j, const trb_coupling *k, const 
 {
   double change[TRB_NR], rates[TRB_NC];
   for (int c = 0; c < TRB_NR; c++) {
-    const trb_roller_load load = trb_coupling_of_roller(k, c);
-    roller_response(d, j, &load, change);
-    trb_dynamics_cage_rates(d, y_cage, load.cage_force, load.cage_moment, rates);
+    const trb_load load = trb_coupling_of_roller(k, c);
+    roller_response(d, j, &load.on_a, change);
+    trb_dynamics_cage_rates(d, y_cage, &load.on_b, rates);
     for (int i = 0; i < TRB_NR; i++) block->own[c][i] += change[i];
     for (int i = 0; i < TRB_NC; i++) border->from[c][i] += rates[i] - still[i];
   }
   for (int c = 0; c < TRB_NC; c++) {
-    const trb_roller_load load = trb_coupling_of_cage(k, c);
-    roller_response(d, j, &load, change);
+    const trb_load load = trb_coupling_of_cage(k, c);
+    roller_response(d, j, &load.on_a, change);
     for (int i = 0; i < TRB_NR; i++) border->to_cage[c][i] += change[i];
-    sums->force[c] = trb_add(sums->force[c], load.cage_force);
-    sums->moment[c] = trb_add(sums->moment[c], load.cage_moment);
+    trb_add_wrench(&sums->by[c], &load.on_b);
   }
 }
 
-/* The cage's block by differences of its rates under the loads force and moment, which change with its coordinates. */
-static void cage_block(trb_jacobian *jac, const double *y, trb_vec3 force, trb_vec3 moment, const cage_loads *changes, trb_arrow *arrow)
+/* The cage's block by differences of its rates under a load, which changes with its coordinates. */
+static void cage_block(trb_jacobian *jac, const double *y, const trb_wrench *load, const cage_loads *changes, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
   double          *y_cage = jac->moved + trb_state_cage(m), base[TRB_NC], rates[TRB_NC];
-  trb_dynamics_cage_rates(d, y + trb_state_cage(m), force, moment, base);
+  trb_dynamics_cage_rates(d, y + trb_state_cage(m), load, base);
   for (int c = 0; c < TRB_NC; c++) {
     const double was = y_cage[c], h = trb_difference[trb_state_tolerance(m, trb_state_cage(m) + c)], per = 1.0 / h;
     y_cage[c] = was + h;
     trb_cage_pose_unpack(m, &d->drive, y_cage, &d->cage);
-    trb_dynamics_cage_rates(d, y_cage, trb_axpy(force, h, changes->force[c]), trb_axpy(moment, h, changes->moment[c]), rates);
+    const trb_wrench moved = {trb_axpy(load->force, h, changes->by[c].force), trb_axpy(load->moment, h, changes->by[c].moment)};
+    trb_dynamics_cage_rates(d, y_cage, &moved, rates);
     for (int i = 0; i < TRB_NC; i++) arrow->cage[c][i] = per * (rates[i] - base[i]);
     y_cage[c] = was;
   }
@@ -100,25 +100,24 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   if (!arrow->with_cage) return;
   const trb_instant at = trb_dynamics_instant(d);
   const double     *y_cage = y + trb_state_cage(m);
-  trb_vec3          force = {0, 0, 0}, moment = {0, 0, 0};
+  trb_wrench        on_cage = {{0, 0, 0}, {0, 0, 0}};
   cage_loads        changes = {0};
   double            still[TRB_NC];
-  trb_dynamics_cage_rates(d, y_cage, force, moment, still);
+  trb_dynamics_cage_rates(d, y_cage, &on_cage, still);
   for (int j = 0; j < m->n_rollers; j++) {
     trb_arrow_border *border = &arrow->borders[j];
     border->coupled = 0;
     for (int f = 0; f < d->n_fast; f++) {
-      trb_coupling    k;
-      trb_roller_load load;
-      const trb_gaps  gaps = d->fast[f].pair->touch(m, &at, j, &d->work->counters, &load, &k.slopes, NULL);
-      if (trb_gaps_clear(&gaps) || !(trb_norm(load.cage_force) > 0.0)) continue;
+      trb_coupling   k;
+      trb_load       load;
+      const trb_gaps gaps = d->fast[f].pair->touch(m, &at, j, &d->work->counters, &load, &k.slopes, NULL);
+      if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0)) continue;
       if (!border->coupled) memset(border, 0, sizeof *border);
       border->coupled = 1;
       trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
-      force = trb_add(force, load.cage_force);
-      moment = trb_add(moment, load.cage_moment);
+      trb_add_wrench(&on_cage, &load.on_b);
       add_fast(d, j, &k, y_cage, still, &arrow->rollers[j], border, &changes);
     }
   }
-  cage_block(jac, y, force, moment, &changes, arrow);
+  cage_block(jac, y, &on_cage, &changes, arrow);
 }

@@ -13,12 +13,12 @@ static unsigned long long seed = 23;
 /* Lower bounds of a roller's gaps at a state, and whether its pocket pushes. */
 static trb_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touches)
 {
-  trb_roller_load load = {0};
-  trb_counters    counters = {0};
+  trb_load     load = {0};
+  trb_counters counters = {0};
   trb_dynamics_pose(d, 0.0, y);
   const trb_instant at = trb_dynamics_instant(d);
   const trb_gaps    gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL, NULL);
-  *touches = trb_norm(load.cage_force) > 0.0 || counters.pocket_nodes > 0;
+  *touches = trb_norm(load.on_b.force) > 0.0 || counters.pocket_nodes > 0;
   return gaps;
 }
 

@@ -11,31 +11,31 @@ enum { ROWS = 12, COLUMNS = TRB_ROLLER_SIZE + TRB_CAGE_SIZE };
 static unsigned long long seed = 41;
 
 /* A roller's force in its cylindrical frame, its moment in its own, and the cage's force and moment in R. */
-static void rows_of(const trb_frame *frame, const trb_roller_load *load, double *rows)
+static void rows_of(const trb_frame *frame, const trb_load *load, double *rows)
 {
-  const trb_vec3 moment = trb_to_frame(frame, load->moment);
-  const double   all[ROWS] = {load->force.x,
-                              load->force.y,
-                              load->force.z,
+  const trb_vec3 moment = trb_to_frame(frame, load->on_a.moment);
+  const double   all[ROWS] = {load->on_a.force.x,
+                              load->on_a.force.y,
+                              load->on_a.force.z,
                               moment.x,
                               moment.y,
                               moment.z,
-                              load->cage_force.x,
-                              load->cage_force.y,
-                              load->cage_force.z,
-                              load->cage_moment.x,
-                              load->cage_moment.y,
-                              load->cage_moment.z};
+                              load->on_b.force.x,
+                              load->on_b.force.y,
+                              load->on_b.force.z,
+                              load->on_b.moment.x,
+                              load->on_b.moment.y,
+                              load->on_b.moment.z};
   memcpy(rows, all, sizeof all);
 }
 
-static int loads_at(trb_dynamics *d, int roller, const double *y, trb_roller_load *load, trb_slopes *slopes)
+static int loads_at(trb_dynamics *d, int roller, const double *y, trb_load *load, trb_slopes *slopes)
 {
   trb_counters counters = {0};
   trb_dynamics_pose(d, 0.01, y);
   const trb_instant at = trb_dynamics_instant(d);
   const trb_gaps    gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, load, slopes, NULL);
-  return !trb_gaps_clear(&gaps) && trb_norm(load->cage_force) > 0.0;
+  return !trb_gaps_clear(&gaps) && trb_norm(load->on_b.force) > 0.0;
 }
 
 static int entry_of(const trb_model *m, int roller, int column)
@@ -51,7 +51,7 @@ static int differentiate(trb_dynamics *d, int roller, const double *y, double (*
   static const double share[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-6, 1e-4, 0};
   const trb_model    *m = d->model;
   double              moved[512], low[ROWS], high[ROWS];
-  trb_roller_load     load;
+  trb_load            load;
   memcpy(moved, y, (size_t)trb_state_size(m) * sizeof *y);
   for (int c = 0; c < COLUMNS; c++) {
     const int    at = entry_of(m, roller, c);
@@ -105,12 +105,12 @@ static void check_scene(const trb_params *params, double most, double shift, con
     y[trb_state_cage(m) + TRB_CAGE_z] += shift;
     rig_draw_back(d, most, start, y);
     for (int j = 0; j < m->n_rollers; j++) {
-      trb_roller_load load;
-      trb_coupling    k;
+      trb_load     load;
+      trb_coupling k;
       if (!differentiate(d, j, y, exact) || !loads_at(d, j, y, &load, &k.slopes)) continue;
       trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
       for (int c = 0; c < COLUMNS; c++) {
-        const trb_roller_load slope = c < TRB_ROLLER_SIZE ? trb_coupling_of_roller(&k, c) : trb_coupling_of_cage(&k, c - TRB_ROLLER_SIZE);
+        const trb_load slope = c < TRB_ROLLER_SIZE ? trb_coupling_of_roller(&k, c) : trb_coupling_of_cage(&k, c - TRB_ROLLER_SIZE);
         rows_of(&d->rollers[j].frame, &slope, found[c]);
       }
       compare(m, j, found, exact, b);

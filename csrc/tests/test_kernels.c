@@ -34,8 +34,8 @@ static void near_vector(const char *what, const char *variant, trb_vec3 value, t
 static void compare(const trb_model *m, const char *variant, const trb_dynamics *exact, const trb_dynamics *other, const trb_detail *detail)
 {
   for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_load *a = &exact->loads[j], *b = &other->loads[j];
-    double                 load = 1.0, deepest = 0.0, speed = 1e-3;
+    const trb_loads *a = &exact->loads[j], *b = &other->loads[j];
+    double           load = 1.0, deepest = 0.0, speed = 1e-3;
     for (int race = 0; race < TRB_N_RACES; race++) {
       const double *q = trb_detail_lane(m, detail, TRB_LANE_load, race, j), *d = trb_detail_lane(m, detail, TRB_LANE_interference, race, j);
       const double *v = trb_detail_lane(m, detail, TRB_LANE_mean_speed, race, j);
@@ -44,12 +44,12 @@ static void compare(const trb_model *m, const char *variant, const trb_dynamics 
     load += detail->rib[j].load;
     if (detail->rib[j].interference > 0.0) deepest = fmin(fmax(deepest, 1e-7), detail->rib[j].interference);
     const double bound = ROUNDINGS * DBL_EPSILON * LENGTH / fmax(deepest, 1e-7), arm = 0.5 * m->params.pitch_diameter;
-    near_vector("force", variant, b->force, a->force, load, bound);
-    near_vector("moment", variant, b->moment, a->moment, load * arm, bound);
-    near_vector("ring_force", variant, b->ring_force, a->ring_force, load, bound);
-    near_vector("ring_moment", variant, b->ring_moment, a->ring_moment, load * arm, bound);
-    near_vector("outer_force", variant, b->outer_force, a->outer_force, load, bound);
-    near_vector("outer_moment", variant, b->outer_moment, a->outer_moment, load * LENGTH, bound);
+    near_vector("force", variant, b->on[TRB_BODY_ROLLER].force, a->on[TRB_BODY_ROLLER].force, load, bound);
+    near_vector("moment", variant, b->on[TRB_BODY_ROLLER].moment, a->on[TRB_BODY_ROLLER].moment, load * arm, bound);
+    near_vector("ring_force", variant, b->on[TRB_BODY_INNER_RING].force, a->on[TRB_BODY_INNER_RING].force, load, bound);
+    near_vector("ring_moment", variant, b->on[TRB_BODY_INNER_RING].moment, a->on[TRB_BODY_INNER_RING].moment, load * arm, bound);
+    near_vector("outer_force", variant, b->on[TRB_BODY_OUTER_RING].force, a->on[TRB_BODY_OUTER_RING].force, load, bound);
+    near_vector("outer_moment", variant, b->on[TRB_BODY_OUTER_RING].moment, a->on[TRB_BODY_OUTER_RING].moment, load * LENGTH, bound);
     near("elastic", variant, b->elastic, a->elastic, load * fmax(deepest, 1e-7), 3.0 * bound);
     for (int k = 0; k < TRB_N_TORQUES; k++) near("torque", variant, b->torque[k], a->torque[k], load * arm, bound);
     for (int k = 0; k < TRB_N_LOSSES; k++) near("power", variant, b->power[k], a->power[k], load * speed, bound);
@@ -61,7 +61,7 @@ static void check_choice(trb_dynamics *d)
 {
   const trb_model *m = d->model;
   trb_instant      at = trb_dynamics_instant(d);
-  trb_roller_load  all[12], some[12];
+  trb_loads        all[12], some[12];
   int              chosen[12], taken[12] = {0};
   trb_contact_slow(m, &at, d->work, all);
   memset(some, 0x55, sizeof some);
@@ -73,8 +73,8 @@ static void check_choice(trb_dynamics *d)
   }
   trb_contact_slow(m, &at, d->work, some);
   for (int j = 0; j < m->n_rollers; j++) {
-    const double   *one = (const double *)&all[j], *other = (const double *)&some[j];
-    trb_roller_load untouched;
+    const double *one = (const double *)&all[j], *other = (const double *)&some[j];
+    trb_loads     untouched;
     memset(&untouched, 0x55, sizeof untouched);
     if (!taken[j]) CHECK(memcmp(&some[j], &untouched, sizeof untouched) == 0);
     for (size_t i = 0; taken[j] && i < sizeof all[j] / sizeof *one; i++) CHECK_NEAR(other[i], one[i], 1e-12 * fabs(one[i]));

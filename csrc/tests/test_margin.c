@@ -11,7 +11,7 @@ enum { MOST = 512 };
 static unsigned long long seed = 11;
 
 /* Margins and elastic energy of a state's contacts with the rings. */
-static void look(trb_dynamics *d, double turn_time, const double *y, trb_roller_load *loads)
+static void look(trb_dynamics *d, double turn_time, const double *y, trb_loads *loads)
 {
   trb_dynamics_pose(d, turn_time, y);
   const trb_instant at = trb_dynamics_instant(d);
@@ -34,7 +34,7 @@ static void walk(double aside, double lean, double *held, double *tightest)
   trb_motion      *motion;
   trb_dynamics    *d;
   double           y[MOST], moved[MOST], table[TRB_MOTION_COLUMNS] = {0};
-  trb_roller_load *before = calloc((size_t)m->n_rollers, sizeof *before), *after = calloc((size_t)m->n_rollers, sizeof *after);
+  trb_loads       *before = calloc((size_t)m->n_rollers, sizeof *before), *after = calloc((size_t)m->n_rollers, sizeof *after);
   const double     speed = 100.0 * TRB_PI, dz = rig_state(m, 3000.0, speed, y), share = 0.5;
   table[1 + 2 * TRB_CHANNEL_displacement_x] = aside;
   table[1 + 2 * TRB_CHANNEL_displacement_z] = dz;

@@ -14,10 +14,10 @@ static unsigned long long seed = 17;
 
 /* All that is seen of a state by a model with some rows only. */
 typedef struct seen {
-  double           rates[MOST], record[MOST_FIELDS], peaks[MOST_FIELDS];
-  trb_roller_load *loads;
-  trb_arrow       *arrow;
-  int              bounds; /* pairs that have margins */
+  double     rates[MOST], record[MOST_FIELDS], peaks[MOST_FIELDS];
+  trb_loads *loads;
+  trb_arrow *arrow;
+  int        bounds; /* pairs that have margins */
 } seen;
 
 static trb_params params_of_test(void)
@@ -147,11 +147,12 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
 {
   double elastic = 0.0, force = 0.0;
   for (int j = 0; j < m->n_rollers; j++) {
-    const trb_roller_load *a = &full->loads[j], *b = &out->loads[j], *c = &alone->loads[j];
+    const trb_loads *a = &full->loads[j], *b = &out->loads[j], *c = &alone->loads[j];
     CHECK_NEAR(a->elastic, b->elastic + c->elastic, 1e-12 * a->elastic);
-    CHECK_NEAR(trb_norm(trb_sub(trb_sub(a->force, b->force), c->force)), 0.0, 1e-9 * (trb_norm(b->force) + trb_norm(c->force)) + 1e-9);
+    CHECK_NEAR(trb_norm(trb_sub(trb_sub(a->on[TRB_BODY_ROLLER].force, b->on[TRB_BODY_ROLLER].force), c->on[TRB_BODY_ROLLER].force)), 0.0,
+               1e-9 * (trb_norm(b->on[TRB_BODY_ROLLER].force) + trb_norm(c->on[TRB_BODY_ROLLER].force)) + 1e-9);
     elastic += c->elastic;
-    force += trb_norm(c->force);
+    force += trb_norm(c->on[TRB_BODY_ROLLER].force);
     if (trb_pair_table[row]->margin == NULL) continue;
     CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
   }
