@@ -3,7 +3,7 @@
 #ifndef TRB_CONTACT_BOUNDS_H
 #define TRB_CONTACT_BOUNDS_H
 
-#include "bearing/state.h"
+#include "body/state.h"
 
 /* What a roller's motion does to the interference with a ring, at most. */
 typedef struct trb_margin_arm {

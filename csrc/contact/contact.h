@@ -6,7 +6,7 @@
 #define TRB_CONTACT_CONTACT_H
 
 #include "bearing/model.h"
-#include "bearing/state.h"
+#include "body/state.h"
 
 /* The pairs of bodies that can act on each other, a row each: X(name). Row `name` is trb_pair_<name>, at the end of the pair's file. The
  * rows are evaluated in this order. */
@@ -57,11 +57,6 @@ typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RIN
 /* How a pair loses energy. */
 typedef enum trb_mechanism { TRB_BY_SLIDING, TRB_BY_ROLLING, TRB_BY_ROLLING_PRESSURE, TRB_BY_DAMPING, TRB_N_MECHANISMS } trb_mechanism;
 
-typedef struct trb_wrench {
-  trb_vec3 force;  /* N */
-  trb_vec3 moment; /* N m */
-} trb_wrench;
-
 /* What the two bodies of a pair do to each other. Wrenches on a roller and on the rings are in the roller's cylindrical frame, those on the
  * cage and of pairs without a roller in R; moments are about the centre of mass, the inner ring's centre, the apex for the outer ring. */
 typedef struct trb_load {
@@ -79,12 +74,6 @@ typedef struct trb_loads {
   double     torque[TRB_N_TORQUES]; /* shares of the torque on the inner ring about its axis, N m */
   double     power[TRB_N_LOSSES];   /* lost, W */
 } trb_loads;
-
-static inline void trb_add_wrench(trb_wrench *to, const trb_wrench *w)
-{
-  to->force = trb_add(to->force, w->force);
-  to->moment = trb_add(to->moment, w->moment);
-}
 
 /* Everything that a contact can see at an instant. */
 typedef struct trb_instant {

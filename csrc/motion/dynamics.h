@@ -52,10 +52,6 @@ void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
 /* What the contacts read. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
-void trb_dynamics_roller_inertia(const trb_dynamics *d, int roller, double *flow);
-/* Added to a flow: what a wrench on the roller does. */
-void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_wrench *load, double *flow);
-/* Both, the losses and the work of the inner ring. */
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
 
 /* A right-hand side is started, has every roller's flow put in, and the cage's rates. */
@@ -67,7 +63,5 @@ unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
 trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
 /* What a roller does in the fast pairs in which it is near, added to its flow and to the sums of the cage. */
 void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *on_cage);
-/* Rates of the cage under the sum of what the rollers put on it. */
-void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y_cage, const trb_wrench *load, double *rates);
 
 #endif

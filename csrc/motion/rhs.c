@@ -52,5 +52,5 @@ void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, con
     trb_dynamics_put(d, j, d->flows[j], rates);
   }
   /* rates of the cage */
-  trb_dynamics_cage_rates(d, y + trb_state_cage(m), &on_cage, rates + trb_state_cage(m));
+  trb_cage_rates(m, &d->drive, &d->cage, y + trb_state_cage(m), &on_cage, rates + trb_state_cage(m));
 }

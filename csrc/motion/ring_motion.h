@@ -5,7 +5,7 @@
 #define TRB_MOTION_RING_MOTION_H
 
 #include "base/status.h"
-#include "bearing/state.h"
+#include "body/state.h"
 
 enum { TRB_MOTION_COLUMNS = 1 + 2 * TRB_N_CHANNELS };
 
@@ -34,9 +34,5 @@ int trb_motion_changes(const trb_motion *motion, double from, double to);
  * a part of it. INFINITY where nothing changes any more. */
 double trb_motion_stop(const trb_motion *motion, double time);
 void   trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive);
-
-/* Pose of the inner ring: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */
-void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity, const double rotation[2], const double rotation_rate[2],
-                    double shaft_speed, trb_drive *drive);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef TRB_STEPPING_BLOCKS_H
 #define TRB_STEPPING_BLOCKS_H
 
-#include "bearing/state.h"
+#include "body/state.h"
 
 /* TRB_NP: a roller's entries, padded; TRB_TANGENT_IN: a roller's state and the angle of the frame; TRB_TANGENT_OUT: its flow, padded. */
 enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NC = TRB_CAGE_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = 24 };

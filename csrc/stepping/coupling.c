@@ -2,56 +2,13 @@
 
 #include <string.h>
 
-/* A rigid motion, about a body's centre of mass. */
-typedef struct rigid {
-  trb_vec3 shift, turn;
-} rigid;
-
-static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, third = {0, 0, 1};
-
-/* What a roller's coordinate does to its place, or to its velocity, in its cylindrical frame. */
-static rigid roller_motion(const trb_roller_pose *r, int coordinate)
-{
-  const trb_frame *f = &r->frame;
-  switch (coordinate) {
-  case TRB_ROLLER_r:
-  case TRB_ROLLER_v_r: return (rigid){first, none};
-  case TRB_ROLLER_psi: return (rigid){trb_scale(r->radius, second), third};
-  case TRB_ROLLER_v_t: return (rigid){second, none};
-  case TRB_ROLLER_z:
-  case TRB_ROLLER_v_z: return (rigid){third, none};
-  case TRB_ROLLER_skew: return (rigid){none, trb_scale(-1.0, f->n)};
-  case TRB_ROLLER_tilt: return (rigid){none, second};
-  case TRB_ROLLER_omega_n: return (rigid){none, f->n};
-  case TRB_ROLLER_omega_t: return (rigid){none, f->t};
-  default: return (rigid){none, f->a};
-  }
-}
-
-/* The same of the cage, in R. */
-static rigid cage_motion(const trb_cage_pose *cage, int coordinate)
-{
-  const trb_frame *f = &cage->frame;
-  switch (coordinate) {
-  case TRB_CAGE_x:
-  case TRB_CAGE_v_x: return (rigid){first, none};
-  case TRB_CAGE_y:
-  case TRB_CAGE_v_y: return (rigid){second, none};
-  case TRB_CAGE_z:
-  case TRB_CAGE_v_z: return (rigid){third, none};
-  case TRB_CAGE_skew: return (rigid){none, trb_scale(-1.0, f->n)};
-  case TRB_CAGE_tilt: return (rigid){none, second};
-  case TRB_CAGE_omega_n: return (rigid){none, f->n};
-  case TRB_CAGE_omega_t: return (rigid){none, f->t};
-  default: return (rigid){none, f->a};
-  }
-}
+static const trb_vec3 none = {0, 0, 0}, third = {0, 0, 1};
 
 static trb_vec3 to_roller(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, -k->roller->sine); }
 static trb_vec3 to_cage(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, k->roller->sine); }
 
 /* Change of the wrench on the roller with a motion relative to the pocket. */
-static trb_wrench wrench_of(const trb_coupling *k, rigid motion, int is_place)
+static trb_wrench wrench_of(const trb_coupling *k, trb_rigid motion, int is_place)
 {
   const trb_wrench *columns = is_place ? k->slopes.place : k->slopes.velocity;
   const trb_frame  *axes = &k->slopes.axes;
@@ -89,9 +46,9 @@ void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const tr
 
 trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
 {
-  const int   is_place = coordinate < TRB_ROLLER_v_r;
-  const rigid motion = roller_motion(k->roller, coordinate);
-  trb_load    load = loads_of(k, wrench_of(k, motion, is_place), is_place ? motion.shift : none);
+  const int       is_place = coordinate < TRB_ROLLER_v_r;
+  const trb_rigid motion = trb_roller_motion(k->roller, coordinate);
+  trb_load        load = loads_of(k, wrench_of(k, motion, is_place), is_place ? motion.shift : none);
   if (!is_place) return load;
   /* the frames that the roller's force and moment are written in turn with it */
   if (coordinate == TRB_ROLLER_psi) load.on_a.force = trb_sub(load.on_a.force, trb_cross(third, k->force));
@@ -101,10 +58,10 @@ trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
 
 trb_load trb_coupling_of_cage(const trb_coupling *k, int coordinate)
 {
-  const int      is_place = coordinate < TRB_CAGE_v_x;
-  const rigid    cage = cage_motion(k->cage, coordinate);
-  const trb_vec3 shift = trb_scale(-1.0, to_roller(k, cage.shift)), turn = trb_scale(-1.0, to_roller(k, cage.turn));
-  trb_wrench     change = wrench_of(k, (rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
+  const int       is_place = coordinate < TRB_CAGE_v_x;
+  const trb_rigid cage = trb_cage_motion(k->cage, coordinate);
+  const trb_vec3  shift = trb_scale(-1.0, to_roller(k, cage.shift)), turn = trb_scale(-1.0, to_roller(k, cage.turn));
+  trb_wrench      change = wrench_of(k, (trb_rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
   if (!is_place) return loads_of(k, change, none);
   /* the roller moves the other way in the pocket, whose forces turn with the cage */
   change.force = trb_sub(change.force, trb_cross(turn, k->force));

@@ -37,9 +37,13 @@ void trb_jacobian_free(trb_jacobian *jacobian)
 /* What a load adds to the rates of a roller. */
 static void roller_response(const trb_dynamics *d, int roller, const trb_wrench *load, double *rates)
 {
-  double flow[TRB_FLOW_SIZE] = {0};
-  trb_dynamics_roller_response(d, roller, load, flow);
-  memcpy(rates, flow, TRB_NR * sizeof *rates);
+  memset(rates, 0, TRB_NR * sizeof *rates);
+  trb_roller_response(d->model, &d->rollers[roller], load, rates);
+}
+
+static void cage_rates(const trb_dynamics *d, const double *y_cage, const trb_wrench *load, double *rates)
+{
+  trb_cage_rates(d->model, &d->drive, &d->cage, y_cage, load, rates);
 }
 
 /* Change of the cage's loads with each of its coordinates. */
@@ -55,7 +59,7 @@ static void add_fast(const trb_dynamics *d, int j, const trb_coupling *k, const 
   for (int c = 0; c < TRB_NR; c++) {
     const trb_load load = trb_coupling_of_roller(k, c);
     roller_response(d, j, &load.on_a, change);
-    trb_dynamics_cage_rates(d, y_cage, &load.on_b, rates);
+    cage_rates(d, y_cage, &load.on_b, rates);
     for (int i = 0; i < TRB_NR; i++) block->own[c][i] += change[i];
     for (int i = 0; i < TRB_NC; i++) border->from[c][i] += rates[i] - still[i];
   }
@@ -73,13 +77,13 @@ static void cage_block(trb_jacobian *jac, const double *y, const trb_wrench *loa
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
   double          *y_cage = jac->moved + trb_state_cage(m), base[TRB_NC], rates[TRB_NC];
-  trb_dynamics_cage_rates(d, y + trb_state_cage(m), load, base);
+  cage_rates(d, y + trb_state_cage(m), load, base);
   for (int c = 0; c < TRB_NC; c++) {
     const double was = y_cage[c], h = trb_difference[trb_state_tolerance(m, trb_state_cage(m) + c)], per = 1.0 / h;
     y_cage[c] = was + h;
     trb_cage_pose_unpack(m, &d->drive, y_cage, &d->cage);
     const trb_wrench moved = {trb_axpy(load->force, h, changes->by[c].force), trb_axpy(load->moment, h, changes->by[c].moment)};
-    trb_dynamics_cage_rates(d, y_cage, &moved, rates);
+    cage_rates(d, y_cage, &moved, rates);
     for (int i = 0; i < TRB_NC; i++) arrow->cage[c][i] = per * (rates[i] - base[i]);
     y_cage[c] = was;
   }
@@ -103,7 +107,7 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   trb_wrench        on_cage = {{0, 0, 0}, {0, 0, 0}};
   cage_loads        changes = {0};
   double            still[TRB_NC];
-  trb_dynamics_cage_rates(d, y_cage, &on_cage, still);
+  cage_rates(d, y_cage, &on_cage, still);
   for (int j = 0; j < m->n_rollers; j++) {
     trb_arrow_border *border = &arrow->borders[j];
     border->coupled = 0;

@@ -1,0 +1,61 @@
+/* What rigid bodies with an axis of symmetry share: kinds of coordinates, Euler's equations, kinetic energy, motions and wrenches. */
+#ifndef TRB_BODY_RIGID_H
+#define TRB_BODY_RIGID_H
+
+#include "base/vec3.h"
+
+/* How exactly a coordinate is integrated. */
+typedef enum trb_tolerance {
+  TRB_TOL_POSITION,
+  TRB_TOL_ANGLE,
+  TRB_TOL_VELOCITY,
+  TRB_TOL_SPIN,
+  TRB_TOL_QUADRATURE,
+  TRB_N_TOLERANCES
+} trb_tolerance;
+
+/* Force, and moment about the body's reference point. */
+typedef struct trb_wrench {
+  trb_vec3 force;  /* N */
+  trb_vec3 moment; /* N m */
+} trb_wrench;
+
+static inline void trb_add_wrench(trb_wrench *to, const trb_wrench *w)
+{
+  to->force = trb_add(to->force, w->force);
+  to->moment = trb_add(to->moment, w->moment);
+}
+
+/* A rigid motion, about a body's centre of mass. */
+typedef struct trb_rigid {
+  trb_vec3 shift, turn;
+} trb_rigid;
+
+typedef struct trb_turn_rates {
+  double   skew, tilt; /* rates of the axis' angles, rad/s */
+  double   frame_a;    /* angular velocity of the frame (n, t, a) along a, rad/s */
+  trb_vec3 spin;       /* angular acceleration in (n, t, a), rad/s2 */
+} trb_turn_rates;
+
+/* Euler's equations in a frame that follows the axis but does not spin; parent: angular velocity of the frame that skew and tilt are
+ * measured in, along its own z. */
+static inline trb_turn_rates trb_euler(const trb_frame *f, trb_vec3 omega, double parent, double transverse, double axial, trb_vec3 moment)
+{
+  trb_turn_rates out;
+  const double   cosine = f->t.y, sine = f->a.y; /* of the skew */
+  out.skew = -(omega.x - parent * f->n.z);
+  out.tilt = (omega.y - parent * f->t.z) / cosine;
+  out.frame_a = parent * f->a.z + out.tilt * sine;
+  const double spin = axial * omega.z, turn = transverse * out.frame_a;
+  out.spin = trb_v((moment.x - omega.y * spin + turn * omega.y) / transverse, (moment.y - turn * omega.x + omega.x * spin) / transverse,
+                   moment.z / axial);
+  return out;
+}
+
+/* omega in (n, t, a), J. */
+static inline double trb_kinetic(double mass, double axial, double transverse, trb_vec3 v, trb_vec3 omega)
+{
+  return 0.5 * (mass * trb_dot(v, v) + transverse * (omega.x * omega.x + omega.y * omega.y) + axial * omega.z * omega.z);
+}
+
+#endif

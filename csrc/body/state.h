@@ -1,0 +1,42 @@
+/* The layout of the state vector: the coordinates of the bodies (body/roller.h, body/cage.h), then spin angles and quadratures.
+ *
+ * The frame R turns about the bearing axis with the kinematic cage angle. A roller's coordinates are cylindrical and are offsets from
+ * pure rolling; its axis is given by skew and tilt in the frame (e_r, e_t, e_z) that orbits with it, its velocities are inertial ones
+ * written in orbiting frames. In steady rolling the whole vector stands still. The spin angle is in the tail: nothing depends on it. */
+#ifndef TRB_BODY_STATE_H
+#define TRB_BODY_STATE_H
+
+#include "bearing/losses.h"
+#include "body/cage.h"
+#include "body/ring.h"
+#include "body/roller.h"
+#include "laws/smooth.h"
+
+/* Quadratures of the energy audit (physics: section 10): works, then losses; each has its field of the same name in a record. */
+#define TRB_QUADRATURE_OF_WORK(X, name, text) X(work_##name)
+#define TRB_QUADRATURE_OF_LOSS(X, name, sense, text) X(loss_##name)
+#define TRB_QUADRATURES(X) TRB_WORKS(TRB_QUADRATURE_OF_WORK, X) TRB_LOSSES(TRB_QUADRATURE_OF_LOSS, X)
+
+enum {
+#define TRB_QUADRATURE_ENUM(name) TRB_Q_##name,
+  TRB_QUADRATURES(TRB_QUADRATURE_ENUM)
+#undef TRB_QUADRATURE_ENUM
+      TRB_N_QUADRATURES,
+  TRB_Q_losses = TRB_N_QUADRATURES - TRB_N_LOSSES /* the first of them */
+};
+
+/* State vector: rollers, cage, then the tail: a spin angle per roller, the quadratures. */
+static inline int trb_state_roller(int roller) { return roller * TRB_ROLLER_SIZE; }
+static inline int trb_state_cage(const trb_model *m) { return m->n_rollers * TRB_ROLLER_SIZE; }
+static inline int trb_state_main_size(const trb_model *m) { return trb_state_cage(m) + TRB_CAGE_SIZE; }
+static inline int trb_state_spin(const trb_model *m) { return trb_state_main_size(m); }
+static inline int trb_state_quadrature(const trb_model *m) { return trb_state_spin(m) + m->n_rollers; }
+static inline int trb_state_size(const trb_model *m) { return trb_state_quadrature(m) + TRB_N_QUADRATURES; }
+
+/* Rollers of a state of this size. */
+static inline int trb_state_rollers(int size) { return (size - TRB_CAGE_SIZE - TRB_N_QUADRATURES) / (TRB_ROLLER_SIZE + 1); }
+
+/* Tolerance kind of every entry. */
+trb_tolerance trb_state_tolerance(const trb_model *m, int index);
+
+#endif
