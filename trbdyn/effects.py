@@ -96,6 +96,12 @@ class Effects(Model):
         Flank, and ends, of the rollers against the faces of their pockets.
     pocket_edges : bool
         Faces end at their outlines; without it they are unbounded planes.
+    oil_fill : float
+        Share of oil in the mixture of oil and air round the rollers, from 0 (no drag) to 1 (a flooded bearing). It is
+        known in no bearing: show its effect over a band, 0 to 0.3 (assumed). The mixture rests.
+    drag_coefficient : float
+        Cd of a roller that moves across its axis, on its diameter times its length (assumed; a cylinder alone has 1.0 to
+        1.2). Acts where `oil_fill` is not 0.
     damping : {'off', 'hunt_crossley'}
         Normal damping of contacts, F = q (1 + c d_dot).
     damping_race, damping_cage : float
@@ -123,6 +129,8 @@ class Effects(Model):
     pocket_bars: Flag = True
     pocket_ends: Flag = True
     pocket_edges: Flag = True
+    oil_fill: Annotated[Number, unit("1", ge=0, le=1)] = 0.0
+    drag_coefficient: Annotated[Number, unit("1", ge=0, le=20)] = 1.0
     damping: Literal["off", "hunt_crossley"] = "hunt_crossley"
     damping_race: Annotated[Ratio, unit("s/m", le=1e4)] = 0.1
     damping_cage: Annotated[Ratio, unit("s/m", le=1e4)] = 0.5

@@ -15,7 +15,8 @@
   F(X, rib,              TAKES,  "at the back-face rib") \
   F(X, front_rib,        TAKES,  "at the front rib") \
   F(X, pocket,           TAKES,  "by friction in the pockets") \
-  F(X, damping,          TAKES,  "by normal damping")
+  F(X, damping,          TAKES,  "by normal damping") \
+  F(X, drag,             TAKES,  "by drag of the oil on rollers")
 
 /* Works put in: F(X, name, text), each a quadrature and a field work_*. */
 #define TRB_WORKS(F, X) \
@@ -35,7 +36,10 @@ enum {
 #define TRB_LOSS_ENUM(X, name, sense, text) TRB_LOSS_##name,
   TRB_LOSSES(TRB_LOSS_ENUM, 0)
 #undef TRB_LOSS_ENUM
-      TRB_N_LOSSES
+      TRB_N_LOSSES,
+  /* Those before it have a quadrature in every model, later ones only where their effect is on: a state without them is as long as ever, and
+   * measures that are means over all of its entries stay the same. */
+  TRB_N_USUAL_LOSSES = TRB_LOSS_drag
 };
 
 enum {

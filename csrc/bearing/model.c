@@ -1,5 +1,7 @@
 #include "bearing/model.h"
 
+#include "bearing/losses.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -193,6 +195,7 @@ static void fill_constants(trb_model *m)
   m->race[TRB_RACE_OUTER].cosine = cos(p->cup_half_angle);
   m->race[TRB_RACE_INNER].sine = sin(g->cone_half_angle);
   m->race[TRB_RACE_INNER].cosine = cos(g->cone_half_angle);
+  m->n_losses = p->oil_fill > 0.0 ? TRB_N_LOSSES : TRB_N_USUAL_LOSSES;
   m->rib_sine = sin(g->rib_normal_angle);
   m->rib_cosine = cos(g->rib_normal_angle);
   m->log_modulus = log(g->effective_modulus);

@@ -66,6 +66,7 @@ typedef struct trb_model {
   int        friction;                      /* any friction at raceways and ribs at all */
   int        pocket_friction;               /* any friction in the pockets */
   int        film;                          /* films are needed */
+  int        n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
   unsigned   pairs_left_out;                /* bit by row of the table of pairs (contact/pair.h): pairs that do not act; 0: none */
 } trb_model;
 

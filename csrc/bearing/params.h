@@ -64,6 +64,7 @@
   X(viscosity_exponent_cap,   "1",      1,      60,     "largest exponent ln(eta/eta0) of the Roelands and Barus laws") \
   X(eyring_stress,            "Pa",     1e3,    1e9,    "tau0: characteristic shear stress") \
   X(shear_modulus_floor,      "Pa",     1,      1e10,   "smallest limiting shear modulus Ginf") \
+  X(oil_density,              "kg/m3",  1,      3000,   "density of the oil") \
   X(starvation_factor,        "1",      1e-4,   1,      "factor of every film thickness") \
   /* friction */ \
   X(lambda_boundary,          "1",      0,      100,    "film parameter below which friction is boundary") \
@@ -77,6 +78,8 @@
   X(speed_floor,              "m/s",    1e-12,  1,      "smallest mean speed in films and slide-roll ratios (smooth)") \
   X(thermal_floor,            "1",      1e-6,   0.9,    "smallest thermal film reduction factor (smooth)") \
   X(rolling_blend,            "1",      1e-6,   0.9,    "half width in h_PE/h_IR over which rolling resistance sets in") \
+  X(oil_fill,                 "1",      0,      1,      "share of oil in the mixture of oil and air round the rollers; 0: no drag") \
+  X(drag_coefficient,         "1",      0,      20,     "Cd: drag coefficient of a roller across its axis") \
   X(damping_race,             "s/m",    0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
   X(damping_cage,             "s/m",    0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
   /* effects */ \

@@ -10,7 +10,7 @@
 
 /* The pairs of bodies that can act on each other, a row each: X(name). Row `name` is trb_pair_<name>, at the end of the pair's file. The
  * rows are evaluated in this order. */
-#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(pocket)
+#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket)
 
 enum {
 #define TRB_PAIR_ENUM(name) TRB_PAIR_##name,
@@ -40,6 +40,7 @@ enum {
   X(pocket_tests,         "pocket faces tested against their roller") \
   X(pocket_culled,        "pocket faces proven out of reach") \
   X(pocket_nodes,         "nodes and points in contact with pocket faces") \
+  X(drag_rollers,         "rollers whose drag in the oil was evaluated") \
   X(gravity_bodies,       "bodies on which gravity was evaluated")
 
 typedef struct trb_counters {

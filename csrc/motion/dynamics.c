@@ -116,7 +116,7 @@ void trb_dynamics_start(const trb_dynamics *d, double *rates)
 {
   const trb_model *m = d->model;
   double          *q = rates + trb_state_quadrature(m);
-  memset(q, 0, TRB_N_QUADRATURES * sizeof *q);
+  memset(q, 0, (size_t)trb_n_quadratures(m) * sizeof *q);
   if (!trb_has_gravity(&d->drive) || m->params.with_cage <= 0.0) return;
   d->work->counters.gravity_bodies++;
   q[TRB_Q_work_gravity] = m->params.cage_mass * trb_dot(trb_gravity_in(&d->drive, 1.0, 0.0), d->cage.v);
@@ -128,7 +128,7 @@ void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, dou
   double          *q = rates + trb_state_quadrature(m);
   memcpy(rates + trb_state_roller(roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
   rates[trb_state_spin(m) + roller] = flow[TRB_FLOW_spin];
-  for (int k = 0; k < TRB_N_QUADRATURES; k++) q[k] += flow[TRB_FLOW_quadrature + k];
+  for (int k = 0; k < trb_n_quadratures(m); k++) q[k] += flow[TRB_FLOW_quadrature + k];
 }
 
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)

@@ -209,7 +209,7 @@ static void put_energy(writer *w, const double *quadratures)
   PUT(power_loss, 0) = total;
   PUT(kinetic_energy, 0) = trb_audit_kinetic(d);
   PUT(elastic_energy, 0) = trb_audit_elastic(d);
-  for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = quadratures[k];
+  for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = k < trb_n_quadratures(d->model) ? quadratures[k] : 0.0;
 }
 
 void trb_record_fill(trb_dynamics *d, double time, const double *y, trb_detail *detail, double *record)

@@ -123,7 +123,7 @@ static PyObject *state_layout(PyObject *self, PyObject *none)
     else if (i < TRB_ROLLER_SIZE + TRB_CAGE_SIZE)
       row = Py_BuildValue("(Ni())", PyUnicode_FromFormat("cage_%s", cage[i - TRB_ROLLER_SIZE]), trb_state_cage(m) + i - TRB_ROLLER_SIZE);
     else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(m), m->n_rollers);
-    else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(m), TRB_N_QUADRATURES);
+    else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(m), trb_n_quadratures(m));
     if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
     Py_XDECREF(row);
   }

@@ -23,7 +23,7 @@ typedef struct seen {
 static trb_params params_of_test(void)
 {
   trb_params p = rig_params();
-  p.damping = 1, p.rolling_pressure_force = 1, p.front_rib_clearance = 5e-6;
+  p.damping = 1, p.rolling_pressure_force = 1, p.front_rib_clearance = 5e-6, p.oil_fill = 0.3;
   return p;
 }
 
@@ -76,6 +76,9 @@ static void forget(seen *s)
   trb_arrow_free(s->arrow);
 }
 
+/* Whether the bodies of a row touch: only then there is an interference. */
+static int is_contact(int row) { return trb_pair_table[row]->view != NULL || trb_pair_table[row]->touch != NULL; }
+
 /* a - b = c - d within a share of the largest of the four, and how much a pair makes of it. */
 static double check_share(const char *what, double a, double b, double c, double d, double share, double floor)
 {
@@ -99,9 +102,12 @@ static void check_jacobian(const seen *full, const seen *out, const seen *alone,
     for (int i = 0; i < TRB_NR; i++) {
       double largest = 0.0;
       for (int c = 0; c < TRB_NR; c++) largest = fmax(largest, fabs(full->arrow->rollers[j].own[c][i]));
-      for (int c = 0; c < TRB_NR; c++)
-        made += check_share("slope", full->arrow->rollers[j].own[c][i], out->arrow->rollers[j].own[c][i],
-                            alone->arrow->rollers[j].own[c][i], none->arrow->rollers[j].own[c][i], 1e-3, 1e-5 * largest);
+      for (int c = 0; c < TRB_NR; c++) {
+        const double with = alone->arrow->rollers[j].own[c][i], without = none->arrow->rollers[j].own[c][i];
+        (void)check_share("slope", full->arrow->rollers[j].own[c][i], out->arrow->rollers[j].own[c][i], with, without, 1e-3,
+                          1e-5 * largest);
+        made += fabs(with - without) > 1e-3 * fmax(fabs(with), fabs(without)) + 1e-3;
+      }
     }
   CHECK(made > 0.0);
 }
@@ -122,7 +128,7 @@ static void check_records(const trb_model *m, int row, const seen *full, const s
       CHECK(out->record[i] == (own ? 0.0 : full->record[i]));
     }
   }
-  CHECK(made > 0.0);
+  CHECK(made > 0.0 || !is_contact(row));
 }
 
 /* Losses, elastic energy and torques are sums over rows. */
@@ -156,25 +162,27 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
     if (trb_pair_table[row]->margin == NULL) continue;
     CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
   }
-  CHECK(elastic > 0.0 && force > 1.0);
+  CHECK((elastic > 0.0) == is_contact(row) && force > 1.0);
   CHECK(full->bounds == out->bounds + (trb_pair_table[row]->margin != NULL) && alone->bounds == full->bounds - out->bounds);
 }
 
 /* Loads among the peaks: gone with the row. */
 static void check_peaks(const trb_model *m, int row, const seen *full, const seen *out)
 {
-  static const int of_row[TRB_N_PAIRS] = {[TRB_PAIR_outer] = TRB_PEAK_outer_load,
-                                          [TRB_PAIR_inner] = TRB_PEAK_inner_load,
-                                          [TRB_PAIR_rib] = TRB_PEAK_rib_load,
-                                          [TRB_PAIR_front_rib] = TRB_PEAK_front_rib_load,
-                                          [TRB_PAIR_pocket] = TRB_PEAK_pocket_force};
-  double           made = 0.0;
-  for (int other = 0; other < TRB_N_PAIRS; other++)
-    for (int i = trb_peak_look_offset(m, of_row[other]); i < trb_peak_look_offset(m, of_row[other] + 1); i++) {
-      made += other == row ? full->peaks[i] : 0.0;
-      CHECK(out->peaks[i] == (other == row ? 0.0 : full->peaks[i]));
+  static const struct {
+    int row, quantity;
+  } loads[] = {{TRB_PAIR_outer, TRB_PEAK_outer_load},
+               {TRB_PAIR_inner, TRB_PEAK_inner_load},
+               {TRB_PAIR_rib, TRB_PEAK_rib_load},
+               {TRB_PAIR_front_rib, TRB_PEAK_front_rib_load},
+               {TRB_PAIR_pocket, TRB_PEAK_pocket_force}};
+  double made = 0.0;
+  for (size_t k = 0; k < sizeof loads / sizeof loads[0]; k++)
+    for (int i = trb_peak_look_offset(m, loads[k].quantity); i < trb_peak_look_offset(m, loads[k].quantity + 1); i++) {
+      made += loads[k].row == row ? full->peaks[i] : 0.0;
+      CHECK(out->peaks[i] == (loads[k].row == row ? 0.0 : full->peaks[i]));
     }
-  CHECK(made > 0.0);
+  CHECK(made > 0.0 || !is_contact(row));
 }
 
 static void test_rows(void)

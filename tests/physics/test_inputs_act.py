@@ -20,6 +20,7 @@ from trbdyn.flatten import scene_entries
 Array = NDArray[np.float64]
 BASE = Effects.standard().replace(damping="off")
 DRY, BOUNDARY = BASE.replace(lubrication="dry"), BASE.replace(lubrication="boundary")
+WET = BASE.replace(oil_fill=0.3)
 DAMPED = DRY.replace(damping="hunt_crossley", damping_race=0.01, damping_cage=0.02)
 MOVING = DRY.replace(gravity=False)
 
@@ -87,6 +88,10 @@ def kinetic(sim: Simulation, vector: Array, found: dict[str, Array]) -> Array:
     return np.asarray(sim.record(vector, 0.0)["kinetic_energy"])
 
 
+def drag(sim: Simulation, vector: Array, found: dict[str, Array]) -> Array:
+    return np.asarray(sim.record(vector, 0.0)["power_drag"])
+
+
 def power(exponent: float) -> Callable[[float], float]:
     return lambda factor: factor**exponent
 
@@ -116,6 +121,9 @@ LAWS: dict[str, Law] = {
     "boundary_slope": Law(pocket_coefficient, power(1.0), BOUNDARY, prepare=linear_pockets),
     "cage_entrainment_speed": Law(pocket_coefficient, power(-1.0), BOUNDARY, 1.1, linear_pockets),
     "cage_mass": Law(rate("cage_v_x"), power(-1.0), MOVING),
+    "oil_fill": Law(drag, power(1.0), WET, 0.7),
+    "oil_density": Law(drag, power(1.0), WET),
+    "drag_coefficient": Law(drag, power(1.0), WET),
     "roller_density": Law(kinetic, power(1.0), DRY.replace(bodies="rollers")),
 }
 

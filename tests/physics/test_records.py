@@ -161,7 +161,8 @@ def sums(kit: SimpleNamespace, sim: Simulation, vector: Array, found: dict[str, 
 @pytest.mark.parametrize("back", [0.0, 2e-4])
 def test_every_field_computed_a_second_time(kit: SimpleNamespace, speed: float, back: float) -> None:
     effects = Effects.standard().replace(damping="hunt_crossley", damping_race=0.05, damping_cage=0.1, front_rib=True)
-    effects = effects.replace(rolling_pressure_force=False)  # its torque on the ring, 1e-6 of all, is in no share
+    # the pressure force's torque on the ring, 1e-6 of all, is in no share
+    effects = effects.replace(rolling_pressure_force=False, oil_fill=0.2)
     scenery = {"speed_rpm": speed, "radial_load": 1500.0, "misalignment_x": 4e-4, "misalignment_y": -3e-4}
     sim = kit.simulate(effects, scenery=scenery)
     vector = kit.perturbed(sim, 21, back=back)
@@ -199,7 +200,7 @@ def test_every_field_computed_a_second_time(kit: SimpleNamespace, speed: float, 
 
 def test_quadratures_grow_by_the_recorded_powers(kit: SimpleNamespace) -> None:
     """Each loss by its own power, in the order of the table."""
-    effects = Effects.standard().replace(damping="hunt_crossley", damping_race=0.05, damping_cage=0.1, front_rib=True)
+    effects = Effects.standard().replace(damping="hunt_crossley", damping_race=0.05, damping_cage=0.1, oil_fill=0.2)
     sim = kit.simulate(effects.replace(rolling_pressure_force=True), scenery={"radial_load": 1500.0})
     seen = set()
     for seed, back in ((5, 0.0), (6, 2e-4)):

@@ -1,0 +1,34 @@
+/* A roller in the mixture of oil and air of the bearing, which rests: drag through the roller's centre of mass against its velocity
+ * (physics: section 13). How much oil there is is known in no bearing: the fill fraction is an input, and zero by default. */
+#include <math.h>
+
+#include "contact/pair.h"
+#include "laws/drag.h"
+
+static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
+                     trb_detail *detail)
+{
+  const trb_params *p = &m->params;
+  const double      area = p->roller_diameter * p->total_length;
+  (void)detail;
+  work->counters.drag_rollers += at->n;
+  for (int k = 0; k < at->n; k++) {
+    const trb_vec3 v = at->rollers[at->chosen[k]].v;
+    const double   per = trb_drag_over_speed(p->oil_fill, p->oil_density, p->drag_coefficient, area, trb_norm(v));
+    const trb_vec3 force = trb_scale(-per, v);
+    const trb_load load = {
+        .on_a = {force, {0, 0, 0}}, .on_b = {trb_scale(-1.0, force), {0, 0, 0}}, .lost = {[TRB_BY_SLIDING] = per * trb_dot(v, v)}};
+    trb_add_load(batch->pairs[0], &load, &loads[at->chosen[k]]);
+  }
+}
+
+static int is_on(const trb_model *m) { return m->params.oil_fill > 0.0 && m->params.drag_coefficient > 0.0; }
+
+const trb_pair trb_pair_drag = {.name = "drag",
+                                .text = "roller in the mixture of oil and air",
+                                .a = TRB_BODY_ROLLER,
+                                .b = TRB_BODY_OIL,
+                                .pace = TRB_PACE_SLOW,
+                                .is_on = is_on,
+                                .evaluate = evaluate,
+                                .books = {.loss = TRB_LOSES_BY_SLIDING(drag), .torque = TRB_NO_TORQUE}};
