@@ -11,7 +11,7 @@
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make docs       the documentation site in build/docs; its code is run, warnings are errors
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
-#   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=60 SEED=1 MORE=1)
+#   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -87,8 +87,8 @@ fuzz: $(VENV)/.tools
 adversary: install
 	$(PY) tests/adversary/adversary.py --minutes $(or $(MINUTES),20) --seed $(or $(SEED),0) --keep --json build/adversary.json
 
-mutate: install
-	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),60) --seed $(or $(SEED),1) $(if $(MORE),--more)
+mutate: install $(VENV)/.test
+	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),90) --seed $(or $(SEED),1)
 
 install: build/.package
 
