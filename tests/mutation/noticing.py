@@ -21,6 +21,14 @@ from sandbox import BUILD, TOOLS, TREE, WORK
 
 RECORDS = ["physics/test_records.py"]
 FORCES = [*RECORDS, "physics/test_inputs_act.py", "physics/test_action_reaction.py", "physics/test_contacts.py"]
+SHORT_RESTARTS = (
+    "test_runs_in_pieces_follow_one_schedule",
+    "test_times_of_the_schedule",
+    "test_every_run_that_ended_early_goes_on",
+    "test_a_run_resumed_and_broken_again",
+    "test_a_checkpoint_of_another_run_is_refused",
+    "test_checkpoints_that_say_what_cannot_be_are_refused",
+)
 FIRST: dict[str, list[str]] = {
     "laws": ["laws/test_check_values.py", *FORCES],
     "contacts": FORCES,
@@ -32,7 +40,14 @@ FIRST: dict[str, list[str]] = {
         "geometry/test_pocket.py",
         "physics/test_contacts.py",
     ],
-    "stepping": ["convergence/test_determinism.py", "api/test_simulation.py"],
+    "stepping": [
+        "convergence/test_effort.py",
+        "convergence/test_determinism.py::test_dense_output_does_not_change_steps",
+        "convergence/test_determinism.py::test_pieces_make_the_whole",
+        "convergence/test_determinism.py::test_restarts_are_exact",
+        "convergence/test_tolerance.py::test_first_step_is_taken",
+        "convergence/test_tolerance.py::test_largest_step_is_kept",
+    ],
     "results": ["api/test_by_hand.py", "api/test_observables.py", "api/test_drawn.py"],
     "model": [
         "api/test_flatten.py",
@@ -42,7 +57,11 @@ FIRST: dict[str, list[str]] = {
         "api/test_models.py",
         "api/test_lubricants.py",
     ],
-    "runs": ["restart/test_checkpoints.py", "fuzz/test_files.py"],
+    "runs": [
+        *(f"restart/test_checkpoints.py::{name}" for name in SHORT_RESTARTS),
+        "convergence/test_peaks.py::test_intervals_make_the_run",
+        "convergence/test_determinism.py::test_pieces_make_the_whole",
+    ],
 }
 """The area's own tests, quick ones: most faults end here."""
 
@@ -72,7 +91,7 @@ THEN: dict[str, list[str]] = {
         "physics/test_conservation.py",
         "fuzz/test_bad_input.py",
     ],
-    "stepping": ["convergence", "physics/test_audit.py", "physics/test_gradient.py", "restart/test_checkpoints.py"],
+    "stepping": ["convergence", "api/test_simulation.py", "physics/test_audit.py", "physics/test_gradient.py"],
     "results": [
         "api/test_results.py",
         "api/test_plotting.py",
@@ -93,7 +112,7 @@ THEN: dict[str, list[str]] = {
         "fuzz/test_bad_input.py",
         "fuzz/test_errors.py",
     ],
-    "runs": ["api/test_simulation.py", "api/test_results.py", "api/test_study.py", "fuzz", "restart"],
+    "runs": ["api/test_simulation.py", "api/test_results.py", "convergence/test_peaks.py", "restart", "fuzz"],
 }
 """Wider tests, among them those that start a process (`python -m trbdyn`), for faults that the first ones do not notice."""
 

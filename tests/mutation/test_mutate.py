@@ -48,7 +48,9 @@ def test_every_area_has_its_share_and_its_tests() -> None:
     for area, (share, _) in faults.AREAS.items():
         assert abs(drawn[area] - 250 * share) < 2.0, area
         for name in (*noticing.FIRST[area], *noticing.THEN[area]):
-            assert (faults.ROOT / "tests" / name).exists(), name
+            file, _, test = name.partition("::")
+            assert (faults.ROOT / "tests" / file).exists(), name
+            assert not test or f"def {test}(" in (faults.ROOT / "tests" / file).read_text(encoding="utf-8"), name
     assert sum(share for share, _ in faults.AREAS.values()) == pytest.approx(1.0)
 
 
