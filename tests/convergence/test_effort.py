@@ -1,7 +1,7 @@
 """What a run costs in steps, iterations and evaluations: a fault in the solver, its tangents or its Jacobian costs effort first.
 
-The results stay right, because error tests and the test of Newton's method refuse what is wrong; only the effort tells. The numbers
-were measured; instruction sets differ by up to 4 % in them. A solver that became better moves them, too: measure again.
+The results stay right, because error tests and the test of Newton's method refuse what is wrong; only the effort tells. The
+numbers were measured; instruction sets differ by up to 4 % in them. A solver that became better moves them, too: measure again.
 """
 
 from __future__ import annotations
