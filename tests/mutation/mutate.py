@@ -124,14 +124,24 @@ def attempt(fault: Fault, wider: bool, baseline: Baseline, snapshot: Snapshot, l
             return Notice(), "same program"
         own = FIRST[fault.area]
         names = THEN[fault.area] if wider else [*own, *(name for name in liked if not covers(own, name))]
-        outcome = run_tests(names, baseline=baseline, longest=LONGEST, favourites=liked)
-        for notice in outcome.failed:
+        # the programs of all C tests are linked again: where they seldom notice first, that waits
+        notice = _c_tests(fault, wider) if wider else Notice()
+        if not notice:
+            outcome = run_tests(names, baseline=baseline, longest=LONGEST, favourites=liked)
             # a test that is skipped or fails without the fault proves nothing
-            if notice.test in baseline.seconds or notice.kind.startswith(("import", "crash", "hang")):
-                return notice, ""
-        if is_c and not wider and compile_c_tests():
-            return run_c_tests(), ""
-    return Notice(), ""
+            kinds = ("import", "crash", "hang")
+            found = [one for one in outcome.failed if one.test in baseline.seconds or one.kind.startswith(kinds)]
+            notice = found[0] if found else Notice()
+        if not notice and not wider:
+            notice = _c_tests(fault, wider)
+        return notice, ""
+
+
+def _c_tests(fault: Fault, wider: bool) -> Notice:
+    first = fault.area in ("stepping", "records")
+    if not fault.file.startswith("csrc") or first is wider or not compile_c_tests():
+        return Notice()
+    return run_c_tests()
 
 
 def recheck(rows: list[Row], outcomes: dict[str, Row], baseline: Baseline) -> bool:

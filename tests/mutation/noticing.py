@@ -48,7 +48,15 @@ FIRST: dict[str, list[str]] = {
         "convergence/test_tolerance.py::test_first_step_is_taken",
         "convergence/test_tolerance.py::test_largest_step_is_kept",
     ],
-    "results": ["api/test_by_hand.py", "api/test_observables.py", "api/test_drawn.py"],
+    "results": [
+        "api/test_by_hand.py",
+        "api/test_observables.py",
+        "api/test_drawn.py",
+        "api/test_drawn_around.py",
+        "api/test_settling.py::test_drift_has_its_time_scale",
+        "api/test_settling.py::test_a_whirl_that_grows_from_almost_nothing_drifts",
+        "api/test_settling.py::test_a_run_that_is_short_against_the_creep_cannot_be_told",
+    ],
     "model": [
         "api/test_flatten.py",
         "physics/test_inputs_act.py",
@@ -93,6 +101,7 @@ THEN: dict[str, list[str]] = {
     ],
     "stepping": ["convergence", "api/test_simulation.py", "physics/test_audit.py", "physics/test_gradient.py"],
     "results": [
+        "api/test_pictures.py",
         "api/test_results.py",
         "api/test_plotting.py",
         "api/test_cli.py",
