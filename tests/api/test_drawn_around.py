@@ -24,7 +24,7 @@ from trbdyn.results import Result
 
 @pytest.fixture(scope="module")
 def loaded() -> Result:
-    return trb.Simulation(trb.cases.scene_30310(2000.0, 4930.0, 5530.0)).run(revolutions=2)
+    return trb.Simulation(trb.cases.scene_30310(2000.0, 4930.0, 5530.0)).run(revolutions=1)
 
 
 @pytest.fixture(autouse=True)
@@ -124,7 +124,6 @@ def test_every_picture_has_its_legend_and_its_grid(name: str, whirling: Result) 
     if len(labels) > 1:
         assert ax.get_legend() is not None
         assert [text.get_text() for text in ax.get_legend().get_texts()] == labels
-    ax.figure.canvas.draw()
     # bars have a grid across them alone
     assert ax.xaxis.get_gridlines()[0].get_visible()
     assert ax.get_xlabel()

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from faults import AREAS, ROOT, Fault, draw
-from noticing import FIRST, THEN, Baseline, Notice, preload, run_c_tests, run_tests
+from noticing import FIRST, QUICK_C_TESTS, THEN, Baseline, Notice, preload, run_c_tests, run_tests
 from sandbox import PYTHON, TREE, VENV, WORK, Snapshot, compile_c_tests, fingerprint, planted, prepare
 
 OUTCOMES = WORK / "outcomes.jsonl"
@@ -138,10 +138,10 @@ def attempt(fault: Fault, wider: bool, baseline: Baseline, snapshot: Snapshot, l
 
 
 def _c_tests(fault: Fault, wider: bool) -> Notice:
-    first = fault.area in ("stepping", "records")
-    if not fault.file.startswith("csrc") or first is wider or not compile_c_tests():
+    names = () if wider else QUICK_C_TESTS.get(fault.area, ())
+    if not fault.file.startswith("csrc") or not (wider or names) or not compile_c_tests(names):
         return Notice()
-    return run_c_tests()
+    return run_c_tests(names)
 
 
 def recheck(rows: list[Row], outcomes: dict[str, Row], baseline: Baseline) -> bool:
@@ -242,6 +242,7 @@ def main() -> int:
             left = [fault for fault in faults if is_open(turn, outcomes.get(fault.key), tests)]
             if not left:
                 break
+            left.sort(key=lambda fault: fault.key in outcomes)  # new ones first
             fault, began = left[0], time.monotonic()
             notice, why = attempt(fault, turn == "then", baseline, snapshot, favourites_of(fault, outcomes, baseline))
             seconds = time.monotonic() - began

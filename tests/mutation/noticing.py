@@ -21,54 +21,38 @@ from sandbox import BUILD, TOOLS, TREE, WORK
 
 RECORDS = ["physics/test_records.py"]
 FORCES = [*RECORDS, "physics/test_inputs_act.py", "physics/test_action_reaction.py", "physics/test_contacts.py"]
-SHORT_RESTARTS = (
-    "test_runs_in_pieces_follow_one_schedule",
-    "test_times_of_the_schedule",
-    "test_every_run_that_ended_early_goes_on",
-    "test_a_run_resumed_and_broken_again",
-    "test_a_checkpoint_of_another_run_is_refused",
-    "test_checkpoints_that_say_what_cannot_be_are_refused",
-)
 FIRST: dict[str, list[str]] = {
-    "laws": ["laws/test_check_values.py", *FORCES],
-    "contacts": FORCES,
+    "laws": ["laws/test_check_values.py", "laws/test_in_contacts.py", *FORCES],
+    "contacts": [*FORCES, "laws/test_in_contacts.py"],
     "records": RECORDS,
-    "motion": [
-        *RECORDS,
-        "physics/test_rigid_body.py",
-        "geometry/test_derived.py",
-        "geometry/test_pocket.py",
-        "physics/test_contacts.py",
-    ],
+    "motion": [*RECORDS, "geometry/test_derived.py", "geometry/test_pocket.py", "physics/test_contacts.py"],
     "stepping": [
         "convergence/test_effort.py",
-        "convergence/test_determinism.py::test_dense_output_does_not_change_steps",
-        "convergence/test_determinism.py::test_pieces_make_the_whole",
-        "convergence/test_determinism.py::test_restarts_are_exact",
         "convergence/test_tolerance.py::test_first_step_is_taken",
         "convergence/test_tolerance.py::test_largest_step_is_kept",
+        "convergence/test_determinism.py::test_restarts_are_exact",
     ],
     "results": [
         "api/test_by_hand.py",
         "api/test_observables.py",
-        "api/test_drawn.py",
-        "api/test_drawn_around.py",
         "api/test_settling.py::test_drift_has_its_time_scale",
         "api/test_settling.py::test_a_whirl_that_grows_from_almost_nothing_drifts",
         "api/test_settling.py::test_a_run_that_is_short_against_the_creep_cannot_be_told",
+        "api/test_drawn.py",
+        "api/test_drawn_around.py",
     ],
     "model": [
         "api/test_flatten.py",
-        "physics/test_inputs_act.py",
+        "api/test_lubricants.py",
         "geometry/test_derived.py",
         "physics/test_start.py",
         "api/test_models.py",
-        "api/test_lubricants.py",
+        "physics/test_inputs_act.py",
     ],
     "runs": [
-        *(f"restart/test_checkpoints.py::{name}" for name in SHORT_RESTARTS),
+        "restart/test_checkpoints.py::test_every_run_that_ended_early_goes_on",
+        "restart/test_checkpoints.py::test_runs_in_pieces_follow_one_schedule",
         "convergence/test_peaks.py::test_intervals_make_the_run",
-        "convergence/test_determinism.py::test_pieces_make_the_whole",
     ],
 }
 """The area's own tests, quick ones: most faults end here."""
@@ -90,6 +74,7 @@ THEN: dict[str, list[str]] = {
         "api/test_simulation.py",
     ],
     "motion": [
+        "physics/test_rigid_body.py",
         "physics/test_audit.py",
         "physics/test_invariance.py",
         "physics/test_ring_path.py",
@@ -125,6 +110,11 @@ THEN: dict[str, list[str]] = {
 }
 """Wider tests, among them those that start a process (`python -m trbdyn`), for faults that the first ones do not notice."""
 
+QUICK_C_TESTS = {
+    "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent"),
+    "records": ("test_peaks", "test_motion"),
+}
+"""C tests of an area, which come with its first tests; all of them, save the slow ones, come with the wider tests."""
 SLOW_C_TESTS = "test_jacobian|test_coupling|test_clearance|test_interference"
 MEMORY = 8 << 30
 """Address space of a process with a fault (byte)."""
@@ -313,11 +303,12 @@ def run_tests(
     return outcome
 
 
-def run_c_tests(skip: str = SLOW_C_TESTS) -> Notice:
-    """The first C test that fails."""
-    words = [str(TOOLS / "ctest"), "--test-dir", str(BUILD), "--timeout", "60", "--stop-on-failure"]
+def run_c_tests(names: Sequence[str] = ()) -> Notice:
+    """The first C test that fails: of those named, or of all but the slow ones."""
+    which = ["-R", "|".join(f"^{name}$" for name in names)] if names else ["-E", SLOW_C_TESTS]
+    words = [str(TOOLS / "ctest"), "--test-dir", str(BUILD), "--timeout", "60", "--stop-on-failure", *which]
     began = time.monotonic()
-    done = subprocess.run([*words, *(["-E", skip] if skip else [])], capture_output=True, text=True, check=False)
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
     failed = re.findall(r"Test +#\d+: (\w+) .*?\*\*\*(\w+)", done.stdout)
     if done.returncode == 0:
         return Notice()
