@@ -23,9 +23,9 @@ RECORDS = ["physics/test_records.py"]
 FORCES = [*RECORDS, "physics/test_inputs_act.py", "physics/test_action_reaction.py", "physics/test_contacts.py"]
 FIRST: dict[str, list[str]] = {
     "laws": ["laws/test_check_values.py", "laws/test_in_contacts.py", *FORCES],
-    "contacts": [*FORCES, "laws/test_in_contacts.py"],
+    "contacts": [*FORCES, "physics/test_any_number.py", "laws/test_in_contacts.py", "convergence/test_effort.py"],
     "records": RECORDS,
-    "motion": [*RECORDS, "geometry/test_derived.py", "geometry/test_pocket.py", "physics/test_contacts.py"],
+    "motion": [*RECORDS, "geometry/test_derived.py", "geometry/test_pocket.py", "convergence/test_effort.py"],
     "stepping": [
         "convergence/test_effort.py",
         "convergence/test_tolerance.py::test_first_step_is_taken",
@@ -38,6 +38,7 @@ FIRST: dict[str, list[str]] = {
         "api/test_settling.py::test_drift_has_its_time_scale",
         "api/test_settling.py::test_a_whirl_that_grows_from_almost_nothing_drifts",
         "api/test_settling.py::test_a_run_that_is_short_against_the_creep_cannot_be_told",
+        "api/test_settling.py::test_bounds_of_a_rate",
         "api/test_drawn.py",
         "api/test_drawn_around.py",
     ],
@@ -50,6 +51,7 @@ FIRST: dict[str, list[str]] = {
         "physics/test_inputs_act.py",
     ],
     "runs": [
+        "api/test_running.py",
         "restart/test_checkpoints.py::test_every_run_that_ended_early_goes_on",
         "restart/test_checkpoints.py::test_runs_in_pieces_follow_one_schedule",
         "convergence/test_peaks.py::test_intervals_make_the_run",
@@ -114,8 +116,7 @@ QUICK_C_TESTS = {
     "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent"),
     "records": ("test_peaks", "test_motion"),
 }
-"""C tests of an area, which come with its first tests; all of them, save the slow ones, come with the wider tests."""
-SLOW_C_TESTS = "test_jacobian|test_coupling|test_clearance|test_interference"
+"""C tests of an area, which come with its first tests; all C tests come with the wider tests."""
 MEMORY = 8 << 30
 """Address space of a process with a fault (byte)."""
 
@@ -304,8 +305,8 @@ def run_tests(
 
 
 def run_c_tests(names: Sequence[str] = ()) -> Notice:
-    """The first C test that fails: of those named, or of all but the slow ones."""
-    which = ["-R", "|".join(f"^{name}$" for name in names)] if names else ["-E", SLOW_C_TESTS]
+    """The first C test that fails, of those named or of all."""
+    which = ["-R", "|".join(f"^{name}$" for name in names)] if names else []
     words = [str(TOOLS / "ctest"), "--test-dir", str(BUILD), "--timeout", "60", "--stop-on-failure", *which]
     began = time.monotonic()
     done = subprocess.run(words, capture_output=True, text=True, check=False)

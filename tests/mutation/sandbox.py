@@ -77,6 +77,11 @@ def prepare() -> None:
     # compiled Python that is checked by its source's hash: two faults of one second and one length are not taken for each other
     words = [PYTHON, "-m", "compileall", "-q", "--invalidation-mode", "checked-hash", TREE / "trbdyn"]
     subprocess.run([str(word) for word in words], check=True, cwd=TREE)
+    # what pytest makes of the tests is kept: they are not changed by faults
+    words = [PYTHON, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", "-p", "no:nbmake", "tests"]
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    silent = subprocess.DEVNULL
+    subprocess.run([str(word) for word in words], check=False, cwd=TREE, env=environment, stdout=silent, stderr=silent)
 
 
 def _ninja(*targets: str) -> bool:
