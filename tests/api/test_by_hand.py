@@ -246,3 +246,22 @@ def test_derived_by_hand(whirling: Result) -> None:
     assert (part.time[0], part.time[-1], len(part)) == (pytest.approx(0.1), pytest.approx(0.2), 1001)
     assert part.duration == pytest.approx(0.1)
     assert part.revolutions == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(
+    ("stats", "wanted"),
+    [
+        ({"wall_s": 2.5, "wall_s_per_revolution": 0.07}, 0.07),
+        ({"wall_s": 2.5}, 2.5 / 20.0),
+        ({"wall_s_per_revolution": 0.07}, 0.07),
+        ({}, None),
+    ],
+)
+def test_wall_time_of_a_turn_is_what_the_statistics_tell(
+    stats: dict[str, float], wanted: float | None, synthetic: Any, whirling: Result
+) -> None:
+    """That of stepping, which the run measured; only where it did not, the whole wall time over the turns."""
+    about = {"scene": whirling.scene, "geometry": synthetic.geometry, "fields": synthetic.fields} | synthetic.ending()
+    result = Result.from_records(synthetic.records, synthetic.layout, **(about | {"stats": stats}))
+    found = result.summary()["wall_s_per_revolution"]
+    assert found == (None if wanted is None else pytest.approx(wanted))

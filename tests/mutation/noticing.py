@@ -113,6 +113,7 @@ THEN: dict[str, list[str]] = {
 """Wider tests, among them those that start a process (`python -m trbdyn`), for faults that the first ones do not notice."""
 
 QUICK_C_TESTS = {
+    "contacts": ("test_tangent", "test_kernels"),
     "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent"),
     "records": ("test_peaks", "test_motion"),
 }
