@@ -85,6 +85,15 @@ SCENES = {
     "dry": {
         "effects": Effects.standard().replace(lubrication="dry", rolling_resistance=False, rolling_pressure_force=False)
     },
+    "damped": {
+        "effects": Effects.standard().replace(
+            lubrication="dry",
+            rolling_resistance=False,
+            rolling_pressure_force=False,
+            damping="hunt_crossley",
+            damping_race=2.0,
+        )
+    },
     "rollers": {"effects": Effects.standard().replace(bodies="rollers"), "start": trb.Start.equal()},
 }
 

@@ -212,6 +212,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=90.0, help="longest wall time; the next call goes on")
     parser.add_argument("--area", choices=list(AREAS), help="this area only")
+    parser.add_argument("--again", action="store_true", help="only those that no test noticed so far")
     parser.add_argument("--report", action="store_true", help="only the table of what is there")
     return parser.parse_args()
 
@@ -240,6 +241,7 @@ def main() -> int:
         while time.monotonic() < end:
             faults, _ = chosen(outcomes, options.seed, options.count, options.area)
             left = [fault for fault in faults if is_open(turn, outcomes.get(fault.key), tests)]
+            left = [fault for fault in left if fault.key in outcomes or not options.again]
             if not left:
                 break
             left.sort(key=lambda fault: fault.key in outcomes)  # new ones first

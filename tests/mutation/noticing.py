@@ -22,10 +22,16 @@ from sandbox import BUILD, TOOLS, TREE, WORK
 RECORDS = ["physics/test_records.py"]
 FORCES = [*RECORDS, "physics/test_inputs_act.py", "physics/test_action_reaction.py", "physics/test_contacts.py"]
 FIRST: dict[str, list[str]] = {
-    "laws": ["laws/test_check_values.py", "laws/test_in_contacts.py", *FORCES],
+    "laws": ["laws/test_check_values.py", "laws/test_oracles.py", "laws/test_in_contacts.py", *FORCES],
     "contacts": [*FORCES, "physics/test_any_number.py", "laws/test_in_contacts.py", "convergence/test_effort.py"],
-    "records": RECORDS,
-    "motion": [*RECORDS, "geometry/test_derived.py", "geometry/test_pocket.py", "convergence/test_effort.py"],
+    "records": [*RECORDS, "convergence/test_peaks.py::test_step_by_step"],
+    "motion": [
+        *RECORDS,
+        "physics/test_response.py",
+        "geometry/test_derived.py",
+        "geometry/test_pocket.py",
+        "convergence/test_effort.py",
+    ],
     "stepping": [
         "convergence/test_effort.py",
         "convergence/test_tolerance.py::test_first_step_is_taken",
