@@ -137,6 +137,29 @@ def test_step_by_step(name: str) -> None:
         np.testing.assert_allclose(found[f"{side}_film_parameter_min"], wanted, rtol=SHARE, err_msg=side)
 
 
+def test_rollers_thrown_at_the_front_rib_have_their_peaks() -> None:
+    sim = Simulation(scene_30310(3000.0, 4930.0, effects=Effects.standard().replace(front_rib=True)))
+    vector, geometry = sim.state.vector, sim.scene.bearing.geometry
+    state = sim.view(vector)
+    for roller in (2, 7):
+        state["roller_r"][roller] -= 3e-4 * np.sin(geometry.roller_axis_angle)
+        state["roller_z"][roller] -= 3e-4 * np.cos(geometry.roller_axis_angle)
+        state["roller_v_z"][roller] -= 0.3
+    sim.set_state(vector)
+    sim._core.begin_peaks(0.0)
+    rows = [sim.record()]
+    while sim.time < 1e-3:
+        sim.step()
+        rows.append(sim.record())
+    found = peak_table.from_row(sim._core.whole_peaks(sim.time), sim._model.peak_layout())
+    loads = np.array([row["front_rib_load"] for row in rows])
+    assert {*np.flatnonzero(loads.max(axis=0))} >= {2, 7}
+    np.testing.assert_allclose(found["front_rib_load_peak"], loads.max(axis=0), rtol=SHARE)
+    time = np.array([row["time"] for row in rows])
+    mean = np.trapezoid(loads, time, axis=0) / time[-1]
+    np.testing.assert_allclose(found["front_rib_load_mean"], mean, rtol=SHARE, atol=SHARE * loads.max())
+
+
 def test_nobody_pays_who_does_not_ask(kit: SimpleNamespace, tmp_path: Path) -> None:
     """Without the group no look is made, rows are records, and asking says why there is nothing."""
     sim = kit.simulate(Effects.paper())
