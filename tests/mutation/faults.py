@@ -90,6 +90,8 @@ class Fault:
     """The line of the source that holds it."""
     column: int
     """Where in that line it begins."""
+    nth: int
+    """Which one of the lines of this text in the source."""
     source: str
     """Hash of the source without the fault."""
 
@@ -203,7 +205,8 @@ def faults_of(file: Path, area: str) -> list[Fault]:
         column = begin - start - (len(line) - len(line.lstrip()))
         if old != new:
             number = text.count("\n", 0, begin) + 1
-            made.append(Fault(area, name, at, old, new, number, line.strip(), column, source))
+            nth = [other.strip() for other in text.splitlines()[:number]].count(line.strip())
+            made.append(Fault(area, name, at, old, new, number, line.strip(), column, nth, source))
     return made
 
 

@@ -47,14 +47,15 @@ def write_outcome(outcomes: dict[str, Row], fault: Fault, notice: Notice, **more
     return row
 
 
-def judgements() -> dict[tuple[str, str, int, str], Row]:
+def judgements() -> list[Row]:
     """Faults that no test notices, judged by hand."""
-    entries = tomllib.loads(JUDGED.read_text(encoding="utf-8")).get("fault", []) if JUDGED.exists() else []
-    return {(entry["file"], entry["text"], entry["column"], entry["new"]): entry for entry in entries}
+    return tomllib.loads(JUDGED.read_text(encoding="utf-8"))["fault"]
 
 
-def judgement(row: Row, judged: dict[tuple[str, str, int, str], Row]) -> Row | None:
-    return judged.get((row["file"], row["text"], row["column"], row["new"]))
+def judgement(row: Row, judged: list[Row]) -> Row | None:
+    names = ("file", "text", "column", "new")
+    found = [entry for entry in judged if all(entry[name] == row[name] for name in names)]
+    return next((entry for entry in found if entry.get("nth", 1) == row.get("nth", 1)), None)
 
 
 # ---- what holds without a fault ----
@@ -89,7 +90,7 @@ def check_planted(baseline: Baseline, snapshot: Snapshot) -> bool:
     words = [str(PYTHON), "-P", "-c", "import trbdyn, trbdyn._core as core; print(trbdyn.__file__, core.__file__)"]
     found = subprocess.run(words, capture_output=True, text=True, check=True, cwd="/").stdout.split()
     file, old, new, test = PLANTED
-    fault = Fault("", file, (ROOT / file).read_text(encoding="utf-8").index(old), old, new, 0, "", 0, "")
+    fault = Fault("", file, (ROOT / file).read_text(encoding="utf-8").index(old), old, new, 0, "", 0, 1, "")
     before = run_tests([test], baseline=baseline, longest=120.0)
     with planted(fault, snapshot):
         after = run_tests([test], baseline=baseline, longest=120.0)

@@ -310,6 +310,8 @@ def run_tests(
         outcome.failed.append(Notice(current, "hang", f"longer than {time.monotonic() - since:.0f} s"))
     elif not stopped and code < 0:
         outcome.failed.append(Notice(current or "import trbdyn", "crash", f"signal {-code}"))
+    elif not stopped and code != 0 and not outcome.failed:
+        outcome.failed.append(Notice("pytest", "import", f"pytest cannot run: it ends with {code}"))
     for notice in outcome.failed:
         notice.seconds = time.monotonic() - began
     return outcome

@@ -76,7 +76,16 @@ def test_comments_and_strings_get_no_faults() -> None:
     ]
 
 
-ROW = {"file": "trbdyn/x.py", "line": 3, "column": 4, "old": "+", "new": "-", "text": "a + b", "area": "results"}
+ROW = {
+    "file": "trbdyn/x.py",
+    "line": 3,
+    "column": 4,
+    "nth": 1,
+    "old": "+",
+    "new": "-",
+    "text": "a + b",
+    "area": "results",
+}
 
 
 def row(**changes: Any) -> dict[str, Any]:
@@ -92,7 +101,7 @@ def test_what_counts(monkeypatch: pytest.MonkeyPatch) -> None:
         row(why="does not compile"),
     ]
     rows += [row(why="same program")]
-    monkeypatch.setattr(mutate, "judgements", lambda: {("trbdyn/x.py", "a + b", 4, "*"): {"reason": "b is zero"}})
+    monkeypatch.setattr(mutate, "judgements", lambda: [ROW | {"new": "*", "reason": "b is zero"}])
     text = mutate.table(rows)
     assert "results         4           2        2        1  50 %" in text
     assert "do not compile, not counted: 1" in text
@@ -111,9 +120,10 @@ def test_survivors_are_tried_again_when_tests_change() -> None:
 
 def test_judgements_name_faults_that_are_there() -> None:
     """A judgement of a line that changed since says nothing any more."""
-    there = {(fault.file, fault.text, fault.column, fault.new) for fault in faults.draw(1)}
-    for key, entry in mutate.judgements().items():
-        assert key in there, key
+    judged = mutate.judgements()
+    there = [entry for fault in faults.draw(1) if (entry := mutate.judgement(vars(fault), judged))]
+    for entry in judged:
+        assert entry in there, entry
         assert entry["reason"].endswith(".")
 
 
