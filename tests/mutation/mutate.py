@@ -19,7 +19,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from faults import AREAS, ROOT, Fault, draw
+from faults import AREAS, Fault, draw
 from noticing import FIRST, QUICK_C_TESTS, THEN, Baseline, Notice, preload, run_c_tests, run_tests
 from sandbox import PYTHON, TREE, VENV, WORK, Snapshot, compile_c_tests, fingerprint, planted, prepare
 
@@ -90,7 +90,7 @@ def check_planted(baseline: Baseline, snapshot: Snapshot) -> bool:
     words = [str(PYTHON), "-P", "-c", "import trbdyn, trbdyn._core as core; print(trbdyn.__file__, core.__file__)"]
     found = subprocess.run(words, capture_output=True, text=True, check=True, cwd="/").stdout.split()
     file, old, new, test = PLANTED
-    fault = Fault("", file, (ROOT / file).read_text(encoding="utf-8").index(old), old, new, 0, "", 0, 1, "")
+    fault = Fault("", file, (TREE / file).read_text(encoding="utf-8").index(old), old, new, 0, "", 0, 1, "")
     before = run_tests([test], baseline=baseline, longest=120.0)
     with planted(fault, snapshot):
         after = run_tests([test], baseline=baseline, longest=120.0)
@@ -233,19 +233,17 @@ def main() -> int:
     preload()
     snapshot, tests = Snapshot(), fingerprint("tests")
     baseline = Baseline.read(fingerprint("csrc", "trbdyn"))
-    areas = [options.area] if options.area else list(AREAS)
     for turn, tests_of in (("first", FIRST), ("then", THEN)):
-        names = list(dict.fromkeys(name for area in areas for name in tests_of[area]))
+        left = open_faults(turn, outcomes, options, tests)
+        areas = {fault.area for fault in left}
+        names = list(dict.fromkeys(name for area in AREAS if area in areas for name in tests_of[area]))
         if not check_baseline([*names, PLANTED[3].split("::")[0]], baseline) or not check_planted(baseline, snapshot):
             print("mend that first: what a fault changes cannot be told from what fails without it")
             return 1
         while time.monotonic() < end:
-            faults, _ = chosen(outcomes, options.seed, options.count, options.area)
-            left = [fault for fault in faults if is_open(turn, outcomes.get(fault.key), tests)]
-            left = [fault for fault in left if fault.key in outcomes or not options.again]
+            left = open_faults(turn, outcomes, options, tests)
             if not left:
                 break
-            left.sort(key=lambda fault: fault.key in outcomes)  # new ones first
             fault, began = left[0], time.monotonic()
             notice, why = attempt(fault, turn == "then", baseline, snapshot, favourites_of(fault, outcomes, baseline))
             seconds = time.monotonic() - began
@@ -257,6 +255,14 @@ def main() -> int:
     print(table(chosen(outcomes, options.seed, options.count, options.area)[1]))
     print("" if len(rows) == len(faults) else f"{len(faults) - len(rows)} faults are left: call it again")
     return 0 if fine else 1
+
+
+def open_faults(turn: str, outcomes: dict[str, Row], options: argparse.Namespace, tests: str) -> list[Fault]:
+    """What is left to do in a turn, new faults first."""
+    faults, _ = chosen(outcomes, options.seed, options.count, options.area)
+    left = [fault for fault in faults if is_open(turn, outcomes.get(fault.key), tests)]
+    left = [fault for fault in left if fault.key in outcomes or not options.again]
+    return sorted(left, key=lambda fault: fault.key in outcomes)
 
 
 def is_open(turn: str, row: Row | None, tests: str) -> bool:
