@@ -1,9 +1,9 @@
 """Rollers that bounce between their raceways, and how fast the integration takes their vibrations away.
 
-In a bearing with clearance no roller is held by a load: the rollers bounce between cup and cone. Without normal damping hardly anything
-but the integration takes energy from these vibrations, so that their size, and with it rolling resistance and slip, depends on the
-tolerances, although the energy of the whole run adds up well: vibrations of tenths of a millijoule decide about watts. Here the
-energy that is missing is compared with the energy of the vibrations.
+In a bearing with clearance no roller is held by a load: the rollers bounce between cup and cone. Without normal damping hardly
+anything but the integration takes energy from these vibrations, so that their size, and with it rolling resistance and slip,
+depends on the tolerances, although the energy of the whole run adds up well: vibrations of tenths of a millijoule decide about
+watts. Here the energy that is missing is compared with the energy of the vibrations.
 """
 
 from __future__ import annotations
@@ -75,9 +75,9 @@ class LooseRollers:
         if share <= LOST_IN_A_TURN:
             return None
         return (
-            f"from {since:.6g} s to {until:.6g} s no roller is held by a load: they bounce between the raceways, and the integration "
-            f"changes the energy of these vibrations by {100.0 * share:.2g} % in a turn of the shaft: their size, rolling "
-            "resistance and slip depend on the accuracy; give the contacts the damping that they have (effects.damping), or try "
+            f"from {since:.6g} s to {until:.6g} s no roller is held by a load: they bounce between the raceways, and the "
+            f"integration changes the energy of these vibrations by {100.0 * share:.2g} % in a turn of the shaft: their "
+            "size, rolling resistance and slip depend on the accuracy; give the contacts the damping that they have (effects.damping), or try "
             "smaller tolerances"
         )
 

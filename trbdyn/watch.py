@@ -3,7 +3,8 @@
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
 in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
 whole run. A window whose energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more
-than `STOP` was made, or is missing beside the losses or the work put in, ends the run: its losses, slip and forces would be wrong by as much.
+than `STOP` was made, or is missing beside the losses or the work put in, ends the run: its losses, slip
+and forces would be wrong by as much.
 """
 
 from __future__ import annotations

@@ -138,7 +138,7 @@ def loose_scene(**effects: Any) -> trb.Scene:
 
 
 def test_rollers_that_bounce_without_damping_are_said():
-    """Losses of 9, 11, 22 and 31 W with finer and finer tolerances: what decides is what the integration takes of the vibrations."""
+    """Losses are 9, 11, 22 and 31 W with finer and finer tolerances: the integration decides about the vibrations."""
     with pytest.warns(trb.RunWarning, match="no roller is held by a load"):
         result = trb.Simulation(loose_scene()).run(duration=0.03)
     assert result.success
