@@ -77,8 +77,8 @@ class LooseRollers:
         return (
             f"from {since:.6g} s to {until:.6g} s no roller is held by a load: they bounce between the raceways, and the "
             f"integration changes the energy of these vibrations by {100.0 * share:.2g} % in a turn of the shaft: their "
-            "size, rolling resistance and slip depend on the accuracy; give the contacts the damping that they have (effects.damping), or try "
-            "smaller tolerances"
+            "size, rolling resistance and slip depend on the accuracy; give the contacts the damping that they have "
+            "(effects.damping), or try smaller tolerances"
         )
 
     def _read(self, row: np.ndarray, name: str) -> np.ndarray:
