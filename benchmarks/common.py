@@ -199,7 +199,7 @@ def table(rows: Sequence[Mapping[str, Any]], columns: Iterable[str], digits: int
     """Rows as a Markdown table that also reads well in a terminal."""
     names = list(columns)
     cells = [names, *([_cell(row.get(name), digits) for name in names] for row in rows)]
-    widths = [max(len(line[i]) for line in cells) for i in range(len(names))]
+    widths = [max(3, *(len(line[i]) for line in cells)) for i in range(len(names))]
     numeric = [all(isinstance(row.get(name), (int, float, np.number, type(None))) for row in rows) for name in names]
 
     def line(parts: Sequence[str]) -> str:
@@ -223,6 +223,24 @@ def _cell(value: Any, digits: int) -> str:
     if isinstance(value, (float, np.floating)):
         return f"{value:.{digits}g}"
     return str(value)
+
+
+def write_readme(name: str, text: str, path: Path = HERE / "README.md") -> None:
+    """Put a text between the comments ``<!-- name -->`` and ``<!-- /name -->`` of a page.
+
+    Raises
+    ------
+    ValueError
+        If the page has not exactly one such place.
+    """
+    page = path.read_text(encoding="utf-8")
+    begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
+    if page.count(begin) != 1 or page.count(end) != 1 or page.index(begin) > page.index(end):
+        raise ValueError(f"{path.name} must have one {begin} and, after it, one {end}")
+    head, rest = page.split(begin)
+    stamp = f"Measured {datetime.datetime.now(datetime.UTC):%Y-%m-%d}, revision {revision() or 'unknown'}, {processor()['name']}."
+    path.write_text(f"{head}{begin}\n{stamp}\n\n{text.strip()}\n{end}{rest.split(end)[1]}", encoding="utf-8")
+    print(f"wrote {path.name}")
 
 
 def save_picture(figure: Any, name: str) -> Path:

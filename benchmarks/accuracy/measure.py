@@ -297,6 +297,10 @@ def batch_mean(values: Sequence[float] | Array) -> Mean:
     return Mean(float(batches.mean()), half, batches.size)
 
 
+class BatchError(Exception):
+    """A batch of the statistics did not reach its end."""
+
+
 def batches_of(case: Case, settings: Settings, revolutions: float, scene: Scene | None = None) -> dict[str, Array]:
     """Statistics beyond the windows: a batch is a run from each state, `revolutions` long. One value a batch of each.
 
@@ -311,12 +315,13 @@ def batches_of(case: Case, settings: Settings, revolutions: float, scene: Scene 
             warnings.simplefilter("ignore", RunWarning)
             result = sim.run(revolutions=revolutions, save_every=every, save_groups=_GROUPS_OF_BATCHES)
         if not result.success:
-            raise RuntimeError(f"{case.name}: {result.message}")
+            raise BatchError(result.message)
         turn = result["shaft_angle"][-1] - result["shaft_angle"][0]
         row = {
             "torque": float((result["work_shaft"][-1] - result["work_shaft"][0]) / turn),
             "loss": lost_of(result) / result.duration,
             "cage_slip": float(result.cage_slip.mean()),
+            "energy_closure": result.energy_closure,
         }
         names = ("pocket_mean", "pocket_p95", "duty", "orbit", "whirl_radius")
         if result.has_cage:

@@ -70,6 +70,8 @@ class CaseDefinition:
         Method of the reference trajectories: explicit, or BDF where explicit steps would be far too short.
     batch : float
         Turns of the shaft of a batch of the statistics.
+    tight_order : int
+        Highest order of BDF of the tight run that the statistics are compared with.
     """
 
     text: str
@@ -85,7 +87,8 @@ class CaseDefinition:
     least_window: float = 4e-3
     longest_window: float = 20e-3
     reference: Literal["erk", "bdf"] = "erk"
-    batch: float = 15.0
+    batch: float = 10.0
+    tight_order: int = 5
 
 
 CASES: Final = {
@@ -99,9 +102,11 @@ CASES: Final = {
         "combined load, cage whirling at first", 2000.0, 4930.0, 5530.0, Start.whirl(0.9), 10.0, 2.3, True
     ),
     "light": CaseDefinition("light load, colliding cage", 3000.0, 1230.0, 0.0, Start.whirl(0.9), 20.0, 2.3, True),
-    "heavy": CaseDefinition("heavy load, colliding cage", 3000.0, 20_000.0, 0.0, Start.whirl(0.9), 20.0, 2.3, True),
+    "heavy": CaseDefinition(
+        "heavy load, colliding cage", 3000.0, 20_000.0, 0.0, Start.whirl(0.9), 20.0, 2.3, True, reference="bdf"
+    ),
     "slow": CaseDefinition(
-        "slow rotation", 100.0, 4930.0, 0.0, Start.whirl(0.9), 3.0, 0.7, True, least_window=40e-3, longest_window=100e-3
+        "slow rotation", 100.0, 4930.0, 0.0, Start.whirl(0.9), 3.0, 0.7, True, least_window=40e-3, longest_window=100e-3, reference="bdf", batch=1.0, tight_order=2
     ),
     "fast": CaseDefinition(
         "fast rotation, colliding cage",
@@ -113,6 +118,7 @@ CASES: Final = {
         5.3,
         True,
         least_window=1.5e-3,
+        batch=30.0,
     ),
     "scatter": CaseDefinition(
         "rollers of unequal diameter, within 2 um; effects as by default",
