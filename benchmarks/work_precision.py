@@ -1,16 +1,16 @@
 """What accuracy costs: error against time over scenes, tolerances, methods, slices and quadratures; where the presets stand.
 
     python benchmarks/work_precision.py [--quick] [--json FILE]
-    python benchmarks/work_precision.py --write-readme          puts the tables into benchmarks/README.md
-    python benchmarks/work_precision.py --make-states [NAME]    writes benchmarks/data/states.npz, from which trajectories begin
-    python benchmarks/work_precision.py --make-table [FILE]     writes trbdyn/data/accuracy.json, which Simulation.estimate() reads
+    python benchmarks/work_precision.py --write-readme         puts the tables into benchmarks/README.md
+    python benchmarks/work_precision.py --make-states [NAME]   writes benchmarks/data/states.npz, where trajectories begin
+    python benchmarks/work_precision.py --make-table [FILE]    writes trbdyn/data/accuracy.json for Simulation.estimate()
 
-Errors are deviations from a reference within windows of at least 4 ms and 10 impacts (40 ms at 100 rpm, 1.5 ms at 10 000 rpm) from
-stored states, in most scenes of a cage in the middle of a collision (see `accuracy.states`). Beyond those, colliding motion is
-chaotic and means are compared: the bias of a preset is the mean difference of batches from those of a tight run from the same
-states, with its 95 % confidence interval. The reference is an explicit Runge-Kutta method at 1e-4 of the base tolerances, checked
-against BDF at the same, or BDF checked against the explicit method where explicit steps are far too short. Tolerances are given as
-a scale of the base: rtol 1e-3, 3e-10 m, 3e-8 rad, 1e-4 m/s, 1e-2 rad/s.
+Errors are deviations from a reference within windows of at least 4 ms and 10 impacts (40 ms at 100 rpm, 1.5 ms at 10 000 rpm)
+from stored states, in most scenes of a cage in the middle of a collision (see `accuracy.states`). Beyond those, colliding
+motion is chaotic and means are compared: the bias of a preset is the mean difference of batches from those of a tight run from
+the same states, with its 95 % confidence interval. The reference is an explicit Runge-Kutta method at 1e-4 of the base
+tolerances, checked against BDF at the same, or BDF checked against the explicit method where explicit steps are far too short.
+Tolerances are given as a scale of the base: rtol 1e-3, 3e-10 m, 3e-8 rad, 1e-4 m/s, 1e-2 rad/s.
 """
 
 from __future__ import annotations
@@ -70,9 +70,12 @@ COLUMNS = {
     "error_orbit": "1: deviation of the cage's orbit radius about its own mean place within the window, over Cpr",
     **{f"{name}_worst": "1: the same, worst state" for name in measure.QUANTITIES + measure.OBSERVABLES},
     "error_displacement": "1: deviation of the ring's axial place under load over its place: stiffness",
-    **{name: text for name, text in OBSERVED.items()},
+    **OBSERVED,
     **{f"{name}_half_width": "the same: half the 95 % confidence interval" for name in OBSERVED},
-    **{f"bias_{name}": "1: difference from a tight run from the same states, over its mean (orbit, whirl: over Cpr)" for name in OBSERVED},
+    **{
+        f"bias_{name}": "1: difference from tight runs from the same states, relative (orbit, whirl: of Cpr)"
+        for name in OBSERVED
+    },
     **{f"bias_{name}_half_width": "1: half its 95 % confidence interval" for name in OBSERVED},
     "batches": "1: runs that the statistics are over",
     "energy_closure": "1: residual of the energy audit over the dissipated work; statistics: largest of the batches",
@@ -388,10 +391,18 @@ def main(arguments: Sequence[str] | None = None) -> common.Report | None:
     parser = common.parser(__doc__)
     parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
     parser.add_argument(
-        "--make-states", nargs="*", metavar="NAME", help="write stored states of cases, by default those missing, and stop"
+        "--make-states",
+        nargs="*",
+        metavar="NAME",
+        help="write stored states of cases, by default those missing, and stop",
     )
     parser.add_argument(
-        "--make-table", nargs="?", type=Path, const=TABLE, metavar="FILE", help="write the table of trbdyn.estimate as well"
+        "--make-table",
+        nargs="?",
+        type=Path,
+        const=TABLE,
+        metavar="FILE",
+        help="write the table of trbdyn.estimate as well",
     )
     parser.add_argument("--write-readme", action="store_true", help="put the tables into benchmarks/README.md")
     options = parser.parse_args(arguments)

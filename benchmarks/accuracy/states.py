@@ -106,7 +106,19 @@ CASES: Final = {
         "heavy load, colliding cage", 3000.0, 20_000.0, 0.0, Start.whirl(0.9), 20.0, 2.3, True, reference="bdf"
     ),
     "slow": CaseDefinition(
-        "slow rotation", 100.0, 4930.0, 0.0, Start.whirl(0.9), 3.0, 0.7, True, least_window=40e-3, longest_window=100e-3, reference="bdf", batch=1.0, tight_order=2
+        "slow rotation",
+        100.0,
+        4930.0,
+        0.0,
+        Start.whirl(0.9),
+        3.0,
+        0.7,
+        True,
+        least_window=40e-3,
+        longest_window=100e-3,
+        reference="bdf",
+        batch=1.0,
+        tight_order=2,
     ),
     "fast": CaseDefinition(
         "fast rotation, colliding cage",

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import common
 import numpy as np
+
 from closure import grid
 
 MEASURES: Final = ("closure", "closure_dissipated")
@@ -87,7 +88,12 @@ def page(report: common.Report, promise: float) -> str:
     parts += ["## Findings", "", _findings(report), ""]
     worst_rows = _sorted(finished(rows), "closure")[:15]
     figures = ("closure", "closure_dissipated", "loss_w", "steps", "turns", "mean_step_s", "repeated_share")
-    parts += ["## Largest closures", "", common.table([_short(row) for row in worst_rows], (*_PLACE, *figures, "said")), ""]
+    parts += [
+        "## Largest closures",
+        "",
+        common.table([_short(row) for row in worst_rows], (*_PLACE, *figures, "said")),
+        "",
+    ]
     over = _sorted(finished(rows), "closure_dissipated")[:10]
     parts += [
         "## Largest over the losses alone",
@@ -146,7 +152,9 @@ def draw(report: common.Report) -> Any:
                 place = loads.index(row["load"]), speeds.index(row["speed_rpm"])
                 if row["status"] == "done":
                     values[place] = np.nanmax([values[place], row["closure"]])
-            image = axes[i, j].imshow(np.maximum(values, 1e-6), norm=norm, cmap="viridis", aspect="auto", origin="lower")
+            image = axes[i, j].imshow(
+                np.maximum(values, 1e-6), norm=norm, cmap="viridis", aspect="auto", origin="lower"
+            )
             for row in here:
                 if grid.is_bad(row) or row.get("warnings"):
                     axes[i, j].text(
