@@ -21,13 +21,13 @@ import json
 import multiprocessing as mp
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import common
 from closure import grid
-from closure.page import draw, page, worst
+from closure.page import draw, page, results, worst
 
 COLUMNS = {
     "speed_rpm": "rpm: speed of the shaft",
@@ -39,7 +39,7 @@ COLUMNS = {
     "effects": "text: preset of the effects, with 8 Gauss nodes a contact",
     "preset": "text: preset of the accuracy",
     "start": "text: equal spacing, or a whirling cage (0.9 Cpr)",
-    "status": "text: done, ended (by the watch) or error",
+    "status": "text: done, ended (by the watch), refused (no such equilibrium) or error",
     "message": "text: why it ended",
     "time_s": "s: bearing time of the run",
     "turns": "1: turns of the shaft",
@@ -122,13 +122,16 @@ def run(plan: Plan, options: argparse.Namespace) -> common.Report:
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
     parser.add_argument("--smoke", action="store_true", help="one point")
+    parser.add_argument("--steps", type=int, help="steps of a run at most, instead of the plan's")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--write", action="store_true", help="write the page, its JSON file and its picture")
     parser.add_argument("--bad", type=Path, metavar="FILE", help="append every finding to a file, a line of JSON each")
     options = parser.parse_args(arguments)
-    report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
-    text = page(report, grid.PROMISE)
+    plan = SMOKE if options.smoke else QUICK if options.quick else FULL
+    report = run(replace(plan, steps=options.steps) if options.steps else plan, options)
+    text = page(report)
     print("\n" + text)
+    report.readme = results(report)
     if options.write:
         options.json = options.json or common.HERE / "closures.json"
         (common.HERE / "closures.md").write_text(text, encoding="utf-8")

@@ -52,6 +52,7 @@ def parser(description: str | None) -> argparse.ArgumentParser:
     out.add_argument("--quick", action="store_true", help="fewer cases and repeats, under two minutes")
     out.add_argument("--json", type=Path, metavar="FILE", default=None, help="write results to a JSON file")
     out.add_argument("--no-picture", action="store_true", help="draw no picture")
+    out.add_argument("--write-readme", action="store_true", help="put the results into benchmarks/README.md")
     return out
 
 
@@ -123,6 +124,8 @@ class Report:
         What `parser` gave.
     columns : dict of str to str
         "unit: text" of every entry of results and summary.
+    readme : str
+        Results for benchmarks/README.md, Markdown; empty for a script that has no place there.
     """
 
     name: str
@@ -132,6 +135,7 @@ class Report:
     results: list[dict[str, Any]] = field(default_factory=list)
     summary: dict[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    readme: str = ""
     began: float = field(default_factory=time.perf_counter)
 
     def add(self, **row: Any) -> dict[str, Any]:
@@ -162,8 +166,10 @@ class Report:
         return out
 
     def finish(self) -> dict[str, Any]:
-        """Write the JSON file that was asked for; say where everything is."""
+        """Write the JSON file and the part of the README that were asked for; say where everything is."""
         out = self.to_dict()
+        if getattr(self.options, "write_readme", False) and self.readme:
+            write_readme(self.name, self.readme)
         if self.options.json is not None:
             self.options.json.parent.mkdir(parents=True, exist_ok=True)
             self.options.json.write_text(json.dumps(out, indent=1, allow_nan=False) + "\n", encoding="utf-8")
@@ -221,7 +227,8 @@ def _cell(value: Any, digits: int) -> str:
     if isinstance(value, (int, np.integer)):
         return f"{value:d}"
     if isinstance(value, (float, np.floating)):
-        return f"{value:.{digits}g}"
+        text = f"{value:.{digits}g}"
+        return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e6 else text
     return str(value)
 
 

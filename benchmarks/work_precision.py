@@ -404,7 +404,6 @@ def main(arguments: Sequence[str] | None = None) -> common.Report | None:
         metavar="FILE",
         help="write the table of trbdyn.estimate as well",
     )
-    parser.add_argument("--write-readme", action="store_true", help="put the tables into benchmarks/README.md")
     options = parser.parse_args(arguments)
     if options.make_states is not None:
         states.make_file(options.make_states)
@@ -421,8 +420,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report | None:
         common.save_picture(draw_front(report), "work_precision")
     if options.make_table is not None:
         write_table(report, options.make_table)
-    if options.write_readme:
-        common.write_readme("work_precision", text_of(report))
+    report.readme = text_of(report)
     report.finish()
     return report
 

@@ -68,10 +68,23 @@ def _front(axes: Any, rows: list[dict[str, Any]], case: str, speed_rpm: float) -
     axes.axvline(real_time, color="0.5", lw=0.8, ls="--")
     axes.axhline(1.0, color="0.5", lw=0.8, ls="--")
     axes.text(real_time, 0.98, " real time", transform=axes.get_xaxis_transform(), va="top", color="0.4", fontsize=8)
-    axes.text(0.0, 0.7, " 1 % of Cpr", transform=axes.get_yaxis_transform(), ha="left", color="0.4", fontsize=8)
+    axes.text(0.0, 1.0, " 1 % of Cpr", transform=axes.get_yaxis_transform(), va="bottom", color="0.4", fontsize=8)
+    _plain_ticks(axes)
     axes.set_xlabel("time of a revolution on one core (ms)")
     axes.set_ylabel("cage centre: error (% of Cpr)")
     axes.set_title(TITLES[case])
+
+
+def _plain_ticks(axes: Any) -> None:
+    """Times as plain numbers; errors as powers of ten, with one at least."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    low, high = axes.get_ylim()
+    axes.set_ylim(0.7 * low, max(1.5 * high, 20.0 * low))
 
 
 def _slices(axes: Any, rows: list[dict[str, Any]]) -> None:
@@ -105,6 +118,7 @@ def _slices(axes: Any, rows: list[dict[str, Any]]) -> None:
     axes.set_xlabel("one force evaluation (µs)")
     axes.set_ylabel("error (% of Cpr, % of displacement)")
     axes.set_title("nodes along a contact, colliding cage")
+    _plain_ticks(axes)
     axes.legend(fontsize=8)
 
 

@@ -43,7 +43,21 @@ def worst(rows: list[Row]) -> dict[str, dict[str, Any]]:
             "warned": len(finished(here)) - len(quiet),
             "ended": count["ended"],
             "errors": count["error"],
+            "refused": count["refused"],
         }
+    return out
+
+
+def by_speed(rows: list[Row], name: str) -> list[Row]:
+    """Largest closure of runs without a warning, a row for each preset and a column for each speed."""
+    speeds = sorted({row["speed_rpm"] for row in rows})
+    out = []
+    for preset in dict.fromkeys(row["preset"] for row in rows):
+        line: Row = {"preset": preset}
+        for speed in speeds:
+            here = [row for row in silent(rows) if row["preset"] == preset and row["speed_rpm"] == speed]
+            line[f"{speed:g} rpm"] = max((row[name] for row in here if row[name] is not None), default=None)
+        out.append(line)
     return out
 
 
@@ -56,7 +70,40 @@ def _sorted(rows: list[Row], name: str) -> list[Row]:
     return sorted((row for row in rows if row.get(name) is not None), key=lambda row: -row[name])
 
 
-def page(report: common.Report, promise: float) -> str:
+def results(report: common.Report) -> str:
+    """The two tables that say what may be promised."""
+    rows = report.results
+    speeds = [name for name in by_speed(rows, "closure")[0] if name != "preset"]
+    tables = []
+    for measure in MEASURES:
+        lines = by_speed(rows, measure)
+        for line in lines:
+            line[f"below {grid.PROMISE:g} from"] = _holds_from(line, speeds)
+        tables.append(common.table(lines, lines[0], digits=2))
+    return "\n".join(
+        (
+            "Largest closure of runs without a warning by speed, over the energy turned over:",
+            "",
+            tables[0],
+            "",
+            "Over the losses alone, as `energy_closure` of a result:",
+            "",
+            tables[1],
+        )
+    )
+
+
+def _holds_from(line: Row, speeds: list[str]) -> str:
+    """The speed from which on every closure of a preset is below the promise."""
+    good = "never"
+    for speed in reversed(speeds):
+        if line[speed] is not None and line[speed] > grid.PROMISE:
+            break
+        good = speed
+    return good
+
+
+def page(report: common.Report) -> str:
     """Markdown: results first, then the worst cases, then how it was made."""
     rows = report.results
     found = report.summary["largest"]
@@ -68,15 +115,22 @@ def page(report: common.Report, promise: float) -> str:
         if (here := [row for row in rows if row["preset"] == preset and row["effects"] == effects])
     ]
     names = ("runs", "closure_median", "closure_99", "closure", "above_promise")
-    more = ("dissipated_99", "closure_dissipated", "warned", "ended", "errors")
+    more = ("dissipated_99", "closure_dissipated", "warned", "ended", "errors", "refused")
     inputs = report.inputs
+    loads = "; ".join(dict.fromkeys(row["load"] for row in rows))
     parts = [
         "# Closures of the energy audit over speed, load, preset and effects",
         "",
         f"{inputs['points']} runs of the 30310, each at most {inputs['steps']} steps or {inputs['turns']:g} turns of the shaft. "
-        "`closure` is the residual over the energy turned over, as the watch over every run measures it; the columns "
-        "with `dissipated` are over the losses alone. Largest, median and 99th percentile are of runs without a warning; "
-        f"`above_promise` counts those above {promise:g}.",
+        f"Loads: {loads} (Fr over that under which the first roller loses its load; axial load "
+        f"{grid.COMBINED_AXIAL:g} N, above 10 000 rpm {grid.COMBINED_AXIAL_FAST:g} N). Starts: "
+        f"{', '.join(dict.fromkeys(row['start'] for row in rows))}.",
+        "",
+        results(report),
+        "",
+        f"Over all speeds, of runs without a warning. `above_promise` counts closures above {grid.PROMISE:g}, columns with "
+        "`dissipated` are over the losses alone, `refused` are loads that cannot hold the rollers on the inner ring at that "
+        "speed:",
         "",
         common.table(by_preset, ("preset", *names, *more)),
         "",
