@@ -125,10 +125,17 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser.add_argument("--steps", type=int, help="steps of a run at most, instead of the plan's")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--write", action="store_true", help="write the page, its JSON file and its picture")
+    parser.add_argument(
+        "--from-json", type=Path, metavar="FILE", help="measure nothing, take the results of such a file"
+    )
     parser.add_argument("--bad", type=Path, metavar="FILE", help="append every finding to a file, a line of JSON each")
     options = parser.parse_args(arguments)
     plan = SMOKE if options.smoke else QUICK if options.quick else FULL
-    report = run(replace(plan, steps=options.steps) if options.steps else plan, options)
+    if options.from_json is None:
+        report = run(replace(plan, steps=options.steps) if options.steps else plan, options)
+    else:
+        report = common.Report("closures", options, COLUMNS)
+        report.take(options.from_json)
     text = page(report)
     print("\n" + text)
     report.readme = results(report)

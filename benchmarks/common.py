@@ -126,6 +126,8 @@ class Report:
         "unit: text" of every entry of results and summary.
     readme : str
         Results for benchmarks/README.md, Markdown; empty for a script that has no place there.
+    measured : dict
+        Where results that were taken from a file come from: entries that take the place of this run's.
     """
 
     name: str
@@ -136,6 +138,7 @@ class Report:
     summary: dict[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     readme: str = ""
+    measured: dict[str, Any] = field(default_factory=dict)
     began: float = field(default_factory=time.perf_counter)
 
     def add(self, **row: Any) -> dict[str, Any]:
@@ -143,6 +146,21 @@ class Report:
         _known(row, self.columns)
         self.results.append(row)
         return row
+
+    def take(self, path: Path) -> None:
+        """Take what another run of the script wrote to a JSON file: results, and when and where they were measured.
+
+        Raises
+        ------
+        ValueError
+            If the file is not of this script.
+        """
+        found = json.loads(path.read_text(encoding="utf-8"))
+        if found.get("schema") != SCHEMA or found.get("benchmark") != self.name:
+            raise ValueError(f"{path} is not a file of {self.name}")
+        self.results, self.summary = found["results"], found["summary"]
+        self.inputs, self.notes = found["inputs"], found["notes"]
+        self.measured = {name: found[name] for name in ("quick", "command", "date", "machine", "wall_s")}
 
     def to_dict(self) -> dict[str, Any]:
         """Everything, as it is written."""
@@ -162,6 +180,7 @@ class Report:
                 "summary": self.summary,
                 "notes": self.notes,
             }
+            | self.measured
         )
         return out
 
@@ -169,7 +188,7 @@ class Report:
         """Write the JSON file and the part of the README that were asked for; say where everything is."""
         out = self.to_dict()
         if getattr(self.options, "write_readme", False) and self.readme:
-            write_readme(self.name, self.readme)
+            write_readme(self.name, f"{_stamp(out)}\n\n{self.readme}")
         if self.options.json is not None:
             self.options.json.parent.mkdir(parents=True, exist_ok=True)
             self.options.json.write_text(json.dumps(out, indent=1, allow_nan=False) + "\n", encoding="utf-8")
@@ -232,6 +251,14 @@ def _cell(value: Any, digits: int) -> str:
     return str(value)
 
 
+def _stamp(found: Mapping[str, Any]) -> str:
+    """When and where results were measured, in a sentence."""
+    where = found["machine"]
+    cores = f"{where['processor']['name']}, {where['cores']} cores, load {where['load'][0]:g}"
+    quick = ", with --quick" if found["quick"] else ""
+    return f"Measured {found['date'][:10]}, trbdyn {where['trbdyn']}, revision {where['revision'] or 'unknown'}{quick}; {cores}."
+
+
 def write_readme(name: str, text: str, path: Path = HERE / "README.md") -> None:
     """Put a text between the comments ``<!-- name -->`` and ``<!-- /name -->`` of a page.
 
@@ -245,8 +272,7 @@ def write_readme(name: str, text: str, path: Path = HERE / "README.md") -> None:
     if page.count(begin) != 1 or page.count(end) != 1 or page.index(begin) > page.index(end):
         raise ValueError(f"{path.name} must have one {begin} and, after it, one {end}")
     head, rest = page.split(begin)
-    stamp = f"Measured {datetime.datetime.now(datetime.UTC):%Y-%m-%d}, revision {revision() or 'unknown'}, {processor()['name']}."
-    path.write_text(f"{head}{begin}\n{stamp}\n\n{text.strip()}\n{end}{rest.split(end)[1]}", encoding="utf-8")
+    path.write_text(f"{head}{begin}\n{text.strip()}\n{end}{rest.split(end)[1]}", encoding="utf-8")
     print(f"wrote {path.name}")
 
 

@@ -404,13 +404,19 @@ def main(arguments: Sequence[str] | None = None) -> common.Report | None:
         metavar="FILE",
         help="write the table of trbdyn.estimate as well",
     )
+    parser.add_argument(
+        "--from-json", type=Path, metavar="FILE", help="measure nothing, take the results of such a file"
+    )
     options = parser.parse_args(arguments)
     if options.make_states is not None:
         states.make_file(options.make_states)
         return None
     report = common.Report("work_precision", options, COLUMNS)
     try:
-        run(SMOKE if options.smoke else QUICK if options.quick else FULL, report)
+        if options.from_json is not None:
+            report.take(options.from_json)
+        else:
+            run(SMOKE if options.smoke else QUICK if options.quick else FULL, report)
     except BaseException as error:
         report.notes.append(f"ended early by {type(error).__name__}: {error}")
         report.finish()

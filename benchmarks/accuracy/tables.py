@@ -23,9 +23,9 @@ BIASES: Final = {
 
 def _percent(value: float | None, half: float | None) -> str:
     """A bias with its half width, in per cent."""
-    if value is None or not math.isfinite(value):
+    if value is None or not _known(value):
         return "-"
-    band = "" if half is None or not math.isfinite(half) else f" ± {100.0 * half:.2g}"
+    band = "" if half is None or not _known(half) else f" ± {100.0 * half:.2g}"
     return f"{100.0 * value:+.2g}{band}"
 
 
@@ -63,10 +63,40 @@ def preset_rows(report: common.Report) -> list[Row]:
     return out
 
 
+def range_rows(report: common.Report) -> list[Row]:
+    """A row for each preset: the range over the scenes."""
+    out = []
+    every = [row for row in report.results if row["sweep"] == "presets"]
+    for preset in dict.fromkeys(row["preset"] for row in every):
+        rows = [row for row in every if row["preset"] == preset]
+        far = [
+            row
+            for row in report.results
+            if row["sweep"] == "statistics" and row["preset"] == preset and not row.get("failure")
+        ]
+        biases = {name: [100.0 * row[f"bias_{name}"] for row in far if _known(row[f"bias_{name}"])] for name in BIASES}
+        out.append(
+            {
+                "preset": preset,
+                "real time x": _range([_real_time(report, row) for row in rows], 2),
+                "path, median (% of Cpr)": _range([100.0 * row["error_cage_over_cpr"] for row in rows], 2),
+                "worst (% of Cpr)": f"{100.0 * max(row['error_cage_over_cpr_worst'] for row in rows):.2g}",
+                **{title: _range(biases[name], 2, sign="+") if biases[name] else "-" for name, title in BIASES.items()},
+            }
+        )
+    return out
+
+
+def _known(value: float | None) -> bool:
+    return value is not None and math.isfinite(value)
+
+
 def text_of(report: common.Report, *, everything: bool = False) -> str:
     """Markdown: the short table first; with `everything` the tables behind it as well."""
-    rows = preset_rows(report)
-    parts = [common.table(rows, rows[0]) if rows else "", "", _scenes(report), ""]
+    ranges, rows = range_rows(report), preset_rows(report)
+    parts = ["Range over the scenes:", "", common.table(ranges, ranges[0]) if ranges else "", ""]
+    parts += ["Scene by scene:", "", common.table(rows, rows[0]) if rows else "", ""]
+    parts += ["The scenes:", "", _scenes(report), ""]
     failures = [row for row in report.results if row.get("failure")]
     if failures:
         parts += ["Runs without figures:", "", common.table(failures, ("case", "name", "failure")), ""]
@@ -110,9 +140,9 @@ def _scenes(report: common.Report) -> str:
     return common.table(rows, rows[0], digits=6) if rows else ""
 
 
-def _range(values: list[float]) -> str:
-    low, high = min(values), max(values)
-    return f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
+def _range(values: list[float], digits: int = 3, sign: str = "") -> str:
+    low, high = (f"{value:{sign}.{digits}g}" for value in (min(values), max(values)))
+    return low if low == high else f"{low} to {high}"
 
 
 def _tight(report: common.Report) -> str:
@@ -129,7 +159,7 @@ def _tight(report: common.Report) -> str:
             shown = {"scene": row["case"]}
             for name, (title, unit) in titles.items():
                 half = row[f"{name}_half_width"]
-                band = f" ± {unit * half:.2g}" if math.isfinite(half) else ""
+                band = f" ± {unit * half:.2g}" if _known(half) else ""
                 shown[title] = f"{unit * row[name]:.4g}{band}"
             rows.append(shown)
     return common.table(rows, rows[0]) if rows else "none"

@@ -100,3 +100,18 @@ def test_command(tmp_path: Path) -> None:
     assert found["summary"]["bad"] == []
     assert found["results"][0]["closure"] < 1e-3
     assert "below 0.001 from" in done.stdout
+
+
+def test_page_is_made_from_a_file(tmp_path: Path) -> None:
+    import closures
+
+    first = closures.main(["--smoke", "--jobs", "1", "--no-picture", "--json", str(tmp_path / "a.json")])
+    path = tmp_path / "b.json"
+    again = closures.main(["--no-picture", "--from-json", str(tmp_path / "a.json"), "--json", str(path)])
+    assert again.results == json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["results"]
+    assert again.readme == first.readme
+    written = json.loads(path.read_text(encoding="utf-8"))
+    assert written["date"] == json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["date"]
+    (tmp_path / "other.json").write_text(json.dumps(written | {"benchmark": "scaling"}), encoding="utf-8")
+    with pytest.raises(ValueError, match="not a file of closures"):
+        closures.main(["--from-json", str(tmp_path / "other.json")])
