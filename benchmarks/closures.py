@@ -1,7 +1,7 @@
 """Whether the energy adds up: closures of the energy audit over speed, load, preset and effects.
 
     python benchmarks/closures.py [--quick] [--json FILE] [--jobs N]
-    python benchmarks/closures.py --write      writes benchmarks/closures.md, closures.json and their picture as well
+    python benchmarks/closures.py --write      writes benchmarks/closures.md and its picture as well
 
 The 30310 at 0.01 to 30 000 rpm, axial loads 500 to 20 000 N and radial loads of 0.5 and 1.5 times that under which the first
 roller loses its load, in two directions; each with every preset, with the effects of the paper and the usual ones, from equal
@@ -124,7 +124,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser.add_argument("--smoke", action="store_true", help="one point")
     parser.add_argument("--steps", type=int, help="steps of a run at most, instead of the plan's")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
-    parser.add_argument("--write", action="store_true", help="write the page, its JSON file and its picture")
+    parser.add_argument("--write", action="store_true", help="write the page and its picture")
     parser.add_argument(
         "--from-json", type=Path, metavar="FILE", help="measure nothing, take the results of such a file"
     )
@@ -140,7 +140,6 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     print("\n" + text)
     report.readme = results(report)
     if options.write:
-        options.json = options.json or common.HERE / "closures.json"
         (common.HERE / "closures.md").write_text(text, encoding="utf-8")
         print("wrote benchmarks/closures.md")
     if options.write and not options.no_picture:

@@ -138,7 +138,7 @@ def page(report: common.Report) -> str:
     if len(by_effects) > len(by_preset):
         parts += [common.table(by_effects, ("preset", "effects", *names, *more)), ""]
     if any(row["status"] != "error" for row in rows):
-        parts += ["![closures](pictures/closures.png)", ""]
+        parts += ["![Closure over speed and load](pictures/closures.png)", ""]
     parts += ["## Findings", "", _findings(report), ""]
     worst_rows = _sorted(finished(rows), "closure")[:15]
     figures = ("closure", "closure_dissipated", "loss_w", "steps", "turns", "mean_step_s", "repeated_share")
@@ -158,7 +158,7 @@ def page(report: common.Report) -> str:
         "",
         "## Command",
         "",
-        "Made by `python benchmarks/closures.py --write`; `closures.json` has every run.",
+        "Made by `python benchmarks/closures.py --write`; with `--json FILE` every run goes to a file.",
         "",
     ]
     return "\n".join(parts)
@@ -220,14 +220,15 @@ def draw(report: common.Report) -> Any:
                         color="red" if grid.is_bad(row) else "white",
                     )
             axes[i, j].set_title(f"accuracy '{preset}', effects '{effect}'")
-            axes[i, j].set_xticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
+            axes[i, j].set_xticks(range(len(speeds)), [f"{speed:g}" for speed in speeds], rotation=45)
             axes[i, j].set_yticks(range(len(loads)), loads)
             if i == len(effects) - 1:
                 axes[i, j].set_xlabel("speed (rpm)")
     bar = figure.colorbar(image, ax=axes, shrink=0.8)
     bar.set_label("closure: residual over the energy turned over (1)")
     figure.suptitle(
-        "Closure of the energy audit of the 30310; w: the run warned, x: a finding; Fr over that of the first unloaded roller",
+        "Closure of the energy audit of the 30310; w: the run warned, x: a finding, white: no equilibrium; "
+        "Fr over that of the first unloaded roller",
         fontsize=11,
     )
     return figure
