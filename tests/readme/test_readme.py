@@ -31,6 +31,8 @@ WHOLE = {
     "make bench",
     "make stability",
     "make fuzz",
+    "make adversary",
+    "make mutate",
     "make sanitize",
     ".ci/run",
     ".venv/bin/pytest",
