@@ -79,6 +79,7 @@ COLUMNS = {
     **{f"bias_{name}_half_width": "1: half its 95 % confidence interval" for name in OBSERVED},
     "batches": "1: runs that the statistics are over",
     "energy_closure": "1: residual of the energy audit over the dissipated work; statistics: largest of the batches",
+    "warnings": "1: warnings of the watch over the runs of the windows, all states",
     "failure": "text: why there are no figures",
     "scenes": "object: what each scene is",
     "presets": "object: the figures of each preset on the colliding cage",

@@ -86,6 +86,8 @@ class Trajectory:
         Share of time and rollers in which a pocket is touched.
     orbit : float
         Orbit radius of the cage about its own mean place over Cpr, root mean square.
+    warnings : int
+        What the watch over the run had to say.
     """
 
     cage: Array
@@ -96,6 +98,7 @@ class Trajectory:
     pocket_p95: float
     duty: float
     orbit: float
+    warnings: int = 0
 
 
 def pocket_figures(result: Result) -> tuple[float, float, float]:
@@ -129,13 +132,16 @@ def trajectory_of(result: Result) -> Trajectory:
         lost_of(result),
         *pocket_figures(result),
         orbit_of(result),
+        len(result.warnings),
     )
 
 
 def run_window(scene: Scene, state: State, window: float, settings: Settings) -> Trajectory:
     """Trajectory from a state over its window."""
     sim = Simulation(at_state(scene, state), **settings)
-    return trajectory_of(sim.run(duration=window, save_every=SAMPLE, save_groups=_GROUPS))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RunWarning)
+        return trajectory_of(sim.run(duration=window, save_every=SAMPLE, save_groups=_GROUPS))
 
 
 def errors(found: Trajectory, reference: Trajectory) -> dict[str, float]:
@@ -154,7 +160,7 @@ def errors(found: Trajectory, reference: Trajectory) -> dict[str, float]:
         for name in ("pocket_mean", "pocket_p95", "duty")
     ]
     values = (cage, load, speed, power, *pocket, abs(found.orbit - reference.orbit))
-    return dict(zip(QUANTITIES + OBSERVABLES, values, strict=True))
+    return dict(zip(QUANTITIES + OBSERVABLES, values, strict=True)) | {"warnings": found.warnings}
 
 
 REFERENCES: Final[dict[str, dict[str, Any]]] = {
@@ -203,14 +209,14 @@ class References:
 
 
 def median_and_worst(found: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """Median over states of every error, and the worst as ``<name>_worst``."""
+    """Median over states of every error, and the worst as ``<name>_worst``; warnings of all of them."""
     out = {}
     for name in QUANTITIES + OBSERVABLES:
         values = np.array([one[name] for one in found])
         known = values[np.isfinite(values)]
         out[name] = float(np.median(known)) if known.size else float("nan")
         out[f"{name}_worst"] = float(known.max()) if known.size else float("nan")
-    return out
+    return out | {"warnings": sum(one["warnings"] for one in found)}
 
 
 def wall_time(

@@ -107,7 +107,12 @@ def text_of(report: common.Report, *, everything: bool = False) -> str:
     kinds = ("presets", "tolerances")
     points = [row for row in report.results if row["sweep"] in kinds]
     nodes = [row for row in report.results if row["sweep"] == "slices"]
-    parts += ["Tolerances and methods:", "", common.table(points, ("case", "name", *cost, *measure.QUANTITIES)), ""]
+    parts += [
+        "Tolerances and methods:",
+        "",
+        common.table(points, ("case", "name", *cost, *measure.QUANTITIES, "warnings")),
+        "",
+    ]
     parts += [
         "Means within the windows:",
         "",
