@@ -2,9 +2,9 @@
 
 A roller that was struck, or that no load holds, vibrates on its raceways at some thousand cycles a second. Without normal
 damping hardly anything but the integration takes energy from that, so that the size of the vibrations depends on the tolerances,
-although the energy of the whole run adds up well: tenths of a millijoule decide about watts of rolling resistance where the
-loads of the rollers swing by much of their mean. Here the energy that is missing is compared with the energy of the vibrations,
-where they are large.
+although the energy of the whole run adds up well: tenths of a millijoule decide about watts of rolling resistance where lightly
+loaded contacts grow and shrink with every swing. So three things are looked at: whether vibrations are large, whether the losses
+on the raceways swing with them, and whether the energy that is missing is much beside that of the vibrations.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
 LARGE: Final = 2e-3
 """Energy of the motion across the raceways over the elastic energy from which on vibrations are large."""
-LEAST_LOOKS: Final = 4
+SWINGS: Final = 0.05
+"""Standard deviation of the losses on the raceways over their mean from which on they are said to swing."""
+RACEWAYS: Final = ("power_traction_outer", "power_traction_inner", "power_rolling")
+"""Fields of these losses."""
+LEAST_LOOKS: Final = 3
 """Looks below which nothing is said."""
 LOST_IN_A_TURN: Final = 0.1
 """Share of the vibrations' energy that the integration may take in one turn of the shaft."""
@@ -39,6 +43,7 @@ class Vibrations:
         self._places = {name: at for name, at, _ in sim._model.record_layout()}
         self._looks = 0
         self._kinetic = self._elastic = self._speed = 0.0
+        self._losses: list[float] = []
 
     def look(self, row: np.ndarray) -> None:
         """Look at the present state and its record.
@@ -53,6 +58,7 @@ class Vibrations:
         self._kinetic += float(0.5 * mass * np.sum(state["roller_v_r"] ** 2 + state["roller_v_z"] ** 2))
         self._elastic += float(row[self._places["elastic_energy"]])
         self._speed += abs(float(row[self._places["shaft_speed"]]))
+        self._losses.append(sum(float(row[self._places[name]]) for name in RACEWAYS))
         self._looks += 1
 
     def judge(self, missing: float, since: float, until: float) -> str | None:
@@ -66,6 +72,8 @@ class Vibrations:
             The times (s).
         """
         if self._looks < LEAST_LOOKS or self._speed == 0.0 or self._kinetic <= LARGE * self._elastic:
+            return None
+        if np.std(self._losses) <= SWINGS * np.mean(self._losses):
             return None
         turns = self._speed / self._looks * (until - since) / (2.0 * math.pi)
         share = abs(missing) / max(self._kinetic / self._looks * turns, 1e-300)
