@@ -58,6 +58,7 @@ _SIMULATION_OPTIONS: Final = (
     "max_step",
     "first_step",
     "rings_share",
+    "impact_share",
     "checkpoint_every",
 )
 

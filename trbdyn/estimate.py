@@ -191,7 +191,7 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     case = _case(sim)
     window = float(np.median(measured["windows_s"][case]))
     place = {"window": window, "case": case}
-    standard = options.max_order == 2 and options.rings_share is None
+    standard = options.max_order == 2 and options.rings_share is None and options.impact_share is None
     known = options.integrator == "bdf" and standard and sim.scene.effects.bodies == "rollers_and_cage"
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}

@@ -80,7 +80,7 @@ class Simulation:
         two variants differ in rounding.
     **options
         Fields of `RunOptions` that set the integrator: integrator, rtol, atol_position, atol_angle, atol_velocity,
-        atol_spin, max_order, max_step, first_step, rings_share, checkpoint_every.
+        atol_spin, max_order, max_step, first_step, rings_share, impact_share, checkpoint_every.
 
     Raises
     ------

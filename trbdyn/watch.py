@@ -3,7 +3,7 @@
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
 in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
 whole run. A window whose energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more
-than `STOP` was made, or is missing beside the losses, ends the run: its losses, slip and forces would be wrong by as much.
+than `STOP` was made, or is missing beside the losses or the work put in, ends the run: its losses, slip and forces would be wrong by as much.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ WARN: Final = 0.01
 STOP: Final = 0.1
 """The same, above which a run ends."""
 DISSIPATING: Final = 0.3
-"""Share of losses in the energy turned over above which missing energy ends a run, too."""
+"""Share of losses, or of the work put in, in the energy turned over above which missing energy ends a run, too."""
 WINDOWS: Final = 20
 """Windows of a run, at most."""
 STORED_SHARE: Final = 1e-3
@@ -133,7 +133,7 @@ class Watch:
             f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
         )
         # where little else takes energy, vibrations that the steps do not resolve lose theirs: it is said, and ends no run
-        wrong = not math.isfinite(off) or (off > STOP and (missing < 0.0 or lost > DISSIPATING * scale))
+        wrong = not math.isfinite(off) or (off > STOP and (missing < 0.0 or max(lost, put_in) > DISSIPATING * scale))
         if not wrong:
             self._say(text + "; try accuracy='reference', or smaller tolerances", "energy")
             return None

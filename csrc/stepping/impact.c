@@ -11,8 +11,8 @@
 #include "base/memory.h"
 #include "laws/line_contact.h"
 
-/* Share of an impact's speed and interference that a step may be wrong by; least factor; steps ahead in which a gap may close. */
-static const double share = 0.01, least_factor = 0.02, ahead = 3.0;
+/* Steps ahead in which a gap may close. */
+static const double ahead = 3.0;
 
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {
@@ -58,7 +58,7 @@ static double interference_of(const trb_model *m, double speed)
 }
 
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
-                      double tolerance, double tolerance_place)
+                      const trb_impact_measure *measure)
 {
   const trb_model *m = d->model;
   const double    *y_cage = y + trb_state_cage(m);
@@ -85,8 +85,8 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
     }
     /* in contact: the largest speed since they met */
     impacts->speed[j] = left <= 0.0 && isfinite(impacts->speed[j]) ? trb_max(impacts->speed[j], speed) : speed;
-    const double finer = trb_min(impacts->speed[j] / tolerance, interference_of(m, impacts->speed[j]) / tolerance_place);
-    impacts->factor[j] = trb_clamp(share * finer, least_factor, 1.0);
+    const double finer = trb_min(impacts->speed[j] / measure->velocity, interference_of(m, impacts->speed[j]) / measure->position);
+    impacts->factor[j] = trb_clamp(measure->share * finer, measure->least, 1.0);
     least = trb_min(least, impacts->factor[j]);
   }
   impacts->factor[m->n_rollers] = least;

@@ -13,8 +13,15 @@ typedef struct trb_impacts {
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message);
 void       trb_impacts_free(trb_impacts *impacts);
 void       trb_impacts_forget(const trb_model *m, trb_impacts *impacts);
-/* Factors for a step of a length from a state on. tolerance: absolute one of velocities, m/s; tolerance_place: of positions, m. */
+/* How exactly impacts are followed. */
+typedef struct trb_impact_measure {
+  double share;              /* of an impact's speed and interference that a step may be wrong by */
+  double least;              /* smallest factor of the tolerances */
+  double velocity, position; /* absolute tolerances, m/s and m */
+} trb_impact_measure;
+
+/* Factors for a step of a length from a state on. */
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
-                      double tolerance, double tolerance_place);
+                      const trb_impact_measure *measure);
 
 #endif

@@ -24,6 +24,8 @@
   X(margin_share,   0.5,   0,     0.9,  "share of a contact's distance from its onset or end that a tangent may be followed for") \
   X(slip_share,     1e-3,  0,     0.1,  "share of the mean rolling speed that a roller may slip away while a tangent is followed") \
   X(slow_share,     10,    1e-3,  1e6,  "absolute tolerances of velocities are at most this times rtol times the mean rolling speed") \
+  X(impact_share,   0.03,  1e-4,  1e3,  "share of an impact's speed and interference that roller and cage may be off in a step") \
+  X(impact_least,   4e-3,  1e-6,  1,    "smallest factor of their absolute tolerances for that") \
   X(max_step,       1e-3,  1e-12, 1e3,  "largest step, s") \
   X(first_step,     0,     0,     1,    "first step, s; 0: chosen by the integrator") \
   X(smallest_step,  1e-17, 0,     1,    "smallest step, s: below it the run stops with an error")

@@ -194,7 +194,11 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
   const double stop = trb_motion_stop(it->motion, it->time);
   if (it->motion->n > 1) CHECK(CVodeSetStopTime(self->memory, fmin(stop, TRB_NEVER)));
   CHECK(CVodeGetCurrentStep(self->memory, &step));
-  trb_impacts_look(&it->impacts, it->dynamics, it->motion, it->time, it->y, step, it->settings.atol_velocity, it->settings.atol_position);
+  const trb_impact_measure measure = {.share = it->settings.impact_share,
+                                      .least = it->settings.impact_least,
+                                      .velocity = it->settings.atol_velocity,
+                                      .position = it->settings.atol_position};
+  trb_impacts_look(&it->impacts, it->dynamics, it->motion, it->time, it->y, step, &measure);
   const int flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "CVODE stopped (%d): %s", flag, self->sundials.text);
   CHECK(CVodeGetLastStep(self->memory, &step));
