@@ -278,7 +278,9 @@ class Result(Derived):
         time = self["time"]
         first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
         if last <= first:
-            raise InputError.of("window", (start, stop), f"must hold a record; they reach to {self.final_time:g} s")
+            raise InputError.of(
+                "window", (start, stop), f"must hold a record; the last one is at {self.final_time:g} s"
+            )
         part = WindowSource(self._source, self.fields, int(first), int(last))
         return Result(part, replace(self._info, peaks={}), self._scene)
 

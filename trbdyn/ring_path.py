@@ -1,7 +1,7 @@
 """The path of an inner ring that follows its load: through static equilibria, refined until it lies close to all of
 them.
 
-Between two times the path is a cubic. Each interval is tested at its quarters: where the cubic lies farther than
+Between two times the path is a cubic (docs/theory/motion.md#the-inner-ring). Each interval is tested at its quarters: where the cubic lies farther than
 `PATH_TOLERANCE` from the equilibrium, the interval is halved. Equilibria are solved from their neighbours in time,
 which takes about a millisecond each. The slope at an interval's ends is that of the quartic through its five
 equilibria.

@@ -159,7 +159,7 @@ class Simulation:
     def time(self) -> float:
         """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
 
-        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the
+        The integrator's last step may end later than the run. The present state is that step's solution at the
         run's end; the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the
         whole run.
         """
@@ -184,7 +184,7 @@ class Simulation:
         return StateView(self._model, self.state.vector if vector is None else vector)
 
     def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
-        """Go on from another state; the integrator starts anew.
+        """Go on from another state; the integrator is started again.
 
         Parameters
         ----------
