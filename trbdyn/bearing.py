@@ -548,7 +548,7 @@ class Bearing(Model):
     def _check(self) -> Self:
         given = self.roller.diameter_deviation
         if given is not None and len(given) != self.n_rollers:
-            limit = f"must have one entry a roller: {self.n_rollers}"
+            limit = f"must have one entry for each roller, {self.n_rollers}"
             raise InputError.of(("roller", "diameter_deviation"), given, limit)
         most = int(np.pi / np.arcsin(min(self.roller.diameter / self.pitch_diameter, 1.0)))
         if self.pitch_diameter * np.sin(np.pi / self.n_rollers) <= self.roller.diameter:

@@ -53,7 +53,7 @@ class Result(Derived):
     stats : dict
         Solver statistics: steps, rhs_evaluations, wall_s and others.
     warnings : tuple of str
-        What the watch over the run found: energy that does not add up, steps that lead nowhere (`trbdyn.watch`).
+        What the watch over the run found: energy that does not add up, steps so small that it makes no progress (`trbdyn.watch`).
     counters : dict of str to int
         How often the core evaluated each effect; zero for effects that are off.
     geometry : dict of str to float

@@ -100,8 +100,8 @@ class RunOptions(Model):
         started again, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
         from them.
     when_wrong : {'stop', 'go_on'}
-        What to do with a run whose energy is wrong by more than a tenth, or whose steps do not get on (`trbdyn.watch`): end it with
-        ``success=False``, or go on with a warning.
+        What to do with a run whose energy is wrong by more than a tenth, or which makes no progress (`trbdyn.watch`): end it
+        with ``success=False``, or go on with a warning.
     """
 
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None

@@ -129,7 +129,7 @@ class Simulation:
             raise InputError.of("state", "given", str(error)) from None
 
     def _begin(self, time: float, vector: Array) -> None:
-        """A new integrator, which knows nothing of the past: as in a new process."""
+        """Make a new integrator, without any history: as in a new process."""
         self._core = self._open(time, vector)
         self._begun = time
         self._end = None
@@ -144,7 +144,7 @@ class Simulation:
                 self._end = State(time, self._core.state_at(time))
 
     def _begin_again(self) -> None:
-        """A new integrator where the present one is; what was counted stays."""
+        """Start a new integrator at the place of the present one; what was counted is kept."""
         self._count()
         self._begin(self._core.time, self._core.state())
 

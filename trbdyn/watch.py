@@ -1,4 +1,4 @@
-"""A watch over a run: whether its energy adds up, and whether its steps get on (docs/theory/numerics.md#watch-over-a-run).
+"""A watch over a run: whether its energy adds up, and whether it makes progress (docs/theory/numerics.md#watch-over-a-run).
 
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
 in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
@@ -36,7 +36,7 @@ STORED_SHARE: Final = 1e-3
 LEAST_ENERGY: Final = 1e-9
 """Energy below which nothing is judged (J)."""
 SMALLEST_STEP: Final = 2e-8
-"""Mean step with which a run does not get on (s): a thousandth of the period of a contact's vibration, 35 kHz."""
+"""Mean step with which a run makes no progress (s): a thousandth of the period of a contact's vibration, 35 kHz."""
 SMALL_STEPS_WARN: Final = 20_000
 SMALL_STEPS_STOP: Final = 200_000
 """Steps in a row with a mean below `SMALLEST_STEP` after which a run warns, and ends."""
