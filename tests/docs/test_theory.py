@@ -145,7 +145,7 @@ def test_exponents_are_those_of_the_core(tag: str, law: str, symbols: dict[str, 
         ("5", "4.9", lambda: float(laws.film_line_rigid(1.0, 1.0))),
         ("12", "4.31", lambda: float(laws.film_point_elastic(1.0, 1.0, 1.0, 1e6))),
         ("10", "29.2", lambda: float(laws.rolling_line(1.0, 1.0, 1.0))),
-        ("6", "22.28", lambda: (float(laws.friction_boundary(1e-9, 0.1, 22.28, 181.46)) / 1e-9 - 0.1 * 181.46)),
+        ("6", "22.28", lambda: float(laws.friction_boundary(1e-9, 0.1, 22.28, 181.46)) / 1e-9 - 0.1 * 181.46),
     ],
 )
 def test_constants_are_those_of_the_core(tag: str, constants: str, found) -> None:  # type: ignore[no-untyped-def]

@@ -1,4 +1,4 @@
-"""Scenes, random states and rigid-body sums that the tests of physics share; written for the tests and not taken from the core."""
+"""Scenes, random states and rigid-body sums that the tests of physics share; not taken from the core."""
 
 from __future__ import annotations
 
