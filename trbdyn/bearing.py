@@ -469,8 +469,12 @@ class Bearing(Model):
 
     @property
     def assumed(self) -> dict[str, float]:
-        """Inputs that were not given: value by path, such as ``{"cage.bar_width": 0.003}``. Lengths in m, SI units."""
-        return assumed_inputs(self)
+        """Inputs that were not given: value by path, such as ``{"cage.bar_width": 0.003}``. Lengths in m, SI units.
+
+        Those that follow from the bearing's size, and those that were estimated from a catalogue page; `estimated` gives
+        the band and the source of the latter.
+        """
+        return assumed_inputs(self) | {entry.path: float(entry.value) for entry in self.estimated}
 
     def inputs(self) -> dict[str, Any]:
         """What was given, as plain data: as `to_dict`, without what was assumed."""
@@ -486,7 +490,7 @@ class Bearing(Model):
     @model_serializer(mode="wrap")
     def _plain(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         values: dict[str, Any] = handler(self)
-        return {**values, "assumed": list(self.assumed)}
+        return {**values, "assumed": list(assumed_inputs(self))}
 
     @property
     def roller_material(self) -> Material:

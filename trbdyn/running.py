@@ -39,7 +39,7 @@ CHUNK_RECORDS = 256
 """Records between looks at signals, callbacks and the file."""
 MOST_RECORDS = 50_000_000
 """Most records of a run: their times alone take 400 MB."""
-CHUNK_STEPS = 4000
+CHUNK_STEPS = 2000
 """Steps between looks at signals: about a tenth of a second."""
 
 _BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"

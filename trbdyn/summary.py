@@ -226,13 +226,35 @@ def _peaks(window: Result) -> dict[str, Any]:
 
 
 def _torque(window: Result) -> dict[str, Any]:
-    inner, outer = float(window["inner_torque"].mean()), float(window["outer_torque"].mean())
+    inner, outer = shaft_torque(window), float(window["outer_torque"].mean())
     return {
         "torque": inner,
         "torque_outer": outer,
         "torque_note": torque_note(window, inner, outer),
         "torque_split": window.torque_split,
     }
+
+
+def shaft_torque(window: Result) -> float:
+    """Mean friction torque of the shaft (N m): its work over its turn, which records between impacts do not alias.
+
+    The mean of the records where the work was not recorded, or the shaft stands still or turns back.
+    """
+    speed = window["shaft_speed"]
+    one_way = bool(np.all(speed > 0.0) or np.all(speed < 0.0))
+    if "energy" not in window.groups or not one_way or len(window) < 2:
+        return float(window["inner_torque"].mean())
+    turn = window["shaft_angle"][-1] - window["shaft_angle"][0]
+    return float((window["work_shaft"][-1] - window["work_shaft"][0]) / abs(turn))
+
+
+def mean_loss(window: Result) -> float:
+    """Mean power loss (W): energy lost over time, which records between impacts do not alias; of the records without it."""
+    if "energy" not in window.groups or len(window) < 2:
+        return float(window["power_loss"].mean())
+    losses = [field.name for field in window.fields if field.name.startswith("loss_")]
+    time = window["time"]
+    return float(sum(window[name][-1] - window[name][0] for name in losses) / (time[-1] - time[0]))
 
 
 def torque_note(window: Result, inner: float, outer: float) -> str | None:
@@ -254,7 +276,7 @@ def torque_note(window: Result, inner: float, outer: float) -> str | None:
 
 def _power(window: Result) -> dict[str, Any]:
     return {
-        "power_loss": window["power_loss"].mean(),
+        "power_loss": mean_loss(window),
         "power_split": window.power_split,
         "torque_by_loss": window.torque_by_loss,
     }

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import RunWarning
+from trbdyn.loose_rollers import LooseRollers
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -63,6 +64,9 @@ class Watch:
     def __init__(self, sim: Simulation, end: float, found: list[str], *, going_on: bool = False) -> None:
         self._sim = sim
         self._found = found
+        self._loose = (
+            LooseRollers(sim) if any(name == "outer_load" for name, *_ in sim._model.record_layout()) else None
+        )
         self._length = max(end - sim._core.time, 0.0) / WINDOWS
         self._going_on = going_on
         self._suppressed = 0
@@ -94,6 +98,9 @@ class Watch:
             self._window, self._since, self._turned_over = now, time, 0.0
         if final and time > self._begin:
             reason = self._judge(self._first, self._begin, now, time, self._turned_over_in_all) or reason
+            text = self._loose and self._loose.judge(_missing(self._first, now)[0], self._begin, time)
+            if text:
+                self._say(text, "loose")
         return None if self._going_on else reason
 
     def renew(self) -> None:
@@ -103,6 +110,8 @@ class Watch:
     def _energies(self) -> dict[str, float]:
         core = self._sim._core
         row = core.observe(core.time, core.state())
+        if self._loose is not None:
+            self._loose.look(np.asarray(row))
         out: dict[str, float] = {}
         for name, offset, shape in self._sim._model.record_layout():
             if shape == () and (name.startswith(("work_", "loss_")) or name in ("kinetic_energy", "elastic_energy")):
@@ -119,10 +128,7 @@ class Watch:
     def _judge(
         self, then: dict[str, float], since: float, now: dict[str, float], time: float, turned_over: float
     ) -> str | None:
-        change = {name: now[name] - then[name] for name in now}
-        put_in = sum(value for name, value in change.items() if name.startswith("work_"))
-        lost = sum(value for name, value in change.items() if name.startswith("loss_"))
-        missing = put_in - lost - change["kinetic_energy"] - change["elastic_energy"]
+        missing, put_in, lost = _missing(then, now)
         stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
         scale = max(turned_over, STORED_SHARE * stored, LEAST_ENERGY)
         off = abs(missing) / scale
@@ -186,3 +192,11 @@ class Watch:
         if kind not in self._said:
             self._said.add(kind)
             warnings.warn(text, RunWarning, stacklevel=2)
+
+
+def _missing(then: dict[str, float], now: dict[str, float]) -> tuple[float, float, float]:
+    """Energy that is missing, that was put in, and that was lost between two states (J)."""
+    change = {name: now[name] - then[name] for name in now}
+    put_in = sum(value for name, value in change.items() if name.startswith("work_"))
+    lost = sum(value for name, value in change.items() if name.startswith("loss_"))
+    return put_in - lost - change["kinetic_energy"] - change["elastic_energy"], put_in, lost

@@ -41,7 +41,6 @@ COMMAND = re.compile(r"`((?:\.venv/bin/|\.ci/|make |pip |python3? )[^`]*)`")
 LINK = re.compile(r"\]\(([^)#]+)[^)]*\)")
 
 WHOLE = {
-    "make adversary",
     "make docs",
     "make wheels",
     "make test",
@@ -49,6 +48,8 @@ WHOLE = {
     "make bench",
     "make stability",
     "make fuzz",
+    "make adversary",
+    "make mutate",
     "make sanitize",
     ".ci/run",
     ".venv/bin/pytest",
