@@ -51,7 +51,7 @@ class Tolerances(Model):
 
 ACCURACY: Final = {
     "fast": Tolerances(rtol=3e-3, atol_position=3e-9, atol_angle=3e-7, atol_velocity=1e-3, atol_spin=0.1),
-    "standard": Tolerances(rtol=1e-3, atol_position=1.5e-9, atol_angle=1.5e-7, atol_velocity=5e-4, atol_spin=5e-2),
+    "standard": Tolerances(rtol=1e-3, atol_position=9e-10, atol_angle=9e-8, atol_velocity=3e-4, atol_spin=3e-2),
     "reference": Tolerances(rtol=1e-4, atol_position=6e-11, atol_angle=6e-9, atol_velocity=2e-5, atol_spin=2e-3),
 }
 """Presets, chosen on the front that benchmarks/work_precision.py draws."""

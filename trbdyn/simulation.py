@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
+from trbdyn.cage_start import pressed_rollers
 from trbdyn.errors import MISSING, InputError, Problem, StepError
 from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
 from trbdyn.keeping import kept_by_default
@@ -101,7 +102,8 @@ class Simulation:
         self._model = build_model(scene, instruction_set)
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
-        self.warnings = unusual(scene, self.equilibrium)
+        pressed = pressed_rollers(self._model, scene, self._motion, vector)
+        self.warnings = (*unusual(scene, self.equilibrium), *([pressed] if pressed else []))
         for text in self.warnings:
             warnings.warn(text, UnusualInput, stacklevel=2)
         self._running = False

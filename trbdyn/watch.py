@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import RunWarning
-from trbdyn.loose_rollers import LooseRollers
+from trbdyn.vibrations import Vibrations
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -64,8 +64,8 @@ class Watch:
     def __init__(self, sim: Simulation, end: float, found: list[str], *, going_on: bool = False) -> None:
         self._sim = sim
         self._found = found
-        self._loose = (
-            LooseRollers(sim) if any(name == "outer_load" for name, *_ in sim._model.record_layout()) else None
+        self._vibrations = (
+            Vibrations(sim) if any(name == "outer_load" for name, *_ in sim._model.record_layout()) else None
         )
         self._length = max(end - sim._core.time, 0.0) / WINDOWS
         self._going_on = going_on
@@ -98,9 +98,9 @@ class Watch:
             self._window, self._since, self._turned_over = now, time, 0.0
         if final and time > self._begin:
             reason = self._judge(self._first, self._begin, now, time, self._turned_over_in_all) or reason
-            text = self._loose and self._loose.judge(_missing(self._first, now)[0], self._begin, time)
+            text = self._vibrations and self._vibrations.judge(_missing(self._first, now)[0], self._begin, time)
             if text:
-                self._say(text, "loose")
+                self._say(text, "vibrations")
         return None if self._going_on else reason
 
     def renew(self) -> None:
@@ -110,8 +110,8 @@ class Watch:
     def _energies(self) -> dict[str, float]:
         core = self._sim._core
         row = core.observe(core.time, core.state())
-        if self._loose is not None:
-            self._loose.look(np.asarray(row))
+        if self._vibrations is not None:
+            self._vibrations.look(np.asarray(row))
         out: dict[str, float] = {}
         for name, offset, shape in self._sim._model.record_layout():
             if shape == () and (name.startswith(("work_", "loss_")) or name in ("kinetic_energy", "elastic_energy")):

@@ -127,7 +127,7 @@ def test_steps_that_lead_nowhere_end_a_run():
 
 
 def loose_scene(**effects: Any) -> trb.Scene:
-    """A 30310 held with 5 um of axial clearance: no roller is held by a load."""
+    """A 30310 held with 5 um of axial clearance: vibrate on their raceways."""
     return trb.Scene(
         trb.cases.rig_30310(),
         speed_rpm=3000.0,
@@ -139,7 +139,7 @@ def loose_scene(**effects: Any) -> trb.Scene:
 
 def test_rollers_that_bounce_without_damping_are_said():
     """Losses are 9, 11, 22 and 31 W with finer and finer tolerances: the integration decides about the vibrations."""
-    with pytest.warns(trb.RunWarning, match="no roller is held by a load"):
+    with pytest.warns(trb.RunWarning, match="vibrate on their raceways"):
         result = trb.Simulation(loose_scene()).run(duration=0.03)
     assert result.success
     assert any("effects.damping" in text for text in result.warnings)
@@ -156,7 +156,7 @@ def test_the_damping_that_the_warning_names_makes_presets_agree():
 
 
 @pytest.mark.parametrize("loads", [(1230.0, 0.0), (4930.0, 12_000.0)], ids=["light", "combined"])
-def test_rollers_that_carry_are_not_called_loose(loads):
+def test_rollers_that_carry_are_not_called_vibrating(loads):
     """Not in the unloaded zone of a combined load, either: the others carry."""
     result = trb.Simulation(scene_30310(2000.0, *loads), accuracy="reference").run(duration=0.03)
     assert result.warnings == ()
