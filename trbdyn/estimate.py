@@ -177,7 +177,7 @@ def estimate(
 
 
 def _probe(sim: Simulation, length: float) -> dict[str, float]:
-    """Wall time, steps and evaluations a second of bearing time, and the wall time of a record."""
+    """Wall time, steps and evaluations per second of bearing time, and the wall time of a record."""
     other = sim.copy()
     try:
         _advance(other, min(WARM_UP, 0.25 * length))

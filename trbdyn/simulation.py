@@ -131,7 +131,7 @@ class Simulation:
             raise InputError.of("state", "given", str(error)) from None
 
     def _begin(self, time: float, vector: Array) -> None:
-        """A new integrator, which knows nothing of the past: as in a new process."""
+        """Make a new integrator, without any history: as in a new process."""
         self._core = self._open(time, vector)
         self._begun = time
         self._end = None
@@ -146,7 +146,7 @@ class Simulation:
                 self._end = State(time, self._core.state_at(time))
 
     def _begin_again(self) -> None:
-        """A new integrator where the present one is; what was counted stays."""
+        """Start a new integrator at the place of the present one; what was counted is kept."""
         self._count()
         self._begin(self._core.time, self._core.state())
 
@@ -161,7 +161,7 @@ class Simulation:
     def time(self) -> float:
         """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
 
-        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the
+        The integrator's last step may end later than the run. The present state is that step's solution at the
         run's end; the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the
         whole run.
         """
@@ -186,7 +186,7 @@ class Simulation:
         return StateView(self._model, self.state.vector if vector is None else vector)
 
     def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
-        """Go on from another state; the integrator starts anew.
+        """Go on from another state; the integrator is started again.
 
         Parameters
         ----------

@@ -1,4 +1,6 @@
-"""Where a run begins: the ring's static equilibrium at speed, rollers in pure rolling, the cage at rest or whirling."""
+"""Where a run begins: the ring's static equilibrium at speed (docs/theory/motion.md#equilibrium-of-the-ring), rollers in pure
+rolling, the cage at rest or whirling.
+"""
 
 from __future__ import annotations
 

@@ -199,7 +199,7 @@ def _pocket(window: Result) -> dict[str, Any]:
 
 
 def _loaded_mean(values: Any, load: Any) -> float:
-    """Mean weighted by load: a film that carries nothing is as thick as its law likes."""
+    """Mean weighted by load: the thickness of a film that carries nothing has no meaning."""
     total = float(load.sum())
     return float((values * load).sum() / total) if total > 0.0 else 0.0
 
@@ -283,7 +283,7 @@ def _power(window: Result) -> dict[str, Any]:
 
 
 def _cost(result: Result) -> dict[str, Any]:
-    """Cost of the run; wall time a revolution is that of stepping where the statistics tell it."""
+    """Cost of the run; wall time per revolution is that of stepping where the statistics tell it."""
     out = {name: result.stats.get(name) for name in ("steps", "rhs_evaluations", "wall_s", "wall_s_per_revolution")}
     if out["wall_s_per_revolution"] is None and out["wall_s"] is not None and result.revolutions:
         out["wall_s_per_revolution"] = out["wall_s"] / result.revolutions

@@ -1,10 +1,10 @@
-"""A watch over a run: whether its energy adds up, and whether its steps lead anywhere.
+"""A watch over a run: whether its energy adds up, and whether it makes progress (docs/theory/numerics.md#watch-over-a-run).
 
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
 in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
 whole run. A window whose energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more
-than `STOP` was made, or is missing beside the losses or the work put in, ends the run: its losses, slip
-and forces would be wrong by as much.
+than `STOP` was made ends the run, as its losses, slip and forces would be wrong by as much. So does one in which that much is
+missing, if losses or the work put in are a large share of what was turned over.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ STORED_SHARE: Final = 1e-3
 LEAST_ENERGY: Final = 1e-9
 """Energy below which nothing is judged (J)."""
 SMALLEST_STEP: Final = 2e-8
-"""Mean step that leads nowhere (s): a thousandth of the period of a contact's vibration, 35 kHz."""
+"""Mean step with which a run makes no progress (s): a thousandth of the period of a contact's vibration, 35 kHz."""
 SMALL_STEPS_WARN: Final = 20_000
 SMALL_STEPS_STOP: Final = 200_000
 """Steps in a row with a mean below `SMALLEST_STEP` after which a run warns, and ends."""
@@ -78,7 +78,7 @@ class Watch:
         self._repeated = self._repeats()
 
     def look(self, *, final: bool = False) -> str | None:
-        """Look at the present state; why the run should end, or None.
+        """Look at the present state; gives the reason why the run should end, or None.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class Watch:
         return None if self._going_on else reason
 
     def renew(self) -> None:
-        """The integrator was started again: its counts begin at zero."""
+        """Note that the integrator was started again, so that its counts begin at zero."""
         self._steps, self._repeated = self._counted(), self._repeats()
 
     def _energies(self) -> dict[str, float]:
@@ -139,7 +139,7 @@ class Watch:
             f"from {since:.6g} s to {time:.6g} s the energy does not add up: "
             f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
         )
-        # where little else takes energy, vibrations that the steps do not resolve lose theirs: it is said, and ends no run
+        # where little else takes energy, vibrations that the steps do not resolve lose theirs: the run warns and goes on
         wrong = not math.isfinite(off) or (off > STOP and (missing < 0.0 or max(lost, put_in) > DISSIPATING * scale))
         if not wrong:
             self._say(text + "; try accuracy='reference', or smaller tolerances", "energy")
@@ -183,7 +183,7 @@ class Watch:
         return f"ended at {time:.6g} s: {text}. {advice}"
 
     def _say(self, text: str, kind: str) -> None:
-        """A warning in the result, and the first of its kind on the screen."""
+        """Keep a warning with the result, and show the first of its kind on the screen."""
         if len(self._found) < MOST_WARNINGS:
             self._found.append(text)
         else:
