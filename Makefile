@@ -1,7 +1,7 @@
 # Tasks; each sets up what it needs in .venv and build, and a second call installs nothing again.
 #
 #   make demo       the 30310 test bearing at 3000 rpm, in demo/
-#   make test       C unit tests and the Python tests (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones)
+#   make test       C unit tests and the Python tests in two processes (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones; JOBS=4)
 #   make lint       style, types, rules of the C sources (make format rewrites the style)
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
@@ -21,6 +21,7 @@ PYTHON ?= python3
 WERROR ?= ON
 PYTEST ?=
 SLOW   ?=
+JOBS   ?= 2
 QUICK  ?=
 BENCH  ?= $(filter-out common,$(basename $(notdir $(wildcard benchmarks/*.py))))
 
@@ -54,7 +55,7 @@ wheels: install
 
 test: install $(VENV)/.test
 	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
-	$(PY) -m pytest tests notebooks --nbmake $(if $(SLOW),-m "slow or not slow") $(PYTEST)
+	$(PY) -m pytest tests notebooks --nbmake -n $(JOBS) --dist loadfile --max-worker-restart 0 $(if $(SLOW),-m "slow or not slow") $(PYTEST)
 
 lint: $(VENV)/.lint build/.package
 	$(PY) -m ruff check .

@@ -1,8 +1,9 @@
-/* What changes in time: the layout of the state vector, and the poses that it stands for.
+/* What changes in time: the layout of the state vector, and the poses that it stands for (docs/theory/motion.md#coordinates).
  *
  * The frame R turns about the bearing axis with the kinematic cage angle. A roller's coordinates are cylindrical and are offsets from
- * pure rolling; its axis is given by skew and tilt in the frame (e_r, e_t, e_z) that orbits with it, its velocities are inertial ones
- * written in orbiting frames. In steady rolling the whole vector stands still. The spin angle is in the tail: nothing depends on it. */
+ * pure rolling; its axis is given by skew and tilt in the frame (e_r, e_t, e_z) that orbits with it; its velocities are inertial
+ * velocities that are written in orbiting frames. In steady rolling the whole vector stands still. The spin angle is in the tail of the
+ * vector, as nothing depends on it. */
 #ifndef TRB_BEARING_STATE_H
 #define TRB_BEARING_STATE_H
 
@@ -38,7 +39,7 @@
   X(omega_t, SPIN,     "angular velocity along t, rad/s") \
   X(omega_a, SPIN,     "angular velocity along the axis, minus kinematic, rad/s")
 
-/* Quadratures of the energy audit (physics: section 10); each has its field loss_* or work_* in a record. */
+/* Quadratures of the energy audit (docs/theory/energy.md#quadratures); each has its field loss_* or work_* in a record. */
 #define TRB_QUADRATURES(X) \
   X(work_shaft) X(work_ring) X(work_gravity) X(loss_traction_outer) X(loss_traction_inner) X(loss_rolling) \
   X(loss_rolling_pressure) X(loss_rib) X(loss_front_rib) X(loss_pocket) X(loss_damping)
@@ -135,7 +136,7 @@ typedef struct trb_cage_pose {
   trb_vec3  omega_frame; /* the same in (n, t, a) */
 } trb_cage_pose;
 
-/* References of pure rolling: what the offsets are offsets from. */
+/* Velocities of pure rolling; the state holds offsets from them. */
 typedef struct trb_rolling {
   double v_t;     /* tangential velocity of a roller, m/s */
   double omega_n; /* rad/s */

@@ -1,7 +1,8 @@
-/* Contacts: every pair of surfaces is one file with one function of the same signature; trb_contact_pairs lists them.
+/* Contacts (docs/theory/contacts.md). Each pair of surfaces has a file with one function; all have the same signature, and
+ * trb_contact_pairs lists them.
  *
  * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
- * the power lost, by kind. It knows no time and keeps no state. */
+ * the power lost, by kind. It does not depend on time and stores nothing between calls. */
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
 
@@ -46,7 +47,7 @@ typedef enum trb_torque { TRB_TORQUE_TRACTION, TRB_TORQUE_ROLLING, TRB_TORQUE_RI
   X(front_rib_contacts,   "edges of the front rib in contact with a small end") \
   X(front_rib_tests,      "small ends tested against the front rib") \
   X(pocket_tests,         "pocket faces tested against their roller") \
-  X(pocket_culled,        "pocket faces proven out of reach") \
+  X(pocket_culled,        "pocket faces proven not to touch") \
   X(pocket_nodes,         "nodes and points in contact with pocket faces") \
   X(gravity_bodies,       "bodies on which gravity was evaluated")
 
@@ -56,7 +57,7 @@ typedef struct trb_counters {
 #undef TRB_COUNTER_MEMBER
 } trb_counters;
 
-/* Margin where there is no such contact, m. */
+/* Margin of a contact that the scene does not have, m. */
 #define TRB_NO_CONTACT 1e30
 
 typedef struct trb_roller_load {
@@ -74,7 +75,7 @@ typedef struct trb_roller_load {
   double   power[TRB_N_POWERS];   /* lost, W */
 } trb_roller_load;
 
-/* Everything that a contact can see at an instant. */
+/* All that the contacts read at an instant. */
 typedef struct trb_instant {
   const trb_drive       *drive;   /* what is prescribed */
   const trb_roller_pose *rollers; /* n_rollers */
@@ -110,7 +111,7 @@ typedef struct trb_point_detail {
 
 struct trb_lanes;
 
-/* Intermediate quantities, kept where a caller wants to look; NULL in the inner loop. */
+/* Intermediate quantities, stored if a caller wants to look at them; NULL while integrating. */
 typedef struct trb_detail {
   double           *lanes;               /* [lane field][race][roller][node of n_lanes] */
   trb_point_detail *rib;                 /* n_rollers */
@@ -146,8 +147,9 @@ typedef struct trb_wrench {
   trb_vec3 moment; /* N m */
 } trb_wrench;
 
-/* How the wrench on a roller, about its centre of mass, follows its motion relative to its pocket: a column for a translation along each
- * axis, then for a turn about each, the pocket at rest. Left out is that the normal at an edge turns, load over radius beside stiffness. */
+/* Slopes of the wrench on a roller, about its centre of mass, with its motion relative to its pocket: one column for a translation along
+ * each axis, then one for a turn about each axis, with the pocket at rest. That the normal turns at an edge is left out: this term is
+ * load over radius, which is small beside the stiffness. */
 typedef struct trb_pocket_slopes {
   trb_frame  axes;        /* in the roller's cylindrical frame, for motions and wrenches */
   trb_wrench place[6];    /* per m and rad */
@@ -162,8 +164,8 @@ typedef struct trb_pocket_gaps {
 
 static inline int trb_pocket_clear(const trb_pocket_gaps *gaps) { return gaps->of[TRB_GAP_FLANK] > 0.0 && gaps->of[TRB_GAP_ENDS] > 0.0; }
 
-/* What one roller and its pocket do to each other. The load is written only where they may touch, or with a detail that wants
- * interferences, and so are slopes, if they are wanted. A detail's forces are added to. */
+/* Loads between one roller and its pocket. The load is written only where they may touch, or if the detail asks for interferences; the
+ * same holds for the slopes, which may be NULL. Forces are added to those in the detail. */
 trb_pocket_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_roller_load *load,
                                       trb_pocket_slopes *slopes, trb_detail *detail);
 

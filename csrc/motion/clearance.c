@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Farthest vertex of a kind of faces from their pocket's origin. */
+/* Bound of the distance of any vertex of one kind of faces from the origin of its pocket. */
 static double pocket_size(const trb_model *m, int flanks)
 {
   double size = 0.0;
@@ -25,22 +25,23 @@ static double chain_length(const trb_model *m)
   return length;
 }
 
-/* Displacements and gaps within which the arms hold. */
+/* Displacements and gaps up to which the arms are proven, m. */
 static double play(const trb_model *m) { return 0.5 * m->params.roller_diameter; }
 
-/* roller, pocket: largest distances of what can touch, in the roller from its centre of mass, in the pocket from its origin; ring: of what
- * can touch in either from the roller's place, across the bearing's axis. */
+/* roller: largest distance of what may touch, from the roller's centre of mass; pocket: the same of its faces, from the pocket's origin;
+ * ring: the same of either, from the place of the roller, across the bearing axis. */
 static trb_clearance_arms arms_from(const trb_model *m, double roller, double pocket, double ring)
 {
   const trb_geometry *g = &m->geometry;
-  /* about the roller's centre; about the bearing's or the cage's axis; about the cage's centre */
+  /* turn: about the roller's centre; orbit: about the bearing's or the cage's axis; lean: about the cage's centre */
   const double turn = fmax(roller, pocket), orbit = g->roller_centre_radius + ring + 4.0 * play(m);
   const double lean = g->roller_centre_radius + turn + fabs(m->params.cage_offset) + 4.0 * play(m);
   return (trb_clearance_arms){{1.0, orbit, 1.0, turn, turn}, {1.0, 1.0, 1.0, lean, lean, orbit}};
 }
 
-/* A gap is a distance between things fixed in either body: centres of spheres and the small end's plane here, outlines there. It changes
- * by no more than the arm of any of them about the axis of a turn. */
+/* A gap is a distance between things that are fixed in either body: centres of spheres and the plane of the small end in the roller,
+ * outlines of faces in the cage. When a body turns it changes by no more than the angle times the largest distance of any of them from
+ * the axis. */
 void trb_clearance_arms_of(const trb_model *m, trb_clearance_arms *arms)
 {
   const trb_geometry *g = &m->geometry;
@@ -56,7 +57,7 @@ void trb_clearance_set(const trb_model *m, trb_clearance *c, const trb_pocket_ga
 {
   const double far = fabs(y_roller[TRB_ROLLER_r]) + fabs(y_roller[TRB_ROLLER_z]) + fabs(y_cage[TRB_CAGE_x]) + fabs(y_cage[TRB_CAGE_y]) +
                      fabs(y_cage[TRB_CAGE_z]);
-  /* a gap that is not a number proves nothing */
+  /* a gap that is not a number (NaN) proves nothing */
   for (int i = 0; i < TRB_N_GAPS; i++) c->gaps.of[i] = far < play(m) && gaps->of[i] > 0.0 ? trb_min(gaps->of[i], play(m)) : 0.0;
   memcpy(c->roller, y_roller, sizeof c->roller);
   memcpy(c->cage, y_cage, sizeof c->cage);
@@ -85,6 +86,6 @@ int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, 
     const double way = fabs(y_cage[i] - c->cage[i]);
     for (int g = 0; g < TRB_N_GAPS; g++) moved[g] += arms[g].cage[i] * way;
   }
-  /* not a number: nothing is proven */
+  /* where a coordinate is not a number (NaN) both comparisons are false: nothing is proven */
   return moved[TRB_GAP_FLANK] < c->gaps.of[TRB_GAP_FLANK] && moved[TRB_GAP_ENDS] < c->gaps.of[TRB_GAP_ENDS];
 }

@@ -1,7 +1,11 @@
-/* Clearances: proofs that a roller does not touch its pocket, kept from one evaluation to the next.
+/* Clearances: proofs that a roller does not touch its pocket, which hold from one evaluation to later ones
+ * (docs/theory/numerics.md#clearances-of-pockets).
  *
- * Where a pocket is evaluated and nothing touches, a lower bound of the gap is known. No face comes nearer by more than the bodies have
- * moved since, each coordinate times the longest arm it moves anything by; until that sum reaches the gap there is no contact. */
+ * Most rollers do not touch their pockets most of the time, and to look at all faces in each evaluation would be wasted. Where a pocket was
+ * evaluated and nothing touched, a lower bound of the gap is known. When roller and cage move, the gap shrinks at most by the sum of the
+ * changes of their coordinates, each multiplied by the longest arm by which that coordinate moves anything that may touch: 1 for a
+ * displacement, the largest distance from the axis of turning for an angle. As long as this sum is smaller than the gap there can be no
+ * contact, and the pocket is not evaluated. */
 #ifndef TRB_MOTION_CLEARANCE_H
 #define TRB_MOTION_CLEARANCE_H
 
@@ -11,24 +15,24 @@
 enum { TRB_CLEARANCE_ROLLER = TRB_ROLLER_tilt + 1, TRB_CLEARANCE_CAGE = TRB_CAGE_psi + 1 };
 
 typedef struct trb_clearance {
-  trb_pocket_gaps gaps;                         /* lower bounds there; not above 0: nothing is known */
-  double          roller[TRB_CLEARANCE_ROLLER]; /* where it was found */
+  trb_pocket_gaps gaps;                         /* lower bounds of the gaps; not above 0: nothing is known */
+  double          roller[TRB_CLEARANCE_ROLLER]; /* coordinates at which the gaps were found */
   double          cage[TRB_CLEARANCE_CAGE];
 } trb_clearance;
 
-/* How far a unit of each coordinate moves what can touch, at most, m/m or m/rad. The large end's sphere has its centre far from the roller:
- * flanks, which come nearer, have shorter arms. */
+/* The longest way by which a unit of each coordinate moves what may touch, m/m or m/rad. The centre of the large end's sphere is far
+ * from the roller, so ends have longer arms than the flank, whose gap is the smaller one. */
 typedef struct trb_clearance_arms {
   double roller[TRB_CLEARANCE_ROLLER];
   double cage[TRB_CLEARANCE_CAGE];
 } trb_clearance_arms;
 
-/* arms: of every gap. */
+/* arms: TRB_N_GAPS of them, one for each kind of gap. */
 void trb_clearance_arms_of(const trb_model *m, trb_clearance_arms *arms);
 void trb_clearance_set(const trb_model *m, trb_clearance *c, const trb_pocket_gaps *gaps, const double *y_roller, const double *y_cage);
 /* Whether the roller is proven not to touch its pocket. */
 int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_cage);
-/* What is left of the gap at least, m; not above 0: the roller may touch. */
+/* Lower bound of the gap that is left, m; not above 0: the roller may touch. */
 double trb_clearance_left(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_cage);
 
 #endif

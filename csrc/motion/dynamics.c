@@ -86,8 +86,8 @@ typedef struct turn_rates {
   trb_vec3 spin;       /* angular acceleration in (n, t, a), rad/s2 */
 } turn_rates;
 
-/* Euler's equations in a frame that follows the axis but does not spin; parent: angular velocity of the frame that skew and tilt are
- * measured in, along its own z. */
+/* Euler's equations in a frame that follows the axis but does not spin (docs/theory/motion.md#eulers-equations); parent: angular
+ * velocity, about z, of the frame in which skew and tilt are measured. */
 static turn_rates euler(const trb_frame *f, trb_vec3 omega, double parent, double transverse, double axial, trb_vec3 moment)
 {
   turn_rates   out;
@@ -109,7 +109,8 @@ static trb_vec3 gravity_in(const trb_drive *drive, double cosine, double sine)
 
 static int has_gravity(const trb_drive *drive) { return drive->gravity.x != 0.0 || drive->gravity.y != 0.0 || drive->gravity.z != 0.0; }
 
-/* Planar: the frozen tilts couple the orbit to the transverse inertia; (m + It s^2/r^2) v_t' from Lagrange's equation of the orbit angle. */
+/* Planar motion (docs/theory/motion.md#planar-motion): the frozen tilts couple the orbit to the transverse inertia; (m + It s^2/r^2)
+ * v_t' from Lagrange's equation of the orbit angle. */
 static double orbit_inertia(const trb_geometry *g, const trb_roller_pose *r)
 {
   return g->roller_inertia_transverse * r->frame.n.z * r->frame.n.z / (r->radius * r->radius);

@@ -1,4 +1,5 @@
-/* Equations of motion: y' = f(t, y). Newton-Euler for every roller and the cage, in frames that orbit with them. */
+/* Equations of motion y' = f(t, y): Newton's and Euler's equations of each roller and the cage, in frames that orbit with them
+ * (docs/theory/motion.md#newtons-equations). */
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
 
@@ -34,8 +35,9 @@ void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
 /* What the contacts read. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
-/* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures (physics: section 10).
- * It is affine in the loads: what inertia and gravity give, and the response to a load. */
+/* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures
+ * (docs/theory/energy.md#quadratures). It is affine in the loads: a part from inertia and gravity, and a part that is linear in the
+ * loads (the response). */
 enum {
   TRB_FLOW_spin = TRB_ROLLER_SIZE,
   TRB_FLOW_quadrature = TRB_ROLLER_SIZE + 1,
@@ -47,12 +49,12 @@ void trb_dynamics_roller_response(const trb_dynamics *d, int roller, const trb_r
 /* Both, and the work of the inner ring. */
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_roller_load *load, double *flow);
 
-/* A right-hand side is started, has every roller's flow put in, and the cage's rates. */
+/* A right-hand side is made in three steps: start it, put in the flow of each roller, compute the rates of the cage. */
 void trb_dynamics_start(const trb_dynamics *d, double *rates);
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
 /* Whether a roller is proven not to touch its pocket at a state. */
 int trb_dynamics_clear(const trb_dynamics *d, int roller, const double *y);
-/* What a roller, whose pose is kept, and its pocket do to each other, added to the roller's flow and to the sums of the cage. */
+/* Adds the loads between a roller, whose pose is kept, and its pocket to the roller's flow and to the sums of the cage. */
 void trb_dynamics_pocket(trb_dynamics *d, int roller, const double *y, double *flow, trb_vec3 *cage_force, trb_vec3 *cage_moment);
 /* Rates of the cage under the sum of what the rollers put on it. */
 void trb_dynamics_cage_rates(const trb_dynamics *d, const double *y_cage, trb_vec3 force, trb_vec3 moment, double *rates);

@@ -1,8 +1,8 @@
-/* An impact is followed well if the errors of a step are small beside the speed at which the bodies meet and beside the interference that
- * they reach, not beside numbers that are the same for all. So while a roller may reach its pocket within the next steps, or touches it, the
- * absolute tolerances of roller and cage are multiplied by a factor: a share of that speed over the tolerance of velocities, or of that
- * interference over the tolerance of positions, whichever is less, between a least factor and 1. The speed is the one at which they met:
- * during contact it passes through zero. Bodies that lie on each other met at some speed, too, and cost nothing more. */
+/* An impact is followed well if the errors of a step are small beside the speed at which the bodies meet and beside the interference
+ * that follows from it, and not beside numbers that are the same for all impacts (docs/theory/numerics.md#impacts). So while a roller
+ * may meet its pocket within the next steps, or touches it, the tolerances of roller and cage are multiplied by a factor: a share of
+ * that speed over the absolute tolerance of velocities, or of that interference over the absolute tolerance of positions, whichever is
+ * less, between a least factor and 1. The speed is the largest since they met, as it passes through zero during contact. */
 #include "stepping/impact.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@
 #include "base/memory.h"
 #include "laws/line_contact.h"
 
-/* Share of an impact's speed and interference that a step may be wrong by; least factor; steps ahead in which a gap may close. */
-static const double share = 0.01, least_factor = 0.02, ahead = 3.0;
+/* Steps ahead in which a gap may close. */
+static const double ahead = 3.0;
 
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {
@@ -48,8 +48,8 @@ static double closing_speed(const trb_roller_pose *r, const trb_cage_pose *cage)
   return trb_norm(trb_sub(r->v, trb_turn_z(pocket, r->cosine, -r->sine)));
 }
 
-/* Interference that a roller and the cage reach when they meet: speed over the frequency of both on a linear spring, as stiff as the flank's
- * contact is at a micrometre. */
+/* Largest interference of a roller and the cage that meet at a speed: that speed over the natural frequency of both masses on a linear
+ * spring, which is as stiff as the contact of a flank is at an interference of 1 um. */
 static double interference_of(const trb_model *m, double speed)
 {
   const double depth = 1e-6, roller = m->geometry.roller_mass, cage = m->params.cage_mass;
@@ -58,7 +58,7 @@ static double interference_of(const trb_model *m, double speed)
 }
 
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
-                      double tolerance, double tolerance_place)
+                      const trb_impact_measure *measure)
 {
   const trb_model *m = d->model;
   const double    *y_cage = y + trb_state_cage(m);
@@ -85,8 +85,8 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
     }
     /* in contact: the largest speed since they met */
     impacts->speed[j] = left <= 0.0 && isfinite(impacts->speed[j]) ? trb_max(impacts->speed[j], speed) : speed;
-    const double finer = trb_min(impacts->speed[j] / tolerance, interference_of(m, impacts->speed[j]) / tolerance_place);
-    impacts->factor[j] = trb_clamp(share * finer, least_factor, 1.0);
+    const double finer = trb_min(impacts->speed[j] / measure->velocity, interference_of(m, impacts->speed[j]) / measure->position);
+    impacts->factor[j] = trb_clamp(measure->share * finer, measure->least, 1.0);
     least = trb_min(least, impacts->factor[j]);
   }
   impacts->factor[m->n_rollers] = least;

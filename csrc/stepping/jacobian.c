@@ -34,7 +34,7 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   free(jacobian);
 }
 
-/* What a load adds to the rates of a roller. */
+/* Rates of a roller that a load gives. */
 static void roller_response(const trb_dynamics *d, int roller, const trb_roller_load *load, double *rates)
 {
   double flow[TRB_FLOW_SIZE] = {0};
@@ -42,12 +42,13 @@ static void roller_response(const trb_dynamics *d, int roller, const trb_roller_
   memcpy(rates, flow, TRB_NR * sizeof *rates);
 }
 
-/* Change of the cage's loads with each of its coordinates. */
+/* Slopes of the cage's loads with each of its coordinates. */
 typedef struct cage_loads {
   trb_vec3 force[TRB_NC], moment[TRB_NC];
 } cage_loads;
 
-/* What a pocket in contact adds to its roller's block, to both borders, and to the cage's loads. still: rates of a cage without loads. */
+/* Adds what a pocket in contact gives to its roller's block, to both borders and to the slopes of the cage's loads. still: rates of the
+ * cage without loads. */
 static void add_pocket(const trb_dynamics *d, int j, const trb_coupling *k, const double *y_cage, const double *still,
                        trb_arrow_block *block, trb_arrow_border *border, cage_loads *sums)
 {
@@ -68,7 +69,7 @@ static void add_pocket(const trb_dynamics *d, int j, const trb_coupling *k, cons
   }
 }
 
-/* The cage's block by differences of its rates under the loads force and moment, which change with its coordinates. */
+/* The block of the cage, by differences of its rates under a force and a moment that themselves change with its coordinates. */
 static void cage_block(trb_jacobian *jac, const double *y, trb_vec3 force, trb_vec3 moment, const cage_loads *changes, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;

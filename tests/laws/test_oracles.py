@@ -1,4 +1,4 @@
-"""Laws against other ways to the same number: SciPy's integrals, Hertz' theory solved anew, NumPy's nodes."""
+"""Laws against other ways to the same number: SciPy's integrals, Hertz' theory solved again, NumPy's nodes."""
 
 from __future__ import annotations
 
