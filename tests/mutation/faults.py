@@ -6,9 +6,9 @@ import ast
 import functools
 import hashlib
 import io
-import random
 import re
 import tokenize
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -100,6 +100,11 @@ class Fault:
         """Changes with the source, so that an outcome of another source is not taken for this one's."""
         words = (self.file, self.source, self.place, self.old, self.new)
         return hashlib.sha256(repr(words).encode()).hexdigest()[:16]
+
+    def lot(self, seed: int) -> str:
+        """Its place in the order of a seed."""
+        words = (seed, self.file, self.text, self.column, self.nth, self.old, self.new)
+        return hashlib.sha256(repr(words).encode()).hexdigest()
 
     def applied(self, text: str) -> str:
         if not text.startswith(self.old, self.place):
@@ -196,6 +201,11 @@ def faults_of(file: Path, area: str) -> list[Fault]:
         found = [*faults_of_python(text), *statements_of_python(text)]
     else:
         found = list(faults_of_c(text))
+    seen: Counter[str] = Counter()
+    nths = []
+    for line in text.split("\n"):
+        seen[line.strip()] += 1
+        nths.append(seen[line.strip()])
     made = []
     for at, old, new in found:
         begin = at + len(old) - len(old.lstrip())
@@ -205,8 +215,7 @@ def faults_of(file: Path, area: str) -> list[Fault]:
         column = begin - start - (len(line) - len(line.lstrip()))
         if old != new:
             number = text.count("\n", 0, begin) + 1
-            nth = [other.strip() for other in text.splitlines()[:number]].count(line.strip())
-            made.append(Fault(area, name, at, old, new, number, line.strip(), column, nth, source))
+            made.append(Fault(area, name, at, old, new, number, line.strip(), column, nths[number - 1], source))
     return made
 
 
@@ -217,7 +226,8 @@ def draw(seed: int, only: str | None = None) -> list[Fault]:
     for area, (share, patterns) in AREAS.items():
         files = sorted({path for pattern in patterns for path in ROOT.glob(pattern)})
         places = [fault for file in files for fault in faults_of(file, area)]
-        random.Random(f"{seed} {area}").shuffle(places)
+        # by what a fault is, not by where: a change of a source leaves the others' faults drawn as they were
+        places.sort(key=lambda fault: fault.lot(seed))
         drawn += [((number + 0.5) / share, fault) for number, fault in enumerate(places)]
     drawn.sort(key=lambda pair: (pair[0], pair[1].key))
     return [fault for _, fault in drawn if only in (None, fault.area)]
