@@ -44,6 +44,9 @@ LOSS = 0.05
 SLIP = 0.02
 """Largest difference of the mean speed of the rollers from that of the tight run, over the kinematic speed."""
 
+LEAST_PATH = 10.0
+"""Path of the rollers over which their mean speed is judged at least, in circumferential plays of a pocket."""
+
 
 @dataclass
 class Run:
@@ -180,8 +183,10 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
     run.residual = _sum(last, "work_") - _sum(first, "work_") - (stored - _stored(first)) - run.loss
     run.turned_over, run.stored = turned, stored
     nominal = abs(float(sim.scene.bearing.geometry.cage_speed_ratio) * _speed(sim)) * run.time
-    # where the rollers hardly orbit, they still fall through their pockets: 1 mrad is a tenth of that
-    run.roller_speed = float(np.mean(last["roller_orbit_angle"] - first["roller_orbit_angle"])) / max(nominal, 1e-3)
+    # a roller may be anywhere in its pocket: a mean speed over less than some plays of the pocket says nothing of slip
+    bearing = sim.scene.bearing
+    least = LEAST_PATH * bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter)
+    run.roller_speed = float(np.mean(last["roller_orbit_angle"] - first["roller_orbit_angle"])) / max(nominal, least)
     if "cage_position" in last:
         run.cage = (float(last["cage_position"][0]), float(last["cage_position"][1]))
     return run

@@ -81,6 +81,19 @@ def test_finds_a_run_that_is_wrong() -> None:
     assert "ended" in str(grid.is_bad(row | {"status": "ended"}))
 
 
+@pytest.mark.parametrize("effects", ["paper", "standard"])
+@pytest.mark.parametrize(("preset", "speed"), [("standard", 1000.0), ("standard", 10_000.0), ("reference", 1.0)])
+@pytest.mark.parametrize(("axial_load", "share"), [(1230.0, 0.0), (4930.0, 1.5)])
+def test_presets_keep_what_is_promised(
+    preset: str, speed: float, axial_load: float, share: float, effects: str
+) -> None:
+    """A few points of the grid; `closures.py` measures all of it."""
+    from closure import grid
+
+    row = grid.measure(grid.Point(speed, axial_load, share, 90.0, effects, preset, "whirl"), 1500, 2.0)
+    assert row["status"] == "refused" or row["closure"] < 1e-3 or row["warnings"]
+
+
 def test_loads_without_equilibrium_are_refused() -> None:
     from closure import grid
 
