@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
 
-LARGE: Final = 2e-3
+LARGE: Final = 1e-4
 """Energy of the motion across the raceways over the elastic energy from which on vibrations are large."""
 SWINGS: Final = 0.05
 """Standard deviation of the losses on the raceways over their mean from which on they are said to swing."""

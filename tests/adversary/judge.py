@@ -34,6 +34,8 @@ MOST_STEPS_UNTIL_STOP = 250_000
 """Steps of a run that seems to hang, within which the program has to end it."""
 PATIENCE_S = 60.0
 """Processor time after which a run is given up."""
+PATIENCE_UNTIL_STOP_S = 300.0
+"""The same of a run that seems to hang."""
 SMALLEST_STEP = 2e-8
 """Mean step below which a run hangs (s): a thousandth of the period of a contact's vibration, 35 kHz."""
 
@@ -101,7 +103,10 @@ def judge(table: Table) -> Verdict:
         return verdict
     if run.mean_step < SMALLEST_STEP and run.time < duration:
         verdict.run = run = bounded_run(
-            trb.Simulation(scene, accuracy=sim.options.accuracy), duration, MOST_STEPS_UNTIL_STOP
+            trb.Simulation(scene, accuracy=sim.options.accuracy),
+            duration,
+            MOST_STEPS_UNTIL_STOP,
+            patience=PATIENCE_UNTIL_STOP_S,
         )
         if run.status != "ended" and run.mean_step < SMALLEST_STEP:
             verdict.status, verdict.broken = "hanging", [f"mean step {run.mean_step:.2g} s after {run.steps} steps"]
@@ -144,8 +149,8 @@ def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
         verdict.broken.append(f"speed of the rollers off by {speed:.2g}")
 
 
-def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
-    """Step for a time, at most a number of steps or `PATIENCE_S`."""
+def bounded_run(sim: trb.Simulation, duration: float, most_steps: int, *, patience: float = PATIENCE_S) -> Run:
+    """Step for a time, at most a number of steps or a processor time."""
     run = Run()
     first = sim.record()
     begin, turned, last = sim.time, 0.0, first
@@ -162,7 +167,7 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
                     most_steps = run.steps
                 if run.steps == most_steps // 2:
                     half = (sim.time, run.steps)
-                if run.steps % 256 == 0 and clock.process_time() - began > PATIENCE_S:
+                if run.steps % 256 == 0 and clock.process_time() - began > patience:
                     most_steps = run.steps
             if _look(watch, run, final=run.steps >= most_steps or look == looks[-1]):
                 most_steps = run.steps
