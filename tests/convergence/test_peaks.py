@@ -45,9 +45,13 @@ def test_pocket_statistics_are_those_of_all_steps(runs: dict[float, Result]) -> 
 
 def test_records_miss_what_peaks_see(runs: dict[float, Result]) -> None:
     samples = [runs[every].pocket_force.max() for every in EVERY]
-    peak = runs[EVERY[0]].peaks["pocket_force_peak"].max()
+    peaks = runs[EVERY[0]].peaks
+    peak = peaks["pocket_force_peak"].max()
     assert samples[0] < 0.5 * peak
-    assert samples[-1] == pytest.approx(peak, rel=0.05)
+    assert samples[-1] <= peak
+    when = float(peaks["pocket_force_peak_time"].flat[peaks["pocket_force_peak"].argmax()])
+    fine = Simulation(whirling()).run(duration=when + 1e-5, save_every=5e-7, save_groups=("pocket",))
+    assert fine.pocket_force.max() == pytest.approx(peak, rel=0.02)
 
 
 @pytest.mark.parametrize("every", EVERY)
