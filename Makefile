@@ -1,7 +1,7 @@
 # Tasks; each sets up what it needs in .venv and build, and a second call installs nothing again.
 #
 #   make demo       the 30310 test bearing at 3000 rpm, in demo/
-#   make test       C unit tests and the Python tests (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones)
+#   make test       C unit tests and the Python tests in two processes (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones; JOBS=4)
 #   make lint       style, types, rules of the C sources (make format rewrites the style)
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
@@ -11,7 +11,7 @@
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make docs       the documentation site in build/docs; its code is run, warnings are errors
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
-#   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=60 SEED=1 MORE=1)
+#   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -21,6 +21,7 @@ PYTHON ?= python3
 WERROR ?= ON
 PYTEST ?=
 SLOW   ?=
+JOBS   ?= 2
 QUICK  ?=
 BENCH  ?= $(filter-out common,$(basename $(notdir $(wildcard benchmarks/*.py))))
 
@@ -54,7 +55,7 @@ wheels: install
 
 test: install $(VENV)/.test
 	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
-	$(PY) -m pytest tests notebooks --nbmake $(if $(SLOW),-m "slow or not slow") $(PYTEST)
+	$(PY) -m pytest tests notebooks --nbmake -n $(JOBS) --dist loadfile --max-worker-restart 0 $(if $(SLOW),-m "slow or not slow") $(PYTEST)
 
 lint: $(VENV)/.lint build/.package
 	$(PY) -m ruff check .
@@ -87,8 +88,8 @@ fuzz: $(VENV)/.tools
 adversary: install
 	$(PY) tests/adversary/adversary.py --minutes $(or $(MINUTES),20) --seed $(or $(SEED),0) --keep --json build/adversary.json
 
-mutate: install
-	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),60) --seed $(or $(SEED),1) $(if $(MORE),--more)
+mutate: install $(VENV)/.test
+	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),90) --seed $(or $(SEED),1)
 
 install: build/.package
 

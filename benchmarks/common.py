@@ -52,6 +52,7 @@ def parser(description: str | None) -> argparse.ArgumentParser:
     out.add_argument("--quick", action="store_true", help="fewer cases and repeats, under two minutes")
     out.add_argument("--json", type=Path, metavar="FILE", default=None, help="write results to a JSON file")
     out.add_argument("--no-picture", action="store_true", help="draw no picture")
+    out.add_argument("--write-readme", action="store_true", help="put the results into benchmarks/README.md")
     return out
 
 
@@ -123,6 +124,10 @@ class Report:
         What `parser` gave.
     columns : dict of str to str
         "unit: text" of every entry of results and summary.
+    readme : str
+        Results for benchmarks/README.md, Markdown; empty for a script that has no place there.
+    measured : dict
+        Where results that were taken from a file come from: entries that take the place of this run's.
     """
 
     name: str
@@ -132,6 +137,8 @@ class Report:
     results: list[dict[str, Any]] = field(default_factory=list)
     summary: dict[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    readme: str = ""
+    measured: dict[str, Any] = field(default_factory=dict)
     began: float = field(default_factory=time.perf_counter)
 
     def add(self, **row: Any) -> dict[str, Any]:
@@ -139,6 +146,21 @@ class Report:
         _known(row, self.columns)
         self.results.append(row)
         return row
+
+    def take(self, path: Path) -> None:
+        """Take what another run of the script wrote to a JSON file: results, and when and where they were measured.
+
+        Raises
+        ------
+        ValueError
+            If the file is not of this script.
+        """
+        found = json.loads(path.read_text(encoding="utf-8"))
+        if found.get("schema") != SCHEMA or found.get("benchmark") != self.name:
+            raise ValueError(f"{path} is not a file of {self.name}")
+        self.results, self.summary = found["results"], found["summary"]
+        self.inputs, self.notes = found["inputs"], found["notes"]
+        self.measured = {name: found[name] for name in ("quick", "command", "date", "machine", "wall_s")}
 
     def to_dict(self) -> dict[str, Any]:
         """Everything, as it is written."""
@@ -158,12 +180,15 @@ class Report:
                 "summary": self.summary,
                 "notes": self.notes,
             }
+            | self.measured
         )
         return out
 
     def finish(self) -> dict[str, Any]:
-        """Write the JSON file that was asked for; say where everything is."""
+        """Write the JSON file and the part of the README that were asked for; say where everything is."""
         out = self.to_dict()
+        if getattr(self.options, "write_readme", False) and self.readme:
+            write_readme(self.name, f"{_stamp(out)}\n\n{self.readme}")
         if self.options.json is not None:
             self.options.json.parent.mkdir(parents=True, exist_ok=True)
             self.options.json.write_text(json.dumps(out, indent=1, allow_nan=False) + "\n", encoding="utf-8")
@@ -199,7 +224,7 @@ def table(rows: Sequence[Mapping[str, Any]], columns: Iterable[str], digits: int
     """Rows as a Markdown table that also reads well in a terminal."""
     names = list(columns)
     cells = [names, *([_cell(row.get(name), digits) for name in names] for row in rows)]
-    widths = [max(len(line[i]) for line in cells) for i in range(len(names))]
+    widths = [max(3, *(len(line[i]) for line in cells)) for i in range(len(names))]
     numeric = [all(isinstance(row.get(name), (int, float, np.number, type(None))) for row in rows) for name in names]
 
     def line(parts: Sequence[str]) -> str:
@@ -221,8 +246,34 @@ def _cell(value: Any, digits: int) -> str:
     if isinstance(value, (int, np.integer)):
         return f"{value:d}"
     if isinstance(value, (float, np.floating)):
-        return f"{value:.{digits}g}"
+        text = f"{value:.{digits}g}"
+        return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e6 else text
     return str(value)
+
+
+def _stamp(found: Mapping[str, Any]) -> str:
+    """When and where results were measured, in a sentence."""
+    where = found["machine"]
+    cores = f"{where['processor']['name']}, {where['cores']} cores, load {where['load'][0]:g}"
+    quick = ", with --quick" if found["quick"] else ""
+    return f"Measured {found['date'][:10]}, trbdyn {where['trbdyn']}, revision {where['revision'] or 'unknown'}{quick}; {cores}."
+
+
+def write_readme(name: str, text: str, path: Path = HERE / "README.md") -> None:
+    """Put a text between the comments ``<!-- name -->`` and ``<!-- /name -->`` of a page.
+
+    Raises
+    ------
+    ValueError
+        If the page has not exactly one such place.
+    """
+    page = path.read_text(encoding="utf-8")
+    begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
+    if page.count(begin) != 1 or page.count(end) != 1 or page.index(begin) > page.index(end):
+        raise ValueError(f"{path.name} must have one {begin} and, after it, one {end}")
+    head, rest = page.split(begin)
+    path.write_text(f"{head}{begin}\n{text.strip()}\n{end}{rest.split(end)[1]}", encoding="utf-8")
+    print(f"wrote {path.name}")
 
 
 def save_picture(figure: Any, name: str) -> Path:

@@ -229,18 +229,23 @@ def run(plan: Plan, options: argparse.Namespace) -> common.Report:
     return report
 
 
-def show(report: common.Report) -> None:
-    """Print the tables."""
-    print(
-        f"all effects: {report.summary['all']['us']:.1f} us, none: {report.summary['none']['us']:.1f} us an evaluation\n"
-    )
-    if "control_ratio" in report.summary:
-        print(f"ratio of two equal cores: {report.summary['control_ratio']:.3f}\n")
+def text_of(report: common.Report) -> str:
+    """The tables."""
+    whole = {
+        "all effects (us)": report.summary["all"]["us"],
+        "none (us)": report.summary["none"]["us"],
+        "largest time_ratio_off": report.summary["worst_time_ratio_off"],
+        "ratio of two equal cores": report.summary.get("control_ratio"),
+    }
     cost = ("effect", "us_off", "share", "us_none", "us_on", "time_ratio_off", "evaluations_off", "evaluations_on")
-    print(common.table(report.results, cost))
     walls = ("cpu_s_per_revolution_off", "cpu_s_per_revolution_on", "steps_per_revolution_off")
     changes = ("cage_speed_change", "whirl_radius_change", "whirl_radius_half_width", "torque_change")
-    print("\n" + common.table(report.results, ("effect", *walls, *changes)))
+    tables = (
+        common.table([whole], whole),
+        common.table(report.results, cost),
+        common.table(report.results, ("effect", *walls, *changes)),
+    )
+    return "\n\n".join(tables)
 
 
 def draw(report: common.Report) -> Any:
@@ -282,7 +287,8 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     )
     options = parser.parse_args(arguments)
     report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
-    show(report)
+    report.readme = text_of(report)
+    print(report.readme)
     if not options.no_picture:
         common.save_picture(draw(report), "effects")
     report.finish()

@@ -145,21 +145,41 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         "Our Jacobian is one batched call (24 states), sparse where the package takes it.",
         "trbdyn's bdf takes forces of raceways and ribs from tangents between exact evaluations; 'exact' does not.",
     ]
-    shown = ["name", "ratio", "ratio_low", "ratio_high", "us_per_evaluation", "us_per_step", "wall_s_per_revolution",
-             "error_cage_over_cpr", "steps", "evaluations", "jacobians"]  # fmt: skip
-    print(common.table(report.results, shown))
-    bottom = report.summary["floor"]
-    print(
-        f"a force evaluation: NumPy {costs['numpy']:.0f} us, core {costs['core']:.1f} us, floor "
-        f"{bottom['us_per_evaluation']:.1f} us (estimate: {bottom['nodes']} nodes of {bottom['ns_per_node']:.1f} ns, "
-        f"{bottom['rates']} rates)"
-    )
-    for row, text in ((best["its own"], "best alternative"), (best["ours"], "best with our Jacobian handed to it")):
-        if row["ratio"] is not None:
-            print(f"{text}: {row['name']}, {row['ratio']:.1f} times the core's time at equal error")
+    report.readme = text_of(report)
+    print(report.readme)
     if not options.no_picture:
         draw(report.results, report.summary)
     return report.finish()
+
+
+def text_of(report: common.Report) -> str:
+    """The tables: the best alternatives first."""
+    summary, bottom = report.summary, report.summary["floor"]
+    best = [
+        {
+            "Jacobian": "the package's own" if jacobian == "its own" else "ours, handed to it",
+            "best alternative": row["name"],
+            "its time over the core's at equal error": row["ratio"],
+        }
+        for jacobian in ("its own", "ours")
+        if (row := _best(report.results, jacobian))["ratio"] is not None
+    ]
+    forces = {
+        "NumPy (us)": summary["us_per_evaluation_numpy"],
+        "core (us)": summary["us_per_evaluation_core"],
+        "floor (us)": bottom["us_per_evaluation"],
+    }
+    shown = ("name", "ratio", "ratio_low", "ratio_high", "us_per_evaluation", "us_per_step", "wall_s_per_revolution",
+             "error_cage_over_cpr", "steps", "evaluations", "jacobians")  # fmt: skip
+    return "\n\n".join(
+        (
+            *((common.table(best, best[0]),) if best else ()),
+            f"A force evaluation; the floor is an estimate: {bottom['nodes']} nodes of {bottom['ns_per_node']:.1f} ns "
+            f"({bottom['rates']} rates).",
+            common.table([forces], forces),
+            common.table(report.results, shown),
+        )
+    )
 
 
 def _best(rows: list[dict[str, Any]], jacobian: str) -> dict[str, Any]:

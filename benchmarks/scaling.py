@@ -197,29 +197,42 @@ def run(plan: Plan, options: argparse.Namespace) -> common.Report:
     return report
 
 
-def show(report: common.Report) -> None:
-    """Print the tables."""
-    for sweep in ("rollers", "slices", "speed", "load"):
-        rows = [row for row in report.results if row["sweep"] == sweep]
-        names = ("x", "us_per_evaluation", "us_per_step", "steps_per_revolution", "cpu_s_per_revolution")
-        print(f"\n{sweep}: slopes {report.summary['slopes'].get(sweep)}\n\n{common.table(rows, names)}")
-    rows = [row for row in report.results if row["sweep"] == "threads"]
-    print(f"\nthreads\n\n{common.table(rows, ('x', 'wall_s', 'throughput', 'cpu_ratio'))}")
-    rows = [row for row in report.results if row["sweep"] == "memory"]
-    print(f"\nmemory\n\n{common.table(rows, ('x', 'resident_mb'), digits=5)}")
+SWEEPS = {
+    "rollers": "rollers",
+    "slices": "uniform slices a contact",
+    "speed": "speed (rpm)",
+    "load": "axial load (N)",
+}
+
+
+def text_of(report: common.Report) -> str:
+    """The tables: how cost grows first, then the points behind it."""
+    slopes = report.summary["slopes"]
+    parts = [
+        "Exponents: cost grows as the quantity to this power.",
+        "",
+        common.table(
+            [{"quantity": SWEEPS[name], **found} for name, found in slopes.items()],
+            ("quantity", "us_per_evaluation", "us_per_step", "steps_per_revolution"),
+            digits=2,
+        ),
+    ]
+    names = ("us_per_evaluation", "us_per_step", "steps_per_revolution", "cpu_s_per_revolution")
+    for sweep, title in SWEEPS.items():
+        rows = [{title: row["x"], **row} for row in report.results if row["sweep"] == sweep]
+        parts += ["", common.table(rows, (title, *names))]
+    rows = [{"threads": row["x"], **row} for row in report.results if row["sweep"] == "threads"]
+    parts += ["", common.table(rows, ("threads", "wall_s", "throughput", "cpu_ratio"))]
+    rows = [{"bearing time (s)": row["x"], **row} for row in report.results if row["sweep"] == "memory"]
+    parts += ["", common.table(rows, ("bearing time (s)", "resident_mb"), digits=5)]
+    return "\n".join(parts)
 
 
 def draw(report: common.Report) -> Any:
     """A panel a sweep."""
     plt = common.pyplot()
     figure, grid = plt.subplots(2, 3, figsize=(13.0, 8.0), layout="constrained")
-    labels = {
-        "rollers": "rollers",
-        "slices": "uniform slices a contact",
-        "speed": "speed (rpm)",
-        "load": "axial load (N)",
-    }
-    for axes, (sweep, label) in zip(grid.ravel(), labels.items(), strict=False):
+    for axes, (sweep, label) in zip(grid.ravel(), SWEEPS.items(), strict=False):
         rows = [row for row in report.results if row["sweep"] == sweep]
         x = [row["x"] for row in rows]
         slopes = report.summary["slopes"].get(sweep, {})
@@ -259,7 +272,8 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
     options = parser.parse_args(arguments)
     report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
-    show(report)
+    report.readme = text_of(report)
+    print("\n" + report.readme)
     if not options.no_picture:
         common.save_picture(draw(report), "scaling")
     report.finish()

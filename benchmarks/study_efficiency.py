@@ -71,7 +71,9 @@ def main() -> None:
                 identical=compared.identical(first),
             )
             report.summary[f"efficiency_{executor}"] = alone / wall / workers
-    print(common.table(report.results, ("executor", "workers", "cases", "wall", "speed_up", "efficiency", "identical")))
+    names = ("executor", "workers", "cases", "wall", "speed_up", "efficiency", "identical")
+    report.readme = common.table(report.results, names)
+    print(report.readme)
     report.finish()
 
 

@@ -103,7 +103,8 @@ def main(arguments: argparse.Namespace | None = None) -> dict[str, Any]:
             report.summary.setdefault(f"{name}_deviation", {})[preset] = value
         report.summary.setdefault("rings_differ", {})[preset] = between
     lines = shown(report.results)
-    print(common.table(lines, list(lines[0])))
+    report.readme = common.table(lines, list(lines[0]))
+    print(report.readme)
     for preset in PRESETS:
         figures = (report.summary[name][preset] for name in ("mean_deviation", "worst_deviation", "rings_differ"))
         print(

@@ -1,19 +1,22 @@
-"""What accuracy costs: error against wall time over tolerances, methods, slices and quadratures; where the presets stand.
+"""What accuracy costs: error against time over scenes, tolerances, methods, slices and quadratures; where the presets stand.
 
     python benchmarks/work_precision.py [--quick] [--json FILE]
-    python benchmarks/work_precision.py --make-states    writes benchmarks/data/states.npz, from which trajectories begin
-    python benchmarks/work_precision.py --make-table     writes trbdyn/data/accuracy.json, which Simulation.estimate() reads
+    python benchmarks/work_precision.py --write-readme         puts the tables into benchmarks/README.md
+    python benchmarks/work_precision.py --make-states [NAME]   writes benchmarks/data/states.npz, where trajectories begin
+    python benchmarks/work_precision.py --make-table [FILE]    writes trbdyn/data/accuracy.json for Simulation.estimate()
 
-Errors are deviations from a reference within windows of at least 4 ms and 10 impacts from stored states of a whirling cage in
-the middle of a collision (see `accuracy.states`); beyond those, colliding motion is chaotic and statistics are compared. The
-reference is an explicit Runge-Kutta method at 1e-4 of the base tolerances, checked against BDF at the same. Tolerances are
-given as a scale of the base: rtol 1e-3, 3e-10 m, 3e-8 rad, 1e-4 m/s, 1e-2 rad/s.
+Errors are deviations from a reference within windows of at least 4 ms and 10 impacts (40 ms at 100 rpm, 1.5 ms at 10 000 rpm)
+from stored states, in most scenes of a cage in the middle of a collision (see `accuracy.states`). Beyond those, colliding
+motion is chaotic and means are compared: the bias of a preset is the mean difference of batches from those of a tight run from
+the same states, with its 95 % confidence interval. The reference is an explicit Runge-Kutta method at 1e-4 of the base
+tolerances, checked against BDF at the same, or BDF checked against the explicit method where explicit steps are far too short.
+Tolerances are given as a scale of the base: rtol 1e-3, 3e-10 m, 3e-8 rad, 1e-4 m/s, 1e-2 rad/s.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
+import time as clock
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -23,13 +26,26 @@ from typing import Any
 import common
 from accuracy import measure, states
 from accuracy.picture import draw_front
+from accuracy.tables import BIASES, text_of
 
 from trbdyn import Simulation
 from trbdyn.run_options import ACCURACY
 
+OBSERVED = {
+    "pocket_mean": "N: mean force of all pockets together, impulse a second",
+    "pocket_p95": "N: 95th percentile of the forces on touched faces of pockets",
+    "duty": "1: share of time and rollers in which a pocket is touched",
+    "loss": "W: mean power loss",
+    "orbit": "1: orbit radius of the cage about its own mean place over Cpr, rms",
+    "whirl_radius": "1: mean distance of the cage's centre from the bearing axis over Cpr",
+    "torque": "N m: mean torque of the shaft",
+    "cage_speed_ratio": "1: turn of the cage over turn of the shaft",
+}
+OVER_CPR = ("orbit", "whirl_radius")
+
 COLUMNS = {
     "sweep": "text: tolerances, presets, slices or statistics",
-    "case": "text: smooth, collision or combined",
+    "case": "text: name of the scene, see summary.scenes",
     "name": "text: name of the point",
     "method": "text: integrator and its highest order; exact: without tangents of the rings' forces",
     "preset": "text: preset that the point is, or null",
@@ -48,16 +64,24 @@ COLUMNS = {
     "error_load": "1: rms deviation of the outer raceways' loads over their mean, median over states",
     "error_cage_speed": "1: largest deviation of the cage's speed over its mean, median over states",
     "error_power": "1: deviation of the energy lost within the window over it, median over states",
-    **{f"{name}_worst": "1: the same, worst state" for name in measure.QUANTITIES},
+    "error_pocket_mean": "1: deviation of the mean of all pocket forces within the window, median over states",
+    "error_pocket_p95": "1: the same of the 95th percentile of forces on touched faces of pockets",
+    "error_duty": "1: the same of the share of time and rollers in which a pocket is touched",
+    "error_orbit": "1: deviation of the cage's orbit radius about its own mean place within the window, over Cpr",
+    **{f"{name}_worst": "1: the same, worst state" for name in measure.QUANTITIES + measure.OBSERVABLES},
     "error_displacement": "1: deviation of the ring's axial place under load over its place: stiffness",
-    "whirl_radius": "1: mean distance of the cage's centre from the bearing axis over Cpr",
-    "whirl_radius_half_width": "1: half the 95 % confidence interval",
-    "torque": "N m: mean torque of the shaft",
-    "torque_half_width": "N m: half the 95 % confidence interval",
-    "cage_speed_ratio": "1: turn of the cage over turn of the shaft",
-    "cage_speed_ratio_half_width": "1: half the 95 % confidence interval",
+    **OBSERVED,
+    **{f"{name}_half_width": "the same: half the 95 % confidence interval" for name in OBSERVED},
+    **{
+        f"bias_{name}": "1: difference from tight runs from the same states, relative (orbit, whirl: of Cpr)"
+        for name in OBSERVED
+    },
+    **{f"bias_{name}_half_width": "1: half its 95 % confidence interval" for name in OBSERVED},
     "batches": "1: runs that the statistics are over",
-    "energy_closure": "1: residual of the energy audit over the dissipated work",
+    "energy_closure": "1: residual of the energy audit over the dissipated work; statistics: largest of the batches",
+    "warnings": "1: warnings of the watch over the runs of the windows, all states",
+    "failure": "text: why there are no figures",
+    "scenes": "object: what each scene is",
     "presets": "object: the figures of each preset on the colliding cage",
     "pareto": "object: names of the points on the front, by case",
     "reference_disagreement": "object: largest deviation between explicit and implicit reference, by case",
@@ -79,27 +103,37 @@ class Plan:
         Scales of the tolerances of BDF of order 2.
     methods : dict of str to tuple of float
         Other methods, and their scales.
+    fewer : tuple of str
+        Cases that get only `FEWER_SCALES` and no other methods.
     revolutions : float
-        Turns of each run in which wall time is measured.
+        Turns of each run in which time is measured, of ten of a batch.
     statistics : float
-        Turns of each batch of the statistics; 0: none.
+        Length of the batches of the statistics, as a share of the case's; 0: none.
+    biased : tuple of str
+        Cases that get statistics.
     slices : dict of str to tuple of int
         Quadratures and their numbers of slices.
     checked : int
-        References of each case that are checked with BDF.
+        References of each case that are checked with the other method.
+    repeats : int
+        Repeats of a timed run.
     """
 
     states: dict[str, int]
     scales: tuple[float, ...]
     methods: dict[str, tuple[float, ...]]
+    fewer: tuple[str, ...]
     revolutions: float
     statistics: float
+    biased: tuple[str, ...]
     slices: dict[str, tuple[int, ...]]
     checked: int
+    repeats: int
 
 
+NEW = ("light", "heavy", "slow", "fast", "scatter")
 FULL = Plan(
-    {"collision": 5, "smooth": 5, "combined": 5},
+    dict.fromkeys(states.CASES, 5),
     (30.0, 10.0, 5.0, 3.0, 2.0, 1.0, 0.5, 0.3, 0.1, 0.03, 0.01),
     {
         "bdf2exact": (10.0, 3.0, 1.0, 0.3, 0.1),
@@ -108,22 +142,33 @@ FULL = Plan(
         "bdf5": (0.3, 0.1, 0.01, 1e-3),
         "erk": (1.0, 0.1, 0.01),
     },
+    NEW,
     3.0,
-    20.0,
+    1.0,
+    tuple(states.CASES),
     {"uniform": (8, 16, 20, 32, 64), "gauss": (4, 6, 8, 12, 16, 24)},
-    2,
+    1,
+    3,
 )
 QUICK = Plan(
-    {"collision": 5, "smooth": 2, "combined": 2},
+    {"collision": 3, "smooth": 2, "combined": 2} | dict.fromkeys(NEW, 1),
     (10.0, 3.0, 1.0, 0.3, 0.1),
     {"bdf2exact": (1.0,), "bdf5": (0.01,), "erk": (0.1,)},
-    2.0,
-    5.0,
-    {"uniform": (20,), "gauss": (8, 16)},
+    NEW,
+    1.0,
+    0.1,
+    ("collision", "light", "scatter"),
+    {"uniform": (20,), "gauss": (8,)},
     1,
+    2,
 )
-SMOKE = Plan({"collision": 1}, (1.0,), {"erk": (1.0,)}, 0.1, 0.2, {"gauss": (8,)}, 0)
+SMOKE = Plan(
+    {"collision": 2, "slow": 1}, (1.0,), {"erk": (1.0,)}, NEW, 0.1, 0.02, ("collision",), {"gauss": (8,)}, 0, 1
+)
 
+FEWER_SCALES = (10.0, 3.0, 1.0, 0.3, 0.1)
+TIGHT_SCALE = 0.01
+"""Tolerances of the run that statistics are compared with; all its forces are exact."""
 FINE = 96
 """Gauss nodes of the reference of slices and quadratures."""
 SLICES_SCALE = 0.01
@@ -147,17 +192,18 @@ def sweep(report: common.Report, references: measure.References, plan: Plan) -> 
         (f"preset {name}", "bdf2", name, measure.preset_scale(name), settings)
         for name, settings in measure.preset_settings().items()
     ]
-    for method, scales in {"bdf2": plan.scales, **plan.methods}.items():
+    fewer = case.name in plan.fewer
+    short = FEWER_SCALES if plan is FULL else (1.0,)
+    for method, scales in ({"bdf2": short} if fewer else {"bdf2": plan.scales, **plan.methods}).items():
         for scale in scales:
             settings = measure.scaled(scale, **method_settings(method))
             points.append((f"{method} {scale:g}", method, None, scale, settings))
     for name, method, preset, scale, settings in points:
-        print(f"  {name}", flush=True)
         found = measure.median_and_worst(references.errors_of(settings))
-        few = case.states if preset and scale > LOOSE else case.states[:3]
+        few = case.states if preset else case.states[:3]
         loose = scale > LOOSE and method.startswith("bdf2")
-        revolutions = plan.revolutions if loose else min(plan.revolutions, 0.5)
-        cost = measure.wall_time(case.scene, few, settings, revolutions, repeats=3 if loose else 1)
+        turns = 0.1 * case.definition.batch * (plan.revolutions if loose else min(plan.revolutions, 0.5))
+        cost = measure.wall_time(case.scene, few, settings, turns, repeats=plan.repeats if loose else 1)
         report.add(
             sweep="presets" if preset else "tolerances",
             case=case.name,
@@ -200,23 +246,32 @@ def slices(report: common.Report, case: states.Case, plan: Plan) -> None:
 
 
 def statistics(report: common.Report, case: states.Case, plan: Plan) -> None:
-    """Means beyond the comparable window, with confidence intervals, for the presets and a tight tolerance."""
-    points = {f"preset {name}": settings for name, settings in measure.preset_settings().items() if name != "reference"}
-    points |= {f"bdf2 {scale:g}": measure.scaled(scale) for scale in ((3.0, 1.0, 0.1) if plan is FULL else (0.1,))}
+    """Means beyond the comparable window, and how far each preset is off those of a tight run, with confidence intervals."""
+    turns = plan.statistics * case.definition.batch
+    tight_settings = measure.scaled(TIGHT_SCALE, max_order=case.definition.tight_order, rings_share=0.0)
+    points = {"tight": tight_settings, **measure.preset_settings()}
+    tight: dict[str, Any] = {}
     for name, settings in points.items():
-        found = measure.long_run(case, settings, plan.statistics)
-        report.add(
-            sweep="statistics",
-            case=case.name,
-            name=name,
-            batches=found["whirl_radius"].batches,
-            **{key: found[key].value for key in ("whirl_radius", "torque", "cage_speed_ratio")},
-            **{f"{key}_half_width": found[key].half_width for key in ("whirl_radius", "torque", "cage_speed_ratio")},
-        )
+        row: dict[str, Any] = {"sweep": "statistics", "case": case.name, "name": name}
+        row["preset"] = None if name == "tight" else name
+        try:
+            found = measure.batches_of(case, settings, turns)
+        except measure.BatchError as error:
+            report.add(**row, failure=str(error))
+            if name == "tight":
+                return
+            continue
+        tight = tight or found
+        for key in OBSERVED:
+            mean = measure.batch_mean(found[key])
+            off = measure.bias(found[key], tight[key], 1.0 if key in OVER_CPR else None)
+            row |= {key: mean.value, f"{key}_half_width": mean.half_width}
+            row |= {f"bias_{key}": off.value, f"bias_{key}_half_width": off.half_width} if name != "tight" else {}
+        report.add(**row, batches=len(case.states), energy_closure=float(found["energy_closure"].max()))
 
 
 def preset_figures(report: common.Report, case: states.Case, plan: Plan) -> dict[str, Any]:
-    """What the issue asks for of each preset, on the colliding cage."""
+    """What is asked for of each preset, on the colliding cage."""
     wanted = (
         "scale",
         "wall_s_per_revolution",
@@ -225,57 +280,68 @@ def preset_figures(report: common.Report, case: states.Case, plan: Plan) -> dict
         *measure.QUANTITIES,
         *(f"{name}_worst" for name in measure.QUANTITIES),
     )
-    rows = {row["preset"]: row for row in report.results if row.get("preset") and row["case"] == case.name}
+    rows = {row["preset"]: row for row in report.results if row["sweep"] == "presets" and row["case"] == case.name}
     out = {}
     for name, row in rows.items():
         settings = {"accuracy": name}
-        revolutions = min(plan.revolutions, 0.5) if name == "reference" else plan.revolutions
-        repeats = 1 if name == "reference" else 3
-        few = case.states[:2] if name == "reference" else case.states
-        usual = measure.wall_time(case.scene, few, settings, revolutions, save_every=1e-4, repeats=repeats)
+        usual = measure.wall_time(case.scene, case.states[:2], settings, plan.revolutions, save_every=1e-4, repeats=1)
         sim = Simulation(states.at_state(case.scene, case.states[0]), **settings)
         out[name] = {key: row[key] for key in wanted} | {
             "tolerances": ACCURACY[name].model_dump(),
             "wall_s_per_revolution_default_output": usual["wall_s_per_revolution"],
-            "energy_closure": sim.run(revolutions=revolutions, save_every=1e-3).energy_closure,
+            "energy_closure": sim.run(revolutions=plan.revolutions, save_every=1e-3).energy_closure,
         }
     return out
 
 
-def run(plan: Plan, options: argparse.Namespace) -> common.Report:
-    """Everything."""
-    report = common.Report("work_precision", options, COLUMNS)
-    report.summary["reference_disagreement"] = {}
-    report.summary["windows"] = {}
+def run(plan: Plan, report: common.Report) -> None:
+    """Everything, into a report."""
+    report.summary |= {"reference_disagreement": {}, "windows": {}, "scenes": {}, "pareto": {}}
     cases = {name: states.load_case(name).first(count) for name, count in plan.states.items()}
+    report.inputs = {
+        "base_tolerances": measure.BASE,
+        "reference": f"scale {measure.REFERENCE_SCALE:g}: "
+        + ", ".join(f"{name} by {case.reference}" for name, case in cases.items()),
+        "tight": f"scale {TIGHT_SCALE:g}, BDF, every force exact",
+        "scene": "30310 rig, effects of the paper ('scatter': as by default), 8 Gauss nodes a contact",
+        "instruction_set": Simulation(cases["collision"].scene).instruction_set,
+    }
+    report.notes = [
+        "Points 'tolerances' are timed from 3 states, presets from all: the fastest of the repeats of each, then the median over "
+        "states; wall time is that inside the core.",
+        "Slices and quadratures: the reference has 96 Gauss nodes and starts from the same states, which were taken with "
+        "8: their first contact is a small kick that all share.",
+    ]
+    began = clock.process_time()
     for name, case in cases.items():
-        print(f"{name}: {case.text}")
+        print(f"{name}: {case.text}", flush=True)
         references = measure.References(case)
+        report.summary["scenes"][name] = {"text": case.text} | operating_point(case)
         report.summary["windows"][name] = [
             {"window_s": window, "impacts": impacts} for window, impacts in zip(case.windows, case.impacts, strict=True)
         ]
         if plan.checked:
             report.summary["reference_disagreement"][name] = references.disagreement(plan.checked)
         sweep(report, references, plan)
+        report.summary["pareto"][name] = front_of(report.results, name)
+        if name in plan.biased and plan.statistics:
+            statistics(report, case, plan)
+        print(f"  {clock.process_time() - began:.0f} s of processor time", flush=True)
     first = cases["collision"]
     report.summary["presets"] = preset_figures(report, first, plan)
-    slices(report, first.first(3) if options.quick else first, plan)
-    for case in cases.values() if plan is FULL else [first]:
-        statistics(report, case, plan)
-    report.summary["pareto"] = {name: front_of(report.results, name) for name in cases}
-    report.inputs = {
-        "base_tolerances": measure.BASE,
-        "reference": f"erk of order 5 at scale {measure.REFERENCE_SCALE:g}",
-        "scene": "30310 rig, effects of the paper, 8 Gauss nodes a contact",
-        "instruction_set": Simulation(first.scene).instruction_set,
+    slices(report, first if plan is FULL else first.first(1), plan)
+
+
+def operating_point(case: states.Case) -> dict[str, Any]:
+    """What `trbdyn.estimate` finds a case by."""
+    definition = case.definition
+    return {
+        "speed_rpm": definition.speed_rpm,
+        "axial_load": definition.axial_load,
+        "radial_load": definition.radial_load,
+        "diameter_range": definition.diameter_range,
+        "colliding": definition.colliding,
     }
-    report.notes = [
-        "Points 'tolerances' are timed from 3 states, presets from all: the fastest of 3 repeats of each, then the median over "
-        "states; wall time is that inside the core.",
-        "Slices and quadratures: the reference has 96 Gauss nodes and starts from the same states, which were taken with "
-        "8: their first contact is a small kick that all share.",
-    ]
-    return report
 
 
 def front_of(rows: Sequence[dict[str, Any]], case: str) -> list[str]:
@@ -285,69 +351,83 @@ def front_of(rows: Sequence[dict[str, Any]], case: str) -> list[str]:
     return [points[i]["name"] for i in on]
 
 
-def show(report: common.Report) -> None:
-    """Print the tables."""
-    cost = ("wall_s_per_revolution", "cpu_s_per_revolution", "real_time_factor", "steps_per_revolution")
-    for title, kinds, names in (
-        ("Tolerances and presets", ("presets", "tolerances"), ("case", "name", *cost, *measure.QUANTITIES)),
-        (
-            "Slices and quadratures",
-            ("slices",),
-            ("name", "us_per_evaluation", "error_displacement", *measure.QUANTITIES),
-        ),
-        (
-            "Statistics beyond",
-            ("statistics",),
-            ("case", "name", "whirl_radius", "whirl_radius_half_width", "torque", "torque_half_width", "batches"),
-        ),
-    ):
-        print(f"\n{title}\n\n{common.table([row for row in report.results if row['sweep'] in kinds], names)}")
-    print("\nPresets on the colliding cage\n")
-    rows = [{"preset": name, **figures} for name, figures in report.summary["presets"].items()]
-    names = ("preset", "scale", *cost[:3], "wall_s_per_revolution_default_output", *measure.QUANTITIES[:1])
-    print(common.table(rows, (*names, "error_cage_over_cpr_worst", "energy_closure")))
-    for name, front in report.summary["pareto"].items():
-        print(f"\nPareto front, {name}: {', '.join(front)}")
-
-
-def write_table(report: common.Report) -> None:
+def write_table(report: common.Report, path: Path) -> None:
     """Errors and costs over the tolerances' scale, for `trbdyn.estimate`."""
-    kept = ("scale", "cpu_s_per_revolution", *measure.QUANTITIES, *(f"{name}_worst" for name in measure.QUANTITIES))
-    rows: dict[str, list[dict[str, float]]] = {}
+    errors = (*measure.QUANTITIES, *(f"{name}_worst" for name in measure.QUANTITIES))
+    kept = ("scale", "cpu_s_per_revolution", *errors)
+
+    def short(row: dict[str, Any], names: Sequence[str]) -> dict[str, float | None]:
+        values = {name: row.get(name) for name in names}
+        return {name: None if value is None else float(f"{value:.4g}") for name, value in values.items()}
+
+    rows: dict[str, list[dict[str, Any]]] = {}
+    presets: dict[str, dict[str, Any]] = {}
     for row in report.results:
         if row["sweep"] == "tolerances" and row["method"] == "bdf2":
-            rows.setdefault(row["case"], []).append({name: float(f"{row[name]:.4g}") for name in kept})
+            rows.setdefault(row["case"], []).append(short(row, kept))
+        elif row["sweep"] == "presets":
+            tolerances = {"tolerances": ACCURACY[row["preset"]].model_dump()}
+            presets.setdefault(row["case"], {})[row["preset"]] = tolerances | short(row, kept)
+    for row in report.results:
+        if row["sweep"] == "statistics" and row["preset"] and "failure" not in row:
+            biases = [f"bias_{name}{end}" for name in BIASES for end in ("", "_half_width")]
+            presets[row["case"]][row["preset"]]["bias"] = common.plain(short(row, biases))
     windows = {name: [one["window_s"] for one in found] for name, found in report.summary["windows"].items()}
     table = {
         "made_by": "python benchmarks/work_precision.py --make-table",
         "text": "errors of bdf of order 2 over the scale of the base tolerances: medians and worst over stored states",
+        "quick": report.options.quick,
         "base_tolerances": measure.BASE,
+        "scenes": report.summary["scenes"],
         "windows_s": windows,
-        "presets": {
-            name: {"tolerances": figures["tolerances"]} | {key: float(f"{figures[key]:.4g}") for key in kept}
-            for name, figures in report.summary["presets"].items()
-        },
+        "presets": presets["collision"],
+        "presets_of_scenes": presets,
         "points": {name: sorted(found, key=lambda one: one["scale"]) for name, found in rows.items()},
     }
-    TABLE.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
-    print(f"wrote {TABLE.name}")
+    path.write_text(json.dumps(common.plain(table), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    print(f"wrote {path}")
 
 
 def main(arguments: Sequence[str] | None = None) -> common.Report | None:
     parser = common.parser(__doc__)
     parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
-    parser.add_argument("--make-states", action="store_true", help="write the stored states and stop")
-    parser.add_argument("--make-table", action="store_true", help="write the table of trbdyn.estimate as well")
+    parser.add_argument(
+        "--make-states",
+        nargs="*",
+        metavar="NAME",
+        help="write stored states of cases, by default those missing, and stop",
+    )
+    parser.add_argument(
+        "--make-table",
+        nargs="?",
+        type=Path,
+        const=TABLE,
+        metavar="FILE",
+        help="write the table of trbdyn.estimate as well",
+    )
+    parser.add_argument(
+        "--from-json", type=Path, metavar="FILE", help="measure nothing, take the results of such a file"
+    )
     options = parser.parse_args(arguments)
-    if options.make_states:
-        states.make_file()
+    if options.make_states is not None:
+        states.make_file(options.make_states)
         return None
-    report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
-    show(report)
+    report = common.Report("work_precision", options, COLUMNS)
+    try:
+        if options.from_json is not None:
+            report.take(options.from_json)
+        else:
+            run(SMOKE if options.smoke else QUICK if options.quick else FULL, report)
+    except BaseException as error:
+        report.notes.append(f"ended early by {type(error).__name__}: {error}")
+        report.finish()
+        raise
+    print("\n" + text_of(report, everything=True))
     if not options.no_picture:
         common.save_picture(draw_front(report), "work_precision")
-    if options.make_table:
-        write_table(report)
+    if options.make_table is not None:
+        write_table(report, options.make_table)
+    report.readme = text_of(report)
     report.finish()
     return report
 

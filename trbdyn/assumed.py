@@ -1,4 +1,4 @@
-"""Inputs of a bearing that nobody gave: assumed in proportion to the 30310 rig, whose numbers physics gives or assumes.
+"""Inputs of a bearing that were not given: assumed in proportion to the 30310 rig (docs/theory/geometry.md#the-30310-in-numbers).
 
 A number is *given* where the user gave it, and *assumed* otherwise; `Bearing.assumed` lists the latter, and a result
 keeps the list. An assumed number follows the bearing: after ``bearing.replace(pitch_diameter=...)`` it is that of the
@@ -62,7 +62,7 @@ Values = dict[str, Any]
 
 
 def _small_end_radius(given: Mapping[str, float]) -> float:
-    """Radius of the roller's small end (m); the cones by the same fixed-point steps as the core's."""
+    """Radius of the roller's small end (m); the cones follow from the same fixed-point iteration as in the core."""
     cup, pitch, diameter = math.radians(given["cup_half_angle_deg"]), given["pitch_diameter"], given["diameter"]
     nu = 0.0
     for _ in range(50):
@@ -100,7 +100,7 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     turned = mass / RIG["mass"] * pitch**2
     made["cage"] |= {name: RIG[name] * turned for name in ("inertia_axial", "inertia_transverse")}
     end = _small_end_radius({**size, "total_length": total})
-    end = end if end > 0.0 else math.inf  # a roller beyond the apex: told by the core
+    end = end if end > 0.0 else math.inf  # a roller beyond the apex: the core reports it
     made["cage"] |= {
         "mass": mass,
         "rail_offset": RIG["rail_offset"] * along,
@@ -155,7 +155,7 @@ def with_assumed(values: Mapping[str, Any]) -> Values:
             model = kind(**numbers)
         except InputError as error:
             if isinstance(raw, Mapping):
-                return numbers  # told with everything else that is wrong, as the fields of the bearing are checked
+                return numbers  # reported with everything else that is wrong when the fields of the bearing are checked
             problems.extend(error.under(tuple(section.split("."))).problems)
             return raw
         object.__setattr__(model, "__pydantic_fields_set__", {*given[section], *extra})
@@ -179,7 +179,7 @@ def _given(section: Any) -> Values | None:
 
 
 def _size(found: Values, given: Mapping[str, Values]) -> dict[str, float] | None:
-    """What assumed numbers depend on; None where it is missing or cannot be right, which is told elsewhere."""
+    """What assumed numbers depend on; None where it is missing or cannot be right, which is reported elsewhere."""
     wanted = {
         "diameter": given["roller"].get("diameter"),
         "effective_length": given["roller"].get("effective_length"),

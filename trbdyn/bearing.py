@@ -145,7 +145,7 @@ class Roller(Model):
     diameter_deviation : sequence of float, optional
         Deviation of each roller's diameter (m), one a roller; not together with `diameter_scatter`.
     diameter_scatter : Scatter, optional
-        Random deviations, each roller its own.
+        Random deviations, one for each roller.
     sphere_ratio : float
         Radius of the large end's sphere over the distance from the apex to the large end (1); assumed.
     end_stiffness : float
@@ -244,7 +244,7 @@ class Cage(Model):
     bar_width : float
         Width of the bars' faces across the contact line (m); by default 3/14 of the diameter.
     wall_inner, wall_outer : float
-        The end walls' bands reach from here to here, outward of the roller's axis (m); by default 1.5/14 and 4.5/14 of
+        Inner and outer edge of the end walls' bands, outward of the roller's axis (m); by default 1.5/14 and 4.5/14 of
         the diameter, at most 0.3 and 0.9 of the small end's radius.
     wall_half_width : float
         Half width of the end walls' bands (m); by default 6/14 of the diameter.
@@ -469,8 +469,12 @@ class Bearing(Model):
 
     @property
     def assumed(self) -> dict[str, float]:
-        """Inputs that were not given: value by path, such as ``{"cage.bar_width": 0.003}``. Lengths in m, SI units."""
-        return assumed_inputs(self)
+        """Inputs that were not given: value by path, such as ``{"cage.bar_width": 0.003}``. Lengths in m, SI units.
+
+        Those that follow from the bearing's size, and those that were estimated from a catalogue page; `estimated` gives
+        the band and the source of the latter.
+        """
+        return assumed_inputs(self) | {entry.path: float(entry.value) for entry in self.estimated}
 
     def inputs(self) -> dict[str, Any]:
         """What was given, as plain data: as `to_dict`, without what was assumed."""
@@ -486,7 +490,7 @@ class Bearing(Model):
     @model_serializer(mode="wrap")
     def _plain(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         values: dict[str, Any] = handler(self)
-        return {**values, "assumed": list(self.assumed)}
+        return {**values, "assumed": list(assumed_inputs(self))}
 
     @property
     def roller_material(self) -> Material:
@@ -548,7 +552,7 @@ class Bearing(Model):
     def _check(self) -> Self:
         given = self.roller.diameter_deviation
         if given is not None and len(given) != self.n_rollers:
-            limit = f"must have one entry a roller: {self.n_rollers}"
+            limit = f"must have one entry for each roller, {self.n_rollers}"
             raise InputError.of(("roller", "diameter_deviation"), given, limit)
         most = int(np.pi / np.arcsin(min(self.roller.diameter / self.pitch_diameter, 1.0)))
         if self.pitch_diameter * np.sin(np.pi / self.n_rollers) <= self.roller.diameter:

@@ -56,7 +56,7 @@ def case_text(scene: Scene, run: RunOptions, *, title: str = "") -> str:
 def _table(name: str, model: Model, scene: Scene) -> list[str]:
     values = model.to_dict()
     skip = set(_TABLES) if name == "scene" else {"assumed"}
-    assumed = set(scene.bearing.assumed) if name == "bearing" else set()
+    assumed = set(values["assumed"]) if name == "bearing" else set()
     if name == "lubricant" and scene.lubricant.oil is not None:
         known = {key for key, make in OILS.items() if make().oil == scene.lubricant.oil}
         if known:

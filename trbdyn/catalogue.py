@@ -2,7 +2,8 @@
 
 Catalogues do not tell what is inside. The inner geometry is estimated: the cup's angle from e, the size of the rollers
 from the rating formula of ISO 281, everything else from usual ratios. Every estimate has a band and a source and stays
-marked as estimated (`Bearing.estimated`); whatever you know better, give it, or change it later with ``replace``.
+marked as estimated (`Bearing.estimated`); whatever you know better, give it, or change it later with ``replace``
+(docs/theory/estimates.md#inner-geometry-from-a-catalogue-page).
 """
 
 from __future__ import annotations
@@ -60,7 +61,8 @@ def rating_iso281(
 
     Notes
     -----
-    Source: ISO 281:2007, 7.1; fc by the formula behind its table 8 (ISO/TR 1281-1:2008).
+    Source: ISO 281:2007, 7.1; fc by the formula behind its table 8 (ISO/TR 1281-1:2008);
+    docs/theory/estimates.md#dynamic-rating-of-iso-281.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""Checkpoints: where a run can go on from, in a small file of its own.
+"""Checkpoints: states from which a run can go on, each in a small file.
 
-A run with a schedule (`checkpoint_every`) starts its integrator anew at the first step's end at or after each multiple of that
-time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps as one
-that was never interrupted: to the last bit, on the same build and instruction set.
+A run with a schedule (`checkpoint_every`) starts its integrator again at the first step that ends at or after each multiple of
+that time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps
+as one that was never interrupted: to the last bit, on the same build and instruction set.
 
 The file ``run.h5.checkpoint`` beside ``run.h5``, format version 2: a line that names the format and its version; the SHA-256 of
 all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under another

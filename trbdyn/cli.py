@@ -100,7 +100,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _report(error: Exception, code: int, debug: bool) -> int:
-    """Say what went wrong, one line a problem."""
+    """Say what went wrong, with one line for each problem."""
     if debug:
         traceback.print_exception(error)
     lines = [str(error)]

@@ -296,7 +296,15 @@ class Derived(ABC):
 
     @property
     def power_split(self) -> dict[str, float]:
-        """Mean power loss of each kind, W: from the energies lost where they were recorded, else from the powers."""
+        """Mean power loss of each kind, W: from the energies lost where they were recorded, else from the powers.
+
+        Raises
+        ------
+        InputError
+            If neither of the groups 'energy' and 'power' was saved.
+        """
+        if not any(field.group == "energy" for field in self.fields):
+            self._needs("power", "power_split")
         return observables.power_split(self["time"], self._starting("loss_"), self._starting("power_"))
 
     @property
@@ -311,6 +319,7 @@ class Derived(ABC):
         return {name: value / speed for name, value in self.power_split.items()} if speed > 0.0 else {}
 
     def _energies(self) -> dict[str, Array]:
+        self._needs("energy", "energy_audit")
         return {field.name: self[field.name] for field in self.fields if field.group == "energy"}
 
     @property

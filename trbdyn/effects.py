@@ -34,7 +34,7 @@ class Friction(Model):
 
     Notes
     -----
-    Sources: Sakaguchi and Harada 2006, eqs. 2, 6 and 10.
+    Sources: Sakaguchi and Harada 2006, eqs. 2, 6 and 10; docs/theory/lubrication.md#mixed-friction.
     """
 
     lambda_boundary: Annotated[Number, unit("1", ge=0, le=100)] = 0.01

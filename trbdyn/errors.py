@@ -121,7 +121,7 @@ class FileError(TrbError, OSError):
 
 
 class RunWarning(UserWarning):
-    """A run is doubtful: its energy does not add up, or its steps lead nowhere. `Result.warnings` keeps what was said."""
+    """A run is doubtful: its energy does not add up, or it makes no progress. `Result.warnings` keeps what was said."""
 
 
 class StepError(TrbError):

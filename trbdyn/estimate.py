@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
+from trbdyn.flatten import diameter_deviation
 from trbdyn.keeping import interval
+from trbdyn.motion import History, values_of
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -31,7 +33,8 @@ WARM_UP: Final = 5e-4
 _RECORDS: Final = 20
 SAME: Final = 1e-6
 """Relative difference up to which tolerances count as those of a preset."""
-CASES: Final = ("collision", "smooth", "combined")
+LEAST_SCATTER: Final = 1e-7
+"""Range of the rollers' diameters from which they count as unequal (m)."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +63,15 @@ class Estimate:
         The largest of them.
     error_load, error_cage_speed, error_power : float
         Expected relative errors of contact load (rms), cage speed and power loss within the window.
+    bias_pocket_force, bias_contact_duty : float
+        Expected bias of the mean pocket force, and of the share of time that pockets are touched, over a longer run: mean
+        relative difference from runs with far smaller tolerances. nan where it was not measured: for tolerances that are not
+        those of a preset.
     window : float
         Length of trajectories that the errors belong to (s), median.
     case : str
-        Measured case that the errors are taken from: 'collision', 'smooth' or 'combined'.
+        Measured scene that the errors are taken from, the one most like this: 'collision', 'smooth', 'combined', 'light',
+        'heavy', 'slow', 'fast' or 'scatter' (see benchmarks/README.md).
     extrapolated : bool
         Whether the tolerances lie outside those that were measured: the errors are then those at the end of the table.
     """
@@ -80,6 +88,8 @@ class Estimate:
     error_load: float
     error_cage_speed: float
     error_power: float
+    bias_pocket_force: float
+    bias_contact_duty: float
     window: float
     case: str
     extrapolated: bool
@@ -90,11 +100,18 @@ class Estimate:
             f"(real time x {self.real_time_factor:.3g}), {self.steps:,} steps",
             f"{self.records:,} records, {self.memory_mb:.3g} MB",
             f"cage centre within {100.0 * self.error_cage_over_cpr:.2g} % of Cpr over {1e3 * self.window:.2g} ms "
-            f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} %",
+            f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} % "
+            f"(scene '{self.case}')",
         ]
+        if math.isfinite(self.bias_pocket_force):
+            lines.append(
+                f"bias of means over longer runs: pocket force {100.0 * self.bias_pocket_force:+.2g} %, "
+                f"contact duty {100.0 * self.bias_contact_duty:+.2g} %"
+            )
         return "\n".join(lines)
 
 
+_BIASES: Final = {"bias_pocket_force": "bias_pocket_mean", "bias_contact_duty": "bias_duty"}
 _ERRORS: Final = ("error_cage_over_cpr", "error_cage_over_cpr_worst", "error_load", "error_cage_speed", "error_power")
 
 
@@ -160,7 +177,7 @@ def estimate(
 
 
 def _probe(sim: Simulation, length: float) -> dict[str, float]:
-    """Wall time, steps and evaluations a second of bearing time, and the wall time of a record."""
+    """Wall time, steps and evaluations per second of bearing time, and the wall time of a record."""
     other = sim.copy()
     try:
         _advance(other, min(WARM_UP, 0.25 * length))
@@ -188,17 +205,19 @@ def _advance(sim: Simulation, length: float) -> None:
 def _errors(sim: Simulation) -> dict[str, Any]:
     """Errors from the table: those of a preset, else interpolated over the tolerances' scale."""
     options, measured = sim.options, table()
-    case = _case(sim)
+    case = _case(sim, measured["scenes"])
     window = float(np.median(measured["windows_s"][case]))
-    place = {"window": window, "case": case}
+    place = {"window": window, "case": case} | dict.fromkeys(_BIASES, math.nan)
     standard = options.max_order == 2 and options.rings_share is None and options.impact_share is None
     known = options.integrator == "bdf" and standard and sim.scene.effects.bodies == "rollers_and_cage"
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
     tolerances = options.tolerances.model_dump()
-    for preset in measured["presets"].values() if case == "collision" else ():
+    for preset in measured["presets_of_scenes"].get(case, {}).values():
         if _same(tolerances, preset["tolerances"]):
-            return place | {name: preset[name] for name in _ERRORS} | {"extrapolated": False}
+            bias = preset.get("bias", {})
+            far = {name: _number(bias.get(key)) for name, key in _BIASES.items()}
+            return place | far | {name: _number(preset[name]) for name in _ERRORS} | {"extrapolated": False}
     scale = _scale(tolerances, measured["base_tolerances"])
     points = measured["points"][case]
     scales = [point["scale"] for point in points]
@@ -206,18 +225,53 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     return place | errors | {"extrapolated": not scales[0] <= scale <= scales[-1]}
 
 
-def _case(sim: Simulation) -> str:
-    """The measured case that a simulation is most like: loaded on one side, or whether its cage lies still or whirls."""
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _case(sim: Simulation, scenes: Mapping[str, Mapping[str, Any]]) -> str:
+    """The measured scene that a simulation is most like: loaded on one side, with unequal rollers, or by speed and axial load;
+    of those with the same, by whether its cage lies still or whirls.
+    """
     scene = sim.scene
-    radial = scene.radial_load if isinstance(scene.radial_load, float) else max(scene.radial_load.values)
-    if radial > 0.0:
-        return "combined"
-    if scene.effects.bodies == "rollers":
-        return "smooth"
-    speed = sim.record()["cage_velocity"]
-    whirl = float(np.hypot(speed[0], speed[1])) / scene.bearing.cage.play_radial
-    orbit = abs(float(sim.record()["cage_angular_velocity"][2]))
-    return "collision" if whirl > 0.3 * orbit else "smooth"
+    if _largest(scene.radial_load) > 0.0:
+        like = [name for name, one in scenes.items() if one["radial_load"] > 0.0]
+    elif float(np.ptp(diameter_deviation(scene))) > LEAST_SCATTER:
+        like = [name for name, one in scenes.items() if one["diameter_range"] > 0.0]
+    else:
+        like = [name for name, one in scenes.items() if one["radial_load"] == 0.0 and one["diameter_range"] == 0.0]
+    like = like or list(scenes)
+    speed, load = max(_largest(scene.speed_rpm), 1e-3), max(_axial(sim), 1.0)
+    distance = {
+        name: math.hypot(math.log(speed / scenes[name]["speed_rpm"]), math.log(load / scenes[name]["axial_load"]))
+        for name in like
+    }
+    nearest = [name for name in like if distance[name] <= min(distance.values()) + 1e-9]
+    colliding = scene.effects.bodies != "rollers" and _whirls(sim)
+    same = [name for name in nearest if scenes[name]["colliding"] == colliding]
+    return (same or nearest)[0]
+
+
+def _largest(quantity: float | History) -> float:
+    """Largest size of a quantity."""
+    return max(map(abs, values_of(quantity)))
+
+
+def _axial(sim: Simulation) -> float:
+    """Axial load, that of the ring's equilibrium where its position is given (N)."""
+    displacement = sim.scene.displacement
+    if displacement is None or displacement[2] is None:
+        return _largest(sim.scene.axial_load)
+    equilibrium, bearing = sim.equilibrium, sim.scene.bearing
+    return float(equilibrium.outer_load.sum()) * math.sin(math.radians(bearing.cup_half_angle_deg))
+
+
+def _whirls(sim: Simulation) -> bool:
+    """Whether the cage's centre moves about as fast as on an orbit with the cage's speed and its play as radius."""
+    record = sim.record()
+    speed = record["cage_velocity"]
+    whirl = float(np.hypot(speed[0], speed[1])) / sim.scene.bearing.cage.play_radial
+    return whirl > 0.3 * abs(float(record["cage_angular_velocity"][2]))
 
 
 def _same(one: Mapping[str, float], other: Mapping[str, float]) -> bool:

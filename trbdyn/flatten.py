@@ -237,7 +237,7 @@ def parameter_block(scene: Scene) -> FloatArray:
 
 
 def face_rows(scene: Scene) -> FloatArray:
-    """Faces of the cage's pockets as the core takes them, shape (F, C): a row a face, columns of
+    """Faces of the cage's pockets as the core takes them, shape (F, C): one row for each face, columns of
     `_core.face_table()`.
     """
     from trbdyn import _core

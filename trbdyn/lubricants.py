@@ -325,7 +325,7 @@ class Lubricant(Model):
             try:
                 number = as_number(given)
             except ValueError:
-                continue  # told with its field
+                continue  # reported with its field
             if abs(number - right) > _SAME_OIL * abs(right):
                 limit = (
                     f"must be left out: {oil.name} has {right:.6g} at {temperature:g} C; for an oil of your own give "

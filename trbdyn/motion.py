@@ -67,7 +67,7 @@ class History(Model):
             raise InputError.of("times", self.times, "must have at least two entries (s)")
         for name, given in (("values", self.values), ("slopes", self.slopes)):
             if given is not None and len(given) != len(self.times):
-                raise InputError.of(name, given, f"must have one entry a time: {len(self.times)}")
+                raise InputError.of(name, given, f"must have one entry for each time, {len(self.times)}")
         steps = np.diff(self.times)
         if not np.all(steps > 0):
             place = int(np.argmin(steps > 0)) + 1

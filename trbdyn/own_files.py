@@ -1,4 +1,4 @@
-"""Files that a run makes, replaces and removes: its own ones, and nobody else's.
+"""Files that a run makes, replaces and removes: only those that belong to it.
 
 A file that is about to appear is written under a draft's name first. The draft is created exclusively: nothing that is
 there already is opened, truncated or followed. It then takes its name in one step. A file that lies there is replaced

@@ -27,7 +27,7 @@ class UnusualInput(UserWarning):
 
 
 def unusual(scene: Scene, equilibrium: Equilibrium) -> tuple[str, ...]:
-    """What can hardly be meant in a scene: a sentence each, with the field, its value and what is usual."""
+    """What can hardly be meant in a scene: one sentence for each, with the field, its value and what is usual."""
     return tuple(
         text for text in (_pressure(scene, equilibrium), *_plays(scene), _gravity(scene), _planar(scene)) if text
     )

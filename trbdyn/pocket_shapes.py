@@ -1,4 +1,5 @@
-"""Builders of pockets: each gives a list of faces for a bearing's roller and clearances (physics: section 2).
+"""Builders of pockets: each gives a list of faces for a bearing's roller and clearances
+(docs/theory/geometry.md#pockets-and-plays).
 
 The bars of the default pocket are flat faces parallel to the roller's flank. A bar at the side +-t meets the flank in
 the direction m = cos(gamma) (+-t) + sin(gamma) n around the roller's axis; N = cos(nu) m - sin(nu) a is the flank's

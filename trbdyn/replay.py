@@ -1,6 +1,6 @@
 """Any record of a result, evaluated again by the core: every quantity of every contact, along the rollers too.
 
-A result keeps one number a contact (its load, its largest pressure). The state of a record follows from the recorded
+A result keeps one number for each contact (its load, its largest pressure). The state of a record follows from the recorded
 motion, and from the state the core gives everything again: pressure, film and slip at every node along a roller.
 """
 

@@ -53,7 +53,7 @@ class Result(Derived):
     stats : dict
         Solver statistics: steps, rhs_evaluations, wall_s and others.
     warnings : tuple of str
-        What the watch over the run found: energy that does not add up, steps that lead nowhere (`trbdyn.watch`).
+        What the watch over the run found: energy that does not add up, steps so small that it makes no progress (`trbdyn.watch`).
     counters : dict of str to int
         How often the core evaluated each effect; zero for effects that are off.
     geometry : dict of str to float
@@ -278,7 +278,9 @@ class Result(Derived):
         time = self["time"]
         first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
         if last <= first:
-            raise InputError.of("window", (start, stop), f"must hold a record; they reach to {self.final_time:g} s")
+            raise InputError.of(
+                "window", (start, stop), f"must hold a record; the last one is at {self.final_time:g} s"
+            )
         part = WindowSource(self._source, self.fields, int(first), int(last))
         return Result(part, replace(self._info, peaks={}), self._scene)
 

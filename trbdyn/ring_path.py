@@ -1,10 +1,10 @@
 """The path of an inner ring that follows its load: through static equilibria, refined until it lies close to all of
 them.
 
-Between two times the path is a cubic. Each interval is tested at its quarters: where the cubic lies farther than
-`PATH_TOLERANCE` from the equilibrium, the interval is halved. Equilibria are solved from their neighbours in time,
-which takes about a millisecond each. The slope at an interval's ends is that of the quartic through its five
-equilibria.
+Between two times the path is a cubic (docs/theory/motion.md#the-inner-ring). Each interval is tested at its quarters:
+where the cubic lies farther than `PATH_TOLERANCE` from the equilibrium, the interval is halved. Equilibria are solved
+from their neighbours in time, which takes about a millisecond each. The slope at an interval's ends is that of the
+quartic through its five equilibria.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ class _Search:
         return self._histories(pieces)
 
     def _first_times(self) -> Array:
-        """Knots of what acts on the ring, and between them so many times that no load turns unseen."""
+        """Knots of what acts on the ring, and enough times between them that no turn of a load is missed."""
         knots = knot_times(self.quantities, self.begin, self.end)
         if self.scene.period is not None and self.begin < self.settled < self.end:
             knots = np.unique(np.append(knots, self.settled))

@@ -51,13 +51,13 @@ class Tolerances(Model):
 
 ACCURACY: Final = {
     "fast": Tolerances(rtol=3e-3, atol_position=3e-9, atol_angle=3e-7, atol_velocity=1e-3, atol_spin=0.1),
-    "standard": Tolerances(rtol=1e-3, atol_position=1.5e-9, atol_angle=1.5e-7, atol_velocity=5e-4, atol_spin=5e-2),
+    "standard": Tolerances(rtol=1e-3, atol_position=9e-10, atol_angle=9e-8, atol_velocity=3e-4, atol_spin=3e-2),
     "reference": Tolerances(rtol=1e-4, atol_position=6e-11, atol_angle=6e-9, atol_velocity=2e-5, atol_spin=2e-3),
 }
 """Presets, chosen on the front that benchmarks/work_precision.py draws."""
 
 RINGS_SHARE: Final = {"fast": 0.1, "standard": 0.1, "reference": 0.03}
-"""`RunOptions.rings_share` of the presets: no accuracy is lost that shows."""
+"""`RunOptions.rings_share` of the presets: so small that the loss of accuracy cannot be seen."""
 
 IMPACT_SHARE: Final = {"fast": 0.1, "standard": 0.03, "reference": 0.01}
 """`RunOptions.impact_share` of the presets."""
@@ -85,23 +85,23 @@ class RunOptions(Model):
     rtol, atol_position, atol_angle, atol_velocity, atol_spin : float, optional
         Take the place of the preset's tolerances (1, m, rad, m/s, rad/s).
     max_order : int
-        Largest order of BDF; above 2, lightly damped contact modes hold its steps down.
+        Largest order of BDF; above 2 the lightly damped vibrations of contacts force it to small steps.
     max_step, first_step : float
         Largest and first step (s); 0: chosen by the integrator.
     rings_share : float, optional
-        Share of a step's tolerance that forces of raceways and ribs may be off: between their exact evaluations BDF takes
-        them from tangents, a roller's own, whose error is measured at the next exact one (1). 0: always exact; by default
-        that of the preset, `RINGS_SHARE`.
+        Share of a step's tolerance by which forces of raceways and ribs may be wrong (1): between exact evaluations BDF takes
+        them from tangents, one for each roller, whose error is measured at the next exact evaluation. 0: forces are always
+        exact; by default that of the preset, `RINGS_SHARE`.
     impact_share : float, optional
         Share of an impact's speed and interference that roller and cage may be off in a step: where they meet gently, their
         absolute tolerances are so much smaller (1). By default that of the preset, `IMPACT_SHARE`.
     checkpoint_every : float, optional
-        Bearing time between checkpoints (s): the integrator starts anew at the first step's end at or after each multiple
-        of it, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
+        Bearing time between checkpoints (s): at the first step that ends at or after each multiple of it the integrator is
+        started again, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
         from them.
     when_wrong : {'stop', 'go_on'}
-        What to do with a run whose energy is off by more than a tenth, or whose steps lead nowhere (`trbdyn.watch`): end it with
-        ``success=False``, or go on with a warning.
+        What to do with a run whose energy is wrong by more than a tenth, or which makes no progress (`trbdyn.watch`): end it
+        with ``success=False``, or go on with a warning.
     """
 
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None

@@ -39,7 +39,7 @@ CHUNK_RECORDS = 256
 """Records between looks at signals, callbacks and the file."""
 MOST_RECORDS = 50_000_000
 """Most records of a run: their times alone take 400 MB."""
-CHUNK_STEPS = 4000
+CHUNK_STEPS = 2000
 """Steps between looks at signals: about a tenth of a second."""
 
 _BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"
@@ -76,7 +76,7 @@ class Run:
             ]
 
     def _keep_peaks(self, since: float) -> None:
-        """From a time of the last step on, if the run wants them and does not keep them yet."""
+        """Start to keep peaks from a time of the last step on, if the run asks for them and does not keep them yet."""
         core = self.sim._core
         if self.with_peaks and core.row_length == self.sim._model.record_length:
             core.begin_peaks(since)
@@ -158,7 +158,7 @@ class Run:
         return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
 
     def _loop(self, bar: Any) -> str | None:
-        """Until all records are filled; what ended the run before, or None."""
+        """Step until all records are filled; gives the reason if the run ended before, else None."""
         sim, every = self.sim, self.options.checkpoint_every
         sim._end = None
         self._keep_peaks(float(self.times[0]))
@@ -166,7 +166,7 @@ class Run:
         watch = Watch(sim, float(self.times[-1]), self.doubts, going_on=self.options.when_wrong == "go_on")
         while self.done < self.times.size:
             chunk = self.times[self.done : self.done + CHUNK_RECORDS]
-            # a signal may come before the core's answer does: what is filled is seen by its finite times
+            # a signal may come before the core answers: rows that are filled are those with a finite time
             self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
             before = clock.perf_counter()
             try:
@@ -178,7 +178,7 @@ class Run:
                 self.spent += clock.perf_counter() - before
             self.filling = None
             self._keep(records[:rows])
-            # the records up to here are made with the past that the integrator is about to forget
+            # records up to here need the history that the integrator is about to forget
             if sim.time >= due and self.done < self.times.size and self.times[self.done] > sim.time:
                 peaks = sim._core.save_peaks()
                 sim._begin_again()
@@ -232,7 +232,7 @@ class Run:
             self.writer.append(records)
 
     def _write_checkpoint(self) -> None:
-        """Where the run is now; its records go to the disk first."""
+        """Write where the run is now; its records are written to the disk first."""
         if self.writer is None or self.output is None:
             return
         sim = self.sim
@@ -313,7 +313,7 @@ class Run:
         if success:
             sim._stand_at(float(self.times[-1]))
         else:
-            # what stopped between two records goes on from where it stands
+            # a run that stopped between two records goes on from there
             sim._reached, sim._end = sim._core.time, None
         ended = sim.state
         row = sim._core.whole_peaks(ended.time)

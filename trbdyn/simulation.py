@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
+from trbdyn.cage_start import pressed_rollers
 from trbdyn.errors import MISSING, InputError, Problem, StepError
 from trbdyn.flatten import diameter_deviation, face_rows, input_error_of_core, parameter_block, scene_entries
 from trbdyn.keeping import kept_by_default
@@ -101,7 +102,8 @@ class Simulation:
         self._model = build_model(scene, instruction_set)
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
-        self.warnings = unusual(scene, self.equilibrium)
+        pressed = pressed_rollers(self._model, scene, self._motion, vector)
+        self.warnings = (*unusual(scene, self.equilibrium), *([pressed] if pressed else []))
         for text in self.warnings:
             warnings.warn(text, UnusualInput, stacklevel=2)
         self._running = False
@@ -129,7 +131,7 @@ class Simulation:
             raise InputError.of("state", "given", str(error)) from None
 
     def _begin(self, time: float, vector: Array) -> None:
-        """A new integrator, which knows nothing of the past: as in a new process."""
+        """Make a new integrator, without any history: as in a new process."""
         self._core = self._open(time, vector)
         self._begun = time
         self._end = None
@@ -144,7 +146,7 @@ class Simulation:
                 self._end = State(time, self._core.state_at(time))
 
     def _begin_again(self) -> None:
-        """A new integrator where the present one is; what was counted stays."""
+        """Start a new integrator at the place of the present one; what was counted is kept."""
         self._count()
         self._begin(self._core.time, self._core.state())
 
@@ -159,7 +161,7 @@ class Simulation:
     def time(self) -> float:
         """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
 
-        The integrator's last step may reach beyond the end of a run. The present state is that step's solution at the
+        The integrator's last step may end later than the run. The present state is that step's solution at the
         run's end; the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the
         whole run.
         """
@@ -184,7 +186,7 @@ class Simulation:
         return StateView(self._model, self.state.vector if vector is None else vector)
 
     def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
-        """Go on from another state; the integrator starts anew.
+        """Go on from another state; the integrator is started again.
 
         Parameters
         ----------

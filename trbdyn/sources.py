@@ -181,7 +181,7 @@ class FileSource:
             message = "the run was cut off before its end; the records up to the last write are here"
             if self.n_records and "time" in file["fields"]:
                 final_time = float(file["fields"]["time"][self.n_records - 1])
-                message = f"the run was cut off before its end; its records reach to t = {final_time:.6g} s"
+                message = f"the run was cut off before its end; its last record is at t = {final_time:.6g} s"
         return RunInfo(
             scene=_table(json.loads(_text(_own(file, "scene", h5py.Dataset)[()]))),
             success=self._ending.get("success") is True,

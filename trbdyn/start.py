@@ -1,4 +1,6 @@
-"""Where a run begins: the ring's static equilibrium at speed, rollers in pure rolling, the cage at rest or whirling."""
+"""Where a run begins: the ring's static equilibrium at speed (docs/theory/motion.md#equilibrium-of-the-ring), rollers in pure
+rolling, the cage at rest or whirling.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,6 @@ if TYPE_CHECKING:
     from trbdyn.scene import Scene
 
 Array = NDArray[np.float64]
-
-RESTING_AXIAL_SHARE = 0.1
-"""Axial place of a cage at the start, in units of its axial play, from where the large ends of the rollers touch."""
 
 
 @dataclass(frozen=True)
@@ -366,45 +365,7 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
     if scene.effects.planar:
         state["roller_omega_n"] = 0.0
     if scene.effects.bodies == "rollers_and_cage":
-        _place_cage(model, scene, motion, state, vector, orbit)
+        from trbdyn.cage_start import place_cage
+
+        place_cage(model, scene, motion, vector, equilibrium)
     return vector
-
-
-def _place_cage(
-    model: _core.Model, scene: Scene, motion: RingMotion, state: StateView, vector: Array, orbit: float
-) -> None:
-    start, cage = scene.start, scene.bearing.cage
-    # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with them
-    rest, rollers = RESTING_AXIAL_SHARE * cage.play_axial, float(np.mean(state["roller_z"]))
-    state["cage_z"] = min(max(rest, rollers + rest), rollers + cage.play_axial - rest)
-    if start.kind == "whirl":
-        direction = math.radians(start.direction_deg)
-        x, y = (start.eccentricity * cage.play_radial * part for part in (math.cos(direction), math.sin(direction)))
-        state["cage_x"], state["cage_y"] = x, y
-        state["cage_v_x"], state["cage_v_y"] = -orbit * y, orbit * x
-        return
-    gravity = np.array([value_at(part, start.time) for part in scene.gravity[:2]])
-    size = float(np.hypot(*gravity))
-    if scene.effects.gravity and size > 0.0:
-        _lay_down(model, motion, state, vector, gravity / size, cage.play_radial)
-
-
-def _lay_down(
-    model: _core.Model, motion: RingMotion, state: StateView, vector: Array, direction: Array, play: float
-) -> None:
-    """Move the cage along a direction until a face touches, by bisection on the smallest gap."""
-    onlooker = motion.open(model, motion.start, vector, {})
-
-    def touches(distance: float) -> bool:
-        state["cage_x"], state["cage_y"] = distance * direction
-        found = onlooker.contacts(motion.start, vector)
-        return float(np.max(found["pocket_interference"])) > 0.0
-
-    low, high = 0.0, 4.0 * play
-    if touches(low) or not touches(high):
-        state["cage_x"], state["cage_y"] = 0.0, 0.0
-        return
-    while high - low > 1e-10:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if touches(middle) else (middle, high)
-    state["cage_x"], state["cage_y"] = low * direction

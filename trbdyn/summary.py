@@ -199,7 +199,7 @@ def _pocket(window: Result) -> dict[str, Any]:
 
 
 def _loaded_mean(values: Any, load: Any) -> float:
-    """Mean weighted by load: a film that carries nothing is as thick as its law likes."""
+    """Mean weighted by load: the thickness of a film that carries nothing has no meaning."""
     total = float(load.sum())
     return float((values * load).sum() / total) if total > 0.0 else 0.0
 
@@ -226,13 +226,35 @@ def _peaks(window: Result) -> dict[str, Any]:
 
 
 def _torque(window: Result) -> dict[str, Any]:
-    inner, outer = float(window["inner_torque"].mean()), float(window["outer_torque"].mean())
+    inner, outer = shaft_torque(window), float(window["outer_torque"].mean())
     return {
         "torque": inner,
         "torque_outer": outer,
         "torque_note": torque_note(window, inner, outer),
         "torque_split": window.torque_split,
     }
+
+
+def shaft_torque(window: Result) -> float:
+    """Mean friction torque of the shaft (N m): its work over its turn, which records between impacts do not alias.
+
+    The mean of the records where the work was not recorded, or the shaft stands still or turns back.
+    """
+    speed = window["shaft_speed"]
+    one_way = bool(np.all(speed > 0.0) or np.all(speed < 0.0))
+    if "energy" not in window.groups or not one_way or len(window) < 2:
+        return float(window["inner_torque"].mean())
+    turn = window["shaft_angle"][-1] - window["shaft_angle"][0]
+    return float((window["work_shaft"][-1] - window["work_shaft"][0]) / abs(turn))
+
+
+def mean_loss(window: Result) -> float:
+    """Mean power loss (W): energy lost over time, which records between impacts do not alias; of the records without it."""
+    if "energy" not in window.groups or len(window) < 2:
+        return float(window["power_loss"].mean())
+    losses = [field.name for field in window.fields if field.name.startswith("loss_")]
+    time = window["time"]
+    return float(sum(window[name][-1] - window[name][0] for name in losses) / (time[-1] - time[0]))
 
 
 def torque_note(window: Result, inner: float, outer: float) -> str | None:
@@ -254,14 +276,14 @@ def torque_note(window: Result, inner: float, outer: float) -> str | None:
 
 def _power(window: Result) -> dict[str, Any]:
     return {
-        "power_loss": window["power_loss"].mean(),
+        "power_loss": mean_loss(window),
         "power_split": window.power_split,
         "torque_by_loss": window.torque_by_loss,
     }
 
 
 def _cost(result: Result) -> dict[str, Any]:
-    """Cost of the run; wall time a revolution is that of stepping where the statistics tell it."""
+    """Cost of the run; wall time per revolution is that of stepping where the statistics tell it."""
     out = {name: result.stats.get(name) for name in ("steps", "rhs_evaluations", "wall_s", "wall_s_per_revolution")}
     if out["wall_s_per_revolution"] is None and out["wall_s"] is not None and result.revolutions:
         out["wall_s_per_revolution"] = out["wall_s"] / result.revolutions

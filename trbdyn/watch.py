@@ -1,9 +1,10 @@
-"""A watch over a run: whether its energy adds up, and whether its steps lead anywhere.
+"""A watch over a run: whether its energy adds up, and whether it makes progress (docs/theory/numerics.md#watch-over-a-run).
 
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
 in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
 whole run. A window whose energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more
-than `STOP` was made, or is missing beside the losses or the work put in, ends the run: its losses, slip and forces would be wrong by as much.
+than `STOP` was made ends the run, as its losses, slip and forces would be wrong by as much. So does one in which that much is
+missing, if losses or the work put in are a large share of what was turned over.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import RunWarning
+from trbdyn.vibrations import Vibrations
 
 if TYPE_CHECKING:
     from trbdyn.simulation import Simulation
@@ -35,7 +37,7 @@ STORED_SHARE: Final = 1e-3
 LEAST_ENERGY: Final = 1e-9
 """Energy below which nothing is judged (J)."""
 SMALLEST_STEP: Final = 2e-8
-"""Mean step that leads nowhere (s): a thousandth of the period of a contact's vibration, 35 kHz."""
+"""Mean step with which a run makes no progress (s): a thousandth of the period of a contact's vibration, 35 kHz."""
 SMALL_STEPS_WARN: Final = 20_000
 SMALL_STEPS_STOP: Final = 200_000
 """Steps in a row with a mean below `SMALLEST_STEP` after which a run warns, and ends."""
@@ -62,6 +64,9 @@ class Watch:
     def __init__(self, sim: Simulation, end: float, found: list[str], *, going_on: bool = False) -> None:
         self._sim = sim
         self._found = found
+        self._vibrations = (
+            Vibrations(sim) if any(name == "outer_load" for name, *_ in sim._model.record_layout()) else None
+        )
         self._length = max(end - sim._core.time, 0.0) / WINDOWS
         self._going_on = going_on
         self._suppressed = 0
@@ -73,7 +78,7 @@ class Watch:
         self._repeated = self._repeats()
 
     def look(self, *, final: bool = False) -> str | None:
-        """Look at the present state; why the run should end, or None.
+        """Look at the present state; gives the reason why the run should end, or None.
 
         Parameters
         ----------
@@ -93,15 +98,20 @@ class Watch:
             self._window, self._since, self._turned_over = now, time, 0.0
         if final and time > self._begin:
             reason = self._judge(self._first, self._begin, now, time, self._turned_over_in_all) or reason
+            text = self._vibrations and self._vibrations.judge(_missing(self._first, now)[0], self._begin, time)
+            if text:
+                self._say(text, "vibrations")
         return None if self._going_on else reason
 
     def renew(self) -> None:
-        """The integrator was started again: its counts begin at zero."""
+        """Note that the integrator was started again, so that its counts begin at zero."""
         self._steps, self._repeated = self._counted(), self._repeats()
 
     def _energies(self) -> dict[str, float]:
         core = self._sim._core
         row = core.observe(core.time, core.state())
+        if self._vibrations is not None:
+            self._vibrations.look(np.asarray(row))
         out: dict[str, float] = {}
         for name, offset, shape in self._sim._model.record_layout():
             if shape == () and (name.startswith(("work_", "loss_")) or name in ("kinetic_energy", "elastic_energy")):
@@ -118,10 +128,7 @@ class Watch:
     def _judge(
         self, then: dict[str, float], since: float, now: dict[str, float], time: float, turned_over: float
     ) -> str | None:
-        change = {name: now[name] - then[name] for name in now}
-        put_in = sum(value for name, value in change.items() if name.startswith("work_"))
-        lost = sum(value for name, value in change.items() if name.startswith("loss_"))
-        missing = put_in - lost - change["kinetic_energy"] - change["elastic_energy"]
+        missing, put_in, lost = _missing(then, now)
         stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
         scale = max(turned_over, STORED_SHARE * stored, LEAST_ENERGY)
         off = abs(missing) / scale
@@ -132,7 +139,7 @@ class Watch:
             f"from {since:.6g} s to {time:.6g} s the energy does not add up: "
             f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
         )
-        # where little else takes energy, vibrations that the steps do not resolve lose theirs: it is said, and ends no run
+        # where little else takes energy, vibrations that the steps do not resolve lose theirs: the run warns and goes on
         wrong = not math.isfinite(off) or (off > STOP and (missing < 0.0 or max(lost, put_in) > DISSIPATING * scale))
         if not wrong:
             self._say(text + "; try accuracy='reference', or smaller tolerances", "energy")
@@ -176,7 +183,7 @@ class Watch:
         return f"ended at {time:.6g} s: {text}. {advice}"
 
     def _say(self, text: str, kind: str) -> None:
-        """A warning in the result, and the first of its kind on the screen."""
+        """Keep a warning with the result, and show the first of its kind on the screen."""
         if len(self._found) < MOST_WARNINGS:
             self._found.append(text)
         else:
@@ -185,3 +192,11 @@ class Watch:
         if kind not in self._said:
             self._said.add(kind)
             warnings.warn(text, RunWarning, stacklevel=2)
+
+
+def _missing(then: dict[str, float], now: dict[str, float]) -> tuple[float, float, float]:
+    """Energy that is missing, that was put in, and that was lost between two states (J)."""
+    change = {name: now[name] - then[name] for name in now}
+    put_in = sum(value for name, value in change.items() if name.startswith("work_"))
+    lost = sum(value for name, value in change.items() if name.startswith("loss_"))
+    return put_in - lost - change["kinetic_energy"] - change["elastic_energy"], put_in, lost

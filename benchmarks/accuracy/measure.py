@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from accuracy.states import Case, at_state
 from trbdyn import Scene, Simulation
+from trbdyn.errors import RunWarning
 from trbdyn.results import Result
 from trbdyn.run_options import ACCURACY, RunOptions
 from trbdyn.simulation import State
@@ -29,7 +31,16 @@ SAMPLE: Final = 2e-5
 TIMING_SAVE: Final = 1e-3
 """Time between records where wall time is measured (s): output is cheap then."""
 QUANTITIES: Final = ("error_cage_over_cpr", "error_load", "error_cage_speed", "error_power")
-_GROUPS: Final = ("time", "cage", "contacts", "energy")
+OBSERVABLES: Final = ("error_pocket_mean", "error_pocket_p95", "error_duty", "error_orbit")
+"""What users read of a run, as means over a window."""
+SHORT: Final = 2e-3
+"""Length over which a reference by BDF is checked with the explicit method (s)."""
+BATCH_RECORDS: Final = 3000
+"""Records of a batch of the statistics."""
+PATIENCE: Final = 0.6
+"""Processor time after which a timed run is not repeated (s)."""
+_GROUPS_OF_BATCHES: Final = ("time", "cage", "rollers", "pocket", "energy")
+_GROUPS: Final = ("time", "cage", "contacts", "pocket", "energy")
 
 
 def scaled(scale: float, **more: Any) -> dict[str, Any]:
@@ -67,59 +78,114 @@ class Trajectory:
         Cage's speed of rotation (rad/s).
     lost : float
         Energy lost within the window (J).
+    pocket_mean : float
+        Mean force of all pockets together: impulse a second (N).
+    pocket_p95 : float
+        95th percentile of the forces on touched faces of pockets (N).
+    duty : float
+        Share of time and rollers in which a pocket is touched.
+    orbit : float
+        Orbit radius of the cage about its own mean place over Cpr, root mean square.
+    warnings : int
+        What the watch over the run had to say.
     """
 
     cage: Array
     load: Array
     speed: Array
     lost: float
+    pocket_mean: float
+    pocket_p95: float
+    duty: float
+    orbit: float
+    warnings: int = 0
+
+
+def pocket_figures(result: Result) -> tuple[float, float, float]:
+    """Mean of all pocket forces together (N), 95th percentile of those that touch (N), and the share that touches."""
+    force = result["pocket_force"]
+    touched = force[force > 0.0]
+    return (
+        float(force.sum(axis=(1, 2)).mean()),
+        float(np.percentile(touched, 95.0)) if touched.size else 0.0,
+        float((force > 0.0).any(axis=2).mean()),
+    )
+
+
+def orbit_of(result: Result) -> float:
+    """Orbit radius of the cage about its own mean place over Cpr, root mean square."""
+    return float(np.sqrt(np.mean(result.orbit_radius_over_cpr**2)))
+
+
+def lost_of(result: Result) -> float:
+    """Energy lost in a run (J)."""
+    losses = [field.name for field in result.fields if field.name.startswith("loss_")]
+    return float(sum(result[name][-1] - result[name][0] for name in losses))
 
 
 def trajectory_of(result: Result) -> Trajectory:
     """What is compared, out of a result."""
-    losses = [field.name for field in result.fields if field.name.startswith("loss_")]
     return Trajectory(
         result.cage_locus(),
         result["outer_load"],
         result["cage_angular_velocity"][:, 2],
-        float(sum(result[name][-1] - result[name][0] for name in losses)),
+        lost_of(result),
+        *pocket_figures(result),
+        orbit_of(result),
+        len(result.warnings),
     )
 
 
 def run_window(scene: Scene, state: State, window: float, settings: Settings) -> Trajectory:
     """Trajectory from a state over its window."""
     sim = Simulation(at_state(scene, state), **settings)
-    return trajectory_of(sim.run(duration=window, save_every=SAMPLE, save_groups=_GROUPS))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RunWarning)
+        return trajectory_of(sim.run(duration=window, save_every=SAMPLE, save_groups=_GROUPS))
 
 
 def errors(found: Trajectory, reference: Trajectory) -> dict[str, float]:
     """Deviations from a reference, all relative.
 
     The cage's centre: largest within the window, over Cpr. Contact load: root mean square over time and rollers, over the
-    mean load. Cage speed: largest, over its mean. Power: energy lost within the window.
+    mean load. Cage speed: largest, over its mean. Power: energy lost within the window. Pocket forces and the share of time
+    that pockets are touched: means over the window, nan where no pocket is touched. Orbit of the cage: over Cpr.
     """
     cage = float(np.linalg.norm(found.cage - reference.cage, axis=1).max())
     load = float(np.sqrt(np.mean((found.load - reference.load) ** 2)) / reference.load.mean())
     speed = float(np.abs(found.speed - reference.speed).max() / abs(reference.speed.mean()))
     power = abs(found.lost - reference.lost) / abs(reference.lost)
-    return dict(zip(QUANTITIES, (cage, load, speed, power), strict=True))
+    pocket = [
+        abs(getattr(found, name) / value - 1.0) if (value := getattr(reference, name)) > 0.0 else np.nan
+        for name in ("pocket_mean", "pocket_p95", "duty")
+    ]
+    values = (cage, load, speed, power, *pocket, abs(found.orbit - reference.orbit))
+    return dict(zip(QUANTITIES + OBSERVABLES, values, strict=True)) | {"warnings": found.warnings}
+
+
+REFERENCES: Final[dict[str, dict[str, Any]]] = {
+    "erk": {"integrator": "erk"},
+    "bdf": {"max_order": 5, "rings_share": 0.0},
+}
+"""Methods of reference trajectories: an explicit Runge-Kutta method of order 5, and BDF of order up to 5 with exact forces."""
 
 
 class References:
-    """Reference trajectories of a case: an explicit Runge-Kutta method of order 5 at 1e-4 of the base tolerances.
+    """Reference trajectories of a case, at 1e-4 of the base tolerances: explicit, or by BDF where the case says so.
 
-    `disagreement` repeats some with BDF of order up to 5 at the same tolerances: another formula, with Newton's method and
-    Jacobians.
+    `disagreement` repeats some by the other method at the same tolerances: another formula, with or without Newton's method
+    and Jacobians. Where BDF is the reference, the explicit method follows it for `SHORT` only.
     """
 
     def __init__(self, case: Case, scene: Scene | None = None) -> None:
         self.case = case
         self.scene = case.scene if scene is None else scene
-        self._settings = scaled(REFERENCE_SCALE, integrator="erk")
-        self.trajectories = tuple(self._run(i, self._settings) for i in range(len(case.states)))
-
-    def _run(self, index: int, settings: Settings) -> Trajectory:
-        return run_window(self.scene, self.case.states[index], self.case.windows[index], settings)
+        self._method = case.reference
+        settings = scaled(REFERENCE_SCALE, **REFERENCES[self._method])
+        self.trajectories = tuple(
+            run_window(self.scene, state, window, settings)
+            for state, window in zip(case.states, case.windows, strict=True)
+        )
 
     def errors_of(self, settings: Settings, scene: Scene | None = None) -> list[dict[str, float]]:
         """Errors of settings (and perhaps another scene) from each state."""
@@ -128,20 +194,29 @@ class References:
         return [errors(run_window(scene, state, window, settings), against) for state, window, against in places]
 
     def disagreement(self, count: int) -> dict[str, float]:
-        """Largest deviation of BDF at the reference's tolerances from the first `count` references."""
-        tight = scaled(REFERENCE_SCALE, max_order=5, rings_share=0.0)
-        found = [errors(self._run(i, tight), self.trajectories[i]) for i in range(min(count, len(self.trajectories)))]
+        """Largest deviation of the other method at the reference's tolerances from the first `count` references."""
+        other = "bdf" if self._method == "erk" else "erk"
+        found = []
+        for i in range(min(count, len(self.trajectories))):
+            state, window, against = self.case.states[i], self.case.windows[i], self.trajectories[i]
+            if other == "erk" and window > SHORT:
+                window = SHORT
+                settings = scaled(REFERENCE_SCALE, **REFERENCES[self._method])
+                against = run_window(self.scene, state, window, settings)
+            settings = scaled(REFERENCE_SCALE, **REFERENCES[other])
+            found.append(errors(run_window(self.scene, state, window, settings), against))
         return {name: max(one[name] for one in found) for name in QUANTITIES}
 
 
 def median_and_worst(found: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """Median over states of every error, and the worst as ``<name>_worst``."""
+    """Median over states of every error, and the worst as ``<name>_worst``; warnings of all of them."""
     out = {}
-    for name in QUANTITIES:
-        values = [one[name] for one in found]
-        out[name] = float(np.median(values))
-        out[f"{name}_worst"] = max(values)
-    return out
+    for name in QUANTITIES + OBSERVABLES:
+        values = np.array([one[name] for one in found])
+        known = values[np.isfinite(values)]
+        out[name] = float(np.median(known)) if known.size else float("nan")
+        out[f"{name}_worst"] = float(known.max()) if known.size else float("nan")
+    return out | {"warnings": sum(one["warnings"] for one in found)}
 
 
 def wall_time(
@@ -155,7 +230,7 @@ def wall_time(
     """Wall time and work a revolution of the shaft: from each state the fastest of some repeats, then medians over states.
 
     What slows a repeat down is other work of the machine: the runs are the same to the bit. Up to twice as many are
-    made while the fastest waits for more than a tenth of its time.
+    made while the fastest waits for more than a tenth of its time; a state's runs end once they took `PATIENCE`.
     """
     rows = []
     for state in states:
@@ -164,6 +239,8 @@ def wall_time(
             runs.append(timed_run(Simulation(at_state(scene, state), **settings), revolutions, save_every))
             quietest = {name: min(one[name] for one in runs) for name in ("wall", "cpu")}
             if done + 1 >= repeats and quietest["wall"] < 1.1 * quietest["cpu"]:
+                break
+            if sum(one["cpu"] for one in runs) > PATIENCE:
                 break
         stats = runs[0]
         rows.append(
@@ -226,27 +303,60 @@ def batch_mean(values: Sequence[float] | Array) -> Mean:
     return Mean(float(batches.mean()), half, batches.size)
 
 
-def long_run(case: Case, settings: Settings, revolutions: float, scene: Scene | None = None) -> dict[str, Any]:
-    """Statistics beyond the windows: a batch is a run from each state, `revolutions` long.
+class BatchError(Exception):
+    """A batch of the statistics did not reach its end."""
 
-    All settings start from the same states, so that slow changes of the bearing's motion are the same in all. Shaft torque
-    and cage speed are means over time out of the quadratures.
+
+def batches_of(case: Case, settings: Settings, revolutions: float, scene: Scene | None = None) -> dict[str, Array]:
+    """Statistics beyond the windows: a batch is a run from each state, `revolutions` long. One value a batch of each.
+
+    All settings start from the same states, so that slow changes of the bearing's motion are the same in all. Torque, power
+    loss and cage speed are means over time out of the quadratures.
     """
-    radius, torque, speed, slip = [], [], [], []
+    rows = []
     for state in case.states:
         sim = Simulation(at_state(case.scene if scene is None else scene, state), **settings)
-        result = sim.run(revolutions=revolutions, save_every=2e-4)
+        every = (RunOptions(revolutions=revolutions).end_time(sim.scene.speed_rpm, sim.time) - sim.time) / BATCH_RECORDS
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RunWarning)
+            result = sim.run(revolutions=revolutions, save_every=every, save_groups=_GROUPS_OF_BATCHES)
+        if not result.success:
+            raise BatchError(result.message)
         turn = result["shaft_angle"][-1] - result["shaft_angle"][0]
-        radius.append(float(result.axis_distance.mean()) / result.clearances.radial if result.has_cage else np.nan)
-        torque.append(float((result["work_shaft"][-1] - result["work_shaft"][0]) / turn))
+        row = {
+            "torque": float((result["work_shaft"][-1] - result["work_shaft"][0]) / turn),
+            "loss": lost_of(result) / result.duration,
+            "cage_slip": float(result.cage_slip.mean()),
+            "energy_closure": result.energy_closure,
+        }
+        names = ("pocket_mean", "pocket_p95", "duty", "orbit", "whirl_radius")
         if result.has_cage:
-            speed.append(float((result["cage_angle"][-1] - result["cage_angle"][0]) / turn))
+            found = (*pocket_figures(result), orbit_of(result), float(result.axis_distance_over_cpr.mean()))
+            row |= dict(zip(names, found, strict=True))
+            row["cage_speed_ratio"] = float((result["cage_angle"][-1] - result["cage_angle"][0]) / turn)
         else:
             orbit = result["roller_orbit_angle"]
-            speed.append(float((orbit[-1] - orbit[0]).mean() / turn))
-        slip.append(float(result.cage_slip.mean()))
-    found = {"whirl_radius": radius, "torque": torque, "cage_speed_ratio": speed, "cage_slip": slip}
+            row |= dict.fromkeys(names, np.nan)
+            row["cage_speed_ratio"] = float((orbit[-1] - orbit[0]).mean() / turn)
+        rows.append(row)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def long_run(case: Case, settings: Settings, revolutions: float, scene: Scene | None = None) -> dict[str, Mean]:
+    """Means of `batches_of` with their confidence intervals."""
+    found = batches_of(case, settings, revolutions, scene)
     return {name: batch_mean(values) for name, values in found.items()}
+
+
+def bias(found: Array, tight: Array, scale: float | None = None) -> Mean:
+    """Mean difference of batches from those of a tight tolerance, from the same states, with its confidence interval.
+
+    Over the mean of the tight ones, or a scale that is given.
+    """
+    over = abs(float(np.mean(tight))) if scale is None else scale
+    if not over > 0.0:
+        return Mean(float("nan"), float("nan"), len(tight))
+    return batch_mean((found - tight) / over)
 
 
 def pareto(points: Sequence[tuple[float, float]]) -> list[int]:

@@ -23,10 +23,17 @@ TEXTS = {
     "erk": "explicit",
 }
 PRESETS = {"fast": "^", "standard": "*", "reference": "s"}
-TITLES = {"smooth": "smooth rolling", "collision": "colliding cage", "combined": "combined load"}
+TITLES = {
+    "smooth": "smooth rolling, 3000 rpm, 4930 N",
+    "collision": "colliding cage, 3000 rpm, 4930 N",
+    "combined": "combined load, 2000 rpm, 4930 / 5530 N",
+    "light": "light load, 3000 rpm, 1230 N",
+    "heavy": "heavy load, 3000 rpm, 20 kN",
+    "slow": "slow, 100 rpm, 4930 N",
+    "fast": "fast, 10 000 rpm, 4930 N",
+    "scatter": "unequal rollers, 3000 rpm, 4930 N",
+}
 LEAST_ERROR = 1e-8
-REAL_TIME_MS = {"smooth": 20.0, "collision": 20.0, "combined": 30.0}
-"""Time of a revolution at real time: the shaft's period (ms)."""
 
 
 def _wall_error(rows: list[dict[str, Any]], key: str) -> tuple[list[float], list[float]]:
@@ -36,7 +43,7 @@ def _wall_error(rows: list[dict[str, Any]], key: str) -> tuple[list[float], list
     ]
 
 
-def _front(axes: Any, rows: list[dict[str, Any]], case: str) -> None:
+def _front(axes: Any, rows: list[dict[str, Any]], case: str, speed_rpm: float) -> None:
     here = [row for row in rows if row["case"] == case and row["sweep"] in ("tolerances", "presets")]
     for method, colour in COLOURS.items():
         points = [row for row in here if row["method"] == method and not row["preset"]]
@@ -57,15 +64,27 @@ def _front(axes: Any, rows: list[dict[str, Any]], case: str) -> None:
                 label=f"preset {row['preset']}",
                 zorder=5,
             )
-    axes.axvline(REAL_TIME_MS[case], color="0.5", lw=0.8, ls="--")
+    real_time = 6e4 / speed_rpm
+    axes.axvline(real_time, color="0.5", lw=0.8, ls="--")
     axes.axhline(1.0, color="0.5", lw=0.8, ls="--")
-    axes.text(
-        REAL_TIME_MS[case], 0.98, " real time", transform=axes.get_xaxis_transform(), va="top", color="0.4", fontsize=8
-    )
-    axes.text(0.0, 0.7, " 1 % of Cpr", transform=axes.get_yaxis_transform(), ha="left", color="0.4", fontsize=8)
+    axes.text(real_time, 0.98, " real time", transform=axes.get_xaxis_transform(), va="top", color="0.4", fontsize=8)
+    axes.text(0.0, 1.0, " 1 % of Cpr", transform=axes.get_yaxis_transform(), va="bottom", color="0.4", fontsize=8)
+    _plain_ticks(axes)
     axes.set_xlabel("time of a revolution on one core (ms)")
     axes.set_ylabel("cage centre: error (% of Cpr)")
     axes.set_title(TITLES[case])
+
+
+def _plain_ticks(axes: Any) -> None:
+    """Times as plain numbers; errors as powers of ten, with one at least."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    low, high = axes.get_ylim()
+    axes.set_ylim(0.7 * low, max(1.5 * high, 20.0 * low))
 
 
 def _slices(axes: Any, rows: list[dict[str, Any]]) -> None:
@@ -99,6 +118,7 @@ def _slices(axes: Any, rows: list[dict[str, Any]]) -> None:
     axes.set_xlabel("one force evaluation (µs)")
     axes.set_ylabel("error (% of Cpr, % of displacement)")
     axes.set_title("nodes along a contact, colliding cage")
+    _plain_ticks(axes)
     axes.legend(fontsize=8)
 
 
@@ -106,15 +126,20 @@ def draw_front(report: common.Report) -> Any:
     """Pareto fronts of each case, and the nodes along a contact."""
     cases = [name for name in TITLES if any(row["case"] == name for row in report.results)]
     plt = common.pyplot()
-    width = 1 if len(cases) == 1 else 2
-    figure, grid = plt.subplots(2, width, figsize=(6.0 * width, 9.0), squeeze=False, layout="constrained")
+    panels = len(cases) + 1
+    width = min(3, panels)
+    height = -(-panels // width)
+    figure, grid = plt.subplots(height, width, figsize=(5.2 * width, 4.2 * height), squeeze=False, layout="constrained")
     flat = grid.ravel()
+    for axes in flat[panels:]:
+        axes.set_axis_off()
     for axes, case in zip(flat, cases, strict=False):
-        _front(axes, report.results, case)
-    figure.legend(*flat[len(cases) - 1].get_legend_handles_labels(), fontsize=8, loc="outside lower center", ncols=5)
-    _slices(flat[-1], report.results)
+        _front(axes, report.results, case, report.summary["scenes"][case]["speed_rpm"])
+    handles: dict[str, Any] = {}
+    for axes in flat[: len(cases)]:
+        handles |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(handles.values(), handles.keys(), fontsize=8, loc="outside lower center", ncols=5)
+    _slices(flat[len(cases)], report.results)
     machine = common.processor()["name"]
-    figure.suptitle(
-        f"What accuracy costs: 30310, 12 rollers, complete paper physics, one core ({machine})", fontsize=11
-    )
+    figure.suptitle(f"What accuracy costs: 30310, 12 rollers, every effect, one core ({machine})", fontsize=11)
     return figure

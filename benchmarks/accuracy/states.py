@@ -3,24 +3,27 @@
 ``benchmarks/data/states.npz`` holds, for each case, its scene (JSON) and the states from which trajectories are compared,
 each with the length of its window. The file is made by::
 
-    python benchmarks/work_precision.py --make-states
+    python benchmarks/work_precision.py --make-states        adds cases that the file has not
+    python benchmarks/work_precision.py --make-states NAME   makes a case again
 
-Collision states are taken from a whirling cage (start: 0.9 Cpr, 20 turns of the shaft to forget it) in the middle of a
-collision: a pocket carries more than 5 N. A window is the time of the next 10 impacts and at least 4 ms; an impact is a
-roller's first touch of a face of its pocket.
+Collision states are taken from a whirling cage (start: 0.9 Cpr, 20 turns of the shaft to forget it; 3 at 100 rpm) in the
+middle of a collision: a pocket carries more than 5 N. A window is the time of the next 10 impacts and at least 4 ms (1.5 ms at
+10 000 rpm); an impact is a roller's first touch of a face of its pocket.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import Scene, Simulation, cases
+from trbdyn.bearing import Scatter
 from trbdyn.effects import Effects
 from trbdyn.scene import Start
 from trbdyn.simulation import State
@@ -29,10 +32,6 @@ Array = NDArray[np.float64]
 
 FILE: Final = Path(__file__).resolve().parents[1] / "data" / "states.npz"
 
-LEAST_WINDOW: Final = 4e-3
-"""Shortest window (s)."""
-LONGEST_WINDOW: Final = 20e-3
-"""Longest window (s), also where fewer impacts happen: rolling without collisions."""
 IMPACTS: Final = 10
 COLLISION_FORCE: Final = 5.0
 """Force of a pocket on its roller (N) from which a collision is said to go on."""
@@ -61,6 +60,18 @@ class CaseDefinition:
         Turns of the shaft before the first state, and from state to state.
     colliding : bool
         Whether states are taken in the middle of a collision.
+    effects : str
+        Preset of the effects, 'paper' or 'standard'; each with 8 Gauss nodes along a contact.
+    diameter_range : float
+        Range of the rollers' diameters (m).
+    least_window, longest_window : float
+        Shortest window (s); longest window (s), also where fewer impacts happen: rolling without collisions.
+    reference : {'erk', 'bdf'}
+        Method of the reference trajectories: explicit, or BDF where explicit steps would be far too short.
+    batch : float
+        Turns of the shaft of a batch of the statistics.
+    tight_order : int
+        Highest order of BDF of the tight run that the statistics are compared with.
     """
 
     text: str
@@ -71,6 +82,13 @@ class CaseDefinition:
     settle: float
     between: float
     colliding: bool
+    effects: str = "paper"
+    diameter_range: float = 0.0
+    least_window: float = 4e-3
+    longest_window: float = 20e-3
+    reference: Literal["erk", "bdf"] = "erk"
+    batch: float = 10.0
+    tight_order: int = 5
 
 
 CASES: Final = {
@@ -82,6 +100,49 @@ CASES: Final = {
     ),
     "combined": CaseDefinition(
         "combined load, cage whirling at first", 2000.0, 4930.0, 5530.0, Start.whirl(0.9), 10.0, 2.3, True
+    ),
+    "light": CaseDefinition("light load, colliding cage", 3000.0, 1230.0, 0.0, Start.whirl(0.9), 20.0, 2.3, True),
+    "heavy": CaseDefinition(
+        "heavy load, colliding cage", 3000.0, 20_000.0, 0.0, Start.whirl(0.9), 20.0, 2.3, True, reference="bdf"
+    ),
+    "slow": CaseDefinition(
+        "slow rotation",
+        100.0,
+        4930.0,
+        0.0,
+        Start.whirl(0.9),
+        3.0,
+        0.7,
+        True,
+        least_window=40e-3,
+        longest_window=100e-3,
+        reference="bdf",
+        batch=1.0,
+        tight_order=2,
+    ),
+    "fast": CaseDefinition(
+        "fast rotation, colliding cage",
+        10_000.0,
+        4930.0,
+        0.0,
+        Start.whirl(0.9),
+        40.0,
+        5.3,
+        True,
+        least_window=1.5e-3,
+        batch=30.0,
+    ),
+    "scatter": CaseDefinition(
+        "rollers of unequal diameter, within 2 um; effects as by default",
+        3000.0,
+        4930.0,
+        0.0,
+        Start.whirl(0.9),
+        20.0,
+        2.3,
+        True,
+        effects="standard",
+        diameter_range=2e-6,
     ),
 }
 N_STATES: Final = 5
@@ -112,20 +173,36 @@ class Case:
     windows: tuple[float, ...]
     impacts: tuple[int, ...]
 
+    @property
+    def definition(self) -> CaseDefinition:
+        """How its states came about."""
+        return CASES[self.name]
+
+    @property
+    def reference(self) -> Literal["erk", "bdf"]:
+        """Method of its reference trajectories."""
+        return self.definition.reference
+
     def first(self, count: int) -> Case:
         """The case with only its first states."""
-        return Case(self.name, self.text, self.scene, self.states[:count], self.windows[:count], self.impacts[:count])
+        first = {name: getattr(self, name)[:count] for name in ("states", "windows", "impacts")}
+        return replace(self, **first)
 
 
 def scene_of(definition: CaseDefinition) -> Scene:
-    """The scene of a case: the paper's physics with 8 Gauss nodes along each contact."""
-    effects = Effects.paper().replace(quadrature="gauss", n_slices=8)
+    """The scene of a case, with 8 Gauss nodes along each contact."""
+    effects = {"paper": Effects.paper, "standard": Effects.standard}[definition.effects]()
+    bearing = cases.rig_30310()
+    if definition.diameter_range > 0.0:
+        scatter = Scatter(range=definition.diameter_range, seed=1)
+        bearing = bearing.replace(roller=bearing.roller.replace(diameter_scatter=scatter))
     return cases.scene_30310(
         definition.speed_rpm,
         definition.axial_load,
         definition.radial_load,
+        bearing=bearing,
         start=definition.start,
-        effects=effects,
+        effects=effects.replace(quadrature="gauss", n_slices=8),
     )
 
 
@@ -141,14 +218,14 @@ def impact_times(time: Array, pocket_force: Array) -> Array:
     return np.repeat(time[1:], count)
 
 
-def window_of(scene: Scene, state: State) -> tuple[float, int]:
+def window_of(scene: Scene, state: State, least: float, longest: float) -> tuple[float, int]:
     """Length of a state's window (s), and the impacts in it."""
     sim = Simulation(at_state(scene, state), **TOLERANCES_OF_STATES)
-    result = sim.run(duration=LONGEST_WINDOW, save_every=5e-6, save_groups=("time", "pocket"))
+    result = sim.run(duration=longest, save_every=5e-6, save_groups=("time", "pocket"))
     times = impact_times(result.time - result.time[0], result.pocket_force)
     if times.size < IMPACTS:
-        return LONGEST_WINDOW, int(times.size)
-    window = float(np.ceil(max(times[IMPACTS - 1], LEAST_WINDOW) / 1e-4) * 1e-4)
+        return longest, int(times.size)
+    window = float(np.ceil(max(times[IMPACTS - 1], least) / 1e-4) * 1e-4)
     return window, int(np.count_nonzero(times <= window))
 
 
@@ -166,20 +243,25 @@ def make_states(definition: CaseDefinition, count: int = N_STATES) -> list[State
     return states
 
 
-def make_file(path: Path = FILE) -> None:
-    """Write the file of states."""
-    arrays: dict[str, Array | str] = {}
+def make_file(names: Sequence[str] = (), path: Path = FILE) -> None:
+    """Write the states of cases into the file; by default of those that it has not. The others stay as they are."""
+    arrays: dict[str, Any] = {}
+    if path.exists():
+        with np.load(path) as data:
+            arrays = dict(data)
     for name, definition in CASES.items():
+        if name not in names and (names or f"{name}_scene" in arrays):
+            continue
         scene, states = scene_of(definition), make_states(definition)
-        found = [window_of(scene, state) for state in states]
+        found = [window_of(scene, state, definition.least_window, definition.longest_window) for state in states]
         arrays[f"{name}_scene"] = json.dumps(scene.to_dict())
         arrays[f"{name}_vector"] = np.array([state.vector for state in states])
         arrays[f"{name}_time"] = np.array([state.time for state in states])
         arrays[f"{name}_window"] = np.array([window for window, _ in found])
         arrays[f"{name}_impacts"] = np.array([impacts for _, impacts in found], dtype=float)
-        print(f"{name}: windows {[f'{1e3 * w:.1f} ms, {n} impacts' for w, n in found]}")
+        print(f"{name}: windows {[f'{1e3 * w:.1f} ms, {n} impacts' for w, n in found]}", flush=True)
     path.parent.mkdir(exist_ok=True)
-    np.savez_compressed(path, **arrays)  # type: ignore[arg-type]
+    np.savez_compressed(path, **arrays)
 
 
 def load_case(name: str, path: Path = FILE) -> Case:

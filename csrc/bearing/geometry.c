@@ -12,7 +12,8 @@ const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY] = {
 #undef TRB_GEOMETRY_INFO
 };
 
-/* Cones: tan(nu) = (Dwe/2)/Rc, Rc = (Dpw/2)/sin(alpha_o - nu); two equations for nu, solved by fixed-point steps. */
+/* Cones (docs/theory/geometry.md#cones-and-rollers): tan(nu) = (Dwe/2)/Rc, Rc = (Dpw/2)/sin(alpha_o - nu); two equations for nu, solved
+ * by fixed-point steps. */
 static void derive_cones(const trb_params *p, trb_geometry *g)
 {
   double nu = 0.0;
@@ -68,7 +69,8 @@ static void derive_mass(const trb_params *p, trb_geometry *g)
   g->roller_centre_height = centre * cos(g->roller_axis_angle);
 }
 
-/* Rib: the nominal sphere just touches a cone face at the given height above the inner raceway (physics: section 2). */
+/* Rib: the nominal sphere just touches a cone face at the given height above the inner raceway
+ * (docs/theory/geometry.md#rib-of-the-inner-ring). */
 static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *message)
 {
   const double pole = g->apex_to_mid + g->large_end_station, ai = g->cone_half_angle;
@@ -80,8 +82,9 @@ static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *
                     p->rib_contact_height, g->large_end_diameter);
   const double sine = (p->rib_contact_height - (sr * cos(ai) - sz * sin(ai))) / g->sphere_radius;
   if (!(fabs(sine) < 1.0))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the large end's sphere (radius %g m) does not reach it",
-                    p->rib_contact_height, g->sphere_radius);
+    return trb_fail(message, TRB_ERR_GEOMETRY,
+                    "rib_contact_height = %g m: the large end's sphere (radius %g m) does not touch the rib there", p->rib_contact_height,
+                    g->sphere_radius);
   g->rib_normal_angle = ai + asin(sine);
   g->rib_contact_radius = sr + g->sphere_radius * sin(g->rib_normal_angle);
   g->rib_contact_z = sz + g->sphere_radius * cos(g->rib_normal_angle);
@@ -123,7 +126,7 @@ trb_status trb_geometry_derive(const trb_params *params, trb_geometry *geometry,
     return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: must be at least the effective length, %g m", params->total_length,
                     params->effective_length);
   if (!(g->apex_to_mid > 0.5 * params->total_length))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: the roller would reach beyond the apex", params->total_length);
+    return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: the roller would extend beyond the apex", params->total_length);
   derive_radii(params, g);
   derive_mass(params, g);
   g->effective_modulus =

@@ -1,4 +1,5 @@
-/* Everything that follows from the catalogue numbers of a bearing whose cup, cone and rollers share one apex (physics: section 2). */
+/* Everything that follows from the catalogue numbers of a bearing whose cup, cone and rollers share one apex
+ * (docs/theory/geometry.md#cones-and-rollers). */
 #ifndef TRB_BEARING_GEOMETRY_H
 #define TRB_BEARING_GEOMETRY_H
 

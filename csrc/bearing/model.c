@@ -50,7 +50,7 @@ static double profile_drop(const trb_model *m, double station)
 /* Upper bound of n_slices in params.h. */
 #define TRB_MAX_NODES 200
 
-/* Nodes along the contact and, per roller, the chain of inscribed spheres (physics: section 3). */
+/* Nodes along the contact and, per roller, the chain of inscribed spheres (docs/theory/contacts.md#chain-of-spheres). */
 static trb_status fill_nodes(trb_model *m, trb_message *message)
 {
   const trb_params   *p = &m->params;
@@ -138,7 +138,7 @@ static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_me
 
 static int face_in_pocket(const trb_face *f, int pocket) { return f->pocket[0] < 0.0 || (int)f->pocket[0] == pocket; }
 
-/* Faces that the scene's effects leave out never reach the loop. */
+/* Faces that the scene's effects leave out are not in the model, so no loop sees them. */
 static int face_is_on(const trb_model *m, const trb_face *f)
 {
   return m->params.with_cage > 0.0 && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);

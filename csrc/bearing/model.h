@@ -1,4 +1,5 @@
-/* The model: geometry, material, lubricant, effects, pockets. Const after creation; one model serves many states and threads. */
+/* The model: geometry, material, lubricant, effects, pockets. It is constant after creation; many simulations and threads may use one
+ * model. */
 #ifndef TRB_BEARING_MODEL_H
 #define TRB_BEARING_MODEL_H
 
@@ -15,7 +16,7 @@ enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMU
 /* Nodes along one contact are padded to a multiple of this, so that no scalar remainder runs. */
 #define TRB_LANE_PAD 8
 
-/* Per node of a contact line, the same for all rollers but for the sphere's radius. Arrays of n_lanes. */
+/* What belongs to the nodes of a contact line and is the same for all rollers. Arrays of n_lanes. */
 typedef struct trb_race_nodes {
   double *weight;       /* quadrature weight along the contact, m; 0 in padding */
   double *log_radius;   /* ln Re */

@@ -1,4 +1,4 @@
-/* The one table of model parameters. It makes the C struct, the flat block that Python fills by name,
+/* The table of all model parameters. It makes the C struct, the flat block that Python fills by name,
  * the range check and the documentation. Every entry is a double so that the block is one contiguous array.
  *
  * TRB_PARAMS(X): X(name, unit, lower, upper, text); lower and upper are inclusive bounds of the check. Units "count"
@@ -7,8 +7,6 @@
 #define TRB_BEARING_PARAMS_H
 
 #include <stddef.h>
-
-#define TRB_BIG 1e300
 
 #define TRB_PARAMS(X) \
   /* bearing geometry */ \

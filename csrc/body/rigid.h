@@ -37,8 +37,8 @@ typedef struct trb_turn_rates {
   trb_vec3 spin;       /* angular acceleration in (n, t, a), rad/s2 */
 } trb_turn_rates;
 
-/* Euler's equations in a frame that follows the axis but does not spin; parent: angular velocity of the frame that skew and tilt are
- * measured in, along its own z. */
+/* Euler's equations in a frame that follows the axis but does not spin (docs/theory/motion.md#eulers-equations); parent: angular
+ * velocity, about z, of the frame in which skew and tilt are measured. */
 static inline trb_turn_rates trb_euler(const trb_frame *f, trb_vec3 omega, double parent, double transverse, double axial, trb_vec3 moment)
 {
   trb_turn_rates out;

@@ -26,7 +26,8 @@ void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roll
   pose->omega = trb_from_frame(f, pose->omega_frame);
 }
 
-/* Planar: the frozen tilts couple the orbit to the transverse inertia; (m + It s^2/r^2) v_t' from Lagrange's equation of the orbit angle. */
+/* Planar motion (docs/theory/motion.md#planar-motion): the frozen tilts couple the orbit to the transverse inertia; (m + It s^2/r^2)
+ * v_t' from Lagrange's equation of the orbit angle. */
 static double orbit_inertia(const trb_geometry *g, const trb_roller_pose *r)
 {
   return g->roller_inertia_transverse * r->frame.n.z * r->frame.n.z / (r->radius * r->radius);

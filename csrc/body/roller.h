@@ -39,7 +39,7 @@ typedef struct trb_roller_pose {
   trb_vec3  omega_frame;  /* the same in (n, t, a) */
 } trb_roller_pose;
 
-/* References of pure rolling: what the offsets are offsets from. */
+/* Velocities of pure rolling; the state holds offsets from them. */
 typedef struct trb_rolling {
   double v_t;     /* tangential velocity of a roller, m/s */
   double omega_n; /* rad/s */

@@ -1,8 +1,10 @@
-/* The layout of the state vector: the coordinates of the bodies (body/roller.h, body/cage.h), then spin angles and quadratures.
+/* The layout of the state vector (docs/theory/motion.md#coordinates): the coordinates of the bodies (body/roller.h, body/cage.h), then spin
+ * angles and quadratures.
  *
  * The frame R turns about the bearing axis with the kinematic cage angle. A roller's coordinates are cylindrical and are offsets from
- * pure rolling; its axis is given by skew and tilt in the frame (e_r, e_t, e_z) that orbits with it, its velocities are inertial ones
- * written in orbiting frames. In steady rolling the whole vector stands still. The spin angle is in the tail: nothing depends on it. */
+ * pure rolling; its axis is given by skew and tilt in the frame (e_r, e_t, e_z) that orbits with it; its velocities are inertial
+ * velocities that are written in orbiting frames. In steady rolling the whole vector stands still. The spin angle is in the tail of the
+ * vector, as nothing depends on it. */
 #ifndef TRB_BODY_STATE_H
 #define TRB_BODY_STATE_H
 
@@ -12,7 +14,7 @@
 #include "body/roller.h"
 #include "laws/smooth.h"
 
-/* Quadratures of the energy audit (physics: section 10): works, then losses; each has its field of the same name in a record. */
+/* Quadratures of the energy audit (docs/theory/energy.md#quadratures): works, then losses; each has its field of the same name in a record. */
 #define TRB_QUADRATURE_OF_WORK(X, name, text) X(work_##name)
 #define TRB_QUADRATURE_OF_LOSS(X, name, sense, text) X(loss_##name)
 #define TRB_QUADRATURES(X) TRB_WORKS(TRB_QUADRATURE_OF_WORK, X) TRB_LOSSES(TRB_QUADRATURE_OF_LOSS, X)

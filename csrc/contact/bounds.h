@@ -26,14 +26,14 @@ typedef struct trb_hold_arms {
 /* Coordinates that come first in a roller's and in the cage's state. */
 enum { TRB_CLEARANCE_ROLLER = TRB_ROLLER_tilt + 1, TRB_CLEARANCE_CAGE = TRB_CAGE_psi + 1 };
 
-/* How far a unit of each coordinate moves what can touch, at most, m/m or m/rad. The large end's sphere has its centre far from the roller:
- * flanks, which come nearer, have shorter arms. */
+/* The longest way by which a unit of each coordinate moves what may touch, m/m or m/rad. The centre of the large end's sphere is far
+ * from the roller, so ends have longer arms than the flank, whose gap is the smaller one. */
 typedef struct trb_clearance_arms {
   double roller[TRB_CLEARANCE_ROLLER];
   double cage[TRB_CLEARANCE_CAGE];
 } trb_clearance_arms;
 
-/* Displacements and gaps within which the arms of clearances hold, m. */
+/* Displacements and gaps up to which the arms of clearances are proven, m. */
 static inline double trb_clearance_play(const trb_model *m) { return 0.5 * m->params.roller_diameter; }
 
 #endif

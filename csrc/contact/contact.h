@@ -1,7 +1,7 @@
-/* What contacts read, and what they give. contact/pair.h says what a pair of bodies is; contact/pairs.c lists all of them.
+/* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is; contact/pairs.c lists all of them.
  *
  * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
- * the power lost, by kind. It knows no time and keeps no state. */
+ * the power lost, by kind. It does not depend on time and stores nothing between calls. */
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
 
@@ -38,7 +38,7 @@ enum {
   X(front_rib_contacts,   "edges of the front rib in contact with a small end") \
   X(front_rib_tests,      "small ends tested against the front rib") \
   X(pocket_tests,         "pocket faces tested against their roller") \
-  X(pocket_culled,        "pocket faces proven out of reach") \
+  X(pocket_culled,        "pocket faces proven not to touch") \
   X(pocket_nodes,         "nodes and points in contact with pocket faces") \
   X(drag_rollers,         "rollers whose drag in the oil was evaluated") \
   X(gravity_bodies,       "bodies on which gravity was evaluated")
@@ -49,7 +49,7 @@ typedef struct trb_counters {
 #undef TRB_COUNTER_MEMBER
 } trb_counters;
 
-/* Margin where there is no such contact, m. */
+/* Margin of a contact that the scene does not have, m. */
 #define TRB_NO_CONTACT 1e30
 
 /* Kinds of bodies that a pair can join. */
@@ -76,7 +76,7 @@ typedef struct trb_loads {
   double     power[TRB_N_LOSSES];   /* lost, W */
 } trb_loads;
 
-/* Everything that a contact can see at an instant. */
+/* All that the contacts read at an instant. */
 typedef struct trb_instant {
   const trb_drive       *drive;   /* what is prescribed */
   const trb_roller_pose *rollers; /* n_rollers */
@@ -112,7 +112,7 @@ typedef struct trb_point_detail {
 
 struct trb_lanes;
 
-/* Intermediate quantities, kept where a caller wants to look; NULL in the inner loop. */
+/* Intermediate quantities, stored if a caller wants to look at them; NULL while integrating. */
 typedef struct trb_detail {
   double           *lanes;               /* [lane field][race][roller][node of n_lanes] */
   trb_point_detail *rib;                 /* n_rollers */
@@ -152,9 +152,9 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
 /* Zero the chosen rollers' loads and sum the slow pairs only. */
 void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads);
 
-/* How the wrench on a roller, about its centre of mass, follows its motion relative to the other body: a column for a translation along
- * each axis, then for a turn about each, the other body at rest. Left out is that the normal at an edge turns, load over radius beside
- * stiffness. */
+/* Slopes of the wrench on a roller, about its centre of mass, with its motion relative to the other body: one column for a translation
+ * along each axis, then one for a turn about each axis, with the other body at rest. That the normal turns at an edge is left out: this
+ * term is load over radius, which is small beside the stiffness. */
 typedef struct trb_slopes {
   trb_frame  axes;        /* in the roller's cylindrical frame, for motions and wrenches */
   trb_wrench place[6];    /* per m and rad */

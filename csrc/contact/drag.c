@@ -1,5 +1,6 @@
 /* A roller in the mixture of oil and air of the bearing, which rests: drag through the roller's centre of mass against its velocity
- * (physics: section 13). How much oil there is is known in no bearing: the fill fraction is an input, and zero by default. */
+ * (docs/theory/contacts.md#drag-of-the-oil). How
+ * much oil there is, is known in no bearing: the fill fraction is an input, and zero by default. */
 #include <math.h>
 
 #include "contact/pair.h"

@@ -28,7 +28,8 @@ static inline double trb_coulomb_coefficient(const trb_params *p, double speed)
   return p->dry_friction * speed / sqrt(speed * speed + p->coulomb_speed * p->coulomb_speed);
 }
 
-/* (6) with the slide-roll ratio of surfaces that do not roll, or Coulomb's law in a dry scene. */
+/* (6) with the slide-roll ratio of surfaces that do not roll (docs/theory/contacts.md#bounded-faces-of-pockets), or Coulomb's law in a
+ * dry scene. */
 static inline double trb_sliding_coefficient(const trb_model *m, double speed)
 {
   const trb_params *p = &m->params;
@@ -37,7 +38,7 @@ static inline double trb_sliding_coefficient(const trb_model *m, double speed)
                                p->boundary_decay);
 }
 
-/* Hunt & Crossley, never pulling. */
+/* Hunt & Crossley, never pulling (docs/theory/contacts.md#normal-damping). */
 static inline double trb_damped(const trb_model *m, double load, double coefficient, double rate)
 {
   return m->params.damping > 0.0 ? load * trb_max(1.0 + coefficient * rate, 0.0) : load;

@@ -1,4 +1,4 @@
-/* Roller small end on the inner ring's front rib.
+/* Roller small end on the inner ring's front rib (docs/theory/contacts.md#small-end-on-the-front-rib).
  *
  * Two nearly parallel faces have no unique deepest point. The rib's face is bounded by two circles about the ring's axis; each meets the
  * roller's end plane in one point, the deepest of that circle, which moves smoothly with the pose. The circles carry half the stiffness

@@ -1,5 +1,6 @@
-/* The hot loops: the same sources compiled for several instruction sets (TRB_KERNEL_VARIANT), chosen when a workspace is made.
- * `scalar` is compiled without fast-math and is what the others are tested against. */
+/* The loops that take most of the time: the same sources compiled for several instruction sets (TRB_KERNEL_VARIANT), one of which is
+ * chosen when a workspace is made. `scalar` is compiled without fast-math; the other variants are tested against it. A lane is one node
+ * of one contact: its place in the arrays that the loops run over. */
 #ifndef TRB_CONTACT_KERNELS_H
 #define TRB_CONTACT_KERNELS_H
 
@@ -69,7 +70,7 @@ static inline const double *trb_detail_lane(const trb_model *m, const trb_detail
   return detail->lanes + (((size_t)field * TRB_N_RACES + (size_t)race) * rollers + (size_t)roller) * lanes;
 }
 
-/* One contact of a roller with a race; without interference its lanes are used by the next. */
+/* One contact of a roller with a race. Without interference it uses no lanes: the next contact gets them. */
 typedef struct trb_race_input {
   const trb_roller_pose *roller;
   const trb_ring_pose   *ring;   /* in the roller's frame */
@@ -104,7 +105,7 @@ static inline trb_load trb_load_of_output(const trb_race_output *out)
 typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,
                                 trb_race_output *outputs);
 
-/* The chosen rollers' large ends on the rib, a lane and an output a roller. */
+/* The large ends of the chosen rollers on the rib: each roller has one lane and one output. */
 typedef void trb_rib_kernel(const trb_model *m, const trb_instant *at, trb_lanes *lanes, trb_counters *counters, trb_race_output *outputs);
 
 trb_raceway_kernel trb_raceway_kernel_scalar, trb_raceway_kernel_base, trb_raceway_kernel_avx2, trb_raceway_kernel_avx512;

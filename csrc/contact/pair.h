@@ -54,8 +54,8 @@ typedef void trb_pair_look(const trb_model *m, const trb_instant *at, const trb_
                            trb_detail *detail, double share, trb_contact_look *looks);
 /* A roller's contact out of a detail. */
 typedef void trb_pair_view(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view);
-/* What one roller and the other body do to each other, of a fast pair. The load is written only where they may touch, or with a detail
- * that wants interferences, and so are slopes, if they are wanted. A detail's forces are added to. */
+/* Load between one roller and the other body of a fast pair. The load is written only where they may touch, or if the detail asks for
+ * interferences; the same holds for the slopes, which may be NULL. Forces are added to those in the detail. */
 typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
                                 trb_slopes *slopes, trb_detail *detail);
 

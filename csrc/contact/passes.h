@@ -1,6 +1,6 @@
-/* Passes over lanes that raceways and ribs share: one loop a law. The choice of an effect is made outside the loops.
+/* Loops (passes) over lanes that raceways and ribs share: one loop for each law. Which effects a scene has is decided outside the loops.
  *
- * Included by the kernel files only, which are compiled once an instruction set. A pass over `n` lanes wants n to be a multiple of
+ * Included by the kernel files only, which are compiled once for each instruction set. The number of lanes n must be a multiple of
  * TRB_LANE_PAD. */
 #ifndef TRB_CONTACT_PASSES_H
 #define TRB_CONTACT_PASSES_H
@@ -62,7 +62,7 @@ static inline void pass_thermal(const trb_model *m, int n, trb_lanes *l)
       trb_film_thermal(l->pressure[i] / modulus, base + 2.0 * l->log_u[i], log(l->slide_roll[i]), floor);
 }
 
-/* (3) with a starvation factor. */
+/* (3), and (11) at the rib, with a starvation factor. */
 static inline void pass_film_parameter(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
   const double starvation = m->params.starvation_factor, per_roughness = 1.0 / kind->roughness;
@@ -86,7 +86,7 @@ static inline void pass_film_parameter(const trb_model *m, const trb_pass_kind *
     l->traction_coefficient[i] = tau0 * trb_traction_muraki_kimura(sigma, d) / mean_pressure; \
   }
 
-/* (7)-(9) */
+/* (7)-(9) Muraki & Kimura. */
 static inline void pass_muraki_kimura(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
   const trb_params *p = &m->params;
@@ -114,7 +114,7 @@ static inline void pass_coulomb(const trb_model *m, int n, trb_lanes *l, double 
   }
 }
 
-/* (6) */
+/* (6) boundary friction. */
 static inline void pass_boundary(const trb_model *m, int n, trb_lanes *l)
 {
   const double limit = m->params.boundary_limit, slope = m->params.boundary_slope, decay = m->params.boundary_decay;
@@ -130,7 +130,7 @@ static inline double thinnest(int n, const trb_lanes *l)
   return least;
 }
 
-/* (2) */
+/* (2) mixed friction. */
 static inline void pass_mix(const trb_model *m, int n, trb_lanes *l)
 {
   const double low = m->params.lambda_boundary, high = m->params.lambda_full;

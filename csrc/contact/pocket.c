@@ -1,8 +1,8 @@
-/* Roller in its cage pocket: a list of bounded faces, in the frame of the pocket.
+/* Roller in its cage pocket: a list of bounded faces, in the frame of the pocket (docs/theory/contacts.md#bounded-faces-of-pockets).
  *
  * A flank face meets the chain of inscribed spheres, a large-end face the end's sphere: interference = radius - distance of the centre
  * from the bounded polygon. A small-end face meets the roller's end plane with its vertices, each with its share of the stiffness.
- * All three depend on points fixed in their bodies, so edges and corners make no energy. */
+ * All three depend on points that are fixed in their bodies, so contacts without friction conserve energy at edges and corners too. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 #include "laws/interference.h"
 #include "laws/line_contact.h"
 
-/* Roller and cage as the pocket sees them. Motions and sums only where they touch. */
+/* Roller and cage in the frame of the pocket. Velocities and sums are filled only where they may touch. */
 typedef struct pocket_view {
   trb_frame axes;                         /* pocket axes, in the roller's cylindrical frame */
   trb_vec3  x;                            /* roller's centre of mass, from the pocket's origin */
@@ -73,7 +73,7 @@ static void add_slope(trb_wrench *w, trb_vec3 arm, trb_vec3 force)
   w->moment = trb_add(w->moment, trb_cross(arm, force));
 }
 
-/* The force moves with motion k, and turns. */
+/* Adds what motion k does to the force by moving its point of attack and by turning it. */
 static void add_carried(trb_wrench *w, int k, trb_vec3 unit, const pocket_touch *c, trb_vec3 arm, trb_vec3 force, double q)
 {
   if (c->on_end && k >= 3) add_slope(w, arm, trb_scale(-q, trb_cross(unit, c->normal)));
@@ -217,8 +217,9 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
   }
 }
 
-/* A bounded face is no nearer than its plane, and the height over a plane less the sphere's radius is linear along an undropped cone, so
- * that its least value is at an end; a profile only takes material away. Where that is not enough, of the nodes. */
+/* Lower bound of the gap between the flank and a face. A bounded face is no nearer than its plane. For a cone without profile the height
+ * over the plane less the sphere's radius is linear along the axis, so its least value is at one of the ends; a profile only takes
+ * material away. Where this bound is not positive, the least value over the nodes is taken. */
 static double flank_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
@@ -269,7 +270,7 @@ static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f,
   detail->pocket_interference[slot] = trb_max(detail->pocket_interference[slot], sums->deepest);
 }
 
-/* A face's gap among those of its kind. */
+/* The smallest gap of each kind of face. */
 static void note_gap(trb_gaps *gaps, const trb_pocket_face *f, double gap)
 {
   double *of = &gaps->of[f->part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS];

@@ -4,7 +4,7 @@
 #include "contact/pair.h"
 #include "laws/line_contact.h"
 
-/* Farthest vertex of a kind of faces from their pocket's origin. */
+/* Bound of the distance of any vertex of one kind of faces from the origin of its pocket. */
 static double pocket_size(const trb_model *m, int flanks)
 {
   double size = 0.0;
@@ -26,19 +26,20 @@ static double chain_length(const trb_model *m)
   return length;
 }
 
-/* roller, pocket: largest distances of what can touch, in the roller from its centre of mass, in the pocket from its origin; ring: of what
- * can touch in either from the roller's place, across the bearing's axis. */
+/* roller: largest distance of what may touch, from the roller's centre of mass; pocket: the same of its faces, from the pocket's origin;
+ * ring: the same of either, from the place of the roller, across the bearing axis. */
 static trb_clearance_arms arms_from(const trb_model *m, double roller, double pocket, double ring)
 {
   const trb_geometry *g = &m->geometry;
-  /* about the roller's centre; about the bearing's or the cage's axis; about the cage's centre */
+  /* turn: about the roller's centre; orbit: about the bearing's or the cage's axis; lean: about the cage's centre */
   const double turn = fmax(roller, pocket), orbit = g->roller_centre_radius + ring + 4.0 * trb_clearance_play(m);
   const double lean = g->roller_centre_radius + turn + fabs(m->params.cage_offset) + 4.0 * trb_clearance_play(m);
   return (trb_clearance_arms){{1.0, orbit, 1.0, turn, turn}, {1.0, 1.0, 1.0, lean, lean, orbit}};
 }
 
-/* A gap is a distance between things fixed in either body: centres of spheres and the small end's plane here, outlines there. It changes
- * by no more than the arm of any of them about the axis of a turn. */
+/* A gap is a distance between things that are fixed in either body: centres of spheres and the plane of the small end in the roller,
+ * outlines of faces in the cage. When a body turns it changes by no more than the angle times the largest distance of any of them from
+ * the axis. */
 static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
 {
   const trb_geometry *g = &m->geometry;

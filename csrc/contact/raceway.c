@@ -1,4 +1,4 @@
-/* Rollers on both raceways: hands tiles of contacts to the kernel and adds what comes back. */
+/* Rollers on both raceways: gives the contacts to the kernel in groups (tiles) and adds up what it returns. */
 #include <math.h>
 #include <string.h>
 

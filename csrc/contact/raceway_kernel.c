@@ -1,5 +1,6 @@
-/* Roller on raceway, a tile of contacts at a time: geometry per contact, then one pass a law over all lanes, then sums per contact.
- * A law that a scene leaves out is a pass that does not run; inside the loops nothing branches on effects. */
+/* Roller on raceway (docs/theory/contacts.md#raceways), several contacts (a tile) at a time: the geometry of each contact, then one loop
+ * for each law over all lanes, then the sums of each contact. The loop of a law that a scene leaves out does not run; inside the loops
+ * nothing branches on effects. */
 #include "contact/kernels.h"
 
 #include <math.h>
@@ -85,7 +86,7 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
-/* (10) */
+/* (10) rolling resistance (docs/theory/lubrication.md#rolling-resistance). */
 static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
 {
   const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;

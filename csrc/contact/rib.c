@@ -1,4 +1,5 @@
-/* Roller large end on the inner ring's back-face rib: a sphere on a cone, one point of maximum interference (physics: section 4). */
+/* Roller large end on the inner ring's back-face rib: a sphere on a cone, one point of maximum interference
+ * (docs/theory/contacts.md#large-end-on-the-back-face-rib). */
 #include <math.h>
 
 #include "contact/kernels.h"

@@ -1,4 +1,5 @@
-/* Roller large ends on the back-face rib, all chosen rollers at once: a lane a roller. The laws of friction are the raceways' passes. */
+/* Large ends on the back-face rib, all chosen rollers at once; each roller has one lane. The loops of films and friction are those of
+ * the raceways (docs/theory/contacts.md#large-end-on-the-back-face-rib). */
 #include <math.h>
 
 #include "contact/passes.h"
@@ -38,7 +39,7 @@ static void pass_geometry(const trb_model *m, const trb_instant *at, trb_lanes *
   }
 }
 
-/* Lanes that fill up the last vector repeat the last roller, so that they take no path of their own. */
+/* The lanes that fill up the last vector repeat the last roller, so that they need no special treatment. */
 static void pad(int n, int padded, trb_lanes *l)
 {
   double *const fields[] = {l->interference, l->approach, l->sx, l->sy, l->sz, l->mx, l->my, l->mz};

@@ -1,4 +1,5 @@
-/* Drag of a body that moves through a mixture of oil and air: F = fill rho Cd A v^2/2 against its velocity (Schlichting, Boundary-Layer
+/* Drag of a body that moves through a mixture of oil and air: F = fill rho Cd A v^2/2 against its velocity
+ * (docs/theory/contacts.md#drag-of-the-oil; Schlichting, Boundary-Layer
  * Theory; for rollers in bearings e.g. Rumbarger, Filetti and Gubernick 1973, ASME J. Lubr. Technol. 95, 401). Smooth at zero speed. */
 #ifndef TRB_LAWS_DRAG_H
 #define TRB_LAWS_DRAG_H

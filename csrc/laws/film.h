@@ -1,6 +1,6 @@
-/* Central film thickness of rolling contacts. The laws take logarithms, so that one logarithm of a load or a speed serves every
- * power of it. W, U, G are the usual groups: line W = w/(E' Re), U = eta0 u/(E' Re); ellipse W = Q/(E' Rx^2), U = eta0 u/(E' Rx);
- * G = alpha0 E'. Lt = eta0 beta u^2/k'. */
+/* Central film thickness of rolling contacts (docs/theory/lubrication.md#films). The laws take logarithms, as the logarithm of a load or
+ * a speed is needed for several powers of it. W, U, G are the usual groups: line W = w/(E' Re), U = eta0 u/(E' Re);
+ * ellipse W = Q/(E' Rx^2), U = eta0 u/(E' Rx); G = alpha0 E'. Lt = eta0 beta u^2/k'. */
 #ifndef TRB_LAWS_FILM_H
 #define TRB_LAWS_FILM_H
 

@@ -1,4 +1,5 @@
-/* Hertz contact of an ellipse with exact elliptic integrals (K. L. Johnson, Contact Mechanics, eqs. 4.26-4.28).
+/* Hertz contact of an ellipse with exact elliptic integrals (K. L. Johnson, Contact Mechanics, eqs. 4.26-4.28;
+ * docs/theory/contacts.md#large-end-on-the-back-face-rib).
  *
  * With the principal relative radii R_long >= R_short, k = a/b >= 1 the ellipse's axis ratio and m = 1 - 1/k^2:
  *   R_short/R_long = [K(m) - E(m)] / [k^2 E(m) - K(m)]

@@ -1,4 +1,4 @@
-/* Contact geometry: pure functions that know no world.
+/* Contact geometry: functions of their arguments alone (docs/theory/contacts.md#chain-of-spheres).
  *
  * A roller's flank is a chain of inscribed spheres: at the station where its radius is R the sphere has its centre R tan(nu) further
  * along the axis and the radius R/cos(nu). Interference with a surface is that sphere's: it depends on one body-fixed point, so a

@@ -1,4 +1,5 @@
-/* Normal load of a roller on a raceway or a bar: Palmgren's line contact, and the Hertz pressure of a line.
+/* Normal load of a roller on a raceway or a bar: Palmgren's line contact, and the Hertz pressure of a line
+ * (docs/theory/contacts.md#raceways).
  *
  * (1) q = 0.356 E' Nsl^(-1/9) l^(8/9) d^(10/9) for a slice of length l = L/Nsl. With a weight w_k along the contact this is
  *     q_k = 0.356 E' L^(-1/9) w_k d_k^(10/9), the same for uniform slices and valid for any quadrature.

@@ -1,4 +1,4 @@
-/* Roller generator and the nodes along it. */
+/* Profile of the rollers, and the nodes along a contact (docs/theory/geometry.md#roller-profile). */
 #ifndef TRB_LAWS_PROFILE_H
 #define TRB_LAWS_PROFILE_H
 

@@ -1,4 +1,4 @@
-/* EHL rolling resistance of a line contact.
+/* EHL rolling resistance of a line contact (docs/theory/lubrication.md#rolling-resistance).
  *
  * (10) F/l = 29.2 Re (G U)^0.648 W^0.246 phi_T/alpha0 (Zhou & Hoeprich 1991), each surface dragged by F against rolling. It holds in
  * the piezoviscous-elastic regime; the paper lets it vanish at h_PE = h_IR, here it sets in over a band of h_PE/h_IR. */

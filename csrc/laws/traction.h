@@ -1,4 +1,5 @@
-/* Friction coefficients of lubricated contacts, as functions of sliding. All fall to zero with it. */
+/* Friction coefficients of lubricated contacts, as functions of sliding (docs/theory/lubrication.md#traction-of-a-full-film). All are
+ * zero without sliding. */
 #ifndef TRB_LAWS_TRACTION_H
 #define TRB_LAWS_TRACTION_H
 

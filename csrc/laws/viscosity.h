@@ -11,7 +11,8 @@ enum { TRB_VISCOSITY_DICKE = 0, TRB_VISCOSITY_ROELANDS = 1, TRB_VISCOSITY_BARUS 
 #define TRB_ROELANDS_PRESSURE 1.962e8
 #define TRB_ROELANDS_LOG 9.67
 
-/* Dicke: p/(a + c p) with p in bar; the coefficients at temperature t are at = a + b t, ct = c + d t (physics: section 6). */
+/* Dicke: p/(a + c p) with p in bar; the coefficients at temperature t are at = a + b t, ct = c + d t
+ * (docs/theory/lubrication.md#viscosity-over-pressure). */
 static inline double trb_viscosity_dicke(double pressure, double at, double ct)
 {
   const double bar = pressure / TRB_PASCAL_PER_BAR;

@@ -1,4 +1,4 @@
-/* Energies that are functions of the state; works and losses are quadratures of their own (body/state.h). */
+/* Energies that are functions of the state (docs/theory/energy.md#stored-energy). Works and losses are quadratures (body/state.h). */
 #ifndef TRB_MOTION_AUDIT_H
 #define TRB_MOTION_AUDIT_H
 

@@ -7,7 +7,7 @@ void trb_clearance_set(const trb_model *m, trb_clearance *c, const trb_gaps *gap
 {
   const double far = fabs(y_roller[TRB_ROLLER_r]) + fabs(y_roller[TRB_ROLLER_z]) + fabs(y_cage[TRB_CAGE_x]) + fabs(y_cage[TRB_CAGE_y]) +
                      fabs(y_cage[TRB_CAGE_z]);
-  /* a gap that is not a number proves nothing */
+  /* a gap that is not a number (NaN) proves nothing */
   for (int i = 0; i < TRB_N_GAPS; i++)
     c->gaps.of[i] = far < trb_clearance_play(m) && gaps->of[i] > 0.0 ? trb_min(gaps->of[i], trb_clearance_play(m)) : 0.0;
   memcpy(c->roller, y_roller, sizeof c->roller);
@@ -37,6 +37,6 @@ int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, 
     const double way = fabs(y_cage[i] - c->cage[i]);
     for (int g = 0; g < TRB_N_GAPS; g++) moved[g] += arms[g].cage[i] * way;
   }
-  /* not a number: nothing is proven */
+  /* where a coordinate is not a number (NaN) both comparisons are false: nothing is proven */
   return moved[TRB_GAP_FLANK] < c->gaps.of[TRB_GAP_FLANK] && moved[TRB_GAP_ENDS] < c->gaps.of[TRB_GAP_ENDS];
 }

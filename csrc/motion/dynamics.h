@@ -1,12 +1,14 @@
-/* Newton-Euler for every roller and the cage, in frames that orbit with them: what motion/rhs.h makes the right-hand side of. */
+/* Newton's and Euler's equations of each roller and the cage, in frames that orbit with them (docs/theory/motion.md#newtons-equations): the
+ * parts of which motion/rhs.h makes the right-hand side. */
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
 
 #include "motion/clearance.h"
 #include "motion/ring_motion.h"
 
-/* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures (physics: section 10).
- * It is affine in the loads: what inertia and gravity give, and the response to a load. */
+/* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures
+ * (docs/theory/energy.md#quadratures). It is affine in the loads: a part from inertia and gravity, and a part that is linear in the
+ * loads (the response). */
 enum {
   TRB_FLOW_spin = TRB_ROLLER_SIZE,
   TRB_FLOW_quadrature = TRB_ROLLER_SIZE + 1,
@@ -54,14 +56,14 @@ trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
 
-/* A right-hand side is started, has every roller's flow put in, and the cage's rates. */
+/* A right-hand side is made in three steps: start it, put in the flow of each roller, compute the rates of the cage. */
 void trb_dynamics_start(const trb_dynamics *d, double *rates);
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
 /* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
 trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
-/* What a roller does in the fast pairs in which it is near, added to its flow and to the sums of the cage. */
+/* Adds the loads of the fast pairs in which a roller is near to its flow and to the sum on the cage. */
 void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *on_cage);
 
 #endif

@@ -39,7 +39,7 @@ static const double difference[TRB_ROLLER_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP
 static const double ring_difference[TRB_RING_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE,
                                                           TRB_STEP_ANGLE};
 
-/* At rest the contacts are frictionless: no sliding, no rolling. */
+/* All bodies are placed at rest: without sliding and rolling the contacts have no friction. */
 static void place(solver *s, const double *rollers, const double *displacement)
 {
   const trb_model *m = s->m;
@@ -109,7 +109,7 @@ static double imbalance(const solver *s)
   return worst;
 }
 
-/* Stiffness by differences: one evaluation of all contacts a column, all rollers at once. */
+/* Stiffness by differences: one evaluation of all contacts for each column, with all rollers moved at once. */
 static void differentiate(solver *s)
 {
   const int n = s->m->n_rollers;

@@ -1,8 +1,9 @@
-/* Static equilibrium at speed: where the inner ring and the rollers settle under a load, without friction, gravity or cage.
+/* Static equilibrium at speed: where the inner ring and the rollers settle under a load, without friction, gravity or cage
+ * (docs/theory/motion.md#equilibrium-of-the-ring).
  *
  * Unknowns: (r, z, tilt) of each roller and five coordinates of the ring (dx, dy, dz, rx, ry), each free under its load or prescribed.
- * Rollers couple only through the ring, so a Newton step is one small system a roller and one of five. Contacts are gradients of an
- * energy: steps are damped until the total potential falls (Levenberg-Marquardt). */
+ * Rollers are coupled only through the ring, so a Newton step solves one small system for each roller and one of five equations.
+ * Contacts are gradients of an energy: steps are damped until the total potential falls (Levenberg-Marquardt). */
 #ifndef TRB_MOTION_EQUILIBRIUM_H
 #define TRB_MOTION_EQUILIBRIUM_H
 

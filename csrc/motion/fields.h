@@ -1,7 +1,7 @@
-/* The one table of recorded quantities: it lays out a record, and names, units, shapes and texts of it reach the HDF5 file,
- * the plots and the documentation from here.
+/* The table of all recorded quantities. It defines the layout of a record; the HDF5 file, the plots and the documentation take names,
+ * units, shapes and texts from here.
  *
- * TRB_FIELDS(X): X(name, group, kind, unit, text). A kind is a shape; roller = one number a roller. */
+ * TRB_FIELDS(X): X(name, group, kind, unit, text). A kind is a shape; roller = one number for each roller. */
 #ifndef TRB_MOTION_FIELDS_H
 #define TRB_MOTION_FIELDS_H
 

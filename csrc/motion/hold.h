@@ -1,7 +1,8 @@
-/* Holds: proofs, to first order in small displacements, that a load found at one state has changed little at another, so that it need
- * not be evaluated again. A load follows an interference, which follows the place of a roller; it and the film follow its velocity too.
- * Each coordinate counts with the longest arm by which it moves the contact along its normal. What is prescribed must be the same at
- * both states. */
+/* Holds: bounds, to first order in small displacements, which show that a load that was found at one state has changed little at
+ * another, so that peaks need not evaluate it again (docs/theory/numerics.md#records-peaks-and-restarts). A load depends on an
+ * interference and so on the place of a roller; by damping and by the film it depends on velocities too. The change of each coordinate
+ * is multiplied by the longest arm by which it moves the contact along its normal. The prescribed motion must be the same at both
+ * states. */
 #ifndef TRB_MOTION_HOLD_H
 #define TRB_MOTION_HOLD_H
 

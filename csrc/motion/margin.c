@@ -13,9 +13,11 @@ trb_margin_arms trb_margin_arms_of(const trb_model *m)
   return arms;
 }
 
-/* Interference of a sphere and a cone changes with the sphere's centre along the cone's normal. The centre of the large end's sphere lies
- * far from the roller's centre of mass, but the normal nearly along the roller's axis: a turn moves it across the normal. What is left:
- * the angle of both, the skew, and the normal's turn about the bearing axis, which the sphere's centre is close to. */
+/* Bound of how a turn of the roller changes the interference at the rib. The interference of a sphere and a cone follows the sphere's
+ * centre along the cone's normal. This centre lies far from the roller's centre of mass, so the arm is long. But the normal points
+ * nearly along the roller's axis, so a turn moves the centre nearly across the normal. What remains is proportional to the angle between
+ * axis and normal, to the skew, and to the turn of the normal about the bearing axis, which can be large as the sphere's centre is close
+ * to that axis. */
 static double turned_on_end(const trb_margin_arm *a, const double *place, const double *step, double lean)
 {
   const double skewed = fabs(step[TRB_ROLLER_skew]), tilted = fabs(step[TRB_ROLLER_tilt]);

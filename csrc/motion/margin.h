@@ -1,8 +1,12 @@
-/* Margins: how far a roller is from the onset or the end of its contacts with raceways and ribs.
+/* Margins: proofs that no contact of a roller with raceways and ribs has begun or ended (docs/theory/numerics.md#margins-of-contacts).
  *
- * Where forces are evaluated, the largest interference of every contact is known, or its gap. It cannot change by more than the roller has
- * moved since, each coordinate times a bound of what it does to the interference. As long as that sum is smaller than the margin, what
- * touched still touches and what did not still does not: forces may then be followed along a tangent, which knows nothing of gaps. */
+ * A tangent of the forces is wrong as soon as a contact begins or ends. Where forces are evaluated exactly, the largest interference of
+ * each contact is known, or its gap; the size of either is the margin. An interference is a distance between a surface of the ring and a
+ * point that is fixed in the roller. If the roller's coordinates change, it cannot change by more than the sum of all changes, each
+ * multiplied by the largest arm by which that coordinate moves the point along the normal. The same holds for the ring, which seems to
+ * move in the frame of a roller that orbits if it is displaced or misaligned. As long as the sum is smaller than the margin, bodies that
+ * touched still touch and bodies that did not touch still do not. The sum is an upper bound and not an estimate;
+ * csrc/tests/test_margin.c tries to break it. */
 #ifndef TRB_MOTION_MARGIN_H
 #define TRB_MOTION_MARGIN_H
 

@@ -1,4 +1,4 @@
-/* The one table of peaks: what is kept between records, over each record's interval and over the whole run.
+/* The table of all peaks: what is kept between records, over each record's interval and over the whole run.
  *
  * TRB_PEAK_QUANTITIES(X): X(name, kind, sense), what is evaluated at the end of every step; the loads, which have means, come first.
  * TRB_PEAK_FIELDS(X): X(name, quantity, take, unit, text), what is written of it. Texts hold for an interval and for a run. */

@@ -1,5 +1,6 @@
-/* A track: extremes, integrals and impacts of a set of quantities over a stretch of time. It grows by straight lines, from the end of one
- * step to the end of the next. A quantity whose smallest value is wanted comes with the other sign. */
+/* A track: extremes, integrals and impacts of several quantities over a stretch of time. It is continued from the end of one step to the
+ * end of the next, between which each quantity is a straight line. A quantity whose smallest value is wanted is given with the opposite
+ * sign. */
 #ifndef TRB_MOTION_PEAK_TRACK_H
 #define TRB_MOTION_PEAK_TRACK_H
 

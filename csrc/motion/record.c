@@ -88,7 +88,7 @@ static void put_quaternion(double *to, const trb_frame *f)
   to[1 + i] = sign * 0.25 * s, to[1 + j] = sign * (m[j][i] + m[i][j]) / s, to[1 + k] = sign * (m[k][i] + m[i][k]) / s;
 }
 
-/* A frame turned about its own third axis. */
+/* A frame that is turned about its third axis. */
 static trb_frame spun(const trb_frame *f, double angle)
 {
   const double c = cos(angle), s = sin(angle);

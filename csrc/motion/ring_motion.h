@@ -1,6 +1,6 @@
-/* What is prescribed in time: the inner ring's displacement, misalignment and speed, and gravity. Cubic Hermite between knots, so that
- * velocities are continuous. Before the first knot everything is constant; after the last knot too, or the last part of the table repeats.
- * The shaft's angle is the exact integral of its speed. */
+/* What is prescribed in time: the inner ring's displacement, misalignment and speed, and gravity (docs/theory/motion.md#the-inner-ring).
+ * Cubic Hermite between knots, so that velocities are continuous. Before the first knot everything is constant; after the last knot too,
+ * or the last part of the table repeats. The shaft's angle is the exact integral of its speed. */
 #ifndef TRB_MOTION_RING_MOTION_H
 #define TRB_MOTION_RING_MOTION_H
 

@@ -254,7 +254,7 @@ static PyObject *restart(PyObject *object, PyObject *none)
   Py_RETURN_NONE;
 }
 
-/* (time, state) of a look from outside; the state as a new reference. */
+/* Time and state that a user asks about; the state is a new reference. */
 static PyArrayObject *look(simulation_object *self, PyObject *args, double *time)
 {
   PyObject *values;
@@ -500,7 +500,8 @@ static PyObject *get_row_length(PyObject *object, void *closure)
 }
 
 static PyMethodDef methods[] = {
-    {"run", run, METH_VARARGS, "run(times, records, max_steps, stop_after=inf): integrate, a row a time; gives (rows, steps)."},
+    {"run", run, METH_VARARGS,
+     "run(times, records, max_steps, stop_after=inf): integrate and write one row for each time; gives (rows, steps)."},
     {"step", step, METH_NOARGS, "One step of the integrator; gives the new time."},
     {"state", state, METH_NOARGS, "A copy of the state."},
     {"state_at", state_at, METH_O, "state_at(time): the state at an instant of the last step."},

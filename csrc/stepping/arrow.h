@@ -1,6 +1,11 @@
-/* The arrow matrix: rollers couple only through the cage, so the Jacobian has a block a roller, a border to the cage and the cage's own
- * block. Systems with it are solved by eliminating the rollers onto the cage (Schur complement): linear in the number of rollers.
- * The rollers' blocks are small and serve many solves, so their inverses are kept. */
+/* The Jacobian as a matrix in the shape of an arrow, and systems with it (docs/theory/numerics.md#arrow-shaped-system).
+ *
+ * Rollers do not act on each other but on the cage alone. If the rollers come first in the state and the cage last, the system matrix
+ * I - gamma J therefore has a small block A_j on the diagonal for each roller j, a border B_j in the columns of the cage, a border C_j in
+ * its rows, and the cage's block D; all else is zero. Such a system is solved by eliminating the rollers: the Schur complement
+ * S = D - sum C_j A_j^-1 B_j gives the cage's part of the solution, and that gives the part of each roller. The effort is
+ * proportional to the number of rollers. A roller that does not touch its pocket has no borders. One factorisation is used for many
+ * solutions and the blocks are small, so their inverses are computed and stored. */
 #ifndef TRB_STEPPING_ARROW_H
 #define TRB_STEPPING_ARROW_H
 
@@ -10,8 +15,8 @@
 /* The Jacobian J. */
 typedef struct trb_arrow {
   int               n;                    /* rollers */
-  int               with_cage;            /* 0: the cage's part is zero and uncoupled */
-  double            gamma;                /* of the system I - gamma J that is to be solved */
+  int               with_cage;            /* 0: there is no cage, its block is zero */
+  double            gamma;                /* of the system matrix I - gamma J */
   trb_arrow_block  *rollers;              /* n */
   trb_arrow_border *borders;              /* n */
   double            cage[TRB_NC][TRB_NC]; /* column by column */
@@ -20,7 +25,7 @@ typedef struct trb_arrow {
 typedef struct trb_arrow_factors {
   const trb_block_kernels *kernels;
   int                      n;
-  double                   gamma; /* of the system; 0: none was factored */
+  double                   gamma; /* of the system that was factored; 0: none was */
   trb_arrow_factor_block  *rollers;
   trb_arrow_factor_border *borders;
   double                   cage[TRB_NC][TRB_NC]; /* column by column: inverse of the Schur complement */

@@ -1,4 +1,4 @@
-/* The arrow matrix and its solver as SUNDIALS objects. */
+/* The arrow-shaped matrix and its solver as SUNDIALS objects. */
 #ifndef TRB_STEPPING_ARROW_SOLVER_H
 #define TRB_STEPPING_ARROW_SOLVER_H
 

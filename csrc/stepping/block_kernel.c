@@ -1,4 +1,5 @@
-/* Small dense loops of fixed length over contiguous columns: what the compiler vectorises fully, without reordering any sum. */
+/* Small dense loops of fixed length over contiguous columns. The compiler can vectorise all of them without changing the order of a sum,
+ * so that variants differ in rounding as little as possible. */
 #include <math.h>
 #include <string.h>
 
@@ -10,14 +11,16 @@
 #define TRB_JOIN_(a, b) a##b
 #define TRB_JOIN(a, b) TRB_JOIN_(a, b)
 
-/* A pivot on the diagonal is taken if it is no smaller than this share of the largest, so that no multiplier exceeds its inverse. */
+/* The entry on the diagonal is taken as the pivot if it is at least this share of the largest entry: no multiplier is then larger than 1
+ * over it. */
 #define DIAGONAL_SHARE 0.1
 
 enum { ACCUMULATORS = 16 };
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
-/* Factors that keep an entry or not; rows are read in one piece, where a single entry that was just written would hold the load up. */
+/* Masks of 0 and 1 by which whole rows are changed with the same arithmetic for each entry. Writing single entries instead and reading
+ * the whole row right after would cause a store-forwarding stall. */
 #define ROWS {ROW(0), ROW(1), ROW(2), ROW(3), ROW(4), ROW(5), ROW(6), ROW(7), ROW(8), ROW(9), ROW(10), ROW(11)}
 #define ROW(c) {c > 0, c > 1, c > 2, c > 3, c > 4, c > 5, c > 6, c > 7, c > 8, c > 9, c > 10, c > 11}
 static const double before[TRB_NP][TRB_NP] = ROWS;
@@ -29,8 +32,8 @@ static const double unit[TRB_NP][TRB_NP] = ROWS;
 /* 1 for a roller's entries, 0 for the padding. */
 static const double roller[TRB_NP] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0};
 
-/* Pivots c and c + 1 of Gauss-Jordan in place, as they stand: two at a time, rows are read and written half as often. Gives the largest
- * multiplier of a row below them. */
+/* Two steps of Gauss-Jordan elimination in place, with the pivots c and c + 1 on the diagonal: two at a time, so that rows are read and
+ * written half as often. Gives the largest multiplier of a row below them. */
 static inline double take_two(double (*restrict a)[TRB_NP], int n, int c)
 {
   const int    d = c + 1;
@@ -75,7 +78,7 @@ static int all_finite(const double *x, int n)
   return sum == 0.0;
 }
 
-/* Gauss-Jordan in place without exchanges; 0: a multiplier was too large, or the result is not finite. */
+/* Inverse in place by Gauss-Jordan elimination without exchanges; 0: a multiplier was too large, or the result is not finite. */
 static inline int invert_as_is(double (*restrict a)[TRB_NP], int n)
 {
   double most = 0.0;
@@ -105,7 +108,7 @@ static inline int pivot_of(const double *row, int n, int c)
   return -1;
 }
 
-/* Gauss-Jordan in place with pivots along rows; padding columns are zero and stay so. */
+/* Inverse in place by Gauss-Jordan elimination with exchanges of columns; padding columns are zero and stay so. */
 static int invert_with_exchanges(double (*restrict a)[TRB_NP], int n)
 {
   int pivot[TRB_NP];
@@ -120,7 +123,7 @@ static int invert_with_exchanges(double (*restrict a)[TRB_NP], int n)
     }
     take(a, n, c);
   }
-  /* exchanged columns are rows of the inverse */
+  /* columns that were exchanged are rows of the inverse: put them back in reverse order */
   for (int c = n - 1; c >= 0; c--) {
     if (pivot[c] == c) continue;
     double keep[TRB_NP];
@@ -137,8 +140,8 @@ static inline void combine(double one, double scale, const double (*from)[TRB_NP
     for (int i = 0; i < TRB_NP; i++) to[c][i] = one * unit[c][i] + scale * from[c][i];
 }
 
-/* Inverse of one times the unit matrix and scale times another one. Rows that are columns of a matrix make those of its inverse. Rates of
- * places are velocities: along rows of the matrix the diagonal leads, and exchanges are rare. */
+/* Inverse of one I + scale A. A is stored column by column, and so is the inverse: the inverse of the transpose is the transpose of the
+ * inverse. In the systems of the integrator the diagonal is the largest entry of nearly every row, so exchanges are rare. */
 static inline int invert(double one, double scale, const double (*from)[TRB_NP], double (*restrict to)[TRB_NP], int n)
 {
   combine(one, scale, from, to, n);
@@ -152,7 +155,7 @@ static int factor(const trb_arrow_block *b, double gamma, trb_arrow_factor_block
   return invert(1.0, -gamma, b->own, g->inverse, TRB_NR);
 }
 
-/* to = scale columns x, written in one piece; a sum that starts from memset stays in vectors. */
+/* to = scale columns x. The whole padded column is written. Starting the sum by memset lets the compiler keep it in vector registers. */
 static inline void set_product(const double (*columns)[TRB_NP], int n, const double *x, double scale, double *to)
 {
   double sum[TRB_NP];
@@ -183,7 +186,7 @@ static void border(const trb_arrow_border *b, double gamma, const trb_arrow_fact
 
 static int invert_cage(const double (*schur)[TRB_NC], double (*inverse)[TRB_NC]) { return invert(0.0, 1.0, schur, inverse, TRB_NC); }
 
-/* Rollers are written with their padding, in one piece, and the entry that it covers is put back. */
+/* The solution of a roller is written with its padding, which covers the first entry of the next one; that entry is put back. */
 static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const double (*cage)[TRB_NC],
                   double *restrict x)
 {

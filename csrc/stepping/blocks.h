@@ -1,5 +1,5 @@
-/* Dense kernels of the integrator: block_kernel.c compiled once an instruction set, as the contacts' kernels are; variants have the same
- * order as trb_kernel_variants. Arithmetic is strict in all of them. */
+/* Dense kernels of the integrator. block_kernel.c is compiled once for each instruction set, as the kernels of the contacts are, and the
+ * variants have the same order as trb_kernel_variants. All of them are compiled without fast-math. */
 #ifndef TRB_STEPPING_BLOCKS_H
 #define TRB_STEPPING_BLOCKS_H
 
@@ -8,7 +8,7 @@
 /* TRB_NP: a roller's entries, padded; TRB_TANGENT_IN: a roller's state and the angle of the frame; TRB_TANGENT_OUT: its flow, padded. */
 enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NC = TRB_CAGE_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = 24 };
 
-/* A roller's own block, and where it touches the cage both borders: apart, so that what every system needs is one stretch of memory. */
+/* Block and borders of a roller. They are stored apart, so that the blocks, which every system needs, lie in one stretch of memory. */
 typedef struct trb_arrow_block {
   double own[TRB_NR][TRB_NP]; /* d roller / d roller, column by column, padded by zeros */
 } trb_arrow_block;
@@ -40,10 +40,10 @@ typedef struct trb_block_kernels {
   int (*invert_cage)(const double (*schur)[TRB_NC], double (*inverse)[TRB_NC]);
   /* x: rollers then cage, overwritten by the solution; cage: inverse of its Schur complement. */
   void (*solve)(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const double (*cage)[TRB_NC], double *x);
-  /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. TRB_NP entries of
-   * y are read. */
+  /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. It reads TRB_NP entries of
+   * y. */
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);
-  /* value + slope step, no less than least; slope column by column. */
+  /* flow = value + slope step, but no less than least; slope is stored column by column. */
   void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, const double *least, double *flow);
   /* Error weights 1/(relative |y| + scale). */
   void (*weigh)(const double *relative, const double *scale, const double *y, int n, double *weights);

@@ -50,7 +50,7 @@ trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
   const trb_rigid motion = trb_roller_motion(k->roller, coordinate);
   trb_load        load = loads_of(k, wrench_of(k, motion, is_place), is_place ? motion.shift : none);
   if (!is_place) return load;
-  /* the frames that the roller's force and moment are written in turn with it */
+  /* force and moment are written in frames that turn with the roller */
   if (coordinate == TRB_ROLLER_psi) load.on_a.force = trb_sub(load.on_a.force, trb_cross(third, k->force));
   load.on_a.moment = trb_sub(load.on_a.moment, trb_cross(motion.turn, k->moment));
   return load;
@@ -63,7 +63,7 @@ trb_load trb_coupling_of_cage(const trb_coupling *k, int coordinate)
   const trb_vec3  shift = trb_scale(-1.0, to_roller(k, cage.shift)), turn = trb_scale(-1.0, to_roller(k, cage.turn));
   trb_wrench      change = wrench_of(k, (trb_rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
   if (!is_place) return loads_of(k, change, none);
-  /* the roller moves the other way in the pocket, whose forces turn with the cage */
+  /* when the cage moves, the roller moves the other way in its pocket, and the forces turn with the cage */
   change.force = trb_sub(change.force, trb_cross(turn, k->force));
   change.moment = trb_sub(change.moment, trb_cross(turn, k->moment));
   return loads_of(k, change, shift);

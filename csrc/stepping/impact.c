@@ -1,8 +1,8 @@
-/* An impact is followed well if the errors of a step are small beside the speed at which the bodies meet and beside the interference that
- * they reach, not beside numbers that are the same for all. So while a roller may reach its pocket within the next steps, or touches it, the
- * absolute tolerances of roller and cage are multiplied by a factor: a share of that speed over the tolerance of velocities, or of that
- * interference over the tolerance of positions, whichever is less, between a least factor and 1. The speed is the one at which they met:
- * during contact it passes through zero. Bodies that lie on each other met at some speed, too, and cost nothing more. */
+/* An impact is followed well if the errors of a step are small beside the speed at which the bodies meet and beside the interference
+ * that follows from it, and not beside numbers that are the same for all impacts (docs/theory/numerics.md#impacts). So while a roller
+ * may meet its pocket within the next steps, or touches it, the tolerances of roller and cage are multiplied by a factor: a share of
+ * that speed over the absolute tolerance of velocities, or of that interference over the absolute tolerance of positions, whichever is
+ * less, between a least factor and 1. The speed is the largest since they met, as it passes through zero during contact. */
 #include "stepping/impact.h"
 
 #include <math.h>
@@ -47,8 +47,8 @@ static double closing_speed(const trb_roller_pose *r, const trb_cage_pose *cage)
   return trb_norm(trb_sub(r->v, trb_turn_z(pocket, r->cosine, -r->sine)));
 }
 
-/* Interference that a roller and the cage reach when they meet: speed over the frequency of both on a linear spring, as stiff as the flank's
- * contact is at a micrometre. */
+/* Largest interference of a roller and the cage that meet at a speed: that speed over the natural frequency of both masses on a linear
+ * spring, which is as stiff as the contact of a flank is at an interference of 1 um. */
 static double interference_of(const trb_model *m, const trb_pair *pair, double speed)
 {
   const double roller = m->geometry.roller_mass, cage = m->params.cage_mass, stiffness = pair->stiffness(m, 1e-6);

@@ -1,4 +1,4 @@
-/* Tolerances of bodies that are about to hit each other, or do: smaller where the impact is gentle. */
+/* Tolerances of a roller and the cage that are about to hit each other or are in contact: smaller where the impact is gentle. */
 #ifndef TRB_STEPPING_IMPACT_H
 #define TRB_STEPPING_IMPACT_H
 
@@ -6,8 +6,8 @@
 
 /* Speeds at which rollers met their pockets. */
 typedef struct trb_impacts {
-  double *speed;  /* of each roller and its pocket when they met, or would if they met now, m/s; INFINITY: they are apart */
-  double *factor; /* of the absolute tolerances: a roller each, then the cage */
+  double *speed;  /* of each roller relative to its pocket: when they met, or now if they are about to, m/s; INFINITY: they are apart */
+  double *factor; /* of the tolerances: one for each roller, then that of the cage */
 } trb_impacts;
 
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message);
@@ -20,7 +20,7 @@ typedef struct trb_impact_measure {
   double velocity, position; /* absolute tolerances, m/s and m */
 } trb_impact_measure;
 
-/* Factors for a step of a length from a state on. */
+/* Computes the factors for a step of a given length that starts at a state. */
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
                       const trb_impact_measure *measure);
 

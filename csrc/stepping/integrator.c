@@ -20,7 +20,7 @@ static double speed_share(const trb_integrator *it, double shaft_speed)
   return trb_min(1.0, it->settings.slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
 }
 
-/* Quadratures are integrated along, but do not control the step. */
+/* Tolerances by kind of entry. Quadratures and spin angles are integrated beside the motion but do not control the step. */
 void trb_integrator_set_tolerances(trb_integrator *it)
 {
   const trb_settings *s = &it->settings;

@@ -1,4 +1,4 @@
-/* Integrators: a struct of functions. A kind is one file; trb_integrator_kinds lists them. */
+/* Integrators. A kind of integrator is a struct of functions, in a file of its name; trb_integrator_kinds lists them. */
 #ifndef TRB_STEPPING_INTEGRATOR_H
 #define TRB_STEPPING_INTEGRATOR_H
 
@@ -14,15 +14,15 @@
   X(atol_spin,      1e-3,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
   X(max_order,      2,     1,     5,    "highest order of BDF") \
   X(erk_order,      5,     2,     8,    "order of the explicit method") \
-  X(rings_age,      1e-2,  0,     1e3,  "bearing time after which the rings' part of the Jacobian is evaluated anew, s") \
-  X(rings_uses,     20,    1,     1e6,  "Jacobians after which the same is done") \
-  X(rings_share,    0.1,   0,     1,    "share of the step's tolerance that forces of raceways and ribs may be off between exact evaluations") \
-  X(jacobian_every, 51,    1,     1e6,  "most steps between evaluations of the pockets' part of the Jacobian") \
+  X(rings_age,      1e-2,  0,     1e3,  "bearing time after which the part of the Jacobian from raceways and ribs is computed again, s") \
+  X(rings_uses,     20,    1,     1e6,  "number of Jacobians after which that part is computed again") \
+  X(rings_share,    0.1,   0,     1,    "share of a step's tolerance by which forces of raceways and ribs may be wrong between exact evaluations") \
+  X(jacobian_every, 51,    1,     1e6,  "most steps between evaluations of the part of the Jacobian from pockets") \
   X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \
   X(newton_share,   0.1,   1e-6,  1,    "share of the step's tolerance to which the equations of a step must hold") \
   X(newton_iterations, 6,  2,     12,   "most iterations of Newton's method before it is given up") \
-  X(margin_share,   0.5,   0,     0.9,  "share of a contact's distance from its onset or end that a tangent may be followed for") \
-  X(slip_share,     1e-3,  0,     0.1,  "share of the mean rolling speed that a roller may slip away while a tangent is followed") \
+  X(margin_share,   0.5,   0,     0.9,  "share of a contact's interference or gap that may be used up while a tangent is followed") \
+  X(slip_share,     1e-3,  0,     0.1,  "share of the mean rolling speed by which a roller's slip may change while a tangent is followed") \
   X(slow_share,     10,    1e-3,  1e6,  "absolute tolerances of velocities are at most this times rtol times the mean rolling speed") \
   X(impact_share,   0.03,  1e-4,  1e3,  "share of an impact's speed and interference that roller and cage may be off in a step") \
   X(impact_least,   4e-3,  1e-6,  1,    "smallest factor of their absolute tolerances for that") \
@@ -100,7 +100,7 @@ struct trb_integrator {
   void                      *self;     /* of the kind */
 };
 
-/* A time that no run reaches, s. */
+/* A time later than the end of any run, s. */
 #define TRB_NEVER 1e30
 
 extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk;

@@ -1,4 +1,4 @@
-/* Explicit Runge-Kutta methods of ARKODE, for cross-checks: no Jacobian, no Newton, another formula for everything. */
+/* Explicit Runge-Kutta methods of ARKODE, for cross-checks. They need neither Jacobian nor Newton's method, and all forces are exact. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,5 +1,6 @@
 /* Backward differentiation formulas of CVODE, with the structured Jacobian. Above order 2 the formulas are unstable near the imaginary
- * axis, where the lightly damped contact modes lie (35 kHz), and the step is pinned: the standard limit is 2. */
+ * axis, where the lightly damped vibrations of contacts lie (35 kHz); the integrator would have to resolve them with small steps. So the
+ * highest order is 2 unless a user asks for more (docs/theory/numerics.md#why-bdf-of-order-2). */
 #include <math.h>
 #include <stdlib.h>
 
@@ -22,7 +23,7 @@ typedef struct bdf {
   trb_statistics     before;    /* totals up to the last restart */
   double             smallest;  /* smallest step, s */
   double             filled_at; /* end of the last step when the Jacobian was last evaluated, s */
-  int                uses;      /* Jacobians that the rings' part has served since it was evaluated */
+  int                uses;      /* Jacobians that used the part of the rings since it was computed */
 } bdf;
 
 static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
@@ -46,8 +47,9 @@ static int weights(N_Vector y, N_Vector out, void *data)
 static void fill(const trb_integrator *it, double time, const double *y, trb_arrow *arrow)
 {
   bdf *self = it->self;
-  /* the rings' part anew: when it is old or has served often, when Newton's method failed with it before within this step, and always
-   * while speed or ring change or have just done so: an old stiff slope makes corrections so small that they seem to converge */
+  /* the part of the rings is computed again when it is old or was used often, when Newton's method failed with it within this step, and
+   * always while speed or ring change or have just done so: an old slope that is too stiff makes corrections so small that they seem to
+   * converge */
   const double made = self->jacobian->tangents->time;
   const int    again = it->time == self->filled_at && made < it->time;
   const int    old = fabs(time - made) > it->settings.rings_age || self->uses >= it->settings.rings_uses;
@@ -58,8 +60,8 @@ static void fill(const trb_integrator *it, double time, const double *y, trb_arr
   trb_jacobian_fill(self->jacobian, time, y, fresh, arrow);
 }
 
-/* The matrix stays the Jacobian: the solver makes I - gamma J as it reads it. usable: the Jacobian need not be filled anew;
- * SUNDIALS has had two names for its int of two values. */
+/* The matrix holds the Jacobian J; the solver forms I - gamma J when it reads it. usable: the Jacobian need not be computed again. Its
+ * type is int, as its name in SUNDIALS differs between versions. */
 static int linear_system(sunrealtype time, N_Vector y, N_Vector fy, SUNMatrix matrix, int usable, int *filled, sunrealtype gamma,
                          void *data, N_Vector a, N_Vector b, N_Vector c)
 {
@@ -176,7 +178,7 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   trb_statistics so_far;
   read_totals(it, &so_far);
   self->before = so_far;
-  /* nothing is carried over a restart: what follows depends on time and state alone */
+  /* what was learned is forgotten, so that what follows depends on time and state alone */
   self->filled_at = -INFINITY;
   self->uses = 0;
   trb_tangents_forget(self->jacobian->tangents);
@@ -190,7 +192,7 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
 {
   bdf        *self = it->self;
   sunrealtype reached = it->time, step = 0.0;
-  /* set anew at every step: far away where nothing changes any more */
+  /* set at every step; far away where the prescribed motion changes no more */
   const double stop = trb_motion_stop(it->motion, it->time);
   if (it->motion->n > 1) CHECK(CVodeSetStopTime(self->memory, fmin(stop, TRB_NEVER)));
   CHECK(CVodeGetCurrentStep(self->memory, &step));

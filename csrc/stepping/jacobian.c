@@ -34,7 +34,7 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   free(jacobian);
 }
 
-/* What a load adds to the rates of a roller. */
+/* Rates of a roller that a load gives. */
 static void roller_response(const trb_dynamics *d, int roller, const trb_wrench *load, double *rates)
 {
   memset(rates, 0, TRB_NR * sizeof *rates);
@@ -46,12 +46,13 @@ static void cage_rates(const trb_dynamics *d, const double *y_cage, const trb_wr
   trb_cage_rates(d->model, &d->drive, &d->cage, y_cage, load, rates);
 }
 
-/* Change of the cage's loads with each of its coordinates. */
+/* Slopes of the cage's loads with each of its coordinates. */
 typedef struct cage_loads {
   trb_wrench by[TRB_NC];
 } cage_loads;
 
-/* What a fast pair in contact adds to its roller's block, to both borders, and to the cage's loads. still: rates of a cage without loads. */
+/* Adds what a fast pair in contact gives to its roller's block, to both borders and to the slopes of the cage's loads. still: rates of the
+ * cage without loads. */
 static void add_fast(const trb_dynamics *d, int j, const trb_coupling *k, const double *y_cage, const double *still, trb_arrow_block *block,
                      trb_arrow_border *border, cage_loads *sums)
 {
@@ -71,7 +72,7 @@ static void add_fast(const trb_dynamics *d, int j, const trb_coupling *k, const 
   }
 }
 
-/* The cage's block by differences of its rates under a load, which changes with its coordinates. */
+/* The block of the cage, by differences of its rates under a load that itself changes with its coordinates. */
 static void cage_block(trb_jacobian *jac, const double *y, const trb_wrench *load, const cage_loads *changes, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;

@@ -1,8 +1,9 @@
-/* Jacobian of the right-hand side.
+/* Jacobian of the right-hand side (docs/theory/numerics.md#jacobian).
  *
- * It is the sum of two parts. Slow pairs: what they do to each roller, and the roller's own inertia, by differences; it changes slowly and
- * costs one evaluation of these pairs a column, for all rollers at once. Fast pairs: it changes with every impact; only rollers that touch
- * have it, and it comes with their evaluation. Both are kept apart, and the first is reused until it is old or Newton's method fails. */
+ * It is the sum of two parts that change at different rates. The part of the slow pairs is what they and inertia do to each roller. It
+ * changes slowly and is computed by differences: one evaluation of these pairs for each coordinate, with all rollers moved at once. It is
+ * reused until it is old, or until a second Jacobian is asked for within one step. The part of the fast pairs changes with each impact.
+ * Only rollers that touch have it, and its slopes are computed in closed form together with the forces. */
 #ifndef TRB_STEPPING_JACOBIAN_H
 #define TRB_STEPPING_JACOBIAN_H
 
@@ -10,16 +11,16 @@
 #include "stepping/tangent.h"
 
 typedef struct trb_jacobian {
-  trb_dynamics *d;        /* of its own, so that poses of the integration stay */
-  trb_tangents *tangents; /* the part of the rings */
-  double       *moved;    /* state with a difference */
+  trb_dynamics *d;        /* not that of the integration, whose poses must stay */
+  trb_tangents *tangents; /* they hold the part of the rings */
+  double       *moved;    /* scratch: a state with one coordinate moved */
   long          rings_evaluations;
 } trb_jacobian;
 
 trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message);
 void       trb_jacobian_free(trb_jacobian *jacobian);
-/* fresh: evaluate the rings' part anew, too. */
+/* fresh: compute the part of the rings again, too. */
 void trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
 
 #endif

@@ -1,30 +1,31 @@
-/* Newton's method with a test of the equations themselves.
+/* Newton's method with a test of the equations themselves (docs/theory/numerics.md#newtons-method).
  *
- * An implicit step solves y = a + gamma f(y). The usual test looks at the size of the last correction -M^-1 F, with F = y - a - gamma f(y) and
- * M = 1 - gamma J. In a rolling contact M holds slopes of friction of 1e5 to 1e9 1/s: where the true slope is smaller than the one in M (a
- * roller that slips, oil that yields), corrections are far below every tolerance although the equations are not fulfilled at all. Such a
- * step is not one of the method; the error test does not see it, and the forces of the next steps make energy.
+ * An implicit step solves y = a + gamma f(y). The usual test looks at the size of the last correction -M^-1 F, with F = y - a - gamma f(y)
+ * and M = 1 - gamma J. In a rolling contact M holds slopes of friction of 1e5 to 1e9 1/s: where the true slope is smaller than the one
+ * in M (a roller that slips, oil that yields), corrections are far below every tolerance although the equations are not fulfilled at
+ * all. Such a step is not a step of the method; the error test does not see it, and the forces of the next steps make energy.
  *
- * Here a step is accepted only if F itself, before the last correction, is below the tolerance of Newton's method. F is what the step lacks in
- * velocity because forces and accelerations do not balance. For forces that do not increase with speed, |error of y| <= |F| holds however
- * stiff they are (Dahlquist 1979; Hairer and Wanner, Solving ODEs II, IV.12), so nothing else has to be known about J. Where friction falls
- * with slip (boundary friction beyond 1 %) the bound is weaker by the step times that slope.
+ * Here a step is accepted only if F itself, before the last correction, is below the tolerance of Newton's method. F is what the step
+ * lacks in velocity because forces and accelerations do not balance. For forces that do not increase with speed, |error of y| <= |F|
+ * holds however stiff they are (Dahlquist 1979; Hairer and Wanner, Solving ODEs II, IV.12), so nothing else has to be known about J.
+ * Where friction falls with slip (boundary friction beyond 1 %) the bound is weaker by the step times that slope.
  *
- * F must also have fallen by a correction, or be negligible. Else a slope that is too large leaves nearly all of it in every step: steps of
- * nanoseconds then carry the same error on for ever, each of them within the tolerance.
+ * F must also have fallen by a correction, or be negligible. Else a slope that is too large leaves nearly all of it in every step: steps
+ * of nanoseconds then carry the same error on for ever, each of them within the tolerance.
  *
  * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
- * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and two
- * points between which the plain method would jump for ever are left. */
+ * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
+ * two points between which the plain method would jump for ever are left. */
 #include "stepping/newton.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Largest share of a correction that the next one may keep of it before it is prolonged no further: at most 1/(1 - most_kept) times. */
+/* Largest share of the last correction that the next one may repeat before it is prolonged no further: by 1/(1 - most_kept) at most. */
 static const double most_kept = 0.95;
-/* Share of the tolerance below which what the equations lack needs no second look; else it must have fallen to this share by a correction. */
+/* What the equations lack is accepted below the first share of the tolerance; else it must also have fallen to the second share by a
+ * correction. */
 static const double negligible = 0.1, contraction = 0.3;
 /* A correction that grows beyond this multiple of the first one diverges. */
 static const double divergence = 1e3;
@@ -60,7 +61,10 @@ static double product(int n, const double *a, const double *b, const double *wei
   return sum;
 }
 
-/* Broyden's correction in place of the plain one; m: how many were taken before. Kept for the next. */
+/* Turns the plain correction into that of Broyden's method and stores it; m: number of corrections that were taken before. Broyden's
+ * update of M^-1 is a matrix of rank one for each correction s_j, so it is applied without any matrix: with k_j = (s_j . delta)/(s_j .
+ * s_j), delta is replaced by delta + k_j s_(j+1) for each earlier correction, and by delta/(1 - k_j) for the last one. The products are
+ * those of the weighted entries. */
 static void improve(newton *self, int m, const double *weight, double *delta)
 {
   const int n = self->n;

@@ -11,9 +11,9 @@ enum { TRB_NEWTON_MOST = 12 }; /* iterations at most */
 /* like: a vector of the state's length. NULL if out of memory. */
 SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, SUNContext context);
 
-/* Whether the last step that was tried did not converge. */
+/* Whether the last solve failed. */
 int trb_newton_troubled(SUNNonlinearSolver solver);
-/* Nothing is carried over to the next step. */
+/* Forget whether the last solve failed. */
 void trb_newton_forget(SUNNonlinearSolver solver);
 
 #endif

@@ -10,12 +10,12 @@ typedef struct trb_simulation {
   const trb_model  *model;
   const trb_motion *motion;
   trb_dynamics     *dynamics; /* of the integration */
-  trb_dynamics     *onlooker; /* of records and looks from outside */
+  trb_dynamics     *onlooker; /* of records and of what users ask about states, so that the integration is not disturbed */
   trb_integrator    integrator;
   trb_detail       *detail;
   double           *between;  /* state at an output time */
   double            previous; /* start of the last step, s */
-  trb_peaks        *peaks;    /* NULL: nobody wants them */
+  trb_peaks        *peaks;    /* NULL: not asked for */
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */
@@ -33,7 +33,7 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message);
 /* The state at an instant of the last step. */
 trb_status trb_simulation_state_at(trb_simulation *s, double time, double *y, trb_message *message);
 
-/* Keep peaks from an instant of the last step on, or no more. */
+/* Start to keep peaks from an instant of the last step on; end it. */
 trb_status trb_simulation_begin_peaks(trb_simulation *s, double time, trb_message *message);
 void       trb_simulation_end_peaks(trb_simulation *s);
 /* Go on with peaks that were saved at this simulation's time: length numbers. */
@@ -42,8 +42,8 @@ trb_status trb_simulation_restore_peaks(trb_simulation *s, const double *saved, 
 /* Length of a row of records: a record, and after it a row of peaks if they are kept. */
 int trb_simulation_row(const trb_simulation *s);
 
-/* Steps until every one of n increasing times is passed, at most max_steps, none from the first step's end at or after stop_after on; a
- * row a time. Output times never change the steps. */
+/* Steps until all of n increasing times are passed, at most max_steps, and no more after the first step that ends at or after
+ * stop_after. Writes one row of records for each time. Output times never change the steps. */
 trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
                               long *steps, trb_message *message);
 

@@ -8,16 +8,18 @@
 
 const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
-/* Turn of the frame that counts as one tolerance, and by which slopes in it are evaluated, rad. */
+/* Turn of the frame R that counts as one tolerance, and turn by which slopes over it are computed, rad. */
 static const double turn_unit = 1e-3, turn_difference = 1e-5;
-/* Evaluations that origins must serve in the mean, or the present one must have, for its tangent to be used; the last one's weight in the mean. */
+/* A tangent is used if its origins were good for this many evaluations in the mean, or the present one for that many; weight of the last
+ * origin in the mean. */
 static const double enough = 3.0, enough_now = 9.0, newest = 0.2;
-/* Error in its powers that a tangent may have. */
+/* Error that a tangent may have in its powers, as a share of all power. */
 static const double power_share = 0.03;
-/* Reaches: least, largest; growth and decline at once; distance beyond which a tangent learns nothing. */
+/* Reach: smallest, first and largest value; largest growth and decline in one change; factor of caution; distance beyond which the
+ * slopes are not corrected. */
 static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
 
-/* Sliding and damping never give energy: beside zero, where their powers curve most, a tangent may. */
+/* Losses by sliding and damping are never negative. Near zero, where they curve most, a tangent could make them so: they are bounded. */
 static void set_bounds(trb_tangents *t)
 {
 #define SENSE(X, name, sense, text) TRB_SENSE_##sense,
@@ -112,7 +114,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
     differentiate(t, d, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
   trb_dynamics_pose(d, time, y);
-  /* slopes are good: tangents serve at once, from a small reach on */
+  /* these slopes are exact, so tangents are used at once, with a small reach */
   for (int j = 0; j < m->n_rollers && !t->has_slopes; j++) {
     t->rollers[j].reach = first_reach;
     t->rollers[j].usual = enough;
@@ -134,8 +136,8 @@ static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const doub
   r->per[TRB_TANGENT_TURN] = 1.0 / turn_unit;
 }
 
-/* What an error in the rates lacks in a step of the integrator, in tolerances: the same measure by which Newton's method tests its
- * equations. */
+/* Error of a step, in tolerances, that follows from an error in the rates: gamma times it, the measure of the test of Newton's method
+ * (stepping/newton.c). */
 static double step_error(const trb_tangent *r, const trb_tangent_measure *measure, const double *error)
 {
   const double gamma = measure->factors->gamma;
@@ -144,7 +146,7 @@ static double step_error(const trb_tangent *r, const trb_tangent_measure *measur
   return sqrt(sum);
 }
 
-/* An error in the powers over all that the roller turns over: what a stiff contact hides from the state shows in its work. */
+/* Error in the powers over all power of the roller. In a stiff contact an error may hardly move the state and still change the work. */
 static double power_error(const double *flow, const double *error)
 {
   double off = 0.0, all = 0.0;
@@ -155,8 +157,10 @@ static double power_error(const double *flow, const double *error)
   return off / (all + 1e-300);
 }
 
-/* An exact flow becomes the origin: slopes corrected along the step (Broyden 1965, Math. Comp. 19, 577, with the tolerances' metric), reach
- * set by the error that was found. */
+/* An exact flow becomes the origin. With s the step from the old origin, P the diagonal matrix of weights and e = flow - prediction, the
+ * slopes become L + e (P^2 s)^T/(s^T P^2 s) (Broyden 1965, Math. Comp. 19, 577, in the metric of the tolerances), so that they explain
+ * this flow. As the error grows with the square of the distance, the reach becomes the distance times the root of allowed over found
+ * error. */
 static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *y, double turn, const double *flow,
                   const double *margin)
 {

@@ -1,14 +1,20 @@
-/* Tangents of the rollers' flows under the forces of raceways and ribs: what the rings' part of the Jacobian is made of, and, where a
- * run allows it, what stands for these forces between their exact evaluations.
+/* Tangents of the forces of raceways and ribs (docs/theory/numerics.md#tangents-of-raceway-and-rib-forces).
  *
- * Each roller has a tangent of its own. It is exact at an origin and is used within a distance about it, its reach. An evaluation beyond
- * the reach is exact; it becomes the origin, corrects the slopes along the way that was gone (Broyden's update), and the error that it finds
- * sets the reach, so that the error stays near a given share of a step's tolerance. A tangent that would be used too seldom is not used at
- * all: each new origin puts a small step into the forces, which costs the integrator more than it saves.
+ * Nearly all computing time goes into films and friction of raceways and ribs, whose forces change smoothly. So these contacts are
+ * evaluated exactly only now and then, and in between their effect is taken from a linear approximation: for each roller, its flow (its
+ * part of the right-hand side: 11 rates, the rate of its spin angle and its powers in the energy audit) as a function of its 11
+ * coordinates and of the angle of the frame R. The same slopes are the part of the Jacobian that belongs to raceways and ribs.
  *
- * What was learned in one direction says little of another, and a tangent knows nothing of gaps and of oil that yields. So two bounds hold
- * whatever the reach is. No contact with a raceway or a rib can begin or end while a tangent is followed: motion/margin.h proves it, with
- * room to spare. And a roller slips away from the origin by no more than a share of its rolling speed, within which friction is linear. */
+ * A tangent is exact at one point, its origin. Distances from it are measured in tolerances of the integrator, and the tangent is used
+ * up to a distance that is called its reach. Beyond it the contacts are evaluated exactly. That point becomes the new origin; the error
+ * of the prediction there corrects the slopes along the step that was made (Broyden's update) and sets the new reach, so that errors
+ * stay near a given share of a step's tolerance. A tangent that would be used for a few evaluations only is not used: each new origin
+ * puts a small jump into the forces, and such jumps cost the integrator more than the tangent saves.
+ *
+ * An error that was measured in one direction says little about another direction, and a tangent cannot foresee that a contact begins or
+ * ends or that the oil yields. Two more bounds therefore hold, whatever the reach is. While a tangent is followed no contact with a
+ * raceway or a rib can begin or end; motion/margin.h proves that. And the roller's slip changes by at most a share of its rolling speed,
+ * within which friction is linear. */
 #ifndef TRB_STEPPING_TANGENT_H
 #define TRB_STEPPING_TANGENT_H
 
@@ -16,59 +22,61 @@
 #include "motion/rhs.h"
 #include "stepping/arrow.h"
 
-/* Place of the frame's angle in an origin. */
+/* Index of the angle of the frame R in an origin. */
 enum { TRB_TANGENT_TURN = TRB_NR };
 _Static_assert(TRB_TANGENT_IN == TRB_NR + 1 && (int)TRB_FLOW_ROOM == (int)TRB_TANGENT_OUT,
                "room for a roller's state, an angle and its flow");
 
 typedef struct trb_tangent {
-  double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, corrected */
-  double found[TRB_NR][TRB_NR];                  /* rates' slopes as differences gave them, column by column */
+  double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, with Broyden's corrections */
+  double found[TRB_NR][TRB_NR];                  /* slopes of the rates as differences gave them, column by column */
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
-  double per[TRB_TANGENT_IN]; /* what measures distances: one over the tolerances there, so that the sum of squares is their mean */
+  double per[TRB_TANGENT_IN]; /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
   double reach;               /* distance up to which it is used */
   double margin[TRB_N_PAIRS]; /* of the contacts at the origin, m */
-  double usual;               /* evaluations that an origin is used for, running mean */
-  int    served;              /* by this origin */
+  double usual;               /* for how many evaluations an origin is used: running mean */
+  int    served;              /* for how many this one was */
   int    known;               /* 0: there is no origin */
 } trb_tangent;
 
 typedef struct trb_tangents {
   const trb_model *model;
   trb_tangent     *rollers;
-  double           least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT]; /* lower bounds of flows that are followed, and none */
+  double           least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT]; /* lower bounds of a flow that follows a tangent; no bounds */
   const struct trb_tangent_measure *measure;                          /* of the evaluation under way */
   int                               under_way;                        /* the prescribed motion is: everything is exact */
-  int                              *beyond;                           /* scratch: whether a roller is beyond its reach */
+  int                              *beyond;                           /* scratch: whether a bound of the tangent is passed */
   trb_margin_arms                   arms;                             /* what bounds the change of an interference */
   double                            time;                             /* at which slopes were last evaluated, s */
   int                               has_slopes;                       /* whether they were at all */
 } trb_tangents;
 
-/* What the error of a tangent is measured with. */
+/* Limits of a tangent, and what its error is measured with. */
 typedef struct trb_tangent_measure {
-  const double            *relative, *scale; /* tolerances, an entry of the state each */
-  const trb_arrow_factors *factors;          /* of the integrator's last linear system; an error in rates is one in the state by it */
+  const double            *relative, *scale; /* tolerance of each entry of the state */
+  const trb_arrow_factors *factors;          /* of the last linear system: its gamma turns an error of rates into one of a step */
   double                   share;            /* of the step's tolerance that an error may be */
   double                   margin_share;     /* of the margins that a roller may use up */
   double                   slip_share;       /* of the mean rolling speed that a roller may slip away */
 } trb_tangent_measure;
 
-/* Differences by kind of entry: small beside what curves the laws (micrometres of interference, 1e-4 of slip), large beside rounding. */
+/* Steps of the differences, by kind of entry: small beside the scale on which the laws curve (micrometres of interference, a slip of 1e-4)
+ * and large beside rounding. */
 extern const double trb_difference[TRB_N_TOLERANCES];
 
 trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message);
 void       trb_tangents_free(trb_tangents *tangents);
 /* Forget origins, reaches and slopes. */
 void trb_tangents_forget(trb_tangents *tangents);
-/* Slopes anew by differences about a state whose poses d holds; moved: scratch as long as a state. */
+/* Computes all slopes by differences about a state whose poses d holds; moved: scratch as long as a state. */
 void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const double *y, double *moved);
 
-/* Column of a roller's block of the Jacobian: of its tangent if that is used, else as differences gave it. */
+/* Column of a roller's block of the Jacobian: from its tangent if that is in use, else as differences gave it. */
 const double *trb_tangents_column(const trb_tangents *tangents, int roller, int column);
 
-/* Right-hand side with tangents in place of the rings' forces where they serve; exact where the prescribed motion is under way. */
+/* Right-hand side with tangents in place of the forces of raceways and ribs where their bounds allow it. All forces are exact while the
+ * prescribed motion changes. */
 void trb_tangents_derivative(trb_tangents *tangents, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,
                              double *rates);
 

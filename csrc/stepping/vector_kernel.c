@@ -1,4 +1,4 @@
-/* The operations of SUNDIALS' serial vector that a step is full of, compiled once an instruction set as the other kernels are. */
+/* The operations of SUNDIALS' serial vector that take most of the time of a step, compiled once for each instruction set. */
 #include <math.h>
 
 #include "stepping/blocks.h"
@@ -50,8 +50,9 @@ static double mean_square(const double *value, const double *weight, int n)
   return sum / n;
 }
 
-/* The largest root mean square of a body. The mean over all entries would let a single roller, or the cage that hits its rollers, be wrong
- * by the root of the number of bodies times the tolerance. The tail of the state controls nothing. Not a number stays so. */
+/* The largest root mean square of a body. The mean over all entries would let a single roller, or the cage that hits its rollers, be
+ * wrong by the root of the number of bodies times the tolerance. The tail of the state controls nothing. If an entry is not a number
+ * (NaN), so is the norm. */
 static sunrealtype norm_of_bodies(N_Vector x, N_Vector w)
 {
   const double *value = N_VGetArrayPointer(x), *weight = N_VGetArrayPointer(w);

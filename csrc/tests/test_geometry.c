@@ -69,7 +69,7 @@ static void test_what_does_not_fit(void)
   fails(p, "n_rollers = 19: rollers of 0.014 m overlap");
   p = rig_params();
   p.cup_half_angle = 0.5, p.rib_contact_height = 0.0149, p.sphere_ratio = 0.05;
-  fails(p, "does not reach it");
+  fails(p, "does not touch the rib there");
   p = rig_params();
   p.sphere_ratio = 0.05;
   fails(p, "rib_contact_height");

@@ -3,7 +3,6 @@
 #include "stepping/jacobian.h"
 
 #include <stdlib.h>
-#include <stdio.h>
 
 #include "check.h"
 #include "rig.h"
@@ -63,16 +62,6 @@ static void compare(const trb_model *m, double tolerance)
     double largest = 0.0, off = 0.0;
     for (int c = 0; c < n; c++) {
       largest = fmax(largest, fabs(dense[i][c]));
-      {
-        double o = fabs(found[i][c] - dense[i][c]);
-        if (tolerance < 0.05 && getenv("TJ")) {
-          double lg = 0;
-          for (int q = 0; q < n; q++) lg = fmax(lg, fabs(dense[i][q]));
-          if (o > tolerance * lg + 1e-9)
-            printf("row %d (%d) col %d (%d) found %g dense %g row max %g\n", body_of(m, i), i < 132 ? i % 11 : i - 132, body_of(m, c),
-                   c < 132 ? c % 11 : c - 132, found[i][c], dense[i][c], lg);
-        }
-      }
       off = fmax(off, fabs(found[i][c] - dense[i][c]));
       if (body_of(m, i) != body_of(m, c) && body_of(m, i) < m->n_rollers && body_of(m, c) < m->n_rollers) CHECK(dense[i][c] == 0.0);
     }

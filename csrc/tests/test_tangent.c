@@ -203,7 +203,7 @@ static void test_bounds(const trb_params *params)
   close_bench(&b);
 }
 
-/* Between two knots of the motion everything is exact, to the bit; after them tangents begin anew. */
+/* Between two knots of the motion everything is exact, to the bit; after them new tangents are made. */
 static void test_under_way(const trb_params *params)
 {
   bench  b;
@@ -228,7 +228,7 @@ static void test_under_way(const trb_params *params)
   close_bench(&b);
 }
 
-/* A tangent that an evaluation or two leave behind is not used; one that serves long is, after a while. */
+/* A tangent that is left after one or two evaluations is not used; one that is good for many is used after a while. */
 static void test_seldom(const trb_params *params)
 {
   bench     b;

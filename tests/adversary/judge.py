@@ -34,6 +34,8 @@ MOST_STEPS_UNTIL_STOP = 250_000
 """Steps of a run that seems to hang, within which the program has to end it."""
 PATIENCE_S = 60.0
 """Processor time after which a run is given up."""
+PATIENCE_UNTIL_STOP_S = 300.0
+"""The same of a run that seems to hang."""
 SMALLEST_STEP = 2e-8
 """Mean step below which a run hangs (s): a thousandth of the period of a contact's vibration, 35 kHz."""
 
@@ -43,6 +45,9 @@ LOSS = 0.05
 """Largest difference of the loss from that of the tight run, of the larger of both."""
 SLIP = 0.02
 """Largest difference of the mean speed of the rollers from that of the tight run, over the kinematic speed."""
+
+LEAST_PATH = 10.0
+"""Path of the rollers over which their mean speed is judged at least, in circumferential plays of a pocket."""
 
 
 @dataclass
@@ -98,7 +103,10 @@ def judge(table: Table) -> Verdict:
         return verdict
     if run.mean_step < SMALLEST_STEP and run.time < duration:
         verdict.run = run = bounded_run(
-            trb.Simulation(scene, accuracy=sim.options.accuracy), duration, MOST_STEPS_UNTIL_STOP
+            trb.Simulation(scene, accuracy=sim.options.accuracy),
+            duration,
+            MOST_STEPS_UNTIL_STOP,
+            patience=PATIENCE_UNTIL_STOP_S,
         )
         if run.status != "ended" and run.mean_step < SMALLEST_STEP:
             verdict.status, verdict.broken = "hanging", [f"mean step {run.mean_step:.2g} s after {run.steps} steps"]
@@ -141,8 +149,8 @@ def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
         verdict.broken.append(f"speed of the rollers off by {speed:.2g}")
 
 
-def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
-    """Step for a time, at most a number of steps or `PATIENCE_S`."""
+def bounded_run(sim: trb.Simulation, duration: float, most_steps: int, *, patience: float = PATIENCE_S) -> Run:
+    """Step for a time, at most a number of steps or a processor time."""
     run = Run()
     first = sim.record()
     begin, turned, last = sim.time, 0.0, first
@@ -159,7 +167,7 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
                     most_steps = run.steps
                 if run.steps == most_steps // 2:
                     half = (sim.time, run.steps)
-                if run.steps % 256 == 0 and clock.process_time() - began > PATIENCE_S:
+                if run.steps % 256 == 0 and clock.process_time() - began > patience:
                     most_steps = run.steps
             if _look(watch, run, final=run.steps >= most_steps or look == looks[-1]):
                 most_steps = run.steps
@@ -180,8 +188,10 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int) -> Run:
     run.residual = _sum(last, "work_") - _sum(first, "work_") - (stored - _stored(first)) - run.loss
     run.turned_over, run.stored = turned, stored
     nominal = abs(float(sim.scene.bearing.geometry.cage_speed_ratio) * _speed(sim)) * run.time
-    # where the rollers hardly orbit, they still fall through their pockets: 1 mrad is a tenth of that
-    run.roller_speed = float(np.mean(last["roller_orbit_angle"] - first["roller_orbit_angle"])) / max(nominal, 1e-3)
+    # a roller may be anywhere in its pocket: a mean speed over less than some plays of the pocket says nothing of slip
+    bearing = sim.scene.bearing
+    least = LEAST_PATH * bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter)
+    run.roller_speed = float(np.mean(last["roller_orbit_angle"] - first["roller_orbit_angle"])) / max(nominal, least)
     if "cage_position" in last:
         run.cage = (float(last["cage_position"][0]), float(last["cage_position"][1]))
     return run

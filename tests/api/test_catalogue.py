@@ -201,3 +201,12 @@ def test_sensitivity_finds_what_matters() -> None:
         scene, lambda result: result.inner_torque.mean(), revolutions=0.3, paths=["cage.mass"]
     )
     assert by_function.value > 0
+
+
+def test_what_was_estimated_is_among_what_was_assumed():
+    bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43)
+    assert set(bearing.assumed) >= {entry.path for entry in bearing.estimated}
+    assert bearing.assumed["roller.diameter"] == bearing.roller.diameter
+    assert trb.Bearing.from_dict(bearing.to_dict()) == bearing
+    known = bearing.replace(roller=bearing.roller.replace(diameter=0.99 * bearing.roller.diameter))
+    assert "roller.diameter" not in known.assumed

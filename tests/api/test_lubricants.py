@@ -167,3 +167,13 @@ def test_change_of_a_number_leaves_the_oil() -> None:
     moved = vg100(60.0).replace(viscosity=0.05, temperature_c=80.0)
     assert moved.pressure_coefficient == vg100(80.0).pressure_coefficient
     assert vg100(60.0).replace(oil="vg220") == iso_vg(220, 60.0)
+
+
+@pytest.mark.parametrize("base", ["mineral", "synthetic"])
+def test_a_measured_alpha_holds_at_its_temperature(base: Any) -> None:
+    """Of every base: what was measured is not corrected by the base."""
+    oil = Oil(nu40=68.0, nu100=8.7, base=base, pressure_coefficient=1.6e-8, pressure_coefficient_c=60.0)
+    assert oil.at(60.0).pressure_coefficient == pytest.approx(1.6e-8)
+    estimated = Oil(nu40=68.0, nu100=8.7, base=base)
+    share = 1.0 if base == "mineral" else 0.75
+    assert estimated.at(60.0).pressure_coefficient == pytest.approx(share * wooster(oil.viscosity_at(60.0)))

@@ -261,7 +261,7 @@ class TestBearing:
         one_larger = rig.replace(roller=rig.roller.replace(diameter_deviation=[1e-6] + [0.0] * 11))
         assert flatten.diameter_deviation(cases.scene_30310(bearing=one_larger)).tolist() == [1e-6] + [0.0] * 11
         with pytest.raises(
-            InputError, match=r"bearing\.roller\.diameter_deviation = .*: must have one entry a roller: 12"
+            InputError, match=r"bearing\.roller\.diameter_deviation = .*: must have one entry for each roller, 12"
         ):
             rig.replace(roller=rig.roller.replace(diameter_deviation=[1e-6]))
 

@@ -158,3 +158,16 @@ def test_creep_time_of_any_scene() -> None:
             assert math.isnan(creep_time(scene))
     light, heavy = (creep_time(scene_30310(3000.0, load)) for load in (1230.0, 4930.0))
     assert light < 0.02 * heavy
+
+
+def test_bounds_of_a_rate() -> None:
+    """Two and three standard errors where there are many blocks; Student's factors where there are few."""
+    many = obs.drift(np.arange(4000.0), np.zeros(4000))
+    assert many.freedom == 10
+    for rate in (0.3, -0.3):
+        known = type(many)(mean=1.0, rate=rate, error=0.05, freedom=10**7)
+        assert known.bound == pytest.approx(0.3 + 2.0 * 0.05, rel=1e-3)
+        few = type(many)(mean=1.0, rate=rate, error=0.05, freedom=4)
+        assert few.bound == pytest.approx(0.3 + 2.869 * 0.05, rel=2e-3)
+    for rate, stands_out in ((0.155, True), (0.145, False), (-0.155, True), (-0.145, False)):
+        assert type(many)(mean=1.0, rate=rate, error=0.05, freedom=10**7).significant is stands_out

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from trbdyn import cases
+from trbdyn.bearing import Bearing
+from trbdyn.case_text import case_text
 from trbdyn.effects import Effects
 from trbdyn.errors import FileError, InputError
 from trbdyn.lubricants import vg100
@@ -232,3 +234,12 @@ class TestMistakes:
         broken.write_bytes(b"\xff\xfe")
         with pytest.raises(FileError, match="not a TOML file"):
             load_case(broken)
+
+
+def test_a_bearing_from_a_catalogue_is_written_whole(tmp_path):
+    """What was estimated does not follow from the size, so it is written as numbers."""
+    bearing = Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43)
+    scene = Scene(bearing, speed_rpm=1000.0, axial_load=5000.0, lubricant=vg100(temperature_c=60.0))
+    path = tmp_path / "own.toml"
+    path.write_text(case_text(scene, RunOptions(duration=0.01)))
+    assert load_case(path)[0].bearing.geometry == bearing.geometry

@@ -124,3 +124,39 @@ def test_steps_that_lead_nowhere_end_a_run():
     assert any("steps are" in text for text in found)
     assert reasons[0] is None
     assert reasons[-1] is not None
+
+
+def loose_scene(**effects: Any) -> trb.Scene:
+    """A 30310 held with 5 um of axial clearance: vibrate on their raceways."""
+    return trb.Scene(
+        trb.cases.rig_30310(),
+        speed_rpm=3000.0,
+        displacement=(0.0, 0.0, 5e-6),
+        lubricant=scene_30310().lubricant,
+        effects=trb.Effects.paper().replace(quadrature="gauss", n_slices=8, **effects),
+    )
+
+
+def test_rollers_that_bounce_without_damping_are_said():
+    """Losses are 9, 11, 22 and 31 W with finer and finer tolerances: the integration decides about the vibrations."""
+    with pytest.warns(trb.RunWarning, match="vibrate on their raceways"):
+        result = trb.Simulation(loose_scene()).run(duration=0.03)
+    assert result.success
+    assert any("effects.damping" in text for text in result.warnings)
+
+
+def test_the_damping_that_the_warning_names_makes_presets_agree():
+    losses = []
+    for accuracy in ("standard", "reference"):
+        scene = loose_scene(damping="hunt_crossley", damping_race=1.0, damping_cage=1.0)
+        result = trb.Simulation(scene, accuracy=accuracy).run(duration=0.03, save_every=1e-3)
+        names = [field.name for field in result.fields if field.name.startswith("loss_")]
+        losses.append(sum(float(result[name][-1] - result[name][10]) for name in names))
+    assert losses[0] == pytest.approx(losses[1], rel=0.1)
+
+
+@pytest.mark.parametrize("loads", [(1230.0, 0.0), (4930.0, 12_000.0)], ids=["light", "combined"])
+def test_rollers_that_carry_are_not_called_vibrating(loads):
+    """Not in the unloaded zone of a combined load, either: the others carry."""
+    result = trb.Simulation(scene_30310(2000.0, *loads), accuracy="reference").run(duration=0.03)
+    assert result.warnings == ()

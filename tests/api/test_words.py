@@ -99,3 +99,20 @@ def test_fields_that_a_result_has_not() -> None:
         _ = result.cage_positon
     with pytest.raises(InputError, match=r"did you mean .*whirl_radius"):
         result["whirl_radiu"]
+
+
+@pytest.mark.parametrize(
+    ("name", "group"),
+    [
+        ("power_split", "power"),
+        ("torque_by_loss", "power"),
+        ("torque_split", "torque"),
+        ("energy_audit", "energy"),
+        ("energy_balance", "energy"),
+        ("energy_closure", "energy"),
+    ],
+)
+def test_what_was_not_recorded_names_its_group(name, group):
+    result = trb.Simulation(trb.cases.scene_30310()).run(duration=1e-3, save_groups=("cage",))
+    with pytest.raises(trb.InputError, match=f"needs the group '{group}'"):
+        getattr(result, name)

@@ -11,19 +11,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from trbdyn import InputError, Simulation, cases
+from trbdyn import InputError, Simulation, Start, cases
+from trbdyn.bearing import Scatter
 from trbdyn.effects import Effects
-from trbdyn.estimate import estimate, table
+from trbdyn.estimate import _case, estimate, table
 from trbdyn.run_options import ACCURACY
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 PRESET_FIGURES = {"wall_s_per_revolution", "real_time_factor", "error_cage_over_cpr", "error_cage_over_cpr_worst"}
 
 
-def smoke(name: str, folder: Path) -> dict[str, Any]:
+def smoke(name: str, folder: Path, *more: str) -> dict[str, Any]:
     """What a script writes when it does the least."""
     path = folder / f"{name}.json"
-    command = [sys.executable, str(BENCHMARKS / f"{name}.py"), "--smoke", "--no-picture", "--json", str(path)]
+    command = [sys.executable, str(BENCHMARKS / f"{name}.py"), "--smoke", "--no-picture", "--json", str(path), *more]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=_environment())
     assert done.returncode == 0, done.stderr
     found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
@@ -38,8 +39,13 @@ def _environment() -> dict[str, str]:
 
 
 @pytest.fixture(scope="module")
-def work_precision(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    return smoke("work_precision", tmp_path_factory.mktemp("work_precision"))
+def made_table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("table") / "accuracy.json"
+
+
+@pytest.fixture(scope="module")
+def work_precision(tmp_path_factory: pytest.TempPathFactory, made_table: Path) -> dict[str, Any]:
+    return smoke("work_precision", tmp_path_factory.mktemp("work_precision"), "--make-table", str(made_table))
 
 
 def test_every_entry_is_described(work_precision: dict[str, Any]) -> None:
@@ -66,6 +72,82 @@ def test_stored_windows_are_long_enough(work_precision: dict[str, Any]) -> None:
     for window in work_precision["summary"]["windows"]["collision"]:
         assert window["window_s"] >= 4e-3
         assert window["impacts"] >= 10
+
+
+def test_stored_scenes() -> None:
+    sys.path.insert(0, str(BENCHMARKS))
+    try:
+        from accuracy import states
+    finally:
+        sys.path.remove(str(BENCHMARKS))
+    for name, definition in states.CASES.items():
+        case = states.load_case(name)
+        assert len(case.states) == len(case.windows) == 5
+        assert min(case.windows) >= definition.least_window - 1e-12
+        both = [states.at_state(scene, case.states[0]) for scene in (case.scene, states.scene_of(definition))]
+        stored, defined = (Simulation(scene).derivative() for scene in both)
+        assert np.allclose(stored, defined, rtol=1e-9, atol=1e-9 * np.abs(stored).max())
+    points = {(one.speed_rpm, one.axial_load, one.radial_load > 0.0) for one in states.CASES.values()}
+    wanted = {(3000.0, 1230.0), (3000.0, 20e3), (100.0, 4930.0), (10e3, 4930.0)}
+    assert points >= {(speed, load, False) for speed, load in wanted}
+
+
+def test_biases_of_presets_are_measured(work_precision: dict[str, Any]) -> None:
+    rows = [row for row in work_precision["results"] if row["sweep"] == "statistics"]
+    assert {row["name"] for row in rows} == {"tight", *ACCURACY}
+    for row in rows:
+        assert row["pocket_mean"] > 0.0
+        assert 0.0 < row["duty"] < 1.0
+        assert 0.0 <= row["energy_closure"] < 1e-2
+        for name in ("pocket_mean", "pocket_p95", "duty", "loss", "orbit") if row["preset"] else ():
+            assert np.isfinite(row[f"bias_{name}"])
+            assert row[f"bias_{name}_half_width"] > 0.0
+    tight = {row["name"]: row["loss"] for row in rows}
+    assert tight["standard"] / tight["tight"] - 1.0 == pytest.approx(
+        next(row["bias_loss"] for row in rows if row["name"] == "standard"), abs=1e-9
+    )
+
+
+def test_short_table_has_every_scene_and_preset(work_precision: dict[str, Any]) -> None:
+    found = {(row["case"], row["preset"]) for row in work_precision["results"] if row["sweep"] == "presets"}
+    assert found == {(case, preset) for case in work_precision["summary"]["scenes"] for preset in ACCURACY}
+
+
+def test_what_was_measured_is_written_when_it_ends_early(tmp_path: Path) -> None:
+    path = tmp_path / "early.json"
+    code = (
+        "import sys; import work_precision as w\n"
+        "def fail(*a): raise RuntimeError('power cut')\n"
+        "w.slices = fail\n"
+        f"w.main(['--smoke', '--no-picture', '--json', {str(path)!r}])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=BENCHMARKS, env=_environment()
+    )
+    assert done.returncode != 0
+    found = json.loads(path.read_text(encoding="utf-8"))
+    assert any("power cut" in note for note in found["notes"])
+    assert any(row["sweep"] == "presets" for row in found["results"])
+
+
+def test_makes_the_table_of_estimates(
+    work_precision: dict[str, Any], made_table: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import importlib
+
+    module = importlib.import_module("trbdyn.estimate")
+    monkeypatch.setattr(module, "TABLE", made_table)
+    module.table.cache_clear()
+    try:
+        sim = Simulation(cases.scene_30310(start=Start.whirl(0.9)), accuracy="standard")
+        found = sim.estimate(duration=1e-3)
+        assert found.case == "collision"
+        assert np.isfinite([found.error_cage_over_cpr, found.bias_contact_duty, found.bias_pocket_force]).all()
+        assert "contact duty" in str(found)
+        assert Simulation(cases.scene_30310(60.0)).estimate(duration=1e-4).case == "slow"
+    finally:
+        monkeypatch.undo()
+        module.table.cache_clear()
 
 
 def test_scaling(tmp_path: Path) -> None:
@@ -96,6 +178,33 @@ class TestEstimate:
         assert found.evaluations >= found.steps
         assert 0.0 <= found.error_cage_over_cpr <= found.error_cage_over_cpr_worst
         assert "of Cpr" in str(found)
+
+    @pytest.mark.parametrize(
+        ("fields", "case"),
+        [
+            ({"start": Start.whirl(0.9)}, "collision"),
+            ({}, "smooth"),
+            ({"radial_load": 2000.0}, "combined"),
+            ({"axial_load": 900.0}, "light"),
+            ({"axial_load": 30e3}, "heavy"),
+            ({"speed_rpm": 20.0}, "slow"),
+            ({"speed_rpm": -15e3}, "fast"),
+            ({"bearing": "unequal"}, "scatter"),
+        ],
+    )
+    def test_takes_the_scene_most_like_it(self, fields: dict[str, Any], case: str) -> None:
+        sys.path.insert(0, str(BENCHMARKS))
+        try:
+            from accuracy import states
+            from work_precision import operating_point
+        finally:
+            sys.path.remove(str(BENCHMARKS))
+        scenes = {name: operating_point(states.load_case(name)) for name in states.CASES}
+        bearing = cases.rig_30310()
+        if fields.get("bearing"):
+            roller = bearing.roller.replace(diameter_scatter=Scatter(range=1e-6, seed=3))
+            fields = {"bearing": bearing.replace(roller=roller)}
+        assert _case(Simulation(cases.scene_30310(**fields)), scenes) == case
 
     def test_refuses_nothing_to_do(self, sim: Simulation) -> None:
         with pytest.raises(InputError, match="revolutions"):

@@ -45,9 +45,13 @@ def test_pocket_statistics_are_those_of_all_steps(runs: dict[float, Result]) -> 
 
 def test_records_miss_what_peaks_see(runs: dict[float, Result]) -> None:
     samples = [runs[every].pocket_force.max() for every in EVERY]
-    peak = runs[EVERY[0]].peaks["pocket_force_peak"].max()
+    peaks = runs[EVERY[0]].peaks
+    peak = peaks["pocket_force_peak"].max()
     assert samples[0] < 0.5 * peak
-    assert samples[-1] == pytest.approx(peak, rel=0.05)
+    assert samples[-1] <= peak
+    when = float(peaks["pocket_force_peak_time"].flat[peaks["pocket_force_peak"].argmax()])
+    fine = Simulation(whirling()).run(duration=when + 1e-5, save_every=5e-7, save_groups=("pocket",))
+    assert fine.pocket_force.max() == pytest.approx(peak, rel=0.02)
 
 
 @pytest.mark.parametrize("every", EVERY)
@@ -84,6 +88,15 @@ SCENES = {
     "tilted": {"misalignment_x": 1e-3},
     "dry": {
         "effects": Effects.standard().replace(lubrication="dry", rolling_resistance=False, rolling_pressure_force=False)
+    },
+    "damped": {
+        "effects": Effects.standard().replace(
+            lubrication="dry",
+            rolling_resistance=False,
+            rolling_pressure_force=False,
+            damping="hunt_crossley",
+            damping_race=2.0,
+        )
     },
     "rollers": {"effects": Effects.standard().replace(bodies="rollers"), "start": trb.Start.equal()},
 }
@@ -126,6 +139,29 @@ def test_step_by_step(name: str) -> None:
         loaded = np.where(records[f"{side}_load"] > 0.0, records[f"{side}_film_parameter"], np.inf).min(axis=0)
         wanted = np.where(np.isfinite(loaded) & scene.effects.films, loaded, np.nan)
         np.testing.assert_allclose(found[f"{side}_film_parameter_min"], wanted, rtol=SHARE, err_msg=side)
+
+
+def test_rollers_thrown_at_the_front_rib_have_their_peaks() -> None:
+    sim = Simulation(scene_30310(3000.0, 4930.0, effects=Effects.standard().replace(front_rib=True)))
+    vector, geometry = sim.state.vector, sim.scene.bearing.geometry
+    state = sim.view(vector)
+    for roller in (2, 7):
+        state["roller_r"][roller] -= 3e-4 * np.sin(geometry.roller_axis_angle)
+        state["roller_z"][roller] -= 3e-4 * np.cos(geometry.roller_axis_angle)
+        state["roller_v_z"][roller] -= 0.3
+    sim.set_state(vector)
+    sim._core.begin_peaks(0.0)
+    rows = [sim.record()]
+    while sim.time < 1e-3:
+        sim.step()
+        rows.append(sim.record())
+    found = peak_table.from_row(sim._core.whole_peaks(sim.time), sim._model.peak_layout())
+    loads = np.array([row["front_rib_load"] for row in rows])
+    assert {*np.flatnonzero(loads.max(axis=0))} >= {2, 7}
+    np.testing.assert_allclose(found["front_rib_load_peak"], loads.max(axis=0), rtol=SHARE)
+    time = np.array([row["time"] for row in rows])
+    mean = np.trapezoid(loads, time, axis=0) / time[-1]
+    np.testing.assert_allclose(found["front_rib_load_mean"], mean, rtol=SHARE, atol=SHARE * loads.max())
 
 
 def test_nobody_pays_who_does_not_ask(kit: SimpleNamespace, tmp_path: Path) -> None:

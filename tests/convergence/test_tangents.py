@@ -89,7 +89,7 @@ def test_explicit_method_is_exact(kit: SimpleNamespace) -> None:
 
 
 def test_motion_under_way_is_exact(kit: SimpleNamespace) -> None:
-    """To the bit, and tangents serve once it has ended."""
+    """To the bit, and tangents are used once it has ended."""
     speed = trb.History(times=(0.0, 4e-3), values=(3000.0, 3100.0))
     runs = []
     for share in (0.0, None):

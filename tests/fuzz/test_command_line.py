@@ -170,7 +170,28 @@ def test_every_change_of_a_case(prepared: Path, command: str, change: str) -> No
     check([command, "rig_30310", "--set", change])
 
 
-@pytest.mark.parametrize("value", ODD)
+QUICK = (
+    "",
+    "..",
+    "-",
+    "\n",
+    "nul\0",
+    "保" * 100,
+    "1e400",
+    "nan",
+    "9" * 5000,
+    "deep.toml",
+    "folder",
+    "run.h5",
+    "pipe.h5",
+    "nothing",
+)
+"""Values that are tried in every place each time; the others are tried in all places by the slow tests, and at random by each."""
+
+
+@pytest.mark.parametrize(
+    "value", [value if value in QUICK else pytest.param(value, marks=pytest.mark.slow) for value in ODD]
+)
 def test_every_odd_value_in_every_place(prepared: Path, value: str) -> None:
     for command, options in OPTIONS.items():
         given = (

@@ -1,4 +1,4 @@
-"""Laws against other ways to the same number: SciPy's integrals, Hertz' theory solved anew, NumPy's nodes."""
+"""Laws against other ways to the same number: SciPy's integrals, Hertz' theory solved again, NumPy's nodes."""
 
 from __future__ import annotations
 
@@ -180,3 +180,16 @@ class TestQuadrature:
     @pytest.mark.parametrize("n", [1, 7, 24])
     def test_uniform(self, n: int) -> None:
         assert self.weights("uniform", n) == pytest.approx(19.8e-3 / n, rel=1e-14)
+
+
+@pytest.mark.parametrize("zm_over_amplitude", [0.1, 1.0, 3.0, 10.0])
+def test_logarithmic_profile_with_any_drop_at_its_end(zm_over_amplitude: float) -> None:
+    """Also where the drop at the end is small, so that both terms of the sum under the logarithm count along the whole end."""
+    length, k1, k2, load = 20e-3, 1.5, 0.4, 2000.0
+    amplitude = 2.0 * k1 * load / (np.pi * length * MODULUS)
+    zm = zm_over_amplitude * amplitude
+    for x in (0.01, 0.3, 0.7, 0.9, 0.99, 1.0):
+        y = 0.5 * length * (1.0 + k2 * (x - 1.0))
+        wanted = -amplitude * np.log(1.0 - (1.0 - np.exp(-zm_over_amplitude)) * x**2)
+        for side in (y, -y):
+            assert laws.profile_logarithmic(side, length, k1, k2, zm, load, MODULUS) == pytest.approx(wanted, rel=1e-9)

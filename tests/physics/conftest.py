@@ -1,4 +1,4 @@
-"""Scenes, random states and rigid-body sums that the tests of physics share; written anew, not read from the core."""
+"""Scenes, random states and rigid-body sums that the tests of physics share; not taken from the core."""
 
 from __future__ import annotations
 

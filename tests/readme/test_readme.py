@@ -1,4 +1,5 @@
-"""The README is true: every command and sample runs as written, from the checkout's root, without environment variables.
+"""The README and the pages that it sends its readers to are true: every command and sample runs as written, from the checkout's
+root, without environment variables. In the pages of the documentation `python` is that of the environment.
 
 The root is a copy of the checkout's files whose `.venv` is the environment that runs these tests, so that nothing is written
 into the checkout. Commands that run the tests, the checks of style, sanitizers, fuzzing or all benchmarks would run this file
@@ -19,9 +20,25 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = ("README.md", *(f"docs/{name}.md" for name in ("install", "validation", "promises", "design", "command_line")))
+SECTIONS = {
+    "README.md": (
+        "In Python",
+        "Your own bearing",
+        "What it can do, and what not",
+        "How fast, how accurate",
+        "Where to read on",
+    ),
+    "docs/install.md": ("From the checkout", "From a wheel", "Into another environment", "What was not tried"),
+    "docs/validation.md": ("What accuracy costs", "Friction torque beside measured values"),
+    "docs/promises.md": ("To the last bit", "No silent wrong answer"),
+    "docs/design.md": ("The folders",),
+    "docs/tutorials/reading_a_result.md": ("Words that are easily mixed up",),
+}
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+CELL = re.compile(r"^```\{.*?^```$", re.MULTILINE | re.DOTALL)  # code cells are run by tests/docs
 COMMAND = re.compile(r"`((?:\.venv/bin/|\.ci/|make |pip |python3? )[^`]*)`")
+LINK = re.compile(r"\]\(([^)#]+)[^)]*\)")
 
 WHOLE = {
     "make docs",
@@ -31,13 +48,23 @@ WHOLE = {
     "make bench",
     "make stability",
     "make fuzz",
+    "make adversary",
+    "make mutate",
     "make sanitize",
     ".ci/run",
     ".venv/bin/pytest",
 }
 INSTALLS = {"pip install .", "pip install -e ."}
-MINUTES = {".venv/bin/python benchmarks/work_precision.py", ".venv/bin/python benchmarks/peers.py --quick"}
-SHORTER = {".venv/bin/python benchmarks/work_precision.py": " --quick"}  # an option that the README names
+WHEEL = re.compile(r"pip install trbdyn-([\d.]+)-cp311-abi3-(manylinux_\d+_\d+)_x86_64\.whl")
+MINUTES = {
+    ".venv/bin/python benchmarks/work_precision.py",
+    ".venv/bin/python benchmarks/peers.py --quick",
+    "python -m trbdyn paper",
+}
+SHORTER = {  # options that the page or the command itself names
+    ".venv/bin/python benchmarks/work_precision.py": " --quick",
+    "python -m trbdyn paper": " --help",
+}
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
 PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"
 
@@ -46,15 +73,26 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def blocks(language: str) -> list[str]:
-    return [body for name, body in FENCE.findall(TEXT) if name == language]
+def text_of(page: str) -> str:
+    path = ROOT / page
+    return CELL.sub("", path.read_text(encoding="utf-8")) if path.is_file() else ""
 
 
-def commands() -> list[str]:
-    """Commands of the shell blocks and of the text, each once, in the order of the README."""
-    lines = [line.partition("#")[0].strip() for body in blocks("sh") for line in body.splitlines()]
-    outside = FENCE.sub("", TEXT)
-    return list(dict.fromkeys([line for line in lines if line] + COMMAND.findall(outside)))
+def blocks(language: str, pages: tuple[str, ...] = PAGES) -> list[str]:
+    return [body for page in pages for name, body in FENCE.findall(text_of(page)) if name == language]
+
+
+def commands(pages: tuple[str, ...] = PAGES) -> list[str]:
+    """Commands of the shell blocks and of the text, each once, in the order of the pages; not those with a place to fill in."""
+    lines = [line.partition("#")[0].strip() for body in blocks("sh", pages) for line in body.splitlines()]
+    outside = [command for page in pages for command in COMMAND.findall(FENCE.sub("", text_of(page)))]
+    return [
+        command for command in dict.fromkeys([line for line in lines if line] + outside) if "COMMAND" not in command
+    ]
+
+
+def is_wheel(command: str) -> bool:
+    return WHEEL.fullmatch(command) is not None
 
 
 def environment() -> dict[str, str]:
@@ -63,8 +101,11 @@ def environment() -> dict[str, str]:
 
 
 def run(command: str, root: Path, timeout: float = 300.0) -> str:
+    env = environment()
+    if command.startswith("python "):
+        env["PATH"] = f"{root / '.venv' / 'bin'}{os.pathsep}{env['PATH']}"
     done = subprocess.run(
-        command, shell=True, cwd=root, env=environment(), capture_output=True, text=True, timeout=timeout, check=False
+        command, shell=True, cwd=root, env=env, capture_output=True, text=True, timeout=timeout, check=False
     )
     assert done.returncode == 0, f"{command}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
     return done.stdout
@@ -101,12 +142,43 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 def test_the_readme_has_commands_and_samples() -> None:
-    assert len(commands()) > 12
-    assert len(blocks("python")) >= 1
+    assert len(commands()) > 20
+    assert len(blocks("python", ("README.md",))) == 2
     assert set(commands()) >= MINUTES | INSTALLS
+    assert commands(("README.md",))[:2] == ["make demo", "make test"]
 
 
-@pytest.mark.parametrize("command", [command for command in commands() if command not in MINUTES | INSTALLS])
+def test_the_readme_is_short() -> None:
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 120
+    own = next(body for body in blocks("python", ("README.md",)) if "from_catalogue" in body)
+    assert all(len(body.splitlines()) <= 10 for body in (own, *blocks("python", ("README.md",))))
+
+
+@pytest.mark.parametrize("page", SECTIONS)
+def test_what_the_readme_had_is_found(page: str) -> None:
+    headings = re.findall(r"^## (.*)$", text_of(page), re.MULTILINE)
+    assert set(SECTIONS[page]) <= set(headings)
+
+
+def test_links_of_the_readme_lead_somewhere() -> None:
+    targets = [target for target in LINK.findall(text_of("README.md")) if "://" not in target]
+    assert {"docs/install.md", "docs/promises.md", "docs/validation.md", "docs/theory/index.md"} <= set(targets)
+    for target in targets:
+        assert (ROOT / target).exists(), target
+
+
+def test_the_wheel_is_the_one_that_is_made() -> None:
+    named = [found.groups() for command in commands() if (found := WHEEL.fullmatch(command))]
+    made = re.search(r"manylinux_\d+_\d+", (ROOT / ".ci" / "wheels").read_text(encoding="utf-8"))
+    version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)
+    assert made is not None
+    assert version is not None
+    assert named == [(version.group(1), made.group())]
+
+
+@pytest.mark.parametrize(
+    "command", [command for command in commands() if command not in MINUTES | INSTALLS and not is_wheel(command)]
+)
 def test_commands(command: str, root: Path) -> None:
     if command in WHOLE:
         if command.startswith("make "):

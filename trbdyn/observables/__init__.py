@@ -1,4 +1,4 @@
-"""Observables: what engineers read from recorded motion. Pure functions over arrays that know no file and no simulation."""
+"""Observables: what engineers read from recorded motion. Functions of arrays alone, without files and simulations."""
 
 from trbdyn.observables.cage import (
     CageMotion,

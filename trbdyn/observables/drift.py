@@ -1,4 +1,5 @@
-"""Slow change of the cage's motion: by turns of the cage, with the error of its rate, and whether a run has settled.
+"""Slow change of the cage's motion: by turns of the cage, with the error of its rate, and whether a run has settled
+(docs/theory/whirl.md#when-a-run-has-settled).
 
 Rollers creep slowly when the cage leans on them. So the spacing of the rollers and the whirl of the cage may change over tens of
 seconds, long after everything fast has come to rest. A short record that looks steady proves nothing: whether it has settled is

@@ -1,6 +1,6 @@
-"""Torque and power by source, and the energy audit.
+"""Torque and power by source, and the energy audit (docs/theory/energy.md#closure).
 
-Every term of the audit is a quadrature that the core integrates beside the motion; none is a remainder. So the residual
+The core integrates every term of the audit beside the motion; none is what remains of the others. So the residual
 
     work_shaft + work_ring + work_gravity - d(kinetic) - d(elastic) - sum of losses
 

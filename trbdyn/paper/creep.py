@@ -1,4 +1,5 @@
-"""How rollers creep when the cage leans on them: traction slope at tiny slip, creep number, Froude number.
+"""How rollers creep when the cage leans on them: traction slope at tiny slip, creep number, Froude number
+(docs/theory/whirl.md#creep-of-rollers).
 
 A roller that the cage pushes with a tangential force F drifts in its orbit with the speed v' F: each raceway carries
 F/2 by sliding, and the drift of the roller's centre is the mean of both slidings, so v' = (1/Co + 1/Ci)/4 with C =

@@ -62,7 +62,7 @@ def panels(
     title: str,
     size: tuple[float, float] = (2.7, 2.5),
 ) -> Figure:
-    """A figure with a row a start and a column a condition."""
+    """A figure with one row for each start and one column for each condition."""
     starts = runs.starts
     with plt.rc_context(STYLE):
         fig, axes = plt.subplots(

@@ -1,6 +1,6 @@
 """Running a point until it settles, then for the time of the statistics.
 
-A point runs in whole segments. Each segment starts the integrator anew, so that a run that was stopped and goes on gives exactly
+A point runs in whole segments. Each segment starts the integrator again, so that a run that was stopped and goes on gives exactly
 the same numbers as one that was not. After each segment past the shortest time the history so far is judged (`judge`); once it
 has settled, or at the longest time, the statistics follow.
 """

@@ -213,7 +213,7 @@ def contact_map(
 ) -> Figure:
     """A quantity along the rollers and around the bearing, at the raceways: mean over the records used.
 
-    Records keep one number a contact, so records are evaluated again by the core, node by node along each roller.
+    Records keep one number for each contact, so records are evaluated again by the core, node by node along each roller.
 
     Parameters
     ----------

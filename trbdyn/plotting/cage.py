@@ -264,7 +264,7 @@ def spectrum(result: Result, ax: Axes | None = None, orders: float = 4.0, segmen
 
 
 def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
-    """Whirl of the cage over speed and axial load: one mark an operating point, with the orbit radius about its mean place.
+    """Whirl of the cage over speed and axial load: one mark for each operating point, with the orbit radius about its mean place.
 
     The orbit radius is the root mean square after the transient, in units of the radial play Cpr.
 

@@ -97,7 +97,7 @@ def poincare(result: Result, ax: Axes | None = None, once_per: Literal["cage", "
 
 
 def waterfall(results: Sequence[Result], ax: Axes | None = None, reach: float = 3.0, decades: float = 5.0) -> Axes:
-    """Spectra of the cage's motion over the shaft's speed: one line a run, one above the other.
+    """Spectra of the cage's motion over the shaft's speed: one line for each run, one above the other.
 
     Parameters
     ----------

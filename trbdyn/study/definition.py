@@ -76,7 +76,7 @@ class Base:
         Raises
         ------
         InputError
-            If a path leads nowhere or a value is not allowed.
+            If a path does not exist or a value is not allowed.
         """
         tables = copy.deepcopy(self.tables)
         self._check_oil(overrides)

@@ -123,7 +123,7 @@ def cases(
     *,
     name: str = "study",
 ) -> Study:
-    """A list of cases, one a set of overrides.
+    """A list of cases; each is a set of overrides.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def random(
 
 
 def _draws(path: str, entry: Any, count: int, seed: int) -> list[Any]:
-    """Random values of one path: from a stream of its own, one number a case."""
+    """Random values of one path: one number for each case, from a random stream that belongs to this path."""
     unit = np.random.default_rng([seed, *path.encode()]).random(count)
     if isinstance(entry, Mapping) and set(entry) == {"choice"}:
         if isinstance(entry["choice"], str) or not isinstance(entry["choice"], Sequence) or not entry["choice"]:

@@ -164,7 +164,7 @@ def _foreign(work: Work[T], tasks: Iterable[T], executor: Any) -> Outcomes[T]:
 
 
 def _in_worker(event: Any) -> None:
-    """First words of a worker process: Ctrl-C is the parent's, which sets the event."""
+    """Start of a worker process: Ctrl-C is handled by the parent, which sets the event."""
     global _event
     _event = event
     signal.signal(signal.SIGINT, signal.SIG_IGN)

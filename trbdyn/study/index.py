@@ -1,4 +1,4 @@
-"""The index of a study's folder: a line of JSON a finished case, appended as they finish.
+"""The index of a study's folder: one line of JSON for each finished case, appended when it finishes.
 
 A line holds ``name``, ``fingerprint``, ``parameters``, ``status`` ('done' or 'failed'), ``message``, ``file``, ``values`` (the
 observables), ``wall_s``, ``finished`` (UTC) and ``version``. The last line of a fingerprint counts. A line that was cut short

@@ -50,7 +50,7 @@ def turning_centre(result: Result) -> NDArray[np.complex128]:
 
 
 def orbit_growth(result: Result) -> float:
-    """Growth of the orbit a turn of the cage: slope of the logarithm of its radius, by least squares (%); nan below two turns."""
+    """Growth of the orbit per cage turn: slope of the logarithm of its radius, by least squares (%); nan below two turns."""
     orbit = np.maximum(np.abs(turning_centre(part(result))), SMALLEST_ORBIT)
     return 100.0 * float(np.polyfit(np.arange(orbit.size), np.log(orbit), 1)[0]) if orbit.size > 1 else math.nan
 

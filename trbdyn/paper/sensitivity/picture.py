@@ -24,7 +24,7 @@ ROWS: Final = 14
 
 
 def tornado(place: Place, nominal: Mapping[str, Nominal], effects: Sequence[Effect], inputs: Sequence[Input]) -> Figure:
-    """A panel for each of four indicators at a point, inputs sorted by their largest effect there."""
+    """One panel for each of four indicators at a point; inputs are sorted by their largest effect there."""
     order = {entry.name: [level.label for level in entry.levels] for entry in inputs}
     names = [name if name in nominal else "orbit" for name in SHOWN]
     with plt.rc_context(STYLE):

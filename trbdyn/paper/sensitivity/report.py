@@ -129,7 +129,7 @@ def _statements(inputs: Sequence[Input], judged: Sequence[Judged]) -> list[str]:
 def _effects(
     place: Place, inputs: Sequence[Input], nominal: Mapping[str, Nominal], effects: Sequence[Effect]
 ) -> list[str]:
-    """A row an input, the one with the largest effect over its noise first."""
+    """One row for each input, the one with the largest effect over its noise first."""
     names = [name for name in COLUMNS if name in nominal]
     table = {(effect.input, effect.level, effect.indicator): effect for effect in effects}
     units = {entry.name: f"{plain(entry.text)} ({plain(entry.unit)})" for entry in INDICATORS}

@@ -1,0 +1,1 @@
+"""Energy closures over a grid of operating points."""

@@ -1,0 +1,80 @@
+"""What a run tells and leaves behind: copies made in its callback, its progress, its statistics, a start that failed."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tqdm
+
+import trbdyn as trb
+from trbdyn import checkpoint
+from trbdyn.cases import scene_30310
+from trbdyn.errors import FileError, InputError, StepError
+
+
+def test_a_copy_made_in_a_callback_goes_its_own_way() -> None:
+    sim, copies = trb.Simulation(scene_30310()), []
+
+    def callback(now: trb.Simulation) -> bool:
+        copies.append(now.copy())
+        with pytest.raises(InputError, match="while a run goes on"):
+            now.step()
+        return True
+
+    sim.run(duration=1e-3, callback=callback)
+    before = copies[0].time
+    assert copies[0].step() > before
+
+
+def test_progress_is_counted_over_the_whole_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    bars: list[Any] = []
+
+    class Bar(tqdm.tqdm):  # type: ignore[type-arg]
+        def __init__(self, *words: Any, **options: Any) -> None:
+            super().__init__(*words, **options)
+            bars.append(self)
+
+    monkeypatch.setattr(tqdm, "tqdm", Bar)
+    sim = trb.Simulation(scene_30310())
+    sim.run(duration=2e-3, save_every=5e-4, progress=True)
+    sim.run(duration=3e-3, save_every=5e-4, progress=True)
+    assert [bar.total for bar in bars] == pytest.approx([2e-3, 3e-3])
+    assert [bar.n for bar in bars] == pytest.approx([2e-3, 3e-3])
+
+
+def test_wall_time_of_less_than_a_turn_and_of_none() -> None:
+    part = trb.Simulation(scene_30310(3000.0)).run(duration=1e-3)
+    assert part.stats["revolutions"] == pytest.approx(0.05)
+    assert part.stats["wall_s_per_revolution"] == pytest.approx(part.stats["stepping_s"] / 0.05)
+    still = trb.Simulation(scene_30310(0.0)).run(duration=1e-4)
+    assert still.stats["revolutions"] == 0.0
+    assert math.isnan(still.stats["wall_s_per_revolution"])
+
+
+def test_a_start_that_fails_leaves_a_simulation_without_looks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first checkpoint cannot be written: the simulation then makes rows of records alone, and runs as before."""
+    sim = trb.Simulation(scene_30310())
+
+    def fail(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(checkpoint, "write", fail)
+        with pytest.raises(FileError, match="no space left"):
+            sim.run(duration=1e-3, checkpoint_every=1e-4, output=tmp_path / "run.h5")
+    assert sim._core.row_length == sim._model.record_length
+    assert sim.run(duration=1e-3).success
+
+
+def test_rollers_without_a_cage_must_not_touch() -> None:
+    effects = trb.Effects.paper().replace(bodies="rollers")
+    scene = scene_30310(3000.0, 4930.0, effects=effects, start=trb.Start.equal())
+    sim = trb.Simulation(scene, when_wrong="go_on")
+    vector = sim.state.vector
+    sim.view(vector)["roller_psi"][3] += 0.2  # 8.2 mm of the 7.3 mm between two rollers
+    sim.set_state(vector)
+    with pytest.raises(StepError, match="two rollers touch before"):
+        sim.run(duration=1e-3)

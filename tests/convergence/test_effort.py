@@ -1,0 +1,89 @@
+"""What a run costs in steps, iterations and evaluations: a fault in the solver, its tangents or its Jacobian costs effort first.
+
+The results stay right, because error tests and the test of Newton's method refuse what is wrong; only the effort tells. The
+numbers were measured, with three instruction sets. A solver that became better moves them, too: measure again.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import trbdyn as trb
+from trbdyn import Effects, Result, Simulation
+
+EFFECTS = Effects.paper().replace(quadrature="gauss", n_slices=8)
+WHIRL: dict[str, Any] = {"start": trb.Start.whirl(0.9)}
+TILTED: dict[str, Any] = {"radial_load": 2000.0, "misalignment_x": 2e-4}
+
+
+def tolerances(rtol: float) -> dict[str, float]:
+    """Given as numbers, so that other presets do not change what is measured here."""
+    parts = {"atol_position": 3e-7, "atol_angle": 3e-5, "atol_velocity": 0.1, "atol_spin": 10.0}
+    return {"rtol": rtol} | {name: part * rtol for name, part in parts.items()}
+
+
+USUAL = tolerances(1e-3) | {"rings_share": 0.1}
+TIGHT = tolerances(1e-4) | {"rings_share": 0.03}
+
+
+def run(duration: float, scenery: dict[str, Any], options: dict[str, Any]) -> Result:
+    given = {"bearing": trb.cases.rig_30310(), "speed_rpm": 3000.0, "axial_load": 4930.0, "effects": EFFECTS}
+    return Simulation(trb.Scene(**(given | scenery)), **options).run(duration=duration)
+
+
+MEASURED: dict[str, tuple[float, dict[str, Any], dict[str, Any], dict[str, float]]] = {
+    "whirl": (
+        0.02,
+        WHIRL,
+        USUAL,
+        {"steps": 1190, "iterations": 2.175, "setups": 150, "jacobians": 25, "refused": 41, "tangents": 0.951},
+    ),
+    "tilted ring": (
+        0.02,
+        TILTED,
+        USUAL,
+        {"steps": 1034, "iterations": 2.33, "setups": 125, "jacobians": 26, "refused": 29, "tangents": 0.595},
+    ),
+    "exact forces": (
+        0.02,
+        WHIRL,
+        USUAL | {"rings_share": 0.0},
+        {"steps": 1170, "iterations": 2.185, "setups": 153, "jacobians": 26, "refused": 40, "tangents": 0.0},
+    ),
+    "tight tolerances": (
+        0.01,
+        WHIRL,
+        TIGHT,
+        {"steps": 2680, "iterations": 2.02, "setups": 186, "jacobians": 46, "refused": 20, "tangents": 0.966},
+    ),
+    "explicit": (
+        0.002,
+        WHIRL,
+        USUAL | {"integrator": "erk"},
+        {"steps": 265, "iterations": 0.0, "setups": 0, "jacobians": 0, "refused": 124, "tangents": 0.0},
+    ),
+}
+OFF = {"steps": 0.08, "iterations": 0.06, "setups": 0.12, "jacobians": 0.25, "refused": 0.4}
+"""Share by which each may be off; instruction sets differ from these numbers by about half of it at most."""
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_a_run_costs_what_it_did(name: str) -> None:
+    duration, scenery, options, wanted = MEASURED[name]
+    result = run(duration, scenery, options)
+    stats, counters = result.stats, result.counters
+    found = {
+        "steps": stats["steps"],
+        "iterations": stats["nonlinear_iterations"] / stats["steps"],
+        "setups": stats["linear_setups"],
+        "jacobians": stats["jacobian_evaluations"],
+        "refused": stats["error_failures"],
+    }
+    for quantity, share in OFF.items():
+        assert found[quantity] == pytest.approx(wanted[quantity], rel=share), (quantity, found)
+    rollers = 12 * counters["force_evaluations"]
+    assert counters["tangent_rollers"] / rollers == pytest.approx(wanted["tangents"], abs=0.04)
+    assert stats["nonlinear_failures"] <= 0.02 * stats["steps"]
+    assert counters["force_evaluations"] == stats["rhs_evaluations"]

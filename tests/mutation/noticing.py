@@ -1,0 +1,347 @@
+"""Which test notices a fault: tests run in a forked process, which imports the package of the copy."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import resource
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from sandbox import BUILD, TOOLS, TREE, WORK
+
+RECORDS = ["physics/test_records.py"]
+FORCES = [*RECORDS, "physics/test_inputs_act.py", "physics/test_action_reaction.py", "physics/test_contacts.py"]
+FIRST: dict[str, list[str]] = {
+    "laws": ["laws/test_check_values.py", "laws/test_oracles.py", "laws/test_in_contacts.py", *FORCES],
+    "contacts": [*FORCES, "physics/test_any_number.py", "laws/test_in_contacts.py", "convergence/test_effort.py"],
+    "records": [
+        *RECORDS,
+        "convergence/test_peaks.py::test_step_by_step",
+        "convergence/test_peaks.py::test_rollers_thrown_at_the_front_rib_have_their_peaks",
+    ],
+    "motion": [
+        *RECORDS,
+        "physics/test_response.py",
+        "geometry/test_derived.py",
+        "geometry/test_pocket.py",
+        "convergence/test_effort.py",
+    ],
+    "stepping": [
+        "convergence/test_effort.py",
+        "convergence/test_tolerance.py::test_first_step_is_taken",
+        "convergence/test_tolerance.py::test_largest_step_is_kept",
+        "convergence/test_determinism.py::test_restarts_are_exact",
+    ],
+    "results": [
+        "api/test_by_hand.py",
+        "api/test_observables.py",
+        "api/test_settling.py::test_drift_has_its_time_scale",
+        "api/test_settling.py::test_a_whirl_that_grows_from_almost_nothing_drifts",
+        "api/test_settling.py::test_a_run_that_is_short_against_the_creep_cannot_be_told",
+        "api/test_settling.py::test_bounds_of_a_rate",
+        "api/test_drawn.py",
+        "api/test_drawn_around.py",
+    ],
+    "model": [
+        "api/test_flatten.py",
+        "api/test_lubricants.py",
+        "geometry/test_derived.py",
+        "physics/test_start.py",
+        "api/test_models.py",
+        "physics/test_inputs_act.py",
+    ],
+    "runs": [
+        "api/test_running.py",
+        "restart/test_checkpoints.py::test_every_run_that_ended_early_goes_on",
+        "restart/test_checkpoints.py::test_runs_in_pieces_follow_one_schedule",
+        "convergence/test_peaks.py::test_intervals_make_the_run",
+    ],
+}
+"""The area's own tests, quick ones: most faults end here."""
+
+THEN: dict[str, list[str]] = {
+    "laws": ["laws", "geometry", "physics/test_torque.py", "physics/test_effects.py", "api/test_laws_api.py"],
+    "contacts": [
+        "physics/test_gradient.py",
+        "physics/test_audit.py",
+        "physics/test_effects.py",
+        "geometry/test_interference.py",
+        "laws/test_in_contacts.py",
+    ],
+    "records": [
+        "convergence/test_peaks.py",
+        "physics/test_audit.py",
+        "physics/test_kinematics.py",
+        "physics/test_looking.py",
+        "api/test_simulation.py",
+    ],
+    "motion": [
+        "physics/test_rigid_body.py",
+        "physics/test_audit.py",
+        "physics/test_invariance.py",
+        "physics/test_ring_path.py",
+        "geometry",
+        "physics/test_start.py",
+        "physics/test_culling.py",
+        "physics/test_conservation.py",
+        "fuzz/test_bad_input.py",
+    ],
+    "stepping": ["convergence", "api/test_simulation.py", "physics/test_audit.py", "physics/test_gradient.py"],
+    "results": [
+        "api/test_pictures.py",
+        "api/test_results.py",
+        "api/test_plotting.py",
+        "api/test_cli.py",
+        "api/test_settling.py",
+        "convergence/test_peaks.py",
+        "report/test_report.py",
+        "fuzz/test_errors.py",
+    ],
+    "model": [
+        "api/test_bearing_inputs.py",
+        "api/test_pockets.py",
+        "api/test_catalogue.py",
+        "api/test_toml.py",
+        "api/test_cli.py",
+        "geometry",
+        "physics/test_ring_path.py",
+        "fuzz/test_bad_input.py",
+        "fuzz/test_errors.py",
+    ],
+    "runs": ["api/test_simulation.py", "api/test_results.py", "convergence/test_peaks.py", "restart", "fuzz"],
+}
+"""Wider tests, among them those that start a process (`python -m trbdyn`), for faults that the first ones do not notice."""
+
+QUICK_C_TESTS = {
+    "contacts": ("test_tangent", "test_kernels"),
+    "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent"),
+    "records": ("test_peaks", "test_motion"),
+}
+"""C tests of an area, which come with its first tests; all C tests come with the wider tests."""
+MEMORY = 8 << 30
+"""Address space of a process with a fault (byte)."""
+
+
+@dataclass
+class Notice:
+    """What noticed a fault, or nothing."""
+
+    test: str = ""
+    kind: str = ""
+    """assertion, error, crash, hang or import; the type of the exception follows."""
+    message: str = ""
+    seconds: float = 0.0
+
+    def __bool__(self) -> bool:
+        return bool(self.test)
+
+
+@dataclass
+class Baseline:
+    """Tests that pass without a fault, and how long each takes (s); only they can notice one."""
+
+    sources: str = ""
+    seconds: dict[str, float] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
+    """Fingerprints of the test files and folders that were run."""
+
+    @classmethod
+    def read(cls, sources: str) -> Baseline:
+        """That of the same sources and tests, or an empty one."""
+        path = WORK / "baseline.json"
+        found = cls(**json.loads(path.read_text())) if path.exists() else cls()
+        return found if found.sources == sources else cls(sources)
+
+    def write(self) -> None:
+        (WORK / "baseline.json").write_text(json.dumps(asdict(self), indent=1))
+
+    def limit(self, test: str) -> float:
+        """Wall time after which a test hangs; the machine may be busy with other work (s)."""
+        return 30.0 + 10.0 * self.seconds.get(test, 5.0)
+
+
+def _say(stream: int, *words: Any) -> None:
+    os.write(stream, json.dumps(words).encode() + b"\n")
+
+
+class Reporter:
+    """A plugin of pytest: tells the parent what starts, passes and fails; tests that noticed faults of this source come first."""
+
+    def __init__(self, stream: int, favourites: Sequence[str]) -> None:
+        self.stream, self.favourites, self.errors = stream, list(favourites), {}
+
+    def pytest_collection_modifyitems(self, items: list[Any]) -> None:
+        rank = {name: place for place, name in enumerate(self.favourites)}
+        items.sort(key=lambda item: rank.get(item.nodeid, len(rank)))
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        _say(self.stream, "start", nodeid)
+
+    def pytest_runtest_makereport(self, item: Any, call: Any) -> None:
+        """Before pytest's own, which makes the report."""
+        if call.excinfo is not None:
+            kind = call.excinfo.type
+            wrong = issubclass(kind, AssertionError) or kind.__name__ == "Failed"
+            text = next(iter(str(call.excinfo.value).splitlines()), "")[:200]
+            self.errors[item.nodeid] = (f"{'assertion' if wrong else 'error'} {kind.__name__}", text)
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        if report.failed:
+            _say(self.stream, "failed", report.nodeid, *self.errors.get(report.nodeid, ("assertion", report.when)))
+        elif report.passed:
+            _say(self.stream, "passed", report.nodeid, report.duration, report.when)
+
+    def pytest_collectreport(self, report: Any) -> None:
+        if report.failed:
+            _say(self.stream, "failed", report.nodeid, "import", str(report.longrepr)[-200:])
+
+
+def _child(names: Sequence[str], stream: int, favourites: Sequence[str], stop: bool) -> int:
+    import pytest
+
+    os.chdir(TREE)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for number in (0, 1, 2):
+        os.dup2(nothing, number)
+    os.environ["PATH"] = f"{TOOLS}{os.pathsep}{os.environ['PATH']}"
+    for name in ("PYTHONPATH", "PYTHONHOME"):
+        os.environ.pop(name, None)
+    import hypothesis
+
+    # the same examples with and without a fault, and no time spent on shrinking them
+    phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+    hypothesis.settings.register_profile("faults", derandomize=True, database=None, phases=phases, deadline=None)
+    hypothesis.settings.load_profile("faults")
+    import trbdyn
+    from trbdyn import _core
+
+    for module in (trbdyn, _core):
+        if not str(module.__file__).startswith(str(TREE)):
+            _say(stream, "failed", "", "setup", f"{module.__file__} is not the copy")
+            return 98
+    paths = [name if name.startswith("tests/") else f"tests/{name}" for name in names]
+    words = ["-q", "-p", "no:cacheprovider", "-p", "no:nbmake", "-p", "no:xdist", f"--basetemp={WORK / 'tmp'}", *paths]
+    return int(pytest.main([*(["-x"] if stop else []), *words], plugins=[Reporter(stream, favourites)]))
+
+
+@dataclass
+class Outcome:
+    """Of one run of pytest."""
+
+    failed: list[Notice] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
+    ended: bool = False
+    """All tests had their turn."""
+
+
+def run_tests(
+    names: Sequence[str],
+    *,
+    baseline: Baseline | None,
+    longest: float,
+    favourites: Sequence[str] = (),
+    stop: bool = True,
+) -> Outcome:
+    """Tests of the copy in a process of their own; `longest` (s) ends them all."""
+    shutil.rmtree(WORK / "tmp", ignore_errors=True)
+    reading, writing = os.pipe()
+    began = time.monotonic()
+    child = os.fork()
+    if child == 0:
+        os.close(reading)
+        os.setsid()
+        code = 99
+        try:
+            code = _child(names, writing, favourites, stop)
+        except BaseException as error:
+            # the package cannot even be imported
+            _say(writing, "failed", "", f"import {type(error).__name__}", str(error)[:200])
+        finally:
+            os._exit(code)
+    os.close(writing)
+    outcome, rest, current, since, stopped = Outcome(), b"", "", began, ""
+    status: int | None = None
+    while True:
+        ready, _, _ = select.select([reading], [], [], 1.0 if status is None else 0.0)
+        data = os.read(reading, 65536) if ready else b""
+        *lines, rest = (rest + data).split(b"\n")
+        for word, *about in map(json.loads, lines):
+            if word == "start":
+                current, since = about[0], time.monotonic()
+            elif word == "passed":
+                outcome.seconds[about[0]] = outcome.seconds.get(about[0], 0.0) + about[1]
+            else:
+                outcome.failed.append(Notice(about[0] or "import trbdyn", about[1], about[2]))
+        if not data and (ready or status is not None):
+            break
+        if status is None:
+            # a process that a test started may hold the pipe open for longer than the test's own
+            ended, found = os.waitpid(child, os.WNOHANG)
+            status = found if ended else None
+        now = time.monotonic()
+        if baseline is not None and current and now - since > baseline.limit(current):
+            stopped = "hang"
+        elif now - began > longest:
+            stopped = "time"
+        if stopped:
+            break
+    os.close(reading)
+    with contextlib.suppress(ProcessLookupError):
+        if stopped or status is not None:
+            os.killpg(child, signal.SIGKILL)
+    if status is None:
+        status = os.waitpid(child, 0)[1]
+    code = os.waitstatus_to_exitcode(status)
+    outcome.ended = not stopped and code in (0, 1)
+    if stopped == "hang":
+        outcome.failed.append(Notice(current, "hang", f"longer than {time.monotonic() - since:.0f} s"))
+    elif not stopped and code < 0:
+        outcome.failed.append(Notice(current or "import trbdyn", "crash", f"signal {-code}"))
+    elif not stopped and code != 0 and not outcome.failed:
+        outcome.failed.append(Notice("pytest", "import", f"pytest cannot run: it ends with {code}"))
+    for notice in outcome.failed:
+        notice.seconds = time.monotonic() - began
+    return outcome
+
+
+def run_c_tests(names: Sequence[str] = ()) -> Notice:
+    """The first C test that fails, of those named or of all."""
+    which = ["-R", "|".join(f"^{name}$" for name in names)] if names else []
+    words = [str(TOOLS / "ctest"), "--test-dir", str(BUILD), "--timeout", "60", "--stop-on-failure", *which]
+    began = time.monotonic()
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    failed = re.findall(r"Test +#\d+: (\w+) .*?\*\*\*(\w+)", done.stdout)
+    if done.returncode == 0:
+        return Notice()
+    name, how = failed[0] if failed else ("?", "")
+    kind = {"Failed": "assertion", "Timeout": "hang"}.get(how, "crash")
+    return Notice(f"C test {name}", f"{kind} {how}", "", time.monotonic() - began)
+
+
+def preload() -> None:
+    """What every test needs is imported once, before the forks; the package itself is not."""
+    import h5py  # noqa: F401
+    import hypothesis  # noqa: F401
+    import matplotlib.pyplot  # noqa: F401
+    import pydantic  # noqa: F401
+    import pytest  # noqa: F401
+    import scipy.interpolate
+    import scipy.signal
+    import scipy.spatial.transform  # noqa: F401
+    import xarray  # noqa: F401
+
+    if any(name.split(".")[0] == "trbdyn" for name in sys.modules):
+        raise RuntimeError("the package was imported before the fault was planted")
