@@ -348,7 +348,7 @@ static int put_loads(const trb_model *m, const trb_loads *loads, PyObject *out)
                {"cage_force", offsetof(trb_loads, on[TRB_BODY_CAGE].force), 3},
                {"cage_moment", offsetof(trb_loads, on[TRB_BODY_CAGE].moment), 3},
                {"elastic_energy", offsetof(trb_loads, elastic), 1},
-               {"power", offsetof(trb_loads, power), TRB_N_LOSSES}};
+               {"power", offsetof(trb_loads, power), m->n_losses}};
   for (size_t p = 0; p < sizeof parts / sizeof parts[0]; p++) {
     npy_intp  shape[2] = {m->n_rollers, parts[p].width};
     PyObject *array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);

@@ -1,11 +1,9 @@
-"""A whirling cage with known answers, as records in the core's layout, without the core."""
+"""A whirling cage with known answers, as records in the core's layout; the core gives nothing but its table of fields."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,23 +11,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from trbdyn import _core
 from trbdyn.fields import Field
 from trbdyn.results import Result
-
-HEADER = Path(__file__).parents[2] / "csrc" / "motion" / "fields.h"
-ROW = re.compile(r'^\s*X\((\w+),\s*(\w+),\s*(\w+),\s*"([^"]*)",\s*"([^"]*)"\)', re.MULTILINE)
 
 Z, SLOTS = 12, 4
 RADIAL_PLAY, AXIAL_PLAY = 0.25e-3, 0.4e-3
 SHAFT_SPEED = 2 * np.pi * 50.0
 CAGE_RATIO = 0.41662
-
-
-def header_rows() -> list[tuple[str, str, str, str, str]]:
-    """The rows of the core's table of fields, read from its header."""
-    return [
-        (name, group, kind.lower(), unit, text) for name, group, kind, unit, text in ROW.findall(HEADER.read_text())
-    ]
 
 
 @dataclass
@@ -72,7 +61,7 @@ def make_run(
     residual: float = 2e-4,
 ) -> Synthetic:
     """A cage whirling on a circle, rollers in uneven places, forces that follow, and an audit with a known residual."""
-    fields = tuple(Field(*row) for row in header_rows())
+    fields = tuple(Field(*row) for row in _core.field_table())
     layout, offset = [], 0
     for entry in fields:
         shape = entry.shape(Z, SLOTS)
@@ -212,4 +201,4 @@ def stub_scene() -> StubScene:
 @pytest.fixture
 def header_fields() -> list[tuple[str, str, str, str, str]]:
     """The rows of the core's table of fields."""
-    return header_rows()
+    return _core.field_table()
