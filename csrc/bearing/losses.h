@@ -36,7 +36,10 @@ enum {
 #define TRB_LOSS_ENUM(X, name, sense, text) TRB_LOSS_##name,
   TRB_LOSSES(TRB_LOSS_ENUM, 0)
 #undef TRB_LOSS_ENUM
-      TRB_N_LOSSES,
+      TRB_N_LOSSES
+};
+
+enum {
   /* Those before it have a quadrature in every model, later ones only where their effect is on: a state without them is as long as ever, and
    * measures that are means over all of its entries stay the same. */
   TRB_N_USUAL_LOSSES = TRB_LOSS_drag

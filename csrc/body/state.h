@@ -23,9 +23,11 @@ enum {
 #define TRB_QUADRATURE_ENUM(name) TRB_Q_##name,
   TRB_QUADRATURES(TRB_QUADRATURE_ENUM)
 #undef TRB_QUADRATURE_ENUM
-      TRB_N_QUADRATURES,
-  TRB_Q_losses = TRB_N_QUADRATURES - TRB_N_LOSSES /* the first of them */
+      TRB_N_QUADRATURES
 };
+
+/* The first loss. */
+enum { TRB_Q_losses = TRB_N_QUADRATURES - TRB_N_LOSSES };
 
 /* Quadratures that a model has. */
 static inline int trb_n_quadratures(const trb_model *m) { return TRB_Q_losses + m->n_losses; }

@@ -143,11 +143,11 @@ static void put_roller(writer *w, int j, const double *y, double spin_offset)
 
 /* Where each quantity of a contact is in its view, and goes in a record. */
 static const struct {
-  int    pair;
   size_t from;
+  int    pair;
   int    field;
 } contact_fields[] = {
-#define ROW(X, pair, quantity, unit, text) {TRB_PAIR_##pair, offsetof(trb_contact_view, quantity), TRB_FIELD_AT_##pair##_##quantity},
+#define ROW(X, pair, quantity, unit, text) {offsetof(trb_contact_view, quantity), TRB_PAIR_##pair, TRB_FIELD_AT_##pair##_##quantity},
     TRB_CONTACT_FIELDS(ROW, 0)
 #undef ROW
 };
