@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.motion import value_at
-from trbdyn.start import Equilibrium, RingMotion, StateView
+from trbdyn.start import RingMotion, StateView
 
 if TYPE_CHECKING:
     from trbdyn import _core
@@ -21,11 +21,13 @@ RESTING_AXIAL_SHARE: Final = 0.1
 """Axial place of a cage at the start, in units of its axial play, from where the large ends of the rollers touch."""
 PRESSED: Final = 1e-7
 """Interference with a pocket from which on room is looked for (m)."""
+HALVINGS: Final = 8
+"""How often the way of a roller that would touch the inner ring is halved before it stays where it is."""
 STRONGLY_PRESSED: Final = 2e-6
 """Interference with a pocket at the start that is worth a warning (m)."""
 
 
-def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Array, equilibrium: Equilibrium) -> None:
+def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Array) -> None:
     """Put the cage where a run begins, and rollers that carry nothing into their pockets.
 
     Parameters
@@ -38,23 +40,29 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
         Motion of the ring.
     vector : ndarray, shape (n_state,)
         The state, with the rollers placed; changed.
-    equilibrium : Equilibrium
-        That of the start.
     """
     state, start, cage = StateView(model, vector), scene.start, scene.bearing.cage
+    onlooker = motion.open(model, motion.start, vector, {})
+    load = _inner_load(onlooker, motion.start, vector)
     # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with those that
     # carry, and takes along the cup the others that it would otherwise push into
-    rest, held = RESTING_AXIAL_SHARE * cage.play_axial, equilibrium.inner_load > 0.0
-    weights = equilibrium.inner_load if held.any() else np.ones(held.size)
-    rollers = float(np.average(state["roller_z"], weights=weights))
+    rest, held = RESTING_AXIAL_SHARE * cage.play_axial, load > 0.0
+    rollers = float(np.average(state["roller_z"], weights=load if held.any() else np.ones(held.size)))
     state["cage_z"] = cage_z = min(max(rest, rollers + rest), rollers + cage.play_axial - rest)
     taken = np.clip(state["roller_z"], cage_z - cage.play_axial + rest, cage_z - rest) - state["roller_z"]
     taken[held] = 0.0
-    state["roller_z"] += taken
-    state["roller_r"] += taken * math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    slope = math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    axial, radial = np.array(state["roller_z"]), np.array(state["roller_r"])
+    for _ in range(HALVINGS):
+        state["roller_z"], state["roller_r"] = axial + taken, radial + slope * taken
+        pushed = (_inner_load(onlooker, motion.start, vector) > 0.0) & ~held
+        if not pushed.any():
+            break
+        taken[pushed] *= 0.5
+    else:
+        state["roller_z"], state["roller_r"] = axial, radial
     gravity = np.array([value_at(part, start.time) for part in scene.gravity[:2]])
     size = float(np.hypot(*gravity))
-    onlooker = motion.open(model, motion.start, vector, {})
     if start.kind == "whirl":
         direction = math.radians(start.direction_deg)
         state["cage_x"], state["cage_y"] = (
@@ -81,6 +89,10 @@ def pressed_rollers(model: _core.Model, scene: Scene, motion: RingMotion, vector
         f"at the start roller {roller} is pressed {1e6 * worst:.3g} um into its pocket: load and displacement of the rings "
         "move the rollers further than the play of the pockets allows a stiff cage to follow, so the run begins with a blow"
     )
+
+
+def _inner_load(onlooker: _core.Simulation, time: float, vector: Array) -> Array:
+    return np.asarray(onlooker.contacts(time, vector)["raceway_load"])[1].sum(axis=-1)
 
 
 def _interference(onlooker: _core.Simulation, time: float, vector: Array) -> Array:

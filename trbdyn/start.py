@@ -367,5 +367,5 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
     if scene.effects.bodies == "rollers_and_cage":
         from trbdyn.cage_start import place_cage
 
-        place_cage(model, scene, motion, vector, equilibrium)
+        place_cage(model, scene, motion, vector)
     return vector
