@@ -132,7 +132,9 @@ def with_assumed(values: Mapping[str, Any]) -> Values:
     }
     found = dict(values)
     kept = found.pop("assumed", ())
-    kept = set(kept) if isinstance(kept, list | tuple) else set()
+    if not isinstance(kept, list | tuple) or not all(isinstance(path, str) for path in kept):
+        raise InputError.of(("bearing", "assumed"), kept, "must be a list of paths of inputs, such as 'cage.bar_width'")
+    kept = set(kept)
     sections = {name: _given(found.get(name, {})) for name in _SECTIONS}
     if any(section is None for section in sections.values()) or "roller" not in found:
         return found

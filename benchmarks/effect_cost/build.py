@@ -117,7 +117,7 @@ class Builds:
         place = Path(entry["file"]).relative_to(ROOT / "csrc").as_posix()
         if place.endswith("_kernel.c") and f"TRB_KERNEL_VARIANT={self.variant}" not in entry["command"]:
             return False
-        return place in patch or (headers and place.startswith("contact/"))
+        return place in patch or headers
 
 
 def apply(patch: Patch, sources: Path) -> None:
