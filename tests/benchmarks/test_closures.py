@@ -82,7 +82,7 @@ def test_finds_a_run_that_is_wrong() -> None:
 
 
 @pytest.mark.parametrize("effects", ["paper", "standard"])
-@pytest.mark.parametrize(("preset", "speed"), [("standard", 1000.0), ("standard", 10_000.0), ("reference", 1.0)])
+@pytest.mark.parametrize(("preset", "speed"), [("standard", 3000.0), ("standard", 10_000.0), ("reference", 1.0)])
 @pytest.mark.parametrize(("axial_load", "share"), [(1230.0, 0.0), (4930.0, 1.5)])
 def test_presets_keep_what_is_promised(
     preset: str, speed: float, axial_load: float, share: float, effects: str
