@@ -21,8 +21,6 @@ RESTING_AXIAL_SHARE: Final = 0.1
 """Axial place of a cage at the start, in units of its axial play, from where the large ends of the rollers touch."""
 PRESSED: Final = 1e-7
 """Interference with a pocket from which on room is looked for (m)."""
-HALVINGS: Final = 8
-"""How often the way of a roller that would touch the inner ring is halved before it stays where it is."""
 STRONGLY_PRESSED: Final = 2e-6
 """Interference with a pocket at the start that is worth a warning (m)."""
 
@@ -42,25 +40,23 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
         The state, with the rollers placed; changed.
     """
     state, start, cage = StateView(model, vector), scene.start, scene.bearing.cage
+    orbit = scene.bearing.geometry.cage_speed_ratio * value_at(scene.speed_rpm, start.time) * math.pi / 30.0
     onlooker = motion.open(model, motion.start, vector, {})
     load = _inner_load(onlooker, motion.start, vector)
     # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with those that
-    # carry, and takes along the cup the others that it would otherwise push into
+    # carry, and takes along the cup the others that it would otherwise push into, but for those that would meet the inner ring
     rest, held = RESTING_AXIAL_SHARE * cage.play_axial, load > 0.0
     rollers = float(np.average(state["roller_z"], weights=load if held.any() else np.ones(held.size)))
     state["cage_z"] = cage_z = min(max(rest, rollers + rest), rollers + cage.play_axial - rest)
     taken = np.clip(state["roller_z"], cage_z - cage.play_axial + rest, cage_z - rest) - state["roller_z"]
     taken[held] = 0.0
     slope = math.tan(math.radians(scene.bearing.cup_half_angle_deg))
-    axial, radial = np.array(state["roller_z"]), np.array(state["roller_r"])
-    for _ in range(HALVINGS):
-        state["roller_z"], state["roller_r"] = axial + taken, radial + slope * taken
-        pushed = (_inner_load(onlooker, motion.start, vector) > 0.0) & ~held
-        if not pushed.any():
-            break
-        taken[pushed] *= 0.5
-    else:
-        state["roller_z"], state["roller_r"] = axial, radial
+    state["roller_z"] += taken
+    state["roller_r"] += slope * taken
+    back = np.where((_inner_load(onlooker, motion.start, vector) > 0.0) & ~held, taken, 0.0)
+    state["roller_z"] -= back
+    state["roller_r"] -= slope * back
+    state["roller_v_t"] += orbit * slope * (taken - back)
     gravity = np.array([value_at(part, start.time) for part in scene.gravity[:2]])
     size = float(np.hypot(*gravity))
     if start.kind == "whirl":
@@ -70,10 +66,10 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
         )
     elif scene.effects.gravity and size > 0.0:
         _lay_down(onlooker, motion.start, state, vector, gravity / size, cage.play_radial)
-    _make_room(onlooker, motion.start, state, vector, cage.play_radial)
+    # a cage that whirls stays at the eccentricity that was asked for
+    ways = ("cage_z",) if start.kind == "whirl" else ("cage_x", "cage_y", "cage_z")
+    _make_room(onlooker, motion.start, state, vector, cage.play_radial, ways)
     if start.kind == "whirl":
-        speed = value_at(scene.speed_rpm, start.time) * math.pi / 30.0
-        orbit = scene.bearing.geometry.cage_speed_ratio * speed
         state["cage_v_x"], state["cage_v_y"] = -orbit * state["cage_y"], orbit * state["cage_x"]
 
 
@@ -85,10 +81,10 @@ def pressed_rollers(model: _core.Model, scene: Scene, motion: RingMotion, vector
     worst, roller = float(depth.max()), int(np.argmax(depth.max(axis=1)))
     if not worst > STRONGLY_PRESSED:
         return ""
-    return (
-        f"at the start roller {roller} is pressed {1e6 * worst:.3g} um into its pocket: load and displacement of the rings "
-        "move the rollers further than the play of the pockets allows a stiff cage to follow, so the run begins with a blow"
-    )
+    cause = "load and displacement of the rings move the rollers further than the play of the pockets lets a stiff cage follow"
+    if scene.start.kind == "whirl":
+        cause = f"start.eccentricity = {scene.start.eccentricity:g} takes the cage further than these rollers allow, or {cause}"
+    return f"at the start roller {roller} is pressed {1e6 * worst:.3g} um into its pocket: {cause}; the run begins with a blow"
 
 
 def _inner_load(onlooker: _core.Simulation, time: float, vector: Array) -> Array:
@@ -118,21 +114,25 @@ def _lay_down(
     state["cage_x"], state["cage_y"] = low * direction
 
 
-def _make_room(onlooker: _core.Simulation, time: float, state: StateView, vector: Array, play: float) -> None:
-    """Move a cage that is pressed into its rollers to where the squares of all interferences are least."""
+def _make_room(
+    onlooker: _core.Simulation, time: float, state: StateView, vector: Array, play: float, ways: tuple[str, ...]
+) -> None:
+    """Move a cage that is pressed into its rollers along some of its coordinates to where the squares of all interferences
+    are least.
+    """
     from scipy.optimize import least_squares
 
-    names = ("cage_x", "cage_y", "cage_z")
-    begin = np.array([float(state[name]) for name in names])
+    begin = np.array([float(state[name]) for name in ways])
 
     def depths(place: Array) -> Array:
-        for name, value in zip(names, begin + play * place, strict=True):
+        for name, value in zip(ways, begin + play * place, strict=True):
             state[name] = value
         return np.maximum(_interference(onlooker, time, vector).ravel(), 0.0) / play
 
-    first = depths(np.zeros(3))
+    still = np.zeros(len(ways))
+    first = depths(still)
     if float(first.max()) * play <= PRESSED:
         return
-    found = least_squares(depths, np.zeros(3), diff_step=1e-4, x_scale=0.1)
+    found = least_squares(depths, still, diff_step=1e-4, x_scale=0.1)
     if not float(depths(found.x).max()) < float(first.max()):
-        depths(np.zeros(3))
+        depths(still)

@@ -40,7 +40,7 @@ CHUNK_RECORDS = 256
 MOST_RECORDS = 50_000_000
 """Most records of a run: their times alone take 400 MB."""
 CHUNK_STEPS = 2000
-"""Steps between looks at signals: about a tenth of a second."""
+"""Steps between looks at signals: about a twentieth of a second."""
 
 _BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"
 

@@ -30,3 +30,17 @@ def test_no_roller_is_pressed_into_its_pocket(bearing: str, axial_load: float, s
     before = float(first["elastic_energy"])
     sim.run(duration=2e-3, save_every=1e-3)
     assert float(sim.record()["elastic_energy"]) == pytest.approx(before, rel=0.02)
+
+
+@pytest.mark.parametrize("axial_load", [4930.0, 30_000.0])
+@pytest.mark.parametrize("eccentricity", [0.5, 0.95, 1.0])
+def test_a_whirling_cage_begins_at_the_eccentricity_that_was_asked_for(eccentricity: float, axial_load: float) -> None:
+    """Room for the rollers is not made behind the user's back: what presses them is said instead."""
+    scene = cases.scene_30310(3000.0, axial_load=axial_load).replace(start=trb.Start.whirl(eccentricity))
+    sim = trb.Simulation(scene)
+    first = sim.record()
+    radius = float(np.hypot(*np.asarray(first["cage_position"])[:2]))
+    assert radius == pytest.approx(eccentricity * scene.bearing.cage.play_radial, rel=1e-12)
+    pressed = float(first["pocket_force"].max()) > 300.0
+    assert pressed == any("start.eccentricity" in text for text in sim.warnings)
+    assert pressed == (eccentricity == 1.0 and axial_load == 4930.0)
