@@ -50,7 +50,7 @@ class Dicke(Model):
 
     Notes
     -----
-    Source: Schwarz 2023, Lubricants 11:369.
+    Source: Wingertszahn 2023, Lubricants 11:369.
     """
 
     a: Annotated[Number, unit("bar", ge=1e-3, le=1e6)] = 327.79
@@ -443,7 +443,7 @@ FVA3: Final = Oil(
     expansion=0.0,
     dicke=Dicke(),
 )
-"""The mineral oil FVA3, an ISO VG 100, as measured (Schwarz 2023, Lubricants 11:369)."""
+"""The mineral oil FVA3, an ISO VG 100, as measured (Wingertszahn 2023, Lubricants 11:369)."""
 
 _TYPICAL_NU100: Final = {32: 5.4, 46: 6.8, 68: 8.7, 100: 11.4, 150: 15.0, 220: 19.4, 320: 25.0, 460: 30.8}
 """Typical viscosities at 100 C (mm2/s) of mineral oils of a viscosity index of 95 to 100, by ISO VG."""
@@ -503,7 +503,7 @@ def vg100(
 
     Notes
     -----
-    Source: Schwarz 2023, Lubricants 11:369.
+    Source: Wingertszahn 2023, Lubricants 11:369.
     """
     try:
         temperature = as_number(temperature_c)
