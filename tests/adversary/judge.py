@@ -21,7 +21,7 @@ from random_scenes import ORDINARY, Table, make
 import trbdyn as trb
 
 try:
-    from trbdyn.watch import Watch
+    from trbdyn.run.watch import Watch
 except ImportError:  # an older version, to compare with
     Watch = None
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.cases import bearing_32216, rig_30310
-from trbdyn.lubricants import vg100
+from trbdyn.model.cases import bearing_32216, rig_30310
+from trbdyn.model.lubricants import vg100
 
 Table = dict[str, Any]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import observables
-from trbdyn.results import Result
+from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 

@@ -27,29 +27,32 @@ AREAS: dict[str, tuple[float, list[str]]] = {
     "results": (
         0.14,
         [
-            "trbdyn/observables/*.py",
-            "trbdyn/plotting/*.py",
-            "trbdyn/derived.py",
-            "trbdyn/summary.py",
-            "trbdyn/results.py",
-            "trbdyn/peaks.py",
+            "trbdyn/results/observables/*.py",
+            "trbdyn/plot/*.py",
+            "trbdyn/results/derived.py",
+            "trbdyn/results/summary.py",
+            "trbdyn/results/result.py",
+            "trbdyn/results/peaks.py",
         ],
     ),
     "model": (
         0.09,
         [
-            "trbdyn/bearing.py",
+            "trbdyn/model/bearing.py",
             "trbdyn/pocket*.py",
-            "trbdyn/lubricants.py",
-            "trbdyn/effects.py",
-            "trbdyn/scene.py",
-            "trbdyn/flatten.py",
-            "trbdyn/geometry.py",
-            "trbdyn/start.py",
-            "trbdyn/motion.py",
+            "trbdyn/model/lubricants.py",
+            "trbdyn/model/effects.py",
+            "trbdyn/model/scene.py",
+            "trbdyn/model/flatten.py",
+            "trbdyn/model/geometry.py",
+            "trbdyn/statics/start.py",
+            "trbdyn/model/motion.py",
         ],
     ),
-    "runs": (0.06, ["trbdyn/running.py", "trbdyn/checkpoint.py", "trbdyn/sources.py", "trbdyn/simulation.py"]),
+    "runs": (
+        0.06,
+        ["trbdyn/run/running.py", "trbdyn/run/checkpoint.py", "trbdyn/results/sources.py", "trbdyn/run/simulation.py"],
+    ),
 }
 """Share of the faults, and sources, of each area."""
 

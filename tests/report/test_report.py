@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import summary
 from trbdyn.cli import main
-from trbdyn.plotting import PICTURES
+from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
 from trbdyn.reporting.inputs import field_texts, rows
 from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict
+from trbdyn.results import summary
 
 
 @pytest.fixture(scope="module")

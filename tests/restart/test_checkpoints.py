@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import _core, checkpoint
-from trbdyn.cases import scene_30310
-from trbdyn.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
+from trbdyn import _core
 from trbdyn.errors import FileError, InputError
+from trbdyn.model.cases import scene_30310
+from trbdyn.run import checkpoint
+from trbdyn.run.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
 
 EVERY = 1.7e-3
 

@@ -68,7 +68,7 @@ MEANINGS: Final[dict[str, str]] = {
     "whirl_radius_over_cpr": "Old name of axis_distance_over_cpr.",
     "power_split": "Share of each kind in the power loss.",
 }
-"""A sentence for each entry of `trbdyn.summary.LABELS`; an entry without one is shown without."""
+"""A sentence for each entry of `trbdyn.results.summary.LABELS`; an entry without one is shown without."""
 
 CAPTIONS: Final[dict[str, str]] = {
     "cage_locus": "Path of the cage's centre. The outer circle is the radial play Cpr; a whirl along it uses up the play.",

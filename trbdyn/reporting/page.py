@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict, warnings
-from trbdyn.summary import LABELS, UNPRINTED
+from trbdyn.results.summary import LABELS, UNPRINTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from trbdyn.results import Result
+    from trbdyn.results.result import Result
 
 STYLE = """
 :root { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1b1f24; }
@@ -69,7 +69,7 @@ def _safe(text: object) -> str:
 
 
 def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
-    from trbdyn.plotting import conditions
+    from trbdyn.plot import conditions
 
     lines = []
     for result, name in zip(results, names, strict=True):
@@ -117,7 +117,7 @@ def _value(table: Mapping[str, Row], path: str) -> str:
 
 
 def _simulated(results: Sequence[Result], names: Sequence[str]) -> str:
-    from trbdyn.plotting import bearing_drawing, pocket_drawing
+    from trbdyn.plot import bearing_drawing, pocket_drawing
 
     bearings = [result.scene.bearing for result in results]
     chosen = [0] if len(results) == 1 or bearings[0] == bearings[1] else [0, 1]
@@ -138,7 +138,7 @@ def image(draw: Callable[[], Axes | Figure]) -> str:
     import matplotlib.pyplot as plt
     from matplotlib.figure import Figure
 
-    from trbdyn.plotting.style import STYLE as PLOT_STYLE
+    from trbdyn.plot.style import STYLE as PLOT_STYLE
 
     picture = draw()
     figure = picture if isinstance(picture, Figure) else picture.get_figure(root=True)
@@ -157,7 +157,7 @@ def _figure(draw: Callable[[], Axes | Figure], caption: str) -> str:
 
 
 def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[str] | None) -> str:
-    from trbdyn.plotting import PICTURES
+    from trbdyn.plot import PICTURES
 
     def possible(result: Result, name: str) -> bool:
         there = set(result.groups) - (set() if result.has_cage else {"pocket"})

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from trbdyn import estimate
+from trbdyn.run import estimate
 
 if TYPE_CHECKING:
-    from trbdyn.results import Result
+    from trbdyn.results.result import Result
 
 GRAVITY: Final = 9.80665
 FULL_FILM, MIXED_FILM = 3.0, 1.0
