@@ -1,6 +1,6 @@
 """A point's file: a result file of the statistics, with the history before it in a group of its own.
 
-Beside what every result file holds (`trbdyn.results.result_file`) there are ``/history``: the fields `HISTORY` at the coarse
+Beside what every result file holds (`trbdyn.results.file_format`) there are ``/history``: the fields `HISTORY` at the coarse
 interval, ``state`` and its time ``reached``, from which the point can go on; and the attribute ``paper``: JSON of what was run
 and whether it has settled. Readers of results see the statistics only.
 """

@@ -6,18 +6,15 @@ import math
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-import numpy as np
-from numpy.typing import ArrayLike
 from pydantic import field_validator, model_validator
 
-from trbdyn.base.validation import Model, Number, Whole, unit
+from trbdyn.base.validation import Model, unit
 from trbdyn.errors import MISSING, InputError, Path
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.effects import Effects
 from trbdyn.model.flatten import parameter_block
 from trbdyn.model.lubricants import Lubricant, vg100
 from trbdyn.model.motion import (
-    MAX_TIME,
     History,
     Quantity,
     common_period,
@@ -27,151 +24,14 @@ from trbdyn.model.motion import (
     value_at,
     values_of,
 )
+from trbdyn.model.rotating_load import RotatingLoad, check_sign
+from trbdyn.model.start import Start
+
+__all__ = ["MAX_GRAVITY", "MAX_SPEED_RPM", "RotatingLoad", "Scene", "Start"]
 
 MAX_SPEED_RPM = 1e6
 MAX_GRAVITY = 1e7
 """Largest part of gravity (m/s2), a million times the usual: no machine shakes harder, and nothing overflows."""
-
-
-class Start(Model):
-    """How a run starts; made by `equal`, `unequal`, `whirl` or `state`. Rollers and cage always start in pure rolling.
-
-    Parameters
-    ----------
-    kind : {'equal', 'unequal', 'whirl', 'state'}
-        Equal: rollers equally spaced. Unequal: seeded random spacing. Whirl: the cage off centre and whirling, rollers
-        centred in their pockets. State: a saved state.
-    seed : int
-        Unequal: seed of the random numbers.
-    spread : float
-        Unequal: each roller is off its even place by up to this share of the circumferential play, either way (1).
-    eccentricity : float
-        Whirl: distance of the cage's centre from the bearing axis, in units of the radial play Cpr (1).
-    direction_deg : float
-        Whirl: where the cage's centre starts, from +x towards +y (deg).
-    time : float
-        When the run starts (s). Start state, loads and the ring's place belong to this time, and the shaft's angle is
-        zero then unless the start is from a state.
-    state_vector : sequence of float
-        State: the numbers of the core's state vector.
-    shaft_angle : float, optional
-        State: angle of the shaft at that time (rad); by default what it has turned by since t = 0.
-    """
-
-    kind: Literal["equal", "unequal", "whirl", "state"] = "equal"
-    seed: Annotated[Whole, unit("1", ge=0)] = 0
-    spread: Annotated[Number, unit("1", ge=0, le=1)] = 0.8
-    eccentricity: Annotated[Number, unit("1", ge=0, le=1)] = 0.9
-    direction_deg: Annotated[Number, unit("deg")] = -90.0
-    time: Annotated[Number, unit("s", ge=-MAX_TIME, le=MAX_TIME)] = 0.0
-    state_vector: tuple[Number, ...] = ()
-    shaft_angle: Annotated[Number, unit("rad", ge=-1e9, le=1e9)] | None = None
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if (self.kind == "state") != bool(self.state_vector):
-            allowed = (
-                "must be given for a start from a state"
-                if self.kind == "state"
-                else "belongs to a start from a state only"
-            )
-            raise InputError.of("state_vector", self.state_vector, allowed)
-        if self.kind != "state" and self.shaft_angle is not None:
-            raise InputError.of("shaft_angle", self.shaft_angle, "belongs to a start from a state only (rad)")
-        return self
-
-    @classmethod
-    def equal(cls) -> Self:
-        """Rollers equally spaced, the cage at rest on them."""
-        return cls(kind="equal")
-
-    @classmethod
-    def unequal(cls, seed: int, *, spread: float = 0.8) -> Self:
-        """Rollers at random places within their pockets, the cage at rest on them.
-
-        Parameters
-        ----------
-        seed : int
-            Seed of the random numbers.
-        spread : float
-            Largest share of the circumferential play that a roller is off its even place (1).
-        """
-        return cls(kind="unequal", seed=seed, spread=spread)
-
-    @classmethod
-    def whirl(cls, eccentricity: float = 0.9, *, direction_deg: float = -90.0) -> Self:
-        """The cage whirling with its own rotation, rollers centred in their pockets.
-
-        Parameters
-        ----------
-        eccentricity : float
-            Distance of the cage's centre from the bearing axis, in units of Cpr (1).
-        direction_deg : float
-            Direction of the cage's centre from +x towards +y (deg).
-        """
-        return cls(kind="whirl", eccentricity=eccentricity, direction_deg=direction_deg)
-
-    @classmethod
-    def state(cls, vector: ArrayLike, *, time: float = 0.0, shaft_angle: float | None = None) -> Self:
-        """A saved state.
-
-        Parameters
-        ----------
-        vector : array_like, shape (n_state,)
-            The core's state vector, for instance `Simulation.state.vector`.
-        time : float
-            The time it belongs to (s).
-        shaft_angle : float, optional
-            Angle of the shaft at that time (rad), for instance `Simulation.state.shaft_angle`; by default what the
-            shaft has turned by since t = 0. It must be given where the saved run itself did not start at t = 0.
-        """
-        try:
-            numbers = np.asarray(vector, dtype=np.float64).ravel().tolist()
-        except (TypeError, ValueError, OverflowError):
-            raise InputError.of(("start", "state_vector"), vector, "must be a vector of numbers") from None
-        return cls(kind="state", state_vector=tuple(numbers), time=time, shaft_angle=shaft_angle)
-
-
-class RotatingLoad(Model):
-    """A radial load on the inner ring that rotates, for instance of an unbalance; it adds to the load that does not.
-
-    Parameters
-    ----------
-    load : float or History
-        Magnitude (N).
-    turns : float
-        Turns of the load for a turn of the shaft (1); 1: an unbalance of the shaft. Not together with `frequency_hz`.
-    frequency_hz : float, optional
-        Turns of the load in a second (Hz), whatever the shaft does; negative: against positive speed.
-    direction_deg : float
-        Direction of the load at the start, from +x towards +y (deg).
-
-    Examples
-    --------
-    >>> import trbdyn as trb
-    >>> scene = trb.Scene(
-    ...     trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0, rotating_load=trb.RotatingLoad(500.0),
-    ring="follows" ... )
-    >>> float(scene.period)
-    0.02
-    """
-
-    _root: ClassVar[str | None] = "rotating_load"
-
-    load: Annotated[Quantity, unit("N")]
-    turns: Annotated[Number, unit("1", ge=-1000, le=1000)] = 1.0
-    frequency_hz: Annotated[Number, unit("Hz", ge=-1e6, le=1e6)] | None = None
-    direction_deg: Annotated[Number, unit("deg")] = 0.0
-
-    def __init__(self, load: Any = MISSING, **fields: Any) -> None:
-        super().__init__(**fields if load is MISSING else {"load": load, **fields})
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        _check_sign("load", self.load)
-        if self.frequency_hz is not None and self.turns != 1.0:
-            raise InputError.of("turns", self.turns, "must not be given together with frequency_hz")
-        return self
 
 
 class Scene(Model):
@@ -404,7 +264,7 @@ class Scene(Model):
         if self.displacement is not None and not (x or y or z):
             raise InputError.of("displacement", self.displacement, "must give one entry at least (m)")
         for name, load in loads:
-            _check_sign(name, load)
+            check_sign(name, load)
         if z and any(values_of(self.axial_load)):
             raise InputError.of(
                 "axial_load", self.axial_load, "must be 0 where displacement gives the axial position (N)"
@@ -474,11 +334,3 @@ class Scene(Model):
         if self.start.kind == "whirl" and self.effects.bodies == "rollers":
             path: Path = ("start", "kind")
             raise InputError.of(path, "whirl", "needs a cage: effects.bodies = 'rollers_and_cage'")
-
-
-def _check_sign(name: str, load: float | History) -> None:
-    for place, value in enumerate(values_of(load)):
-        if value < 0.0:
-            raise InputError.of(
-                (name, "values", place) if isinstance(load, History) else name, value, "must be >= 0 (N)"
-            )

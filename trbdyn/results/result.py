@@ -17,8 +17,8 @@ from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.derived import Derived
 from trbdyn.results.fields import Field, Layout
+from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
-from trbdyn.results.result_file import RunInfo
 from trbdyn.results.sources import MemorySource, Source, WindowSource, open_run
 from trbdyn.results.summary import summary
 

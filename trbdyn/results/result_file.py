@@ -1,42 +1,14 @@
-"""Result files: HDF5, written while a run goes on, read field by field.
-
-Schema ``trbdyn-result``, version 1:
-
-- attributes of the root: ``schema``, ``schema_version``, ``trbdyn_version``, ``created``, ``run_id``, ``segment`` (its number),
-  ``first_record`` (place of its first record in the run); as JSON ``geometry`` and ``meta`` (versions of the core and of
-  SUNDIALS, instruction set, settings), whose texts and numbers are attributes too; all texts are UTF-8 bytes of fixed length
-- ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
-- ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
-  ``kind``, ``dims`` and ``index`` (its place in the record)
-- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and ``final_time``;
-  empty until the run
-  has ended
-- ``/final_state``: the state vector at ``final_time``; empty until then
-- ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then; missing if
-  no peaks are kept
-
-A file is data: nothing in it is executed, and links or storage that lead out of the file are refused.
-
-It is written in HDF5's SWMR mode (single writer, multiple readers): every object is made first, under another name, and the file
-takes its place only then; from there on datasets only grow, in an order that leaves the file consistent at every instant. So
-readers can follow a run live, and a killed run leaves a file that can be read, whenever the kill comes. Such a file keeps the
-mark of a writer, which other programs refuse unless they open it in SWMR mode; `trbdyn.load` reads it as it is, and resuming
-the run takes the mark away (`trbdyn.results.hdf5_marks`). It is never opened for writing again: a run that is resumed writes a
-segment of its own, ``run.part1.h5``, ``run.part2.h5`` beside ``run.h5``, and `trbdyn.load` joins them by ``run_id`` and
-``first_record``: where two hold a record, the later segment counts.
-"""
+"""Writing a result file while the run goes on; `trbdyn.results.file_format` says what it holds."""
 
 from __future__ import annotations
 
 import errno
-import json
 import os
 import shutil
 import time
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from types import TracebackType
 from typing import Any, BinaryIO, Self
@@ -51,15 +23,21 @@ from trbdyn.base.version import __version__
 from trbdyn.errors import FileError
 from trbdyn.results import fields as field_table
 from trbdyn.results.fields import Field, Layout
+from trbdyn.results.file_format import (
+    CHUNK_BYTES,
+    LIBVER,
+    PEAKS,
+    SCHEMA,
+    SCHEMA_VERSION,
+    chunk_rows,
+    json_text,
+    reason,
+    stored,
+)
 from trbdyn.results.hdf5_marks import lock, take_lock
 
 Array = NDArray[np.float64]
 
-SCHEMA = "trbdyn-result"
-SCHEMA_VERSION = 1
-
-CHUNK_BYTES = 16384
-"""Size aimed at for an HDF5 chunk: small enough that a short run wastes little, large enough to read fast."""
 
 FLUSH_SECONDS = 2.0
 """Longest wall time that records wait in memory before they are written."""
@@ -69,102 +47,6 @@ FLUSH_BYTES = 8 << 20
 
 SPARE_BYTES = 1 << 20
 """Room for HDF5's own bookkeeping that is made sure of before a write."""
-
-PEAKS = "peaks"
-"""The group of fields that are peaks of each record's interval."""
-
-JSON_ATTRIBUTES = ("geometry", "meta")
-
-LIBVER = ("v110", "v110")
-"""Format of the file: the oldest that knows SWMR."""
-
-
-@dataclass(slots=True)
-class RunInfo:
-    """What is known of a run besides its records.
-
-    Attributes
-    ----------
-    scene : dict
-        The scene as plain data.
-    success : bool
-        Whether the run reached its end.
-    message : str
-        How it ended, in a sentence.
-    stats : dict
-        Solver statistics: steps, rhs_evaluations, wall_s and others.
-    counters : dict
-        Evaluations of each effect.
-    warnings : tuple of str
-        What the watch over the run found, see `trbdyn.run.watch`.
-    final_time : float
-        Time of the final state, s.
-    final_state : ndarray or None
-        The state vector there.
-    geometry : dict
-        Derived geometry of the bearing, SI.
-    meta : dict
-        Versions, instruction set and settings.
-    peaks : mapping of str to ndarray
-        Peaks of the whole run (`trbdyn.results.peaks`); empty if none are known.
-    """
-
-    scene: dict[str, Any]
-    success: bool = False
-    message: str = ""
-    stats: dict[str, Any] = field(default_factory=dict)
-    counters: dict[str, int] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-    final_time: float = float("nan")
-    final_state: Array | None = None
-    geometry: dict[str, float] = field(default_factory=dict)
-    meta: dict[str, Any] = field(default_factory=dict)
-    peaks: Mapping[str, Array] = field(default_factory=dict)
-
-
-def _plain(value: Any) -> Any:
-    """NumPy scalars and arrays as plain Python, for JSON."""
-    if isinstance(value, np.generic):
-        return value.item()
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    raise TypeError(f"cannot write {type(value).__name__} as JSON")
-
-
-def reason(error: BaseException) -> str:
-    """Why HDF5 failed, in a few words."""
-    text = str(error)
-    if "file signature not found" in text:
-        return "this is not an HDF5 file"
-    if "unable to lock file" in text:
-        return "the file is still open in another program"
-    if isinstance(error, OSError) and error.errno == errno.EBUSY:
-        return str(error.strerror)
-    if "truncated file" in text:
-        return "the file is cut short and cannot be read"
-    if isinstance(error, OSError) and error.errno:
-        return os.strerror(error.errno).lower()
-    if isinstance(error, MemoryError):
-        return "it takes more memory than there is"
-    return text.splitlines()[0] if text else type(error).__name__
-
-
-def _json(value: Any) -> str:
-    return json.dumps(value, default=_plain)
-
-
-def _stored(value: Any) -> Any:
-    """Text as text of fixed length: HDF5 keeps what varies in length in a heap without a checksum, where damage makes it hang."""
-    if not isinstance(value, str):
-        return value
-    data = value.encode()
-    return np.array(data, dtype=f"S{max(len(data), 1)}")
-
-
-def _chunk_rows(shape: tuple[int, ...]) -> int:
-    return max(1, CHUNK_BYTES // (8 * max(1, int(np.prod(shape)))))
 
 
 class ResultWriter:
@@ -288,10 +170,10 @@ class ResultWriter:
         compression: str | None,
     ) -> None:
         head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__} | place
-        head |= {"created": datetime.now(UTC).isoformat(), "geometry": _json(geometry), "meta": _json(meta)}
+        head |= {"created": datetime.now(UTC).isoformat(), "geometry": json_text(geometry), "meta": json_text(meta)}
         head |= {name: value for name, value in meta.items() if isinstance(value, str | bool | int | float)}
-        self._file.attrs.update({name: _stored(value) for name, value in head.items()})
-        self._file.create_dataset("scene", data=_stored(_json(scene)))
+        self._file.attrs.update({name: stored(value) for name, value in head.items()})
+        self._file.create_dataset("scene", data=stored(json_text(scene)))
         self._file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
         self._file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
         group = self._file.create_group("fields")
@@ -306,7 +188,7 @@ class ResultWriter:
                 shape=(0, *shape),
                 maxshape=(None, *shape),
                 dtype="f8",
-                chunks=(_chunk_rows(shape), *shape),
+                chunks=(chunk_rows(shape), *shape),
                 compression=compression,
                 shuffle=compression is not None,
             )
@@ -315,7 +197,7 @@ class ResultWriter:
     def _describe(self, dataset: h5py.Dataset, entry: Field, index: int) -> None:
         attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
         attributes["dims"] = " ".join(("time", *entry.dims))
-        dataset.attrs.update({name: _stored(value) for name, value in attributes.items()} | {"index": index})
+        dataset.attrs.update({name: stored(value) for name, value in attributes.items()} | {"index": index})
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:
@@ -475,7 +357,7 @@ class ResultWriter:
                 self._file["peaks"][name][0] = values
             ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
             ending |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
-            self._put("ending", np.frombuffer(_json(ending).encode(), dtype="u1"))
+            self._put("ending", np.frombuffer(json_text(ending).encode(), dtype="u1"))
         self.close()
 
     def _put(self, name: str, values: NDArray[Any]) -> None:

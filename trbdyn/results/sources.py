@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError
 from trbdyn.results.fields import Field
+from trbdyn.results.file_format import JSON_ATTRIBUTES, PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason
 from trbdyn.results.hdf5_marks import open_to_read
-from trbdyn.results.result_file import FLUSH_BYTES, JSON_ATTRIBUTES, PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason
+from trbdyn.results.result_file import FLUSH_BYTES
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from trbdyn import _core
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.scene import Scene
+from trbdyn.results.file_format import reason
 from trbdyn.results.hdf5_marks import mend, take_lock
 from trbdyn.results.result import Result, load
-from trbdyn.results.result_file import reason
 from trbdyn.results.sources import FileSource, open_run, segment_paths
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint

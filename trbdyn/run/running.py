@@ -22,8 +22,9 @@ from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.model.motion import History
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
+from trbdyn.results.file_format import reason
 from trbdyn.results.result import Result, load
-from trbdyn.results.result_file import ResultWriter, reason
+from trbdyn.results.result_file import ResultWriter
 from trbdyn.results.sources import FileSource, segment_paths
 from trbdyn.run import checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint

@@ -1,21 +1,16 @@
-"""Oils: viscosity against temperature and pressure.
-
-An `Oil` knows its viscosity at every temperature; a `Lubricant` is an oil at one temperature. Oils that ship: ISO VG
-32 to 460 of ordinary mineral oil, FVA3 (the measured VG 100 of the test rig), two gear oils and an ATF; others are
-made from the two viscosities of a data sheet: ``Oil(nu40=68.0, nu100=8.7, density=880.0)``.
-"""
+"""An oil at every temperature, a lubricant at one, and the oils that ship."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from trbdyn.base.validation import Model, Number, as_number, split_paths, unit
 from trbdyn.errors import InputError
+from trbdyn.model.lubricants.viscosity import Dicke, Vogel, astm_d341, wooster
 
 _ROELANDS_VISCOSITY = 6.31e-5
 _HIGHEST_PRESSURE = 1e10
@@ -24,98 +19,12 @@ _SAME_OIL = 1e-6
 """Share by which a number may differ from what its oil gives and still be the same."""
 _SAME_SLOPE = 0.01
 """Share by which alpha0 may differ from the slope of the pressure law."""
-_KELVIN = 273.15
 _MM2 = 1e-6
 LOWEST_TEMPERATURE_C: Final = -40.0
 LOWEST_MEASURED_C: Final = -20.0
 HIGHEST_TEMPERATURE_C: Final = 200.0
 """Temperatures (C) at which an oil is known: by ASTM D341, by a law of Vogel, and at most."""
 PressureLaw = Literal["dicke", "roelands", "barus"]
-
-
-class Dicke(Model):
-    """Constants of the pressure law of Dicke, measured for FVA3: eta = eta0 exp{p / [a + b t + (c + d t) p]}, p in bar,
-    t in C.
-
-    Parameters
-    ----------
-    a : float
-        Constant term (bar).
-    b : float
-        Factor of temperature (bar/C).
-    c : float
-        Factor of pressure (1).
-    d : float
-        Factor of pressure times temperature (1/C).
-
-    Notes
-    -----
-    Source: Wingertszahn 2023, Lubricants 11:369.
-    """
-
-    a: Annotated[Number, unit("bar", ge=1e-3, le=1e6)] = 327.79
-    b: Annotated[Number, unit("bar/C", ge=-1e4, le=1e4)] = 2.9862
-    c: Annotated[Number, unit("1", ge=0, le=1e3)] = 4.419e-3
-    d: Annotated[Number, unit("1/C", ge=-1, le=1)] = 3.0115e-4
-
-    def pressure_coefficient(self, temperature_c: float) -> float:
-        """alpha0 = d ln(eta)/dp at p = 0 (1/Pa), that is 1e-5/(a + b t): 1.97e-8 at 60 C, 2.096e-8 at 50 C for FVA3."""
-        return 1e-5 / (self.a + self.b * temperature_c)
-
-
-class Vogel(Model):
-    """Measured law of Vogel: eta0(t) = a exp[b / (t + c)], t in C.
-
-    Parameters
-    ----------
-    a : float
-        Factor (Pa s).
-    b, c : float
-        Constants (C).
-    """
-
-    a: Annotated[Number, unit("Pa s", gt=0, le=1)]
-    b: Annotated[Number, unit("C", gt=0, le=1e5)]
-    c: Annotated[Number, unit("C", ge=50, le=500)]
-
-
-def astm_d341(temperature_c: float, nu40: float, nu100: float) -> float:
-    """Kinematic viscosity (mm2/s) at a temperature, from those at 40 and 100 C.
-
-    log10 log10 Z = A - B log10 T, Z = nu + 0.7 + exp(-1.47 - 1.84 nu - 0.51 nu^2), nu in mm2/s, T in K; valid from 0.21
-    mm2/s up.
-
-    Notes
-    -----
-    Source: ASTM D341, standard practice for viscosity-temperature charts.
-
-    Examples
-    --------
-    >>> import trbdyn as trb
-    >>> round(trb.lubricants.astm_d341(70.0, 68.0, 8.7), 2)
-    20.12
-    """
-
-    def doubled(nu: float) -> float:
-        return math.log10(math.log10(nu + 0.7 + math.exp(-1.47 - 1.84 * nu - 0.51 * nu * nu)))
-
-    cold, warm = math.log10(40.0 + _KELVIN), math.log10(100.0 + _KELVIN)
-    share = (math.log10(temperature_c + _KELVIN) - cold) / (warm - cold)
-    z: float = 10.0 ** (10.0 ** (doubled(nu40) + share * (doubled(nu100) - doubled(nu40)))) - 0.7
-    if z > 20.0:
-        return z
-    return z - math.exp(-0.7487 - 3.295 * z + 0.6119 * z * z - 0.3193 * z**3)
-
-
-def wooster(viscosity: float) -> float:
-    """alpha0 of a mineral oil (1/Pa) from its dynamic viscosity (Pa s): (0.6 + 0.965 log10 eta) 1e-8, eta in mPa s.
-
-    Notes
-    -----
-    Source: Wooster, as in Briant, Denis and Parc 1989, Rheological Properties of Lubricants; within about 15 % of
-    measured mineral oils (FVA3 at 60 C: 2.09e-8 for 1.97e-8). Below 0.8 mPa s it is kept at 0.5e-8.
-    """
-    return max(0.6 + 0.965 * math.log10(1e3 * viscosity), 0.5) * 1e-8
 
 
 class Oil(Model):
@@ -430,10 +339,10 @@ def _oil(given: Any) -> Oil:
             return Oil(**given)
         except InputError as error:
             raise error.under(("oil",)) from None
-    if not isinstance(given, str) or given.lower() not in _OILS:
-        choices = ", ".join(repr(name) for name in _OILS)
+    if not isinstance(given, str) or given.lower() not in SHIPPED:
+        choices = ", ".join(repr(name) for name in SHIPPED)
         raise InputError.of("oil", given, f"must be one of {choices}, or an Oil")
-    return _OILS[given.lower()]
+    return SHIPPED[given.lower()]
 
 
 FVA3: Final = Oil(
@@ -463,7 +372,7 @@ GEAR_80W90: Final = Oil(name="gear oil 80W-90", nu40=138.0, nu100=14.5, density=
 ATF: Final = Oil(name="ATF", nu40=30.0, nu100=6.0, density=848.0)
 """An automatic transmission fluid of the present low-viscosity kind: typical data-sheet values."""
 
-_OILS: Final[dict[str, Oil]] = {
+SHIPPED: Final[dict[str, Oil]] = {
     "vg100": FVA3,
     "fva3": FVA3,
     **{f"vg{grade}": oil for grade, oil in MINERAL.items() if grade != 100},
@@ -471,87 +380,3 @@ _OILS: Final[dict[str, Oil]] = {
     "gear_80w90": GEAR_80W90,
     "atf": ATF,
 }
-
-
-def vg100(
-    temperature_c: float = 60.0,
-    *,
-    pressure_law: PressureLaw = "dicke",
-    eyring_stress: float = 5e6,
-) -> Lubricant:
-    """ISO VG100: the mineral oil FVA3.
-
-    Parameters
-    ----------
-    temperature_c : float
-        Temperature of the oil (C), -20 to 200.
-    pressure_law : {'dicke', 'roelands', 'barus'}
-        Law of viscosity against pressure; the measured one is Dicke's.
-    eyring_stress : float
-        tau0, characteristic shear stress (Pa).
-
-    Returns
-    -------
-    Lubricant
-        eta0(t) = 0.062 exp[1021.7/(t + 101.55)] mPa s (34.59 mPa s at 60 C), beta = 1021.7/(t + 101.55)^2 (0.0392 1/K
-        at 60 C), alpha0 = slope of the Dicke law at zero pressure (1.97e-8 1/Pa at 60 C).
-
-    Raises
-    ------
-    InputError
-        If the temperature lies outside the range.
-
-    Notes
-    -----
-    Source: Wingertszahn 2023, Lubricants 11:369.
-    """
-    try:
-        temperature = as_number(temperature_c)
-    except ValueError as error:
-        raise InputError.of("temperature_c", temperature_c, f"{error} (C)") from None
-    if not -20.0 <= temperature <= 200.0:
-        raise InputError.of("temperature_c", temperature_c, "must be between -20 and 200 (C)")
-    return FVA3.at(temperature, pressure_law=pressure_law, eyring_stress=eyring_stress)
-
-
-def iso_vg(grade: int, temperature_c: float = 60.0, *, eyring_stress: float = 5e6) -> Lubricant:
-    """An ordinary mineral oil of an ISO viscosity grade.
-
-    Parameters
-    ----------
-    grade : int
-        ISO VG: 32, 46, 68, 100, 150, 220, 320 or 460. The measured VG 100 of the test rig is `vg100`.
-    temperature_c : float
-        Temperature of the oil (C), -40 to 200.
-    eyring_stress : float
-        tau0, characteristic shear stress (Pa).
-
-    Returns
-    -------
-    Lubricant
-        Viscosity by ASTM D341 from the grade at 40 C and the typical one at 100 C, alpha0 by `wooster`, law of
-        Roelands.
-
-    Raises
-    ------
-    InputError
-        If there is no such grade, or the temperature lies outside the range.
-
-    Examples
-    --------
-    >>> import trbdyn as trb
-    >>> round(1e6 * trb.lubricants.iso_vg(220, 40.0).kinematic_viscosity, 6)
-    220.0
-    """
-    if isinstance(grade, bool) or grade not in MINERAL:
-        raise InputError.of("grade", grade, f"must be one of {', '.join(str(known) for known in MINERAL)}")
-    return MINERAL[grade].at(temperature_c, eyring_stress=eyring_stress)
-
-
-fva3 = vg100
-OILS: Final[dict[str, Callable[..., Lubricant]]] = {
-    "vg100": vg100,
-    "fva3": vg100,
-    **{name: partial(Lubricant, oil=oil) for name, oil in _OILS.items() if oil is not FVA3},
-}
-"""Oils that ship, by name: each takes ``temperature_c`` (60 by default)."""
