@@ -8,7 +8,7 @@ import tomllib
 import warnings
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import InputError
@@ -17,22 +17,6 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
     from trbdyn.results.result import Result
     from trbdyn.run.options import RunOptions
-
-_SIMULATION_OPTIONS: Final = (
-    "accuracy",
-    "integrator",
-    "rtol",
-    "atol_position",
-    "atol_angle",
-    "atol_velocity",
-    "atol_spin",
-    "max_order",
-    "max_step",
-    "first_step",
-    "rings_share",
-    "impact_share",
-    "checkpoint_every",
-)
 
 
 def add_set(parser: argparse.ArgumentParser) -> None:
@@ -82,17 +66,12 @@ def simulate(
     scene: Scene, run: RunOptions, output: Path, *, quiet: bool, overwrite: bool, given: Collection[str] = ()
 ) -> Result:
     """Run a case; what is not given of what to keep is chosen by the length of the run."""
-    from trbdyn.run.options import RunOptions
     from trbdyn.run.simulation import Simulation
 
     run.end_time(scene.speed_rpm)
-    default = RunOptions()
-    settings = {
-        name: getattr(run, name) for name in _SIMULATION_OPTIONS if getattr(run, name) != getattr(default, name)
-    }
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)
-        simulation = Simulation(scene, **settings)
+        simulation = Simulation(scene, **run.of_simulation())
     for note in notes:
         print(f"trbdyn: warning: {note.message}", file=sys.stderr)
     return simulation.run(

@@ -19,6 +19,7 @@ from trbdyn.base.validation import Gap, Length, Model, Number, Whole, unit
 from trbdyn.errors import InputError, Path, Problem
 from trbdyn.model.assumed import RIG, assumed_inputs, with_assumed
 from trbdyn.model.catalogue import fields_from_catalogue
+from trbdyn.model.core_table import parameter
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.flatten import bearing_geometry
 from trbdyn.model.geometry import Geometry
@@ -49,12 +50,12 @@ class Ribs(Model):
 
     _assumed: ClassVar[bool] = True
 
-    contact_height: Length = RIG["contact_height"]
-    edge_low: Gap = RIG["edge_low"]
-    edge_high: Length = RIG["edge_high"]
-    front_clearance: Gap = RIG["front_clearance"]
-    front_low: Gap = RIG["front_low"]
-    front_high: Length = RIG["front_high"]
+    contact_height: Annotated[Number, parameter("rib_contact_height", gt=0)] = RIG["contact_height"]
+    edge_low: Annotated[Number, parameter("rib_edge_low")] = RIG["edge_low"]
+    edge_high: Annotated[Number, parameter("rib_edge_high", gt=0)] = RIG["edge_high"]
+    front_clearance: Annotated[Number, parameter("front_rib_clearance")] = RIG["front_clearance"]
+    front_low: Annotated[Number, parameter("front_rib_low")] = RIG["front_low"]
+    front_high: Annotated[Number, parameter("front_rib_high", gt=0)] = RIG["front_high"]
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -108,14 +109,14 @@ class Cage(Model):
 
     _assumed: ClassVar[bool] = True
 
-    mass: Annotated[Number, unit("kg", gt=0)] = RIG["mass"]
-    inertia_axial: Annotated[Number, unit("kg m2", gt=0)] = RIG["inertia_axial"]
-    inertia_transverse: Annotated[Number, unit("kg m2", gt=0)] = RIG["inertia_transverse"]
+    mass: Annotated[Number, parameter("cage_mass")] = RIG["mass"]
+    inertia_axial: Annotated[Number, parameter("cage_inertia_axial")] = RIG["inertia_axial"]
+    inertia_transverse: Annotated[Number, parameter("cage_inertia_transverse")] = RIG["inertia_transverse"]
     play_radial: Length = RIG["play_radial"]
     play_circumferential: Length = RIG["play_circumferential"]
     play_axial: Gap = RIG["play_axial"]
-    offset: Annotated[Number, unit("m", ge=-1, le=1)] = 0.0
-    rail_offset: Annotated[Number, unit("m", ge=-1, le=1)] = RIG["rail_offset"]
+    offset: Annotated[Number, parameter("cage_offset")] = 0.0
+    rail_offset: Annotated[Number, parameter("cage_rail_offset")] = RIG["rail_offset"]
     bar_width: Length = RIG["bar_width"]
     wall_inner: Gap = RIG["wall_inner"]
     wall_outer: Length = RIG["wall_outer"]
@@ -185,9 +186,9 @@ class Bearing(Model):
     (1.929, True)
     """
 
-    n_rollers: Annotated[Whole, unit("1", ge=3, le=200)]
+    n_rollers: Annotated[Whole, parameter("n_rollers")]
     cup_half_angle_deg: Annotated[Number, unit("deg", ge=0.6, le=45)]
-    pitch_diameter: Length
+    pitch_diameter: Annotated[Number, parameter("pitch_diameter")]
     roller: Roller
     ribs: Ribs = Ribs()
     cage: Cage = Cage()

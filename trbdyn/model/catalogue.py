@@ -15,6 +15,7 @@ from typing import Any, Final
 from trbdyn.base.validation import as_number, as_whole_number
 from trbdyn.errors import InputError
 from trbdyn.model.assumed import RIG
+from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.roller import Profile, Roller
 
@@ -174,8 +175,9 @@ def _count(value: object) -> None:
         number = as_whole_number(value)
     except ValueError as error:
         raise InputError.of("n_rollers", value, f"{error} (1)") from None
-    if not 3 <= number <= 200:
-        raise InputError.of("n_rollers", value, "must be from 3 to 200 (1)")
+    allowed = PARAMETERS["n_rollers"]
+    if not allowed.lower <= number <= allowed.upper:
+        raise InputError.of("n_rollers", value, f"must be from {allowed.lower:g} to {allowed.upper:g} (1)")
 
 
 def _check_dimensions(bore: float, outside: float, width: float) -> None:

@@ -6,8 +6,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import model_validator
 
-from trbdyn.base.validation import Flag, Model, Number, Ratio, Whole, unit
+from trbdyn.base.validation import Flag, Model, Number, Whole
 from trbdyn.errors import InputError
+from trbdyn.model.core_table import parameter
 
 
 class Friction(Model):
@@ -37,17 +38,17 @@ class Friction(Model):
     Sources: Sakaguchi and Harada 2006, eqs. 2, 6 and 10; docs/theory/lubrication.md#mixed-friction.
     """
 
-    lambda_boundary: Annotated[Number, unit("1", ge=0, le=100)] = 0.01
-    lambda_full: Annotated[Number, unit("1", ge=1e-3, le=100)] = 1.5
-    boundary_limit: Annotated[Number, unit("1", ge=0, le=10)] = 0.1
-    boundary_slope: Annotated[Number, unit("1", ge=0, le=1e4)] = 22.28
-    boundary_decay: Annotated[Number, unit("1", ge=1e-3, le=1e5)] = 181.46
-    dry_friction: Annotated[Number, unit("1", ge=0, le=10)] = 0.1
-    coulomb_speed: Annotated[Number, unit("m/s", ge=1e-9, le=10)] = 0.01
-    cage_entrainment_speed: Annotated[Number, unit("m/s", ge=1e-6, le=100)] = 0.05
-    speed_floor: Annotated[Number, unit("m/s", ge=1e-12, le=1)] = 1e-3
-    thermal_floor: Annotated[Number, unit("1", ge=1e-6, le=0.9)] = 0.05
-    rolling_blend: Annotated[Number, unit("1", ge=1e-6, le=0.9)] = 0.1
+    lambda_boundary: Annotated[Number, parameter("lambda_boundary")] = 0.01
+    lambda_full: Annotated[Number, parameter("lambda_full")] = 1.5
+    boundary_limit: Annotated[Number, parameter("boundary_limit")] = 0.1
+    boundary_slope: Annotated[Number, parameter("boundary_slope")] = 22.28
+    boundary_decay: Annotated[Number, parameter("boundary_decay")] = 181.46
+    dry_friction: Annotated[Number, parameter("dry_friction")] = 0.1
+    coulomb_speed: Annotated[Number, parameter("coulomb_speed")] = 0.01
+    cage_entrainment_speed: Annotated[Number, parameter("cage_entrainment_speed")] = 0.05
+    speed_floor: Annotated[Number, parameter("speed_floor")] = 1e-3
+    thermal_floor: Annotated[Number, parameter("thermal_floor")] = 0.05
+    rolling_blend: Annotated[Number, parameter("rolling_blend")] = 0.1
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -122,20 +123,20 @@ class Effects(Model):
     thermal: Flag = True
     rolling_resistance: Flag = True
     rolling_pressure_force: Flag = True
-    starvation_factor: Annotated[Number, unit("1", ge=1e-4, le=1)] = 1.0
+    starvation_factor: Annotated[Number, parameter("starvation_factor")] = 1.0
     back_rib: Flag = True
     front_rib: Flag = True
     rib_film: Literal["max", "pe"] = "pe"
     pocket_bars: Flag = True
     pocket_ends: Flag = True
     pocket_edges: Flag = True
-    oil_fill: Annotated[Number, unit("1", ge=0, le=1)] = 0.0
-    drag_coefficient: Annotated[Number, unit("1", ge=0, le=20)] = 1.0
+    oil_fill: Annotated[Number, parameter("oil_fill")] = 0.0
+    drag_coefficient: Annotated[Number, parameter("drag_coefficient")] = 1.0
     damping: Literal["off", "hunt_crossley"] = "hunt_crossley"
-    damping_race: Annotated[Ratio, unit("s/m", le=1e4)] = 0.1
-    damping_cage: Annotated[Ratio, unit("s/m", le=1e4)] = 0.5
+    damping_race: Annotated[Number, parameter("damping_race")] = 0.1
+    damping_cage: Annotated[Number, parameter("damping_cage")] = 0.5
     quadrature: Literal["uniform", "gauss"] = "gauss"
-    n_slices: Annotated[Whole, unit("1", ge=1, le=200)] = 16
+    n_slices: Annotated[Whole, parameter("n_slices")] = 16
     friction: Friction = Friction()
 
     @model_validator(mode="before")

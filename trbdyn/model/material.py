@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Self
 
-from trbdyn.base.validation import Model, Number, unit
+from trbdyn.base.validation import Model, Number
+from trbdyn.model.core_table import parameter
 
 
 class Material(Model):
@@ -20,8 +21,8 @@ class Material(Model):
 
     _assumed: ClassVar[bool] = True
 
-    youngs_modulus: Annotated[Number, unit("Pa", ge=1e8, le=1e13)] = 206e9
-    poisson_ratio: Annotated[Number, unit("1", ge=0, le=0.4999)] = 0.3
+    youngs_modulus: Annotated[Number, parameter("youngs_modulus")] = 206e9
+    poisson_ratio: Annotated[Number, parameter("poisson_ratio")] = 0.3
 
     @classmethod
     def steel(cls) -> Self:
@@ -59,5 +60,5 @@ class Roughness(Model):
 
     _assumed: ClassVar[bool] = True
 
-    raceway: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.16e-6
-    rib: Annotated[Number, unit("m", ge=1e-10, le=1e-3)] = 0.24e-6
+    raceway: Annotated[Number, parameter("roughness_raceway")] = 0.16e-6
+    rib: Annotated[Number, parameter("roughness_rib")] = 0.24e-6

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
-from trbdyn.base.validation import Length, Model, Number, Whole, unit
+from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
 from trbdyn.model.assumed import RIG
+from trbdyn.model.core_table import parameter
 from trbdyn.model.material import Material
 
 
@@ -36,11 +37,11 @@ class Profile(Model):
     _assumed: ClassVar[bool] = True
 
     kind: Literal["logarithmic", "crowned", "straight"] = "logarithmic"
-    crown_radius: Annotated[Number, unit("m", ge=1e-3, le=1e9)] = 100.0
-    k1: Annotated[Number, unit("1", ge=0, le=100)] = 1.5
-    k2: Annotated[Number, unit("1", ge=0.001, le=1)] = 0.4
-    zm: Annotated[Number, unit("m", ge=0, le=1e-3)] = 10e-6
-    load: Annotated[Number, unit("N", ge=1e-3, le=1e9)] = RIG["load"]
+    crown_radius: Annotated[Number, parameter("crown_radius")] = 100.0
+    k1: Annotated[Number, parameter("profile_k1")] = 1.5
+    k2: Annotated[Number, parameter("profile_k2")] = 0.4
+    zm: Annotated[Number, parameter("profile_zm")] = 10e-6
+    load: Annotated[Number, parameter("profile_load")] = RIG["load"]
 
     @classmethod
     def straight(cls) -> Self:
@@ -109,15 +110,15 @@ class Roller(Model):
 
     _assumed: ClassVar[bool] = True
 
-    diameter: Length
-    effective_length: Length
-    total_length: Length = RIG["total_length"]
-    density: Annotated[Number, unit("kg/m3", ge=100, le=30000)] = 7810.0
+    diameter: Annotated[Number, parameter("roller_diameter")]
+    effective_length: Annotated[Number, parameter("effective_length")]
+    total_length: Annotated[Number, parameter("total_length")] = RIG["total_length"]
+    density: Annotated[Number, parameter("roller_density")] = 7810.0
     profile: Profile = Profile()
     diameter_deviation: tuple[Annotated[Number, unit("m", ge=-1e-3, le=1e-3)], ...] | None = None
     diameter_scatter: Scatter | None = None
-    sphere_ratio: Annotated[Number, unit("1", ge=0.05, le=0.999)] = 0.90
-    end_stiffness: Annotated[Number, unit("N/m^1.5", ge=1, le=1e14)] = RIG["end_stiffness"]
+    sphere_ratio: Annotated[Number, parameter("sphere_ratio")] = 0.90
+    end_stiffness: Annotated[Number, parameter("end_stiffness")] = RIG["end_stiffness"]
     material: Material | None = None
 
     @model_validator(mode="after")

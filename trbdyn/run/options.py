@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
-from trbdyn.base.validation import Length, Model, Number, Whole, unit
+from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
+from trbdyn.model.core_table import SETTINGS, setting
 from trbdyn.model.motion import MAX_TIME, History
 
 Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy", "peaks"]
@@ -42,25 +43,29 @@ class Tolerances(Model):
         Angular velocities (rad/s).
     """
 
-    rtol: Annotated[Number, unit("1", gt=0, le=0.1)]
-    atol_position: Length
-    atol_angle: Annotated[Number, unit("rad", gt=0)]
-    atol_velocity: Annotated[Number, unit("m/s", gt=0)]
-    atol_spin: Annotated[Number, unit("rad/s", gt=0)]
+    rtol: Annotated[Number, setting("rtol", "1")]
+    atol_position: Annotated[Number, setting("atol_position", "m")]
+    atol_angle: Annotated[Number, setting("atol_angle", "rad")]
+    atol_velocity: Annotated[Number, setting("atol_velocity", "m/s")]
+    atol_spin: Annotated[Number, setting("atol_spin", "rad/s")]
 
 
 ACCURACY: Final = {
     "fast": Tolerances(rtol=3e-3, atol_position=3e-9, atol_angle=3e-7, atol_velocity=1e-3, atol_spin=0.1),
-    "standard": Tolerances(rtol=1e-3, atol_position=9e-10, atol_angle=9e-8, atol_velocity=3e-4, atol_spin=3e-2),
+    "standard": Tolerances(**{name: SETTINGS[name].default for name in Tolerances.model_fields}),
     "reference": Tolerances(rtol=1e-4, atol_position=6e-11, atol_angle=6e-9, atol_velocity=2e-5, atol_spin=2e-3),
 }
-"""Presets, chosen on the front that benchmarks/work_precision.py draws."""
+"""Presets, chosen on the front that benchmarks/work_precision.py draws; ``standard`` has the defaults of the core."""
 
-RINGS_SHARE: Final = {"fast": 0.1, "standard": 0.1, "reference": 0.03}
+RINGS_SHARE: Final = {"fast": 0.1, "standard": SETTINGS["rings_share"].default, "reference": 0.03}
 """`RunOptions.rings_share` of the presets: so small that the loss of accuracy cannot be seen."""
 
-IMPACT_SHARE: Final = {"fast": 0.1, "standard": 0.03, "reference": 0.01}
+IMPACT_SHARE: Final = {"fast": 0.1, "standard": SETTINGS["impact_share"].default, "reference": 0.01}
 """`RunOptions.impact_share` of the presets."""
+
+
+OF_ONE_RUN: Final = ("revolutions", "duration", "save_every", "save_groups")
+"""Fields of `RunOptions` that belong to one run: how long it is, and what it keeps."""
 
 
 class RunOptions(Model):
@@ -110,16 +115,16 @@ class RunOptions(Model):
     save_groups: Annotated[tuple[Group, ...], Field(min_length=1)] = GROUPS
     accuracy: Literal["fast", "standard", "reference"] = "standard"
     integrator: Literal["bdf", "erk"] = "bdf"
-    rtol: Annotated[Number, unit("1", gt=0, le=0.1)] | None = None
-    atol_position: Length | None = None
-    atol_angle: Annotated[Number, unit("rad", gt=0)] | None = None
-    atol_velocity: Annotated[Number, unit("m/s", gt=0)] | None = None
-    atol_spin: Annotated[Number, unit("rad/s", gt=0)] | None = None
-    max_order: Annotated[Whole, unit("1", ge=1, le=5)] = 2
-    max_step: Annotated[Number, unit("s", ge=0)] = 0.0
-    first_step: Annotated[Number, unit("s", ge=0)] = 0.0
-    rings_share: Annotated[Number, unit("1", ge=0, le=1)] | None = None
-    impact_share: Annotated[Number, unit("1", ge=1e-4, le=1e3)] | None = None
+    rtol: Annotated[Number, setting("rtol", "1")] | None = None
+    atol_position: Annotated[Number, setting("atol_position", "m")] | None = None
+    atol_angle: Annotated[Number, setting("atol_angle", "rad")] | None = None
+    atol_velocity: Annotated[Number, setting("atol_velocity", "m/s")] | None = None
+    atol_spin: Annotated[Number, setting("atol_spin", "rad/s")] | None = None
+    max_order: Annotated[Whole, setting("max_order", "1")] = int(SETTINGS["max_order"].default)
+    max_step: Annotated[Number, setting("max_step", "s", ge=0)] = 0.0
+    first_step: Annotated[Number, setting("first_step", "s")] = SETTINGS["first_step"].default
+    rings_share: Annotated[Number, setting("rings_share", "1")] | None = None
+    impact_share: Annotated[Number, setting("impact_share", "1")] | None = None
     checkpoint_every: Annotated[Number, unit("s", ge=1e-9)] | None = None
     when_wrong: Literal["stop", "go_on"] = "stop"
 
@@ -149,6 +154,14 @@ class RunOptions(Model):
             "impact_share": IMPACT_SHARE[self.accuracy] if self.impact_share is None else self.impact_share,
             **chosen,
         }
+
+    def of_simulation(self) -> dict[str, Any]:
+        """What belongs to the simulation and not to one of its runs: the other fields than `OF_ONE_RUN`, as `Simulation` takes
+        them; without those that have their default.
+        """
+        default = type(self)()
+        names = [name for name in type(self).model_fields if name not in OF_ONE_RUN]
+        return {name: getattr(self, name) for name in names if getattr(self, name) != getattr(default, name)}
 
     def end_time(self, speed_rpm: float | History, start: float = 0.0) -> float:
         """When the run ends (s).

@@ -17,12 +17,9 @@ from trbdyn.results.result import Result, load
 from trbdyn.results.sources import FileSource, open_run, segment_paths
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint
-from trbdyn.run.options import RunOptions
+from trbdyn.run.options import OF_ONE_RUN, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
 from trbdyn.run.simulation import Simulation
-
-_OF_A_RUN = ("revolutions", "duration", "save_every", "save_groups")
-"""Fields of `RunOptions` that belong to one run of a simulation."""
 
 
 def resume(
@@ -148,7 +145,7 @@ def _revive(
             raise FileError(
                 f"{where}: the checkpoint cannot be used: its scene is not the one that its model hash belongs to"
             )
-        settings = {name: getattr(options, name) for name in RunOptions.model_fields if name not in _OF_A_RUN}
+        settings = {name: getattr(options, name) for name in RunOptions.model_fields if name not in OF_ONE_RUN}
         sim = Simulation(scene, instruction_set=variant, **settings)
         if found.build != checkpoint.build_digest():
             tell("going on with another build of the core: results may differ in rounding from the uninterrupted run")

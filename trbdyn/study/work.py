@@ -23,8 +23,6 @@ Observable = Callable[["Result"], Any]
 NOT_OBSERVABLE: Final = ("success", "message")
 """Entries of a summary that are told otherwise."""
 
-_OF_A_RUN: Final = ("revolutions", "duration", "save_every", "save_groups")
-
 
 @dataclass(frozen=True)
 class Task:
@@ -76,10 +74,7 @@ class Report:
 
 def simulation(scene: Scene, run: RunOptions) -> Simulation:
     """A simulation with the settings of run options."""
-    default = RunOptions()
-    names = [name for name in RunOptions.model_fields if name not in _OF_A_RUN]
-    settings = {name: getattr(run, name) for name in names if getattr(run, name) != getattr(default, name)}
-    return Simulation(scene, **settings)
+    return Simulation(scene, **run.of_simulation())
 
 
 def run_case(task: Task, stopped: Callable[[], bool]) -> Report:

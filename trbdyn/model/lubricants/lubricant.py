@@ -10,6 +10,7 @@ from pydantic import SerializerFunctionWrapHandler, model_serializer, model_vali
 
 from trbdyn.base.validation import Model, Number, as_number, split_paths, unit
 from trbdyn.errors import InputError
+from trbdyn.model.core_table import parameter
 from trbdyn.model.lubricants.viscosity import Dicke, Vogel, astm_d341, wooster
 
 _ROELANDS_VISCOSITY = 6.31e-5
@@ -75,8 +76,8 @@ class Oil(Model):
     pressure_coefficient: Annotated[Number, unit("1/Pa", ge=1e-10, le=1e-6)] | None = None
     pressure_coefficient_c: Annotated[Number, unit("C", ge=-40, le=200)] = 40.0
     dicke: Dicke | None = None
-    conductivity: Annotated[Number, unit("W/mK", ge=1e-4, le=1e3)] = 0.134
-    eyring_stress: Annotated[Number, unit("Pa", ge=1e3, le=1e9)] = 5e6
+    conductivity: Annotated[Number, parameter("conductivity")] = 0.134
+    eyring_stress: Annotated[Number, parameter("eyring_stress")] = 5e6
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -186,17 +187,17 @@ class Lubricant(Model):
     True
     """
 
-    viscosity: Annotated[Number, unit("Pa s", gt=0, le=1e6)]
-    pressure_coefficient: Annotated[Number, unit("1/Pa", ge=0, le=1e-6)]
-    temperature_coefficient: Annotated[Number, unit("1/K", ge=0, le=1)]
-    temperature_c: Annotated[Number, unit("C", ge=-80, le=400)]
-    density: Annotated[Number, unit("kg/m3", gt=0)] = 860.6
-    conductivity: Annotated[Number, unit("W/mK", ge=1e-4, le=1e3)] = 0.134
+    viscosity: Annotated[Number, parameter("viscosity")]
+    pressure_coefficient: Annotated[Number, parameter("pressure_coefficient")]
+    temperature_coefficient: Annotated[Number, parameter("temperature_coefficient")]
+    temperature_c: Annotated[Number, parameter("temperature")]
+    density: Annotated[Number, parameter("oil_density")] = 860.6
+    conductivity: Annotated[Number, parameter("conductivity")] = 0.134
     pressure_law: PressureLaw = "roelands"
     dicke: Dicke | None = None
-    viscosity_exponent_cap: Annotated[Number, unit("1", ge=1, le=60)] = 25.0
-    eyring_stress: Annotated[Number, unit("Pa", ge=1e3, le=1e9)] = 5e6
-    shear_modulus_floor: Annotated[Number, unit("Pa", ge=1, le=1e10)] = 1e7
+    viscosity_exponent_cap: Annotated[Number, parameter("viscosity_exponent_cap")] = 25.0
+    eyring_stress: Annotated[Number, parameter("eyring_stress")] = 5e6
+    shear_modulus_floor: Annotated[Number, parameter("shear_modulus_floor")] = 1e7
     oil: Oil | None = None
     name: str = "oil"
 
