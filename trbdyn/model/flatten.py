@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
@@ -57,41 +58,30 @@ class Entry:
 Entries = dict[str, Entry]
 
 
+def named_entries(model: Model, *path: str) -> Entries:
+    """Numbers of the fields that name their parameter (`trbdyn.model.core_table.parameter`); `path` leads to the model."""
+    return {
+        str(extra["parameter"]): Entry((*path, name), getattr(model, name))
+        for name, field in type(model).model_fields.items()
+        if isinstance(extra := field.json_schema_extra, dict) and "parameter" in extra
+    }
+
+
 def bearing_entries(bearing: Bearing) -> Entries:
     """Numbers of a bearing, by their names in the core's table; paths start at the bearing."""
-    roller, ribs, cage, profile = bearing.roller, bearing.ribs, bearing.cage, bearing.roller.profile
+    roller, cage = bearing.roller, bearing.cage
     return {
-        "n_rollers": Entry(("n_rollers",), bearing.n_rollers),
+        **named_entries(bearing),
+        **named_entries(roller, "roller"),
+        **named_entries(roller.profile, "roller", "profile"),
+        **named_entries(bearing.ribs, "ribs"),
+        **named_entries(cage, "cage"),
+        **named_entries(bearing.roughness, "roughness"),
         "cup_half_angle": Entry(("cup_half_angle_deg",), math.radians(bearing.cup_half_angle_deg)),
-        "pitch_diameter": Entry(("pitch_diameter",), bearing.pitch_diameter),
-        "roller_diameter": Entry(("roller", "diameter"), roller.diameter),
-        "effective_length": Entry(("roller", "effective_length"), roller.effective_length),
-        "total_length": Entry(("roller", "total_length"), roller.total_length),
-        "roller_density": Entry(("roller", "density"), roller.density),
-        "sphere_ratio": Entry(("roller", "sphere_ratio"), roller.sphere_ratio),
-        "end_stiffness": Entry(("roller", "end_stiffness"), roller.end_stiffness),
-        "profile": Entry(("roller", "profile", "kind"), PROFILES[profile.kind]),
-        "crown_radius": Entry(("roller", "profile", "crown_radius"), profile.crown_radius),
-        "profile_k1": Entry(("roller", "profile", "k1"), profile.k1),
-        "profile_k2": Entry(("roller", "profile", "k2"), profile.k2),
-        "profile_zm": Entry(("roller", "profile", "zm"), profile.zm),
-        "profile_load": Entry(("roller", "profile", "load"), profile.load),
-        "rib_contact_height": Entry(("ribs", "contact_height"), ribs.contact_height),
-        "rib_edge_low": Entry(("ribs", "edge_low"), ribs.edge_low),
-        "rib_edge_high": Entry(("ribs", "edge_high"), ribs.edge_high),
-        "front_rib_clearance": Entry(("ribs", "front_clearance"), ribs.front_clearance),
-        "front_rib_low": Entry(("ribs", "front_low"), ribs.front_low),
-        "front_rib_high": Entry(("ribs", "front_high"), ribs.front_high),
+        "profile": Entry(("roller", "profile", "kind"), PROFILES[roller.profile.kind]),
         **_material("", ("material",), bearing.material),
         **_material("roller_", ("roller", "material") if roller.material else ("material",), bearing.roller_material),
         **_material("cage_", ("cage", "material") if cage.material else ("material",), bearing.cage_material),
-        "roughness_raceway": Entry(("roughness", "raceway"), bearing.roughness.raceway),
-        "roughness_rib": Entry(("roughness", "rib"), bearing.roughness.rib),
-        "cage_mass": Entry(("cage", "mass"), cage.mass),
-        "cage_inertia_axial": Entry(("cage", "inertia_axial"), cage.inertia_axial),
-        "cage_inertia_transverse": Entry(("cage", "inertia_transverse"), cage.inertia_transverse),
-        "cage_offset": Entry(("cage", "offset"), cage.offset),
-        "cage_rail_offset": Entry(("cage", "rail_offset"), cage.rail_offset),
     }
 
 
@@ -103,22 +93,10 @@ def _material(prefix: str, path: Path, material: Material) -> Entries:
 
 def lubricant_entries(lubricant: Lubricant) -> Entries:
     """Numbers of a lubricant, by their names in the core's table; paths start at the lubricant."""
-    dicke = lubricant.dicke or Dicke()
     return {
-        "viscosity": Entry(("viscosity",), lubricant.viscosity),
-        "pressure_coefficient": Entry(("pressure_coefficient",), lubricant.pressure_coefficient),
-        "temperature_coefficient": Entry(("temperature_coefficient",), lubricant.temperature_coefficient),
-        "conductivity": Entry(("conductivity",), lubricant.conductivity),
-        "temperature": Entry(("temperature_c",), lubricant.temperature_c),
-        "oil_density": Entry(("density",), lubricant.density),
+        **named_entries(lubricant.dicke or Dicke(), "dicke"),
+        **named_entries(lubricant),
         "viscosity_law": Entry(("pressure_law",), PRESSURE_LAWS[lubricant.pressure_law]),
-        "dicke_a": Entry(("dicke", "a"), dicke.a),
-        "dicke_b": Entry(("dicke", "b"), dicke.b),
-        "dicke_c": Entry(("dicke", "c"), dicke.c),
-        "dicke_d": Entry(("dicke", "d"), dicke.d),
-        "viscosity_exponent_cap": Entry(("viscosity_exponent_cap",), lubricant.viscosity_exponent_cap),
-        "eyring_stress": Entry(("eyring_stress",), lubricant.eyring_stress),
-        "shear_modulus_floor": Entry(("shear_modulus_floor",), lubricant.shear_modulus_floor),
     }
 
 
@@ -128,15 +106,11 @@ def effects_entries(effects: Effects) -> Entries:
     Effects of films are handed on as off where there are no films.
     """
     rolling = effects.films and effects.rolling_resistance
-    entries = {
+    return {
+        **named_entries(effects),
+        **named_entries(effects.friction, "friction"),
         "quadrature": Entry(("quadrature",), QUADRATURES[effects.quadrature]),
-        "n_slices": Entry(("n_slices",), effects.n_slices),
-        "starvation_factor": Entry(("starvation_factor",), effects.starvation_factor),
         "damping": Entry(("damping",), float(effects.damping == "hunt_crossley")),
-        "damping_race": Entry(("damping_race",), effects.damping_race),
-        "oil_fill": Entry(("oil_fill",), effects.oil_fill),
-        "drag_coefficient": Entry(("drag_coefficient",), effects.drag_coefficient),
-        "damping_cage": Entry(("damping_cage",), effects.damping_cage),
         "with_cage": Entry(("bodies",), float(effects.bodies == "rollers_and_cage")),
         "planar": Entry(("planar",), float(effects.planar)),
         "lubrication": Entry(("lubrication",), LUBRICATION[effects.lubrication]),
@@ -151,8 +125,6 @@ def effects_entries(effects: Effects) -> Entries:
         "pocket_ends": Entry(("pocket_ends",), float(effects.pocket_ends)),
         "pocket_edges": Entry(("pocket_edges",), float(effects.pocket_edges)),
     }
-    entries.update({name: Entry(("friction", name), value) for name, value in effects.friction.model_dump().items()})
-    return entries
 
 
 def block_of(entries: Mapping[str, Entry]) -> FloatArray:
