@@ -204,7 +204,7 @@ class TestScene:
         with pytest.raises(InputError) as caught:
             Scene({"n_rollers": 2, "roller": {"diameter": -3, "densty": 1}}, speed_rpm=None)
         lines = str(caught.value).splitlines()
-        assert "bearing.roller.diameter = -3 : must be > 0 (m)" in lines
+        assert "bearing.roller.diameter = -3 : must be >= 0.0001 (m)" in lines
         assert "bearing.n_rollers = 2 : must be >= 3" in lines
         assert any(
             line.startswith("bearing.roller.densty = 1 : unknown name; did you mean 'density'?") for line in lines
