@@ -16,6 +16,8 @@ MEANINGS: Final[dict[str, str]] = {
     "creep_time": "Time in which creep of the rollers lets the whirl change by its own size.",
     "window_start": "Averages are taken from this time on.",
     "window_end": "Averages are taken up to this time.",
+    "confidence": "Half width of the interval that holds the true mean in 95 of 100 cases.",
+    "confidence_note": "How the numbers behind ± were found: the true mean lies within in 95 of 100 cases.",
     "speed_rpm": "Mean speed of the inner ring.",
     "cage_speed_ratio": "Turns of the cage for each turn of the shaft.",
     "cage_speed_ratio_kinematic": "The same if all rollers rolled without slip.",
