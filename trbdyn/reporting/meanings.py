@@ -58,7 +58,7 @@ MEANINGS: Final[dict[str, str]] = {
     "torque": "Friction torque that the shaft has to overcome.",
     "torque_outer": "Friction torque that the outer ring passes on to the housing.",
     "power_loss": "Heat that the bearing makes.",
-    "energy_closure": "Error of the energy balance over the dissipated work: below 0.001 the books close.",
+    "energy_closure": "Energy that does not add up, over the dissipated work: below 0.001 is good, above 0.01 too much.",
     "energy_residual": "Error of the energy balance.",
     "steps": "Steps of the integrator.",
     "rhs_evaluations": "How often all forces were computed.",
