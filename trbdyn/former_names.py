@@ -24,6 +24,7 @@ MODULES: Final = {
     "trbdyn.cases": "trbdyn.model.cases",
     "trbdyn.catalogue": "trbdyn.model.catalogue",
     "trbdyn.checkpoint": "trbdyn.run.checkpoint",
+    "trbdyn.confidence": "trbdyn.results.confidence",
     "trbdyn.derived": "trbdyn.results.derived",
     "trbdyn.effects": "trbdyn.model.effects",
     "trbdyn.estimate": "trbdyn.run.estimate",

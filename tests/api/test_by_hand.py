@@ -238,6 +238,17 @@ def test_cage_by_hand() -> None:
     assert observables.whirl_frequency(turn, circle) == pytest.approx(-2.0, abs=0.02)
 
 
+def test_slip_of_the_set_is_the_mean_of_its_rollers(build: Callable[..., tuple[Any, Result]]) -> None:
+    run, result = build(n=201)
+    speed = run.column("roller_orbit_speed")
+    speed[:, 0] *= 0.9
+    values = Result.from_records(
+        run.records, run.layout, scene=result.scene, geometry=run.geometry, fields=run.fields, **run.ending()
+    )
+    expected = 1.0 - (11.0 * 0.999 + 0.9 * 0.999) / 12.0
+    np.testing.assert_allclose(values.cage_slip, expected, rtol=1e-9)
+
+
 def test_derived_by_hand(whirling: Result) -> None:
     np.testing.assert_allclose(whirling.axial_motion, whirling.cage_position[:, 2] / 0.4e-3)
     np.testing.assert_allclose(whirling.cage_locus("rail"), 1.05 * whirling.cage_locus("centre"))

@@ -16,8 +16,8 @@ import pytest
 import trbdyn as trb
 from trbdyn import FileError, History, InputError, Result, Simulation, StepError
 from trbdyn.model.cases import scene_30310
-from trbdyn.results import fields as field_table
-from trbdyn.results import peaks as peak_table
+from trbdyn.results.result import fields as field_table
+from trbdyn.results.result import peaks as peak_table
 from trbdyn.run.options import RunOptions
 
 
@@ -49,6 +49,7 @@ def test_run_returns_everything(short: Result) -> None:
     ]
     for name in ("steps", "rhs_evaluations", "jacobian_evaluations", "wall_s", "wall_s_per_revolution"):
         assert short.stats[name] > 0, name
+    assert 0.0 < short.stats["smallest_step"] < 0.1 * 2e-3 / short.stats["steps"]  # a run begins with tiny steps
     assert short.stats["bearing_time_s"] == pytest.approx(2e-3)
     assert short.stats["revolutions"] == pytest.approx(0.1)
     assert short.meta["settings"]["integrator"] == "bdf"

@@ -285,6 +285,7 @@ def test_checkpoints_that_say_what_cannot_be_are_refused(broken: Path, changes: 
         {"done": -1},
         {"done": True},
         {"start": 1.0, "end": 0.0},
+        {"counters": {"pocket": "three"}},
         {"state": np.array([np.nan])},
         {"peaks": np.array([np.nan])},
     ],

@@ -65,8 +65,7 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _info_result(path: Path, *, as_json: bool) -> int:
-    from trbdyn.results import summary
-    from trbdyn.results.result import load
+    from trbdyn.results.result import load, summary
 
     result = load(path)
     values = result.summary()

@@ -200,13 +200,17 @@ def _numbers(numbers: Sequence[dict[str, Any]], names: Sequence[str]) -> str:
                 if any(entries):
                     body.append(_number_row(part.replace("_", " "), entries, unit, ""))
             continue
-        body.append(_number_row(words, values, unit, MEANINGS.get(key, "")))
+        widths = [(entry.get("confidence") or {}).get(key) for entry in numbers]
+        body.append(_number_row(words, values, unit, MEANINGS.get(key, ""), widths))
     heads = "".join(f"<th>{_safe(name)}</th>" for name in names) if len(numbers) > 1 else "<th>value</th>"
     return f"<h2>Numbers</h2><table><tr><th>quantity</th>{heads}<th>unit</th><th>what it means</th></tr>{''.join(body)}</table>"
 
 
-def _number_row(words: str, values: Sequence[Any], unit: str, meaning: str) -> str:
-    shown = [_amount(value) for value in values]
+def _number_row(
+    words: str, values: Sequence[Any], unit: str, meaning: str, half_widths: Sequence[float | None] = ()
+) -> str:
+    widths = [*half_widths, *[None] * (len(values) - len(half_widths))]
+    shown = [_amount(value) + ("" if w is None else f" ± {w:.2g}") for value, w in zip(values, widths, strict=True)]
     differs = " class='differs'" if len(set(shown)) > 1 else ""
     cells = "".join(f"<td class='n'>{_safe(text)}</td>" for text in shown)
     return f"<tr{differs}><td>{_safe(words.strip())}</td>{cells}<td class='u'>{_safe(unit)}</td><td>{_safe(meaning)}</td></tr>"

@@ -20,7 +20,8 @@ import numpy as np
 
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.errors import FileError
-from trbdyn.results import observables
+from trbdyn.results.confidence import confidence
+from trbdyn.results.result import observables
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -83,6 +84,8 @@ LABELS: dict[str, tuple[str, str]] = {
     "rhs_evaluations": ("evaluations of the equations of motion", ""),
     "wall_s": ("wall time", "s"),
     "wall_s_per_revolution": ("wall time a revolution", "s"),
+    "confidence_note": ("About the numbers behind ±", ""),
+    "confidence": ("half width of the 95 % confidence interval", ""),
     "torque_note": ("Why the torques of the rings differ", ""),
     "power_split": ("power loss by mechanism", "W"),
     "torque_by_loss": ("the same as friction torque of the shaft", "N m"),
@@ -95,7 +98,7 @@ Cpr is the radial play of the cage, one-sided. A force on the inner ring that ma
 what rolling resistance takes at the outer raceway. So the shares of ``torque_split`` differ from those of ``torque_by_loss``.
 """
 
-UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "whirl_radius_over_cpr")
+UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "whirl_radius_over_cpr", "confidence")
 """Entries that the table leaves out, as another one tells them."""
 
 RINGS_DIFFER: Final = 0.01
@@ -137,6 +140,17 @@ def _motion(result: Result) -> dict[str, Any]:
     time = window["time"]
     out |= {"window_start": float(time[0]), "window_end": float(time[-1])}
     out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
+    out |= _averages(window)
+    out["confidence"], out["confidence_note"] = confidence(window, _averages)
+    if not result.has_cage:
+        out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
+    if "energy" in groups:
+        audit = result.energy_audit
+        out |= {"energy_closure": audit.closure, "energy_residual": audit.residual}
+    return out
+
+
+def _averages(window: Result) -> dict[str, Any]:
     parts: dict[str, Callable[[Result], dict[str, Any]]] = {
         "cage": _cage,
         "rollers": _rollers,
@@ -146,14 +160,10 @@ def _motion(result: Result) -> dict[str, Any]:
         "torque": _torque,
         "power": _power,
     }
+    out: dict[str, Any] = {}
     for group, part in parts.items():
-        if group in groups and (result.has_cage or group not in ("cage", "pocket")):
+        if group in window.groups and (window.has_cage or group not in ("cage", "pocket")):
             out |= part(window)
-    if not result.has_cage:
-        out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
-    if "energy" in groups:
-        audit = result.energy_audit
-        out |= {"energy_closure": audit.closure, "energy_residual": audit.residual}
     return out
 
 
@@ -343,7 +353,7 @@ def table(values: Mapping[str, Any]) -> str:
             continue
         if name == "settling":
             rows.append(("settled", _settled_words(values), ""))
-        elif name == "torque_note":
+        elif name in ("torque_note", "confidence_note"):
             sentences += "\n\n" + textwrap.fill(f"{words}: {value}", 100)
         elif isinstance(value, Mapping):
             rows.append((words, "", ""))
@@ -351,7 +361,7 @@ def table(values: Mapping[str, Any]) -> str:
                 (f"    {part.replace('_', ' ')}", _number(entry), unit) for part, entry in value.items() if entry
             )
         else:
-            rows.append((words, _number(value), unit))
+            rows.append((words, _number(value, (values.get("confidence") or {}).get(name)), unit))
     width = max(len(words) for words, _, _ in rows)
     return "\n".join(f"{words:<{width}}  {number} {unit}".rstrip() for words, number, unit in rows) + sentences
 
@@ -361,7 +371,8 @@ def _settled_words(values: Mapping[str, Any]) -> str:
     return {"settled": "yes", "drifting": "no, it drifts: "}.get(values["settling"], "cannot be told: ") + reason
 
 
-def _number(value: Any) -> str:
+def _number(value: Any, half_width: float | None = None) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
+    number = f"{value:.5g}" if isinstance(value, float) else str(value)
+    return number if half_width is None else f"{number} ± {half_width:.2g}"

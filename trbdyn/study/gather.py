@@ -127,6 +127,9 @@ def _stacked(values: Sequence[Any]) -> NDArray[Any]:
 
 
 def _attributes(name: str) -> dict[str, str]:
+    if name.startswith("confidence_") and name.removeprefix("confidence_") in LABELS:
+        words, unit = LABELS[name.removeprefix("confidence_")]
+        return {"long_name": f"{words.strip()}: half width of the 95 % confidence interval", "units": unit or "1"}
     for label, (words, unit) in LABELS.items():
         if name == label or (name.startswith(f"{label}_") and label.endswith(("_split", "_by_loss"))):
             return {"long_name": words.strip() or label, "units": unit or "1"}

@@ -36,6 +36,7 @@ from trbdyn.results.observables.rollers import (
     wrap_angle,
 )
 from trbdyn.results.observables.signals import Settling, peak_frequency, settling, spectrum, uniform
+from trbdyn.results.observables.uncertainty import batches, correlation_time, half_width
 
 __all__ = [
     "LIMITS",
@@ -47,13 +48,16 @@ __all__ = [
     "PocketStatistics",
     "Settling",
     "axis_distance",
+    "batches",
     "by_turns",
     "cage_frequency",
     "cage_speed_ratio",
     "classify",
+    "correlation_time",
     "drift",
     "energy_audit",
     "energy_balance",
+    "half_width",
     "kinematic_slip",
     "lean",
     "locus",
