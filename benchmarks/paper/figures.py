@@ -22,8 +22,8 @@ from paper.point_numbers import Run, Runs
 from paper.points import FIGURES, Condition, Point, StartKind
 from trbdyn import plot
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, STYLE, line
+from trbdyn.results import observables
 from trbdyn.results.observables import whirl_amplitude
-from trbdyn.results.result import observables
 from trbdyn.run.movable import Movable, Pockets
 
 Array = NDArray[np.float64]

@@ -21,7 +21,7 @@ from paper.files import History, is_finished, read_history, write_point, write_p
 from paper.growth import growth_of_history
 from paper.points import Point
 from trbdyn.errors import StepError, TrbError
-from trbdyn.results.result import observables
+from trbdyn.results import observables
 from trbdyn.study.work import Report, said
 
 if TYPE_CHECKING:

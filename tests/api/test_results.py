@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from trbdyn.errors import FileError, InputError
+from trbdyn.results import fields as field_table
 from trbdyn.results.result import Result, load
-from trbdyn.results.result import fields as field_table
 from trbdyn.results.result_file import ResultWriter
 
 
@@ -121,7 +121,7 @@ def test_the_orbit_is_not_the_distance_from_the_axis(build: Callable[..., tuple[
 
 
 def _summary_text(result: Result) -> str:
-    from trbdyn.results.result import summary
+    from trbdyn.results import summary
 
     return summary.table(result.summary())
 
@@ -459,7 +459,7 @@ def test_files_that_cannot_be_made(tmp_path: Path, synthetic: Any, stub_scene: A
 
 
 def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
-    from trbdyn.results.result import summary
+    from trbdyn.results import summary
 
     values = whirling.summary()
     assert values["axis_distance_over_cpr"] == pytest.approx(0.9)

@@ -16,8 +16,8 @@ import pytest
 import trbdyn as trb
 from trbdyn import FileError, History, InputError, Result, Simulation, StepError
 from trbdyn.model.cases import scene_30310
-from trbdyn.results.result import fields as field_table
-from trbdyn.results.result import peaks as peak_table
+from trbdyn.results import fields as field_table
+from trbdyn.results import peaks as peak_table
 from trbdyn.run.options import RunOptions
 
 

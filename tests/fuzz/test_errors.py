@@ -305,7 +305,7 @@ def test_a_packed_file_of_zeros_is_no_damage(tmp_path: Path) -> None:
     records = np.zeros((rows, 55))
     records[:, 0] = np.arange(rows)
     path = tmp_path / "zeros.h5"
-    from trbdyn.results.result import fields
+    from trbdyn.results import fields
 
     with ResultWriter(path, scene=scene, layout=layout, fields=fields.table(), compression="gzip") as writer:
         writer.append(records)

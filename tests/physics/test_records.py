@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from trbdyn import Effects, Simulation
 from trbdyn.model.effects import Friction
-from trbdyn.results.result import fields
+from trbdyn.results import fields
 
 Array = NDArray[np.float64]
 

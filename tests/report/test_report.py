@@ -15,7 +15,7 @@ from trbdyn.reporting import converter
 from trbdyn.reporting.inputs import field_texts, rows
 from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict
-from trbdyn.results.result import summary
+from trbdyn.results import summary
 
 
 @pytest.fixture(scope="module")

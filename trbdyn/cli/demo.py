@@ -47,7 +47,7 @@ def _demo(options: argparse.Namespace) -> int:
     from trbdyn.model.scene import Start
     from trbdyn.reporting import report
     from trbdyn.reporting.verdict import what_matters
-    from trbdyn.results.result import summary
+    from trbdyn.results import summary
     from trbdyn.run.options import RunOptions
     from trbdyn.viewer import view
 

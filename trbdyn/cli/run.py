@@ -97,7 +97,7 @@ def _resume(options: argparse.Namespace) -> int:
 
 def _finish(result: Result, output: Path, summary_file: str | Path | None, *, quiet: bool) -> int:
     """Write and print the summary; the exit code says whether the run reached its end."""
-    from trbdyn.results.result import summary
+    from trbdyn.results import summary
 
     values = result.summary()
     if summary_file is not None:

@@ -17,7 +17,7 @@ from matplotlib.ticker import MultipleLocator
 
 from trbdyn.errors import InputError
 from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, is_own, legend, line, sequence
-from trbdyn.results.result import observables
+from trbdyn.results import observables
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import revolutions
 from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, legend, line, sequence, thin
-from trbdyn.results.result import observables
+from trbdyn.results import observables
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
+from trbdyn.results import observables
 from trbdyn.results.fields import Field
 from trbdyn.results.peaks import Peaks
-from trbdyn.results.result import observables
 from trbdyn.statics.creep import creep_time
 
 if TYPE_CHECKING:

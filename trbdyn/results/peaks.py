@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
 from trbdyn.errors import InputError, unknown_name
+from trbdyn.results import fields as field_table
 from trbdyn.results.fields import Field, Layout
-from trbdyn.results.result import fields as field_table
 
 Array = NDArray[np.float64]
 

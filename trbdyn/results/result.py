@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.scene import Scene
+from trbdyn.results import fields as field_table
+from trbdyn.results import peaks as peak_table
 from trbdyn.results.derived import Derived
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
-from trbdyn.results.result import fields as field_table
-from trbdyn.results.result import peaks as peak_table
 from trbdyn.results.sources import MemorySource, Source, WindowSource, open_run
 from trbdyn.results.summary import summary
 

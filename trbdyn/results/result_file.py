@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from trbdyn.base.own_files import copy_content, create_draft, exists_already, is_same, output_path, put_in_place
 from trbdyn.base.version import __version__
 from trbdyn.errors import FileError
+from trbdyn.results import fields as field_table
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import (
     CHUNK_BYTES,
@@ -34,7 +35,6 @@ from trbdyn.results.file_format import (
     stored,
 )
 from trbdyn.results.hdf5_marks import lock, take_lock
-from trbdyn.results.result import fields as field_table
 
 Array = NDArray[np.float64]
 

@@ -20,8 +20,8 @@ import numpy as np
 
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.errors import FileError
+from trbdyn.results import observables
 from trbdyn.results.confidence import confidence
-from trbdyn.results.result import observables
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result

@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.model.motion import History
+from trbdyn.results import fields as field_table
+from trbdyn.results import peaks as peak_table
 from trbdyn.results.file_format import reason
 from trbdyn.results.result import Result, load
-from trbdyn.results.result import fields as field_table
-from trbdyn.results.result import peaks as peak_table
 from trbdyn.results.result_file import ResultWriter
 from trbdyn.results.sources import FileSource, segment_paths
 from trbdyn.run import checkpoint, keeping

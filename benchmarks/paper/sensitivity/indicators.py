@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.results.result import observables
+from trbdyn.results import observables
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
