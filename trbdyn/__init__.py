@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import RotatingLoad, Scene, Start
     from trbdyn.plot import animation
     from trbdyn.reporting import report
-    from trbdyn.results.result import Result, load, observables
+    from trbdyn.results import observables
+    from trbdyn.results.result import Result, load
     from trbdyn.run.options import RunOptions
     from trbdyn.run.resume import resume
     from trbdyn.run.simulation import Simulation

@@ -18,7 +18,8 @@ from paper.files import History, read_about, read_history
 from paper.growth import growth_of_history
 from paper.points import Condition, Point, StartKind
 from trbdyn.errors import FileError
-from trbdyn.results.result import Result, load, observables
+from trbdyn.results import observables
+from trbdyn.results.result import Result, load
 from trbdyn.results.summary import clean
 
 Array = NDArray[np.float64]

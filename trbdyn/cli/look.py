@@ -65,7 +65,8 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _info_result(path: Path, *, as_json: bool) -> int:
-    from trbdyn.results.result import load, summary
+    from trbdyn.results import summary
+    from trbdyn.results.result import load
 
     result = load(path)
     values = result.summary()
