@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from trbdyn import observables
 from trbdyn.model.cases import scene_30310
 from trbdyn.results.confidence import AVERAGES
 from trbdyn.results.summary import LABELS, table
+from trbdyn.run.until import Until
 
 Array = NDArray[np.float64]
 
@@ -102,3 +105,88 @@ def test_a_short_run_has_none_and_says_why() -> None:
     assert values["confidence"] is None
     assert "too short" in values["confidence_note"]
     assert "±" not in table(values).replace("behind ±", "")
+
+
+UNTIL = {"torque": 0.02, "orbit_radius_over_cpr": 0.25}
+
+
+def rolling() -> trb.Simulation:
+    effects = trb.Effects.paper().replace(quadrature="gauss", n_slices=4)
+    return trb.Simulation(scene_30310(3000.0, 1230.0, effects=effects, start=trb.Start.whirl(0.9)), accuracy="fast")
+
+
+@pytest.fixture(scope="module")
+def enough() -> trb.Result:
+    return rolling().run(duration=4.0, until=UNTIL)
+
+
+def test_a_run_ends_when_averages_are_known_as_well_as_was_asked_for(enough: trb.Result) -> None:
+    values = enough.summary()
+    assert enough.success
+    assert enough.duration < 3.0
+    assert "as far as was needed" in enough.message
+    assert "orbit_radius_over_cpr is known within" in enough.message
+    for name, share in UNTIL.items():
+        assert values["confidence"][name] <= share * abs(values[name])
+    # two looks in a row were narrow, for the first time: the one before them was not
+    looks = Until(UNTIL, 4001)._looks
+    place = looks.index(len(enough))
+    earlier = enough.window(stop=enough.time[looks[place - 2] - 1]).summary()
+    widths = earlier["confidence"] or {}
+    assert any(widths.get(name, math.inf) > share * abs(earlier[name]) for name, share in UNTIL.items())
+
+
+def test_files_and_resuming_change_nothing(enough: trb.Result, tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    groups = ("cage", "rollers", "torque", "energy")
+    options: dict[str, Any] = {"duration": 4.0, "until": UNTIL, "output": path, "save_groups": groups}
+    written = rolling().run(**options)
+    assert len(written) == len(enough)
+    np.testing.assert_array_equal(written.final_state, enough.final_state)
+
+    cut, calls = tmp_path / "cut.h5", 0
+
+    def stop(sim: trb.Simulation) -> bool:
+        nonlocal calls
+        calls += 1
+        return sim.time > 0.3
+
+    whole = rolling().run(**options | {"output": tmp_path / "whole.h5", "checkpoint_every": 0.1})
+    first = rolling().run(**options | {"output": cut, "checkpoint_every": 0.1, "callback": stop})
+    assert calls > 1
+    assert not first.success
+    again = trb.resume(cut)
+    assert len(again) == len(whole) < 4001
+    np.testing.assert_array_equal(again.final_state, whole.final_state)
+    assert again.message == whole.message
+
+
+def test_a_run_that_ends_without_it_says_so() -> None:
+    with pytest.warns(trb.RunWarning, match="without the confidence that was asked for: torque"):
+        result = rolling().run(duration=0.1, until={"torque": 1e-6})
+    assert result.success
+    assert any("without the confidence" in text for text in result.warnings)
+
+
+@pytest.mark.parametrize(
+    ("until", "said"),
+    [
+        ({"torqe": 0.1}, "did you mean torque"),
+        ({"pocket_force_peak": 0.1}, "must name averages"),
+        ({"torque": 2}, "run.until.torque = 2"),
+        ({"torque": True}, "must be a number"),
+        ({"torque": 0.0}, "must be > 0"),
+    ],
+)
+def test_what_cannot_be_asked_for(until: dict[str, float], said: str) -> None:
+    with pytest.raises(trb.InputError, match=said):
+        rolling().run(duration=0.1, until=until)
+
+
+def test_what_is_not_kept_cannot_be_asked_for() -> None:
+    with pytest.raises(trb.InputError, match="must hold torque"):
+        rolling().run(duration=0.1, until={"torque": 0.1}, save_groups=("cage", "rollers"))
+    effects = trb.Effects.paper().replace(bodies="rollers")
+    alone = trb.Simulation(scene_30310(3000.0, 4930.0, effects=effects))
+    with pytest.raises(trb.InputError, match="needs a cage"):
+        alone.run(duration=0.1, until={"pocket_duty": 0.1})

@@ -27,6 +27,14 @@ def add_run_parsers(
     run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
     run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
     run.add_argument(
+        "--until",
+        action="append",
+        default=[],
+        metavar="NAME=SHARE",
+        help="end earlier, when this average of the summary is known within this share, for instance torque=0.01 "
+        "(may be given several times)",
+    )
+    run.add_argument(
         "--save-every",
         type=float,
         metavar="S",
@@ -49,6 +57,14 @@ def add_run_parsers(
     resume.set_defaults(command=_resume)
 
 
+def _wanted(text: str) -> tuple[str, float]:
+    name, _, share = text.partition("=")
+    try:
+        return name.strip(), float(share)
+    except ValueError:
+        raise InputError.of("--until", text, "must be NAME=SHARE, for instance torque=0.01") from None
+
+
 def _run(options: argparse.Namespace) -> int:
     scene, run = case_with_changes(options.case, options.changes)
     changes = {
@@ -56,6 +72,8 @@ def _run(options: argparse.Namespace) -> int:
         for name in ("revolutions", "duration", "save_every", "accuracy", "checkpoint_every")
         if getattr(options, name) is not None
     }
+    if options.until:
+        changes["until"] = dict(map(_wanted, options.until))
     if "revolutions" in changes and "duration" not in changes:
         changes["duration"] = None
     if "duration" in changes and "revolutions" not in changes:

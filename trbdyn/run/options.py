@@ -64,7 +64,7 @@ IMPACT_SHARE: Final = {"fast": 0.1, "standard": SETTINGS["impact_share"].default
 """`RunOptions.impact_share` of the presets."""
 
 
-OF_ONE_RUN: Final = ("revolutions", "duration", "save_every", "save_groups")
+OF_ONE_RUN: Final = ("revolutions", "duration", "until", "save_every", "save_groups")
 """Fields of `RunOptions` that belong to one run: how long it is, and what it keeps."""
 
 
@@ -77,6 +77,9 @@ class RunOptions(Model):
         Length of the run in turns of the shaft; not together with `duration`.
     duration : float, optional
         Length of the run (s).
+    until : dict of str to float
+        The run ends earlier, when the 95 % confidence intervals of these averages of the summary are narrow enough: largest half
+        width over the average, by name, for instance ``{"torque": 0.01}``. Empty: it never does.
     save_every : float
         Time between saved records (s).
     save_groups : sequence of str
@@ -111,6 +114,7 @@ class RunOptions(Model):
 
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None
     duration: Annotated[Number, unit("s", gt=0)] | None = None
+    until: dict[str, Annotated[Number, unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
     save_every: Annotated[Number, unit("s", gt=0)] = 1e-4
     save_groups: Annotated[tuple[Group, ...], Field(min_length=1)] = GROUPS
     accuracy: Literal["fast", "standard", "reference"] = "standard"

@@ -8,6 +8,7 @@ import os
 import signal
 import threading
 import time as clock
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
-from trbdyn.errors import FileError, InputError, StepError
+from trbdyn.errors import FileError, InputError, RunWarning, StepError
 from trbdyn.model.motion import History
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
@@ -29,6 +30,7 @@ from trbdyn.results.sources import FileSource, segment_paths
 from trbdyn.run import checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.options import RunOptions
+from trbdyn.run.until import Until, check_wanted
 from trbdyn.run.watch import Watch
 
 if TYPE_CHECKING:
@@ -70,6 +72,9 @@ class Run:
         self.spent = 0.0
         self.fields = field_table.table()
         self.layout = list(sim._model.record_layout())
+        wanted = check_wanted(options.until, options.save_groups, sim.scene.effects.bodies == "rollers_and_cage")
+        self.until = Until(wanted, times.size)
+        self.enough = ""
         self.with_peaks = peak_table.GROUP in options.save_groups
         if self.with_peaks:
             self.fields += peak_table.table()
@@ -157,7 +162,7 @@ class Run:
                     raise
                 self._finish(False, f"ended by {type(error).__name__} at {sim.time:.6g} s: {error}")
                 raise
-        return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
+        return self._finish(message is None, message or self.enough or f"reached {self.times[-1]:.6g} s")
 
     def _loop(self, bar: Any) -> str | None:
         """Step until all records are filled; gives the reason if the run ended before, else None."""
@@ -167,7 +172,8 @@ class Run:
         due = checkpoint.next_time(sim._begun, every)
         watch = Watch(sim, float(self.times[-1]), self.doubts, going_on=self.options.when_wrong == "go_on")
         while self.done < self.times.size:
-            chunk = self.times[self.done : self.done + CHUNK_RECORDS]
+            look = self.until.next_look(self.done)
+            chunk = self.times[self.done : min(self.done + CHUNK_RECORDS, look or self.times.size)]
             # a signal may come before the core answers: rows that are filled are those with a finite time
             self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
             before = clock.perf_counter()
@@ -198,9 +204,27 @@ class Run:
                 raise KeyboardInterrupt
             if doubt is not None:
                 return doubt
+            if rows and self.until.reached(self.done, self._so_far):
+                self.times = self.times[: self.done]
+                self.enough = f"reached {sim._reached:.6g} s, as far as was needed: {self.until.said}"
+                watch.look(final=True)
             if ended:
                 return f"ended by the callback at {sim.time:.6g} s"
         return None
+
+    def _so_far(self) -> Result:
+        """The records up to here."""
+        if self.writer is None:
+            nothing: dict[str, Any] = {
+                "stats": {},
+                "counters": {},
+                "final_time": self.sim._reached,
+                "final_state": None,
+            }
+            return self._from_memory(success=False, message="", **nothing)
+        assert self.output is not None
+        self.writer.flush()
+        return load(self.output)
 
     def _call_back(self) -> bool:
         """What the callback answers. It may look at the simulation, but not move it.
@@ -290,6 +314,12 @@ class Run:
             raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
         return load(self.output)
 
+    def _say_what_is_missing(self) -> None:
+        said = self.until.said or "it was too short for a look"
+        text = f"the run has reached its end without the confidence that was asked for: {said}"
+        self.doubts.append(text)
+        warnings.warn(text, RunWarning, stacklevel=4)
+
     def _stats(self) -> dict[str, Any]:
         """Solver statistics of the whole simulation, and the wall time of this run."""
         sim = self.sim
@@ -314,6 +344,8 @@ class Run:
         sim = self.sim
         if success:
             sim._stand_at(float(self.times[-1]))
+            if self.until.wanted and not self.enough:
+                self._say_what_is_missing()
         else:
             # a run that stopped between two records goes on from there
             sim._reached, sim._end = sim._core.time, None
@@ -337,14 +369,17 @@ class Run:
             if success:
                 checkpoint.remove(self.output, self.writer.run_id)
             return self._written()
+        return self._from_memory(**how)
+
+    def _from_memory(self, **how: Any) -> Result:
         width = max(at + int(np.prod(shape)) for _, at, shape in self.layout)
         records = np.concatenate(self.kept) if self.kept else np.empty((0, width))
         return Result.from_records(
             records,
             self.layout,
             fields=self.fields,
-            scene=sim.scene,
-            geometry=asdict(sim.scene.bearing.geometry),
+            scene=self.sim.scene,
+            geometry=asdict(self.sim.scene.bearing.geometry),
             meta=self._meta(),
             groups=self.options.save_groups,
             **how,

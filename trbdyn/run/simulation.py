@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, Self
@@ -308,6 +308,7 @@ class Simulation:
         *,
         revolutions: float | None = None,
         duration: float | None = None,
+        until: Mapping[str, float] | None = None,
         save_every: float | None = None,
         save_groups: Sequence[Group] | None = None,
         output: str | Path | None = None,
@@ -324,6 +325,10 @@ class Simulation:
             How far to go, in turns of the shaft.
         duration : float, optional
             How far to go (s); one of both must be given.
+        until : mapping of str to float, optional
+            End earlier, when the averages named here are known well enough: largest half width of the 95 % confidence interval
+            over the average, for instance ``{"torque": 0.01, "orbit_radius_over_cpr": 0.05}``, and the motion is not seen to
+            drift. `revolutions` or `duration` is then the longest run; one that ends there without it warns.
         save_every : float, optional
             Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3
             s, but not longer than a twentieth of a turn of the shaft (`trbdyn.run.keeping`); ``result.meta["kept"]`` says
@@ -362,6 +367,7 @@ class Simulation:
         if path is not None:
             _check_output(path)
         changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
+        changes |= {} if until is None else {"until": dict(until)}
         changes |= {} if save_every is None else {"save_every": save_every}
         changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}

@@ -1,0 +1,138 @@
+"""A run that goes on until averages are known as well as was asked for (`Simulation.run` with `until`).
+
+From time to time the averages of the records so far are computed with their confidence intervals
+(`trbdyn.results.confidence`). The run ends when each half width is below the wanted share of its average, and the motion is not
+seen to drift. Whoever looks often enough finds a narrow interval by chance, so a look is taken each time the run has become an
+eighth longer, and the intervals must be narrow at two looks in a row. Looks lie at fixed records of the run, so that a run that
+was cut off and resumed ends where it would have ended.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any, Final
+
+from trbdyn.errors import InputError
+from trbdyn.results.confidence import AVERAGES
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+FIRST: Final = 0.02
+"""Share of the longest run before the first look."""
+GROWTH: Final = 1.125
+"""Length of the run at a look over that at the look before."""
+LEAST_RECORDS: Final = 50
+"""Records before the first look."""
+
+GROUPS_OF: Final = {
+    "pocket_": "pocket",
+    "torque": "torque",
+    "power_": "power",
+    "film_": "contacts",
+    "skew_": "rollers",
+    "spacing_": "rollers",
+}
+"""Group of records that an average needs, by the beginning of its name; other averages are those of the cage."""
+
+
+def check_wanted(wanted: Mapping[str, Any], groups: tuple[str, ...], has_cage: bool) -> dict[str, float]:
+    """What is asked for, if it can be had.
+
+    Parameters
+    ----------
+    wanted : mapping of str to float
+        Largest half width of the 95 % confidence interval over the size of the average, by the names of the summary.
+    groups : tuple of str
+        Groups that the run keeps.
+    has_cage : bool
+        Whether there is a cage.
+
+    Raises
+    ------
+    InputError
+        If a name is none of an average, a share is not between 0 and 1, or what an average needs is not kept.
+    """
+    found: dict[str, float] = {}
+    for name, share in wanted.items():
+        if name not in AVERAGES:
+            near = get_close_matches(str(name), AVERAGES, 1)
+            meant = f"did you mean {near[0]}? " if near else ""
+            raise InputError.of(
+                ("run", "until"), name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}"
+            )
+        if isinstance(share, bool) or not isinstance(share, int | float) or not 0.0 < share < 1.0:
+            raise InputError.of(
+                ("run", "until", name), share, "must be a number above 0 and below 1: half width over average (1)"
+            )
+        needs = {"cage", "rollers", _group_of(name)}
+        missing = sorted(needs - set(groups))
+        if missing:
+            raise InputError.of(("run", "save_groups"), groups, f"must hold {', '.join(missing)} for until = {name}")
+        if not has_cage and _group_of(name) in ("cage", "pocket"):
+            raise InputError.of(("run", "until"), name, "needs a cage: effects.bodies = 'rollers_and_cage'")
+        found[name] = float(share)
+    return found
+
+
+def _group_of(name: str) -> str:
+    if name.endswith("_load_mean"):
+        return "contacts"
+    if name in ("cage_slip",):
+        return "rollers"
+    return next((group for start, group in GROUPS_OF.items() if name.startswith(start)), "cage")
+
+
+class Until:
+    """Looks whether averages are known as well as was asked for.
+
+    Parameters
+    ----------
+    wanted : mapping of str to float
+        As `check_wanted` gives it.
+    records : int
+        Records of the longest run.
+    """
+
+    def __init__(self, wanted: Mapping[str, float], records: int) -> None:
+        self.wanted = dict(wanted)
+        self.said = ""
+        self._looks: list[int] = []
+        at = max(FIRST * records, LEAST_RECORDS)
+        while self.wanted and at < records:
+            self._looks.append(math.ceil(at))
+            at *= GROWTH
+
+    def next_look(self, done: int) -> int | None:
+        """Number of records at the next look after a number of records; None if no look is left."""
+        return next((look for look in self._looks if look > done), None)
+
+    def reached(self, done: int, so_far: Callable[[], Result]) -> bool:
+        """Whether the run may end after a number of records; `so_far` gives them."""
+        if done not in self._looks[1:]:
+            return False
+        result, before = so_far(), self._looks[self._looks.index(done) - 1]
+        return self._is_narrow(result) and self._is_narrow(
+            result.window(stop=float(result["time"][before - 1])), said=False
+        )
+
+    def _is_narrow(self, result: Result, *, said: bool = True) -> bool:
+        values = result.summary()
+        widths = values["confidence"] or {}
+        found = {name: _share(values[name], widths.get(name)) for name in self.wanted}
+        if said:
+            self.said = "; ".join(_words(name, share, self.wanted[name]) for name, share in found.items())
+        return values["settling"] != "drifting" and all(share <= self.wanted[name] for name, share in found.items())
+
+
+def _share(value: float | None, width: float | None) -> float:
+    if value is None or width is None or value == 0.0:
+        return math.inf
+    return abs(width / value)
+
+
+def _words(name: str, share: float, wanted: float) -> str:
+    known = f"is known within {100.0 * share:.2g} %" if math.isfinite(share) else "has no confidence interval yet"
+    return f"{name} {known}, {100.0 * wanted:.2g} % was asked for"
