@@ -42,7 +42,9 @@ enum {
 enum {
   /* Those before it have a quadrature in every model, later ones only where their effect is on: a state without them is as long as ever, and
    * measures that are means over all of its entries stay the same. */
-  TRB_N_USUAL_LOSSES = TRB_LOSS_drag
+  TRB_N_USUAL_LOSSES = TRB_LOSS_drag,
+  /* Those of pairs with a roller come first: what a roller does to the right-hand side has no others. */
+  TRB_N_ROLLER_LOSSES = TRB_LOSS_drag + 1
 };
 
 enum {

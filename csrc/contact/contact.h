@@ -1,7 +1,8 @@
 /* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is; contact/pairs.c lists all of them.
  *
  * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
- * the power lost, by kind. It does not depend on time and stores nothing between calls. */
+ * the power lost, by kind. A pair without a roller adds to the loads of the hub, which is made of all other bodies. A pair does not depend
+ * on time and stores nothing between calls. */
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
 
@@ -137,8 +138,10 @@ typedef struct trb_batch {
 typedef struct trb_workspace {
   struct trb_lanes *lanes;                /* scratch of the raceway kernel */
   int               variant;              /* kernel variant, index into trb_kernel_variants */
-  trb_batch         batches[TRB_N_PAIRS]; /* pairs that are on */
+  trb_batch         batches[TRB_N_PAIRS]; /* pairs with a roller that are on */
   int               n_batches;
+  int               hub[TRB_N_PAIRS]; /* rows of the pairs without a roller that are on */
+  int               n_hub;
   trb_counters      counters; /* of this workspace */
 } trb_workspace;
 
@@ -151,6 +154,9 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
 
 /* Zero the chosen rollers' loads and sum the slow pairs only. */
 void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads);
+
+/* Zero the loads of the hub and sum the pairs without a roller; wrenches in R. detail may be NULL. */
+void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
 
 /* Slopes of the wrench on a roller, about its centre of mass, with its motion relative to the other body: one column for a translation
  * along each axis, then one for a turn about each axis, with the other body at rest. That the normal turns at an edge is left out: this

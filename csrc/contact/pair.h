@@ -59,11 +59,14 @@ typedef void trb_pair_view(const trb_model *m, const trb_detail *detail, int rol
 typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
                                 trb_slopes *slopes, trb_detail *detail);
 
+/* Load between the bodies of a pair without a roller, evaluated at every instant; wrenches in R. The load is zero before. */
+typedef void trb_pair_between(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail);
+
 typedef struct trb_pair {
   const char *name;
   const char *text;
   trb_body    a, b; /* the bodies; a is the roller where there is one */
-  trb_pace    pace;
+  trb_pace    pace; /* of pairs with a roller */
   int         seats; /* 1: under load it holds a roller along the roller's axis */
   int (*is_on)(const trb_model *m);
   trb_pair_evaluate *evaluate;
@@ -79,6 +82,8 @@ typedef struct trb_pair {
   void (*count_clear)(const trb_model *m, int roller, trb_counters *to); /* counts a roller that is proven clear */
   void (*clearance)(const trb_model *m, trb_clearance_arms *arms);       /* TRB_N_GAPS of them */
   double (*stiffness)(const trb_model *m, double depth);                 /* load over interference at an interference, N/m */
+  /* of pairs without a roller, which have nothing of the others */
+  trb_pair_between *between;
 } trb_pair;
 
 /* Adds what a pair does to the sums. */
