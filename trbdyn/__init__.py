@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from trbdyn import animation, cases, errors, laws, lubricants, observables, pocket_shapes, study
     from trbdyn import plotting as plot
-    from trbdyn.bearing import Bearing, Cage, Material, Profile, Ribs, Roller, Roughness, Scatter
+    from trbdyn.bearing import Bearing, Cage, Land, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.effects import Effects
     from trbdyn.errors import FileError, InputError, LoadError, RunWarning, StepError, TrbError
     from trbdyn.lubricants import Lubricant, Oil
@@ -54,6 +54,7 @@ _NAMES = {
     "FileError": "trbdyn.errors",
     "History": "trbdyn.motion",
     "InputError": "trbdyn.errors",
+    "Land": "trbdyn.bearing",
     "LoadError": "trbdyn.errors",
     "Lubricant": "trbdyn.lubricants",
     "Material": "trbdyn.bearing",
@@ -90,6 +91,7 @@ __all__ = [
     "FileError",
     "History",
     "InputError",
+    "Land",
     "LoadError",
     "Lubricant",
     "Material",

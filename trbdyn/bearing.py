@@ -289,6 +289,43 @@ class Cage(Model):
         return self
 
 
+class Land(Model):
+    """The land of a ring that guides the cage, and the guiding surface of the cage on it: a ring about the cage's axis. It acts
+    where `Effects.guidance` says so. What is not given is assumed in proportion to the 30310 rig; catalogues tell nothing of it,
+    so show the effect of its numbers over their bands.
+
+    Parameters
+    ----------
+    offset : float
+        Axial position of the middle of the guiding surface from the roller-centre plane, positive towards the large ends (m);
+        by default 12/19.8 of the roller's length, at the large-end rail.
+    inner_radius, outer_radius : float
+        Radius of the land of the inner ring, and of the outer ring (m); `Effects.guidance` chooses one. By default 39.5/82.389
+        and 50.5/82.389 of the pitch diameter.
+    width : float
+        Width of the guiding surface (m); by default 3/19.8 of the roller's length.
+    clearance : float
+        Radial clearance between cage and land (m); by default 0.1/14 of the roller's diameter; usual are 0.1 to 0.4 % of the
+        land's radius. The rollers guide the cage where their plays are smaller.
+    contact_film : float
+        Height of the film below which roughness peaks of cage and land touch (m), from 1e-4 to 0.5 of the clearance; by
+        default a hundredth of the clearance, which is 1 um at the rig. The law of the film holds down to this height.
+    fill : float
+        Share of the guiding surface's width that is filled with oil, from 0 (no film) to 1 (1); 1 by default. It is known in no
+        bearing.
+    """
+
+    _assumed: ClassVar[bool] = True
+
+    offset: Annotated[Number, unit("m", ge=-1, le=1)] = RIG["rail_offset"]
+    inner_radius: Annotated[Number, unit("m", ge=1e-4, le=10)] = RIG["land_inner_radius"]
+    outer_radius: Annotated[Number, unit("m", ge=1e-4, le=10)] = RIG["land_outer_radius"]
+    width: Annotated[Number, unit("m", ge=1e-5, le=1)] = RIG["land_width"]
+    clearance: Annotated[Number, unit("m", ge=1e-7, le=0.1)] = RIG["land_clearance"]
+    contact_film: Annotated[Number, unit("m", ge=1e-9, le=1e-2)] = RIG["land_contact_film"]
+    fill: Annotated[Number, unit("1", ge=0, le=1)] = 1.0
+
+
 class Roughness(Model):
     """Composite rms roughness of the rolling contacts.
 
@@ -329,6 +366,8 @@ class Bearing(Model):
         Elasticity of the rings, and of rollers and cage unless they have their own.
     roughness : Roughness
         Roughness of the contacts.
+    land : Land
+        The land of a ring that guides the cage, where one does.
     name : str
         Name in titles and files.
     estimates : sequence of Estimated
@@ -360,6 +399,7 @@ class Bearing(Model):
     cage: Cage = Cage()
     material: Material = Material()
     roughness: Roughness = Roughness()
+    land: Land = Land()
     name: Annotated[str, Field(min_length=1)] = "bearing"
     estimates: tuple[Estimated, ...] = ()
 
@@ -559,6 +599,10 @@ class Bearing(Model):
             size = f"{self.roller.diameter:g} m overlap on pitch diameter {self.pitch_diameter:g} m"
             limit = f"must be <= {most}: more rollers of {size}"
             raise InputError.of("n_rollers", self.n_rollers, limit)
+        land, least, most = self.land, 1e-4 * self.land.clearance, 0.5 * self.land.clearance
+        if not least <= land.contact_film <= most:
+            limit = f"must be from {least:g} to {most:g}: 1e-4 to 0.5 of land.clearance, {land.clearance:g} (m)"
+            raise InputError.of(("land", "contact_film"), land.contact_film, limit)
         self._check_pockets(self.geometry)
         return self
 

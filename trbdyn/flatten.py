@@ -34,6 +34,7 @@ PRESSURE_LAWS = {"dicke": 0, "roelands": 1, "barus": 2}
 LUBRICATION = {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3}
 TRACTION = {"none": 0, "coulomb": 1, "muraki_kimura": 2}
 RIB_FILMS = {"max": 0, "pe": 1}
+GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
 PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
 
 
@@ -91,6 +92,7 @@ def bearing_entries(bearing: Bearing) -> Entries:
         "cage_inertia_transverse": Entry(("cage", "inertia_transverse"), cage.inertia_transverse),
         "cage_offset": Entry(("cage", "offset"), cage.offset),
         "cage_rail_offset": Entry(("cage", "rail_offset"), cage.rail_offset),
+        **{f"land_{name}": Entry(("land", name), value) for name, value in bearing.land.model_dump().items()},
     }
 
 
@@ -133,6 +135,7 @@ def effects_entries(effects: Effects) -> Entries:
         "starvation_factor": Entry(("starvation_factor",), effects.starvation_factor),
         "damping": Entry(("damping",), float(effects.damping == "hunt_crossley")),
         "damping_race": Entry(("damping_race",), effects.damping_race),
+        "guidance": Entry(("guidance",), GUIDANCE[effects.guidance]),
         "oil_fill": Entry(("oil_fill",), effects.oil_fill),
         "drag_coefficient": Entry(("drag_coefficient",), effects.drag_coefficient),
         "damping_cage": Entry(("damping_cage",), effects.damping_cage),

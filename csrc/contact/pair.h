@@ -19,18 +19,20 @@ typedef struct trb_bookings {
   int torque[TRB_N_MECHANISMS]; /* share of the torque on the inner ring */
 } trb_bookings;
 
-#define TRB_NO_TORQUE {TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none}
+#define TRB_NO_TORQUE {TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none}
 /* Of a pair that only slides and damps. */
 #define TRB_LOSES_BY_SLIDING(name) \
   {[TRB_BY_SLIDING] = TRB_LOSS_##name, \
    [TRB_BY_ROLLING] = TRB_LOSS_none, \
    [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_none, \
-   [TRB_BY_DAMPING] = TRB_LOSS_damping}
+   [TRB_BY_DAMPING] = TRB_LOSS_damping, \
+   [TRB_BY_FILM] = TRB_LOSS_none}
 #define TRB_TURNS_BY_SLIDING(name) \
   {[TRB_BY_SLIDING] = TRB_TORQUE_##name, \
    [TRB_BY_ROLLING] = TRB_TORQUE_none, \
    [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none, \
-   [TRB_BY_DAMPING] = TRB_TORQUE_none}
+   [TRB_BY_DAMPING] = TRB_TORQUE_none, \
+   [TRB_BY_FILM] = TRB_TORQUE_none}
 
 /* A roller's contact as records see it: what one contact has, the others leave at zero. */
 typedef struct trb_contact_view {

@@ -165,6 +165,14 @@ static void put_contacts(writer *w, int j)
     w->at[contact_fields[i].field][j] = *(const double *)((const char *)&views[contact_fields[i].pair] + contact_fields[i].from);
 }
 
+/* Of the cage on the land of a ring. */
+static void put_land(writer *w)
+{
+#define PUT_LAND(X, name, unit, text) PUT(land_##name, 0) = w->detail->land.name;
+  TRB_LAND_FIELDS(PUT_LAND, 0)
+#undef PUT_LAND
+}
+
 /* Fields of the lists of bearing/losses.h. */
 #define TORQUE(X, name, text) TRB_FIELD_AT_inner_torque_##name,
 #define POWER(X, name, sense, text) TRB_FIELD_AT_power_##name,
@@ -245,6 +253,7 @@ void trb_record_fill(trb_dynamics *d, double time, const double *y, trb_detail *
   PUT(shaft_angle, 0) = d->drive.shaft_angle;
   PUT(shaft_speed, 0) = d->drive.shaft_speed;
   put_cage(w, y + trb_state_cage(m));
+  put_land(w);
   for (int j = 0; j < m->n_rollers; j++) {
     put_roller(w, j, y + trb_state_roller(j), y[trb_state_spin(m) + j]);
     put_contacts(w, j);
