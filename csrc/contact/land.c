@@ -105,14 +105,22 @@ static void contact_on_strip(meeting *w, double station, double width)
   w->seen.friction += q * mu;
 }
 
+static meeting meeting_of(const trb_model *m, const trb_instant *at, int inside)
+{
+  const trb_drive *drive = at->drive;
+  meeting          w = {.m = m, .cage = at->cage, .inside = inside, .seen = {.gap = INFINITY}};
+  w.radius = inside ? m->params.land_outer_radius : m->params.land_inner_radius;
+  if (inside) w.ring.axis = trb_v(0, 0, 1); /* the outer ring rests, its moment is about the apex */
+  else w.ring = trb_ring_pose_in_frame(&drive->inner, drive->cosine, drive->sine);
+  return w;
+}
+
 static void meet(const trb_model *m, const trb_instant *at, int inside, trb_counters *counters, trb_load *load, trb_detail *detail)
 {
   const trb_params *p = &m->params;
-  const trb_drive  *drive = at->drive;
-  meeting           w = {.m = m, .cage = at->cage, .inside = inside, .counters = counters, .load = load, .seen = {.gap = INFINITY}};
-  w.radius = inside ? p->land_outer_radius : p->land_inner_radius;
-  if (inside) w.ring.axis = trb_v(0, 0, 1); /* the outer ring rests, its moment is about the apex */
-  else w.ring = trb_ring_pose_in_frame(&drive->inner, drive->cosine, drive->sine);
+  meeting           w = meeting_of(m, at, inside);
+  w.counters = counters;
+  w.load = load;
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
     const double station = m->land_station[k], width = m->land_weight[k];
     if (m->land_film) film_on_strip(&w, p->land_fill * station, p->land_fill * width);
@@ -136,6 +144,26 @@ static void evaluate_outer(const trb_model *m, const trb_instant *at, trb_counte
   meet(m, at, 1, counters, load, detail);
 }
 
+/* Of the strip that is nearest to the land. A hit deepens as that of the cage's mass on a spring that is as stiff as the contact is at an
+ * interference of 1 um. */
+static trb_approach approach_of(const trb_model *m, const trb_instant *at, int inside)
+{
+  const meeting w = meeting_of(m, at, inside);
+  const double  stiffness = m->land_palmgren * m->params.land_width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
+  trb_approach  found = {.left = INFINITY, .rise = sqrt(m->params.cage_mass / stiffness)};
+  for (int k = 0; k < TRB_LAND_STRIPS; k++) {
+    const strip  s = strip_at(&w, m->land_station[k]);
+    const double left = room(&m->params) - s.size;
+    if (!(left < found.left)) continue;
+    found.left = left;
+    found.speed = fabs(trb_dot(trb_sub(cage_velocity(&w, s.x), ring_velocity(&w, trb_sub(s.x, s.apart))), s.apart)) / trb_max(s.size, 1e-12);
+  }
+  return found;
+}
+
+static trb_approach approach_inner(const trb_model *m, const trb_instant *at) { return approach_of(m, at, 0); }
+static trb_approach approach_outer(const trb_model *m, const trb_instant *at) { return approach_of(m, at, 1); }
+
 static int is_on_inner(const trb_model *m) { return m->params.with_cage > 0.0 && m->params.guidance == TRB_GUIDANCE_INNER_LAND; }
 static int is_on_outer(const trb_model *m) { return m->params.with_cage > 0.0 && m->params.guidance == TRB_GUIDANCE_OUTER_LAND; }
 
@@ -152,6 +180,7 @@ const trb_pair trb_pair_inner_land = {.name = "inner_land",
                                       .b = TRB_BODY_INNER_RING,
                                       .is_on = is_on_inner,
                                       .between = evaluate_inner,
+                                      .approach = approach_inner,
                                       .books = {LOSSES,
                                                 .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_land,
                                                            [TRB_BY_ROLLING] = TRB_TORQUE_none,
@@ -165,4 +194,5 @@ const trb_pair trb_pair_outer_land = {.name = "outer_land",
                                       .b = TRB_BODY_OUTER_RING,
                                       .is_on = is_on_outer,
                                       .between = evaluate_outer,
+                                      .approach = approach_outer,
                                       .books = {LOSSES, .torque = TRB_NO_TORQUE}};

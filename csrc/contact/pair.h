@@ -61,6 +61,13 @@ typedef void trb_pair_view(const trb_model *m, const trb_detail *detail, int rol
 typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
                                 trb_slopes *slopes, trb_detail *detail);
 
+/* How near the bodies of a pair without a roller are to a contact, and how hard it would be. */
+typedef struct trb_approach {
+  double left;  /* gap, m; not above 0: they touch */
+  double speed; /* at which it changes, m/s */
+  double rise;  /* largest interference of a hit over its speed, s */
+} trb_approach;
+
 /* Load between the bodies of a pair without a roller, evaluated at every instant; wrenches in R. The load is zero before. */
 typedef void trb_pair_between(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail);
 
@@ -86,6 +93,7 @@ typedef struct trb_pair {
   double (*stiffness)(const trb_model *m, double depth);                 /* load over interference at an interference, N/m */
   /* of pairs without a roller, which have nothing of the others */
   trb_pair_between *between;
+  trb_approach (*approach)(const trb_model *m, const trb_instant *at); /* NULL: they do not touch */
 } trb_pair;
 
 /* Adds what a pair does to the sums. */

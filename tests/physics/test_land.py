@@ -18,6 +18,7 @@ from trbdyn import Effects, Simulation
 from trbdyn.effects import Friction
 from trbdyn.errors import InputError
 from trbdyn.scene import Start
+from trbdyn.summary import table
 from trbdyn.toml_case import case_from_dict
 
 Array = NDArray[np.float64]
@@ -315,20 +316,39 @@ def test_contact_alone_conserves_energy(kit: SimpleNamespace, guidance: str) -> 
     """A tilting cage that bounces on the land, without friction and film."""
     effects = Effects.frictionless().replace(pocket_bars=False, pocket_ends=False, gravity=False)
     drift = []
-    for rtol in (1e-5, 1e-6):
-        bearing = trb.cases.rig_30310()
-        scenery = {"bearing": bearing, "radial_load": 1500.0}
+    for rtol in (1e-5, 1e-7):
+        scenery = {"radial_load": 1500.0}
         sim = kit.simulate(effects.replace(guidance=guidance), scenery=scenery, rings_share=0.0, **kit.tolerances(rtol))
         vector = placed(sim, v_x=0.4, v_y=-0.2, v_z=0.05, omega_n=5.0, omega_t=-8.0)
         sim.set_state(vector)
-        result = sim.run(duration=6e-3, save_every=1e-5)
+        result = sim.run(duration=3e-3, save_every=1e-5)
         assert result["land_contact_force"].max() > 100.0
         assert not result["land_film_force"].any()
         assert not result.power_loss.any()
-        # the prescribed ring may do work on the cage, which is in the balance
-        drift.append(float(np.abs(result.energy_balance["residual"]).max() / 0.02))
+        moving = 0.5 * sim.scene.bearing.cage.mass * (0.4**2 + 0.2**2)
+        drift.append(float(np.abs(result.energy_balance["residual"]).max()) / moving)
     assert drift[1] < 1e-4
-    assert drift[1] < 0.3 * drift[0]
+    assert drift[1] < 0.2 * drift[0]
+
+
+@pytest.mark.parametrize("preset", ["fast", "standard", "reference"])
+@pytest.mark.parametrize("mass", [0.02, 0.2, 5.0])
+def test_no_preset_makes_energy_in_a_hit(kit: SimpleNamespace, mass: float, preset: str) -> None:
+    """A cage that hits the land in its centre rebounds with its speed, however gentle the hit."""
+    effects = Effects.frictionless().replace(pocket_bars=False, pocket_ends=False, gravity=False, guidance="outer_land")
+    rig = trb.cases.rig_30310()
+    inertia = {name: getattr(rig.cage, name) * mass / rig.cage.mass for name in ("inertia_axial", "inertia_transverse")}
+    bearing = rig.replace(land=rig.land.replace(offset=0.0), cage=rig.cage.replace(mass=mass, **inertia))
+    room = bearing.land.clearance - bearing.land.contact_film
+    for speed in (3e-4, 1e-3, 1e-2, 0.1):
+        sim = kit.simulate(effects, scenery={"bearing": bearing, "speed_rpm": 0.0}, accuracy=preset)
+        sim.set_state(placed(sim, x=room - 2e-6, v_x=speed))
+        for _ in range(5000):
+            sim.step()
+            now = sim.view(sim.state.vector)
+            if float(now["cage_v_x"]) < 0.0 and float(now["cage_x"]) < room - 1e-6:
+                break
+        assert 0.9 < -float(now["cage_v_x"]) / speed < 1.01, f"{1e3 * speed:g} mm/s"
 
 
 # ---- continuity ----
@@ -409,12 +429,12 @@ def test_energy(kit: SimpleNamespace, guidance: str, case: str) -> None:
     result = sim.run(duration=8e-3, save_every=2e-5)
     assert result.success
     assert result.energy_closure < 1e-3
-    assert result["land_contact_force"].max() > 0.0
-    lost = result["loss_land_film"][-1]
-    films = effects.films
+    lost, films = float(result["loss_land_film"][-1]), effects.films
     assert (lost > 0.0) is films
     assert (result.counters["land_films"] > 0) is films
-    assert result.counters["land_contacts"] > 0
+    # a film keeps the cage off the land
+    assert bool(result["land_contact_force"].max() > 100.0) is not films
+    assert bool(result["land_film_force"].max() > 10.0) is films
     assert np.diff(result["loss_land_film"]).min() >= -1e-12
     assert np.diff(result["loss_land"]).min() >= -1e-12
     audit = result.energy_audit
@@ -422,7 +442,9 @@ def test_energy(kit: SimpleNamespace, guidance: str, case: str) -> None:
     assert "land" in result.power_split
     assert ("land" in result.torque_split) is True
     if films:
-        assert lost == pytest.approx(np.trapezoid(result["power_land_film"], result["time"]), rel=0.05)
+        later = result.window(1e-3)  # the film that is closed at the start stops the cage within microseconds
+        grown = later["loss_land_film"][-1] - later["loss_land_film"][0]
+        assert grown == pytest.approx(np.trapezoid(later["power_land_film"], later["time"]), rel=0.02)
 
 
 def test_closure_falls_with_the_tolerance(kit: SimpleNamespace) -> None:
@@ -453,15 +475,19 @@ def test_a_land_keeps_the_cage(kit: SimpleNamespace, guidance: str) -> None:
 
 
 def test_explicit_method_agrees(kit: SimpleNamespace) -> None:
-    """Both integrators, over a stretch with a hit."""
+    """Both integrators, over a stretch with a hit through a thin film."""
     ends = []
+    bearing = trb.cases.rig_30310()
+    bearing = bearing.replace(land=bearing.land.replace(fill=0.1))
     for options in ({"integrator": "bdf"}, {"integrator": "erk"}):
-        sim = kit.simulate(Effects.standard().replace(guidance="outer_land"), accuracy="reference", **options)
+        effects = Effects.standard().replace(guidance="outer_land")
+        sim = kit.simulate(effects, scenery={"bearing": bearing}, accuracy="reference", **options)
         vector = sim.state.vector
         sim.view(vector)["cage_v_x"] += 0.3
         sim.set_state(vector)
         result = sim.run(duration=6e-4, save_every=1e-5)
         assert result["land_contact_force"].max() > 10.0
+        assert result["loss_land_film"][-1] > 0.0
         ends.append(result["cage_velocity"][-1])
     np.testing.assert_allclose(ends[0], ends[1], atol=2e-3 * 0.3)
 
@@ -478,7 +504,7 @@ def test_peaks_and_summary(kit: SimpleNamespace, guidance: str) -> None:
     summary = result.summary()
     assert summary["land_force_peak"] > 0.0
     assert summary["land_gap_min"] < 1e-4
-    assert "land" in trb.summary.table(summary) if hasattr(trb, "summary") else True
+    assert "gap between cage and land" in table(summary)
 
 
 # ---- off, starts and bad input ----
