@@ -131,7 +131,7 @@ trb_status trb_geometry_derive(const trb_params *params, trb_geometry *geometry,
   g->effective_modulus =
       trb_composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->youngs_modulus, params->poisson_ratio);
   g->pocket_modulus = trb_composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->cage_youngs_modulus,
-                                        params->cage_poisson_ratio);
+                                            params->cage_poisson_ratio);
   g->cage_speed_ratio = sin(g->cone_half_angle) / (sin(g->cone_half_angle) + sin(params->cup_half_angle));
   g->roller_spin_ratio = g->cage_speed_ratio * sin(params->cup_half_angle) / sin(g->roller_half_angle);
   /* neighbours touch where the chord between two axes is shorter than a diameter across it */

@@ -37,7 +37,8 @@ static trb_status check_params(const trb_params *params, trb_message *message)
   if (!(params->front_rib_high > params->front_rib_low))
     return trb_fail(message, TRB_ERR_INPUT, "front_rib_high = %g m: must be above front_rib_low = %g m", params->front_rib_high,
                     params->front_rib_low);
-  if (!(params->land_contact_film >= TRB_LEAST_CONTACT_FILM * params->land_clearance && params->land_contact_film <= 0.5 * params->land_clearance))
+  if (!(params->land_contact_film >= TRB_LEAST_CONTACT_FILM * params->land_clearance &&
+        params->land_contact_film <= 0.5 * params->land_clearance))
     return trb_fail(message, TRB_ERR_INPUT, "land_contact_film = %g m: must be from %g to 0.5 of land_clearance = %g m",
                     params->land_contact_film, TRB_LEAST_CONTACT_FILM, params->land_clearance);
   return TRB_OK;

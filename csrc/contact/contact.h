@@ -59,7 +59,14 @@ typedef struct trb_counters {
 typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE, TRB_BODY_OIL, TRB_N_BODIES } trb_body;
 
 /* How a pair loses energy. */
-typedef enum trb_mechanism { TRB_BY_SLIDING, TRB_BY_ROLLING, TRB_BY_ROLLING_PRESSURE, TRB_BY_DAMPING, TRB_BY_FILM, TRB_N_MECHANISMS } trb_mechanism;
+typedef enum trb_mechanism {
+  TRB_BY_SLIDING,
+  TRB_BY_ROLLING,
+  TRB_BY_ROLLING_PRESSURE,
+  TRB_BY_DAMPING,
+  TRB_BY_FILM,
+  TRB_N_MECHANISMS
+} trb_mechanism;
 
 /* What the two bodies of a pair do to each other. Wrenches on a roller and on the rings are in the roller's cylindrical frame, those on the
  * cage and of pairs without a roller in R; moments are about the centre of mass, the inner ring's centre, the apex for the outer ring. */

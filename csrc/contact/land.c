@@ -156,7 +156,8 @@ static trb_approach approach_of(const trb_model *m, const trb_instant *at, int i
     const double left = room(&m->params) - s.size;
     if (!(left < found.left)) continue;
     found.left = left;
-    found.speed = fabs(trb_dot(trb_sub(cage_velocity(&w, s.x), ring_velocity(&w, trb_sub(s.x, s.apart))), s.apart)) / trb_max(s.size, 1e-12);
+    found.speed =
+        fabs(trb_dot(trb_sub(cage_velocity(&w, s.x), ring_velocity(&w, trb_sub(s.x, s.apart))), s.apart)) / trb_max(s.size, 1e-12);
   }
   return found;
 }
@@ -181,12 +182,11 @@ const trb_pair trb_pair_inner_land = {.name = "inner_land",
                                       .is_on = is_on_inner,
                                       .between = evaluate_inner,
                                       .approach = approach_inner,
-                                      .books = {LOSSES,
-                                                .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_land,
-                                                           [TRB_BY_ROLLING] = TRB_TORQUE_none,
-                                                           [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none,
-                                                           [TRB_BY_DAMPING] = TRB_TORQUE_none,
-                                                           [TRB_BY_FILM] = TRB_TORQUE_land}}};
+                                      .books = {LOSSES, .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_land,
+                                                                   [TRB_BY_ROLLING] = TRB_TORQUE_none,
+                                                                   [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none,
+                                                                   [TRB_BY_DAMPING] = TRB_TORQUE_none,
+                                                                   [TRB_BY_FILM] = TRB_TORQUE_land}}};
 
 const trb_pair trb_pair_outer_land = {.name = "outer_land",
                                       .text = "cage in a land of the outer ring",

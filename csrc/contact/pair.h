@@ -74,8 +74,8 @@ typedef void trb_pair_between(const trb_model *m, const trb_instant *at, trb_cou
 typedef struct trb_pair {
   const char *name;
   const char *text;
-  trb_body    a, b; /* the bodies; a is the roller where there is one */
-  trb_pace    pace; /* of pairs with a roller */
+  trb_body    a, b;  /* the bodies; a is the roller where there is one */
+  trb_pace    pace;  /* of pairs with a roller */
   int         seats; /* 1: under load it holds a roller along the roller's axis */
   int (*is_on)(const trb_model *m);
   trb_pair_evaluate *evaluate;

@@ -30,8 +30,7 @@ static inline trb_journal_film trb_journal_short(double u, double w)
  * N m s. viscosity in Pa s, radius, width and clearance in m, eccentricity over clearance. */
 static inline double trb_journal_shear(double viscosity, double radius, double width, double clearance, double eccentricity)
 {
-  return 2.0 * TRB_PI * viscosity * radius * radius * radius * width /
-         (clearance * sqrt(1.0 - eccentricity * eccentricity));
+  return 2.0 * TRB_PI * viscosity * radius * radius * radius * width / (clearance * sqrt(1.0 - eccentricity * eccentricity));
 }
 
 #endif

@@ -69,7 +69,8 @@ static double factor_of(const trb_approach *now, double step, const trb_impact_m
 }
 
 /* Least factor of the pairs without a roller. */
-static double factor_of_hub(trb_impacts *impacts, const trb_dynamics *d, const trb_instant *at, double step, const trb_impact_measure *measure)
+static double factor_of_hub(trb_impacts *impacts, const trb_dynamics *d, const trb_instant *at, double step,
+                            const trb_impact_measure *measure)
 {
   double least = 1.0;
   for (int i = 0; i < d->work->n_hub; i++) {

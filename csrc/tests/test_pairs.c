@@ -195,12 +195,9 @@ static void check_peaks(const trb_model *m, int row, const seen *full, const see
 {
   static const struct {
     int row, quantity;
-  } loads[] = {{TRB_PAIR_outer, TRB_PEAK_outer_load},
-               {TRB_PAIR_inner, TRB_PEAK_inner_load},
-               {TRB_PAIR_rib, TRB_PEAK_rib_load},
-               {TRB_PAIR_front_rib, TRB_PEAK_front_rib_load},
-               {TRB_PAIR_pocket, TRB_PEAK_pocket_force},
-               {TRB_PAIR_inner_land, TRB_PEAK_land_force},
+  } loads[] = {{TRB_PAIR_outer, TRB_PEAK_outer_load},     {TRB_PAIR_inner, TRB_PEAK_inner_load},
+               {TRB_PAIR_rib, TRB_PEAK_rib_load},         {TRB_PAIR_front_rib, TRB_PEAK_front_rib_load},
+               {TRB_PAIR_pocket, TRB_PEAK_pocket_force},  {TRB_PAIR_inner_land, TRB_PEAK_land_force},
                {TRB_PAIR_outer_land, TRB_PEAK_land_force}};
   double made = 0.0;
   for (size_t k = 0; k < sizeof loads / sizeof loads[0]; k++)
