@@ -599,9 +599,9 @@ class Bearing(Model):
             size = f"{self.roller.diameter:g} m overlap on pitch diameter {self.pitch_diameter:g} m"
             limit = f"must be <= {most}: more rollers of {size}"
             raise InputError.of("n_rollers", self.n_rollers, limit)
-        land, least, most = self.land, 1e-4 * self.land.clearance, 0.5 * self.land.clearance
-        if not least <= land.contact_film <= most:
-            limit = f"must be from {least:g} to {most:g}: 1e-4 to 0.5 of land.clearance, {land.clearance:g} (m)"
+        land, thinnest, thickest = self.land, 1e-4 * self.land.clearance, 0.5 * self.land.clearance
+        if not thinnest <= land.contact_film <= thickest:
+            limit = f"must be from {thinnest:g} to {thickest:g}: 1e-4 to 0.5 of land.clearance, {land.clearance:g} (m)"
             raise InputError.of(("land", "contact_film"), land.contact_film, limit)
         self._check_pockets(self.geometry)
         return self

@@ -79,8 +79,8 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
 
 
 def pressed_rollers(model: _core.Model, scene: Scene, motion: RingMotion, vector: Array) -> str:
-    """A sentence if the start presses rollers into their pockets, or the cage into its land, as they were moved further than the play
-    allows; or nothing.
+    """A sentence if the start presses rollers into their pockets, or the cage into its land, as they were moved further than
+    the play allows; or nothing.
     """
     if scene.effects.bodies != "rollers_and_cage" or scene.start.kind == "state":
         return ""
@@ -100,8 +100,9 @@ def _pressed_land(scene: Scene, depth: float) -> str:
     if scene.effects.guidance == "rollers" or not depth > STRONGLY_PRESSED:
         return ""
     return (
-        f"at the start the cage is pressed {1e6 * depth:.3g} um into the land that guides it: its rollers or start.eccentricity hold it "
-        f"further from the land's axis than bearing.land.clearance = {scene.bearing.land.clearance:g} m allows; the run begins with a blow"
+        f"at the start the cage is pressed {1e6 * depth:.3g} um into the land that guides it: its rollers or start.eccentricity "
+        f"hold it further from the land's axis than bearing.land.clearance = {scene.bearing.land.clearance:g} m allows; "
+        "the run begins with a blow"
     )
 
 

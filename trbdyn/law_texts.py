@@ -14,7 +14,10 @@ ARGUMENTS: Final[dict[str, tuple[str, str]]] = {
     "decay": ("1", "decay of the law over the slide-roll ratio, `Friction.boundary_decay`"),
     "eccentricity": ("1", "distance of the axes over the clearance, below 1"),
     "eccentricity_across": ("1", "the same across the velocity, positive to its left"),
-    "eccentricity_along": ("1", "distance of the axes along the velocity, over the clearance; positive: the gap closes"),
+    "eccentricity_along": (
+        "1",
+        "distance of the axes along the velocity, over the clearance; positive: the gap closes",
+    ),
     "effective_modulus": ("Pa", "E' = 2/[(1 - v1^2)/E1 + (1 - v2^2)/E2]; 226e9 for steel on steel"),
     "elastic_over_rigid": ("1", "film of the piezoviscous-elastic regime over that of the isoviscous-rigid one"),
     "entrainment_speed": (

@@ -479,7 +479,9 @@ class Scene(Model):
         most = (land.clearance - land.contact_film) / play
         if self.start.kind == "whirl" and self.effects.guidance != "rollers" and self.start.eccentricity > most:
             limit = f"must be <= {most:.4g}: bearing.land.clearance less contact_film over bearing.cage.play_radial"
-            raise InputError.of(("start", "eccentricity"), self.start.eccentricity, f"{limit}, as a land guides the cage (1)")
+            raise InputError.of(
+                ("start", "eccentricity"), self.start.eccentricity, f"{limit}, as a land guides the cage (1)"
+            )
 
 
 def _check_sign(name: str, load: float | History) -> None:

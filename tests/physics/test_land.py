@@ -1,5 +1,5 @@
-"""The cage on the land of a ring: its film against Reynolds' equation, closed forms and limits, its contact, its power, its place in
-the audit; nothing where it is off.
+"""The cage on the land of a ring: its film against Reynolds' equation, closed forms and limits; its contact; its power and its
+place in the audit; nothing where it is off.
 """
 
 from __future__ import annotations
@@ -55,8 +55,12 @@ def ring_of(sim: Simulation, guidance: str) -> tuple[Array, Array, Array]:
         return AXIS, np.zeros(3), np.zeros(3)
     place = sim.equilibrium.displacement
     turn = np.hypot(place[3], place[4])
-    axis = AXIS if turn == 0.0 else np.array([np.sin(turn) * place[4] / turn, -np.sin(turn) * place[3] / turn, np.cos(turn)])
-    centre = place[:3] + [0.0, 0.0, sim.scene.bearing.geometry.centre_plane]
+    axis = (
+        AXIS
+        if turn == 0.0
+        else np.array([np.sin(turn) * place[4] / turn, -np.sin(turn) * place[3] / turn, np.cos(turn)])
+    )
+    centre = place[:3] + np.array([0.0, 0.0, sim.scene.bearing.geometry.centre_plane])
     return axis, centre, axis * sim.scene.speed_rpm * np.pi / 30.0
 
 
@@ -64,7 +68,7 @@ def cage_of(kit: SimpleNamespace, sim: Simulation, vector: Array) -> tuple[Array
     """Axis, centre of mass, velocity and angular velocity of the cage in R."""
     state, orbit = sim.view(vector), sim.scene.bearing.geometry.cage_speed_ratio * sim.scene.speed_rpm * np.pi / 30.0
     attitude = kit.frame(float(state["cage_skew"]), float(state["cage_tilt"]))
-    spin = np.array([float(state[f"cage_omega_{part}"]) for part in "nta"]) + [0.0, 0.0, orbit]
+    spin = np.array([float(state[f"cage_omega_{part}"]) for part in "nta"]) + np.array([0.0, 0.0, orbit])
     velocity = np.array([float(state[f"cage_v_{part}"]) for part in "xyz"])
     return attitude.apply(AXIS), kit.cage_place(sim, vector), velocity, attitude.apply(spin)
 
@@ -72,23 +76,23 @@ def cage_of(kit: SimpleNamespace, sim: Simulation, vector: Array) -> tuple[Array
 # ---- the law of the film ----
 
 
-@pytest.mark.parametrize("along", [-0.999, -0.9, -0.3, 0.0, 0.4, 0.97])
-@pytest.mark.parametrize("across", [-0.6, 0.0, 0.02, 0.8])
-def test_integrals_of_the_film(along: float, across: float) -> None:
-    if math.hypot(along, across) >= 0.9999:
-        pytest.skip("outside of the clearance")
+@pytest.mark.parametrize("e", [0.0, 0.1, 0.5, 0.9, 0.99])
+@pytest.mark.parametrize("angle_deg", [0.0, 20.0, 90.0, 160.0, 180.0, -60.0])
+def test_integrals_of_the_film(e: float, angle_deg: float) -> None:
+    along, across = e * math.cos(math.radians(angle_deg)), e * math.sin(math.radians(angle_deg))
     for law, part in ((trb.laws.journal_along, np.cos), (trb.laws.journal_across, np.sin)):
 
         def share(t: float, part: Any = part) -> float:
             return float(np.cos(t) * part(t) / (1.0 - along * np.cos(t) - across * np.sin(t)) ** 3)
 
-        wanted, _ = quad(share, -0.5 * np.pi, 0.5 * np.pi, epsrel=1e-12, epsabs=1e-13, limit=500)
-        assert law(along, across) == pytest.approx(wanted, rel=1e-8, abs=1e-9)
+        wanted, _ = quad(share, -0.5 * np.pi, 0.5 * np.pi, epsrel=1e-10, epsabs=1e-10, limit=500)
+        assert law(along, across) == pytest.approx(wanted, rel=1e-8, abs=1e-8)
 
 
 def film_force(e: float, rate: float, precession: float, turning: float) -> tuple[float, float]:
-    """Radial and tangential force on the inner surface over eta R L^3/c^2, at an eccentricity e along the first axis, its rate, its
-    precession and the sum of both angular velocities."""
+    """Radial and tangential force on the inner surface over eta R L^3/c^2, at an eccentricity e along the first axis, its
+    rate, its precession and the sum of both angular velocities.
+    """
     velocity = np.array([rate, e * (precession - 0.5 * turning)])
     speed = float(np.hypot(*velocity))
     u, w = e * velocity[0] / speed, -e * velocity[1] / speed
@@ -109,8 +113,9 @@ def test_steady_journal(e: float, turning: float) -> None:
 
 @pytest.mark.parametrize("e", [0.1, 0.5, 0.9])
 def test_squeeze_of_a_journal_that_does_not_turn(e: float) -> None:
-    """Half of the film carries: more than half of the whole film's force where the gap closes, less where it opens; together they are the
-    whole film's, pi (1 + 2 e^2)/(1 - e^2)^2.5. It never pulls."""
+    """Half of the film carries: more than half of the whole film's force where the gap closes, less where it opens; together
+    they are the whole film's, pi (1 + 2 e^2)/(1 - e^2)^2.5. It never pulls.
+    """
     closing, opening = film_force(e, 1.0, 0.0, 0.0)[0], film_force(e, -1.0, 0.0, 0.0)[0]
     assert closing < 0.0 < opening
     assert opening - closing == pytest.approx(np.pi * (1 + 2 * e**2) / (1 - e**2) ** 2.5, rel=1e-9)
@@ -119,22 +124,21 @@ def test_squeeze_of_a_journal_that_does_not_turn(e: float) -> None:
 
 @pytest.mark.parametrize("turning", [2.0, -2.0])
 def test_small_squeeze_has_a_tangential_force(turning: float) -> None:
-    """The slope of the force with the rate of the eccentricity, where the journal turns: radial pi (1 + 2 e^2)/(2 (1 - e^2)^2.5), tangential
-    2 e/(1 - e^2)^2 in the sense of the turning. Formulas that leave the latter out do not fulfil Reynolds' equation."""
+    """The slope of the force with the rate of the eccentricity, where the journal turns: radial pi (1 + 2 e^2)/(2 (1 -
+    e^2)^2.5), tangential 2 e/(1 - e^2)^2 in the sense of the turning. Formulas without the latter do not fulfil Reynolds'
+    equation.
+    """
     e, step = 0.5, 1e-7
     (low, left), (high, right) = film_force(e, -step, 0.0, turning), film_force(e, step, 0.0, turning)
     assert (high - low) / (2 * step) == pytest.approx(-np.pi * (1 + 2 * e**2) / (2 * (1 - e**2) ** 2.5), rel=1e-6)
     assert (right - left) / (2 * step) == pytest.approx(np.sign(turning) * 2 * e / (1 - e**2) ** 2, rel=1e-6)
 
 
-def test_the_film_never_pulls_nor_gives_energy() -> None:
+def test_the_film_never_gives_energy() -> None:
     random = np.random.default_rng(3)
-    for _ in range(300):
-        e, angle = random.uniform(0.0, 0.999), random.uniform(0.0, 2.0 * np.pi)
-        along, across = e * np.cos(angle), e * np.sin(angle)
-        assert trb.laws.journal_along(along, across) > 0.0
-        # the force lies in the half plane that the velocity points away from
-        assert math.isfinite(trb.laws.journal_across(along, across))
+    for e in 1.0 - 10.0 ** random.uniform(-4.0, 0.0, 300):
+        angle = random.uniform(0.0, 2.0 * np.pi)
+        assert trb.laws.journal_along(e * np.cos(angle), e * np.sin(angle)) > 0.0
 
 
 # ---- the film in the bearing, against Reynolds' equation ----
@@ -285,7 +289,9 @@ def test_losses_are_minus_the_power_of_the_forces(kit: SimpleNamespace, guidance
 
 @pytest.mark.parametrize("guidance", LANDS)
 def test_contact(kit: SimpleNamespace, guidance: str) -> None:
-    """Dry: Palmgren's load over the width, Coulomb friction at the land's radius; nothing before the stated height of the film."""
+    """Dry: Palmgren's load over the width, Coulomb friction at the land's radius; nothing before the stated height of the
+    film.
+    """
     effects = ALONE.replace(lubrication="dry")
     sim = land_sim(kit, guidance, effects, land={"contact_film": 5e-6})
     land, (_, centre, spin) = sim.scene.bearing.land, ring_of(sim, guidance)
@@ -302,8 +308,7 @@ def test_contact(kit: SimpleNamespace, guidance: str) -> None:
     assert found["land_gap"] == pytest.approx(-5e-6, rel=1e-6)
     _, _, _, omega = cage_of(kit, sim, vector)
     arm = radius if inside else -radius  # the cage round the land touches it on the other side
-    slip = arm * (omega[2] - spin[2]) + (105e-6 * omega[2] if not inside else 105e-6 * omega[2]) * 0.0
-    slip -= 105e-6 * omega[2]  # the axis of the cage lies that far from the land's
+    slip = arm * (omega[2] - spin[2]) - 105e-6 * omega[2]  # the axis of the cage lies that far from the land's
     friction = 0.1 * load * slip / np.hypot(slip, 0.01)
     assert found["hub_cage_force"][1] == pytest.approx(-friction, rel=1e-6)
     assert found["land_friction"] == pytest.approx(abs(friction), rel=1e-6)
@@ -380,7 +385,9 @@ def test_continuous_where_the_mean_speed_reverses(kit: SimpleNamespace, e: float
     orbit = sim.scene.bearing.geometry.cage_speed_ratio * 3000.0 * np.pi / 30.0
     x, sizes = 1e-4 * e, []
     for off in (1e-6, 1e-8, 0.0):
-        values = forces(kit, sim, [{"x": x, "omega_a": sign * off - orbit, "v_x": sign * off * 1e-5} for sign in (1, -1)])
+        values = forces(
+            kit, sim, [{"x": x, "omega_a": sign * off - orbit, "v_x": sign * off * 1e-5} for sign in (1, -1)]
+        )
         sizes.append(np.abs(values).max())
     assert sizes[1] < 2e-2 * sizes[0] + 1e-15
     assert sizes[2] == 0.0
@@ -467,7 +474,9 @@ def test_a_land_keeps_the_cage(kit: SimpleNamespace, guidance: str) -> None:
     reached = {}
     for name in ("rollers", guidance):
         scenery = {"start": Start.whirl(0.35)}
-        result = kit.simulate(Effects.standard().replace(guidance=name), scenery=scenery).run(duration=0.02, save_every=1e-4)
+        result = kit.simulate(Effects.standard().replace(guidance=name), scenery=scenery).run(
+            duration=0.02, save_every=1e-4
+        )
         reached[name] = float(np.hypot(*result["cage_rail_position"][:, :2].T).max())
     assert land.clearance < 0.5 * cage.play_radial
     assert reached[guidance] < 1.02 * land.clearance + 2e-6

@@ -98,7 +98,7 @@ def guided(kit: SimpleNamespace, sim: Simulation, vector: Array) -> dict[str, fl
     place, found = sim.equilibrium.displacement, sim.contacts(vector, TIME)
     turn = kit.about_z(kit.frame_angle(sim, vector, TIME)).inv()
     axis = turn.apply(kit.frame(-place[3], place[4]).apply(AXIS))
-    centre = turn.apply(place[:3]) + [0.0, 0.0, geometry.centre_plane]
+    centre = turn.apply(place[:3]) + np.array([0.0, 0.0, geometry.centre_plane])
 
     def apart(station: float) -> float:
         along = land.offset - sim.scene.bearing.cage.offset + station

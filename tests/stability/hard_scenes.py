@@ -662,13 +662,13 @@ HARD: tuple[Hard, ...] = (
     ),
     Hard(
         "drag_flooded",
-        "a flooded bearing at 12 000 rpm under a light load: drag of several newtons a roller slows all of them down, and they slip",
+        "a flooded bearing at 12 000 rpm under a light load: drag of newtons slows the rollers, and they slip",
         lambda: S(12000.0, 3000.0, effects=trb.Effects.standard().replace(oil_fill=1.0, drag_coefficient=3.0)),
         compared=5e-3,
     ),
     Hard(
         "land_thick_oil",
-        "a heavy cage begins with the film of its land nearly closed, in oil of 1 Pa s and a clearance of 30 um: the film damps at 1e9 1/s",
+        "a heavy cage begins with the film of its land nearly closed, in oil of 1 Pa s and a clearance of 30 um",
         lambda: S(
             300.0,
             bearing=guided({"clearance": 30e-6}, mass=2.0, inertia_axial=3.9e-3, inertia_transverse=2.1e-3),
