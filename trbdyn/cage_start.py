@@ -22,6 +22,8 @@ RESTING_AXIAL_SHARE: Final = 0.1
 """Axial place of a cage at the start, in units of its axial play, from where the large ends of the rollers touch."""
 PRESSED: Final = 1e-7
 """Interference with a pocket from which on room is looked for (m)."""
+RESTING_FILM: Final = 0.5
+"""Gap over the clearance at which a cage begins on the oil film of a land, when gravity draws it there."""
 STRONGLY_PRESSED: Final = 2e-6
 """Interference with a pocket at the start that is worth a warning (m)."""
 
@@ -61,8 +63,11 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
     gravity = np.array([value_at(part, start.time) for part in scene.gravity[:2]])
     size = float(np.hypot(*gravity))
 
-    def depths() -> Array:
-        return _depths(onlooker, scene, motion.start, vector)
+    land = scene.bearing.land
+    thinnest = RESTING_FILM * land.clearance if scene.effects.films and land.fill > 0.0 else land.contact_film
+
+    def depths(gap: float = land.contact_film) -> Array:
+        return _depths(onlooker, scene, motion.start, vector, gap)
 
     if start.kind == "whirl":
         direction = math.radians(start.direction_deg)
@@ -70,7 +75,7 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
             start.eccentricity * cage.play_radial * part for part in (math.cos(direction), math.sin(direction))
         )
     elif scene.effects.gravity and size > 0.0:
-        _lay_down(depths, state, gravity / size, cage.play_radial)
+        _lay_down(lambda: depths(thinnest), state, gravity / size, cage.play_radial)
     # a cage that whirls stays at the eccentricity that was asked for
     ways = ("cage_z",) if start.kind == "whirl" else ("cage_x", "cage_y", "cage_z")
     _make_room(depths, state, cage.play_radial, ways)
@@ -88,16 +93,19 @@ def pressed_rollers(model: _core.Model, scene: Scene, motion: RingMotion, vector
     depth = _interference(onlooker, motion.start, vector)
     worst, roller = float(depth.max()), int(np.argmax(depth.max(axis=1)))
     if not worst > STRONGLY_PRESSED:
-        return _pressed_land(scene, float(_depths(onlooker, scene, motion.start, vector)[-1]))
+        return _pressed_land(scene, onlooker, motion.start, vector)
     cause = "load and displacement of the rings move the rollers further than the play of the pockets lets a stiff cage follow"
     if scene.start.kind == "whirl":
         cause = f"start.eccentricity = {scene.start.eccentricity:g} takes the cage further than these rollers allow, or {cause}"
     return f"at the start roller {roller} is pressed {1e6 * worst:.3g} um into its pocket: {cause}; the run begins with a blow"
 
 
-def _pressed_land(scene: Scene, depth: float) -> str:
-    """A sentence if the start presses the cage that far into the land that guides it (m), or nothing."""
-    if scene.effects.guidance == "rollers" or not depth > STRONGLY_PRESSED:
+def _pressed_land(scene: Scene, onlooker: _core.Simulation, time: float, vector: Array) -> str:
+    """A sentence if the start presses the cage into the land that guides it, or nothing."""
+    if scene.effects.guidance == "rollers":
+        return ""
+    depth = scene.bearing.land.contact_film - float(onlooker.contacts(time, vector)["land_gap"])
+    if not depth > STRONGLY_PRESSED:
         return ""
     return (
         f"at the start the cage is pressed {1e6 * depth:.3g} um into the land that guides it: its rollers or start.eccentricity "
@@ -114,13 +122,13 @@ def _interference(onlooker: _core.Simulation, time: float, vector: Array) -> Arr
     return np.asarray(onlooker.contacts(time, vector)["pocket_interference"])
 
 
-def _depths(onlooker: _core.Simulation, scene: Scene, time: float, vector: Array) -> Array:
-    """Interferences of the cage with its rollers, and with the land that guides it, where one does (m)."""
+def _depths(onlooker: _core.Simulation, scene: Scene, time: float, vector: Array, gap: float) -> Array:
+    """Interferences of the cage with its rollers, and, where a land guides it, by how much its gap there is below one (m)."""
     found = onlooker.contacts(time, vector)
     depths = np.asarray(found["pocket_interference"]).ravel()
     if scene.effects.guidance == "rollers":
         return depths
-    return np.append(depths, scene.bearing.land.contact_film - float(found["land_gap"]))
+    return np.append(depths, gap - float(found["land_gap"]))
 
 
 def _lay_down(depths: Callable[[], Array], state: StateView, direction: Array, play: float) -> None:

@@ -361,11 +361,19 @@ static int put_loads(const trb_model *m, const trb_loads *loads, PyObject *out)
   return 0;
 }
 
+/* A number, shape (). */
+static int put_scalar(PyObject *out, const char *key, double value)
+{
+  PyObject *array = PyArray_SimpleNew(0, NULL, NPY_DOUBLE);
+  if (array != NULL) *(double *)PyArray_DATA((PyArrayObject *)array) = value;
+  return trb_put(out, key, array);
+}
+
 /* The cage on a land, and wrenches of the pairs without a roller, in R. */
 static int put_hub(const trb_model *m, const trb_detail *detail, trb_loads *hub, PyObject *out)
 {
 #define PUT_LAND(X, name, unit, text) \
-  if (trb_put(out, "land_" #name, PyFloat_FromDouble(detail->land.name)) != 0) return -1;
+  if (put_scalar(out, "land_" #name, detail->land.name) != 0) return -1;
   TRB_LAND_FIELDS(PUT_LAND, 0)
 #undef PUT_LAND
   static const struct {
@@ -379,7 +387,7 @@ static int put_hub(const trb_model *m, const trb_detail *detail, trb_loads *hub,
     (void)PyOS_snprintf(key, sizeof key, "hub_%s_moment", bodies[b].key);
     if (trb_put(out, key, trb_vector(&hub->on[bodies[b].body].moment.x, 3)) != 0) return -1;
   }
-  if (trb_put(out, "hub_elastic_energy", PyFloat_FromDouble(hub->elastic)) != 0) return -1;
+  if (put_scalar(out, "hub_elastic_energy", hub->elastic) != 0) return -1;
   return trb_put(out, "hub_power", trb_vector(hub->power, m->n_losses));
 }
 

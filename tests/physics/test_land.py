@@ -508,7 +508,7 @@ def test_peaks_and_summary(kit: SimpleNamespace, guidance: str) -> None:
     sim.view(vector)["cage_v_x"] += 0.3
     sim.set_state(vector)
     result = sim.run(duration=4e-3, save_every=1e-5)
-    assert float(result.peaks["land_force_peak"]) >= 0.999 * result["land_force"].max()
+    assert float(result.peaks["land_force_peak"]) >= 0.99 * result["land_force"].max()
     assert float(result.peaks["land_gap_min"]) <= result["land_gap"].min() + 1e-9
     summary = result.summary()
     assert summary["land_force_peak"] > 0.0
@@ -583,11 +583,22 @@ def test_a_start_beyond_the_land(kit: SimpleNamespace) -> None:
 
 
 @pytest.mark.parametrize("guidance", LANDS)
-def test_a_cage_begins_on_the_land_that_it_would_pass(kit: SimpleNamespace, guidance: str) -> None:
-    sim = land_sim(kit, guidance, PAPER, land={"clearance": 5e-5})
+@pytest.mark.parametrize(("lubrication", "gap"), [("dry", 0.5e-6), ("mixed", 25e-6)])
+def test_a_cage_begins_on_the_land_that_it_would_pass(
+    kit: SimpleNamespace, guidance: str, lubrication: str, gap: float
+) -> None:
+    """At the point of touching, or at half of the clearance where oil carries it."""
+    sim = land_sim(kit, guidance, PAPER.replace(lubrication=lubrication), land={"clearance": 5e-5})
     found = sim.contacts()
-    assert 0.0 < float(found["land_gap"]) < 1.1e-6
+    assert float(found["land_gap"]) == pytest.approx(gap, abs=2e-8)
     assert float(found["land_contact_force"]) == 0.0
+
+
+def test_a_start_that_presses_the_cage_into_its_land_is_told(kit: SimpleNamespace) -> None:
+    with pytest.warns(UserWarning, match=r"pressed .* um into the land"):
+        land_sim(
+            kit, "inner_land", PAPER, land={"clearance": 5e-6}, displacement=(4e-5, 0.0, -6e-5), start=Start.whirl(0.0)
+        )
 
 
 def test_in_a_case_file() -> None:
