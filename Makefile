@@ -2,7 +2,7 @@
 #
 #   make demo       the 30310 test bearing at 3000 rpm, in demo/
 #   make test       C unit tests and the Python tests in two processes (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones; JOBS=4)
-#   make lint       style, types, rules of the C sources (make format rewrites the style)
+#   make lint       style, types, layers of the package, rules of the C sources (make format rewrites the style)
 #   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
 #   make notebooks  the notebooks run and keep their outputs
@@ -61,6 +61,8 @@ lint: $(VENV)/.lint build/.package
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
 	$(PY) -m mypy
+	$(VENV)/bin/lint-imports --no-cache >build/imports.log 2>&1 || { cat build/imports.log; exit 1; }
+	$(PY) .ci/lint_imports.py
 	$(VENV)/bin/clang-format --dry-run -Werror $(STYLED)
 	$(PY) .ci/lint_c.py --objects build/package
 	$(VENV)/bin/clang-tidy -p build/package --quiet $(TIDY) >build/tidy.log 2>&1 || { cat build/tidy.log; exit 1; }

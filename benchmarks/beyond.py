@@ -1,7 +1,7 @@
 """The mechanism behind the paper's figures, and what goes beyond them: whirl against rotation, classes of motion with spectra,
 direction of the cage's lean, slip budget of the rollers, their skew and tilt, and torque against measurements.
 
-Reads the points of a campaign (``python -m trbdyn paper -o FOLDER``, then ``--runs FOLDER``); without one it runs two
+Reads the points of a campaign (``python benchmarks/paper -o FOLDER``, then ``--runs FOLDER``); without one it runs two
 short points. Pictures go to ``-o FOLDER`` as ``beyond_<name>.png``.
 """
 
@@ -16,11 +16,11 @@ from typing import Any
 import common
 import numpy as np
 from mechanism import motions, pictures, reach, slip, torque
+from paper.files import read_about
+from paper.points import Condition, Point
 
 import trbdyn as trb
-from trbdyn.paper.files import read_about
-from trbdyn.paper.points import Condition, Point
-from trbdyn.results import Result
+from trbdyn.results.result import Result
 
 COLUMNS = {
     "part": "1: motion, slip, torque or reach",

@@ -9,7 +9,7 @@ spacing and from a whirling cage. A run is as long as 3000 steps or three turns 
 
 Two measures of closure are given. Both are the residual of the audit (work put in, less losses, less growth of kinetic and
 elastic energy). `closure` is the residual over the energy turned over, as the watch over every run measures it
-(`trbdyn.watch`): half the sum of all changes of works, losses and stored energies between 100 records; an exchange below
+(`trbdyn.run.watch`): half the sum of all changes of works, losses and stored energies between 100 records; an exchange below
 1e-3 of the stored energy counts as this share. `closure_dissipated` is the residual over the losses alone, `energy_closure`
 of a result: where hardly anything was lost yet, it is large without being wrong.
 """

@@ -13,11 +13,11 @@ from typing import Any
 
 import common
 import numpy as np
+import paper.points as paper
 from creep import outcome, planar, whirl
 
 import trbdyn as trb
-import trbdyn.paper.points as paper
-from trbdyn.paper.creep import creep, growth_per_turn
+from trbdyn.statics.creep import creep, growth_per_turn
 
 COLUMNS = {
     "part": "1: chi, growth, yielding, direction, map, point or statement",
@@ -46,7 +46,7 @@ COLUMNS = {
     "chi_yield": "1: stated yield limit 2 Z/cos(gamma)",
     "rate": "1: growth of the rollers' pattern a turn of the cage, measured",
     "error": "1: standard error of rate",
-    "law": "1: growth a turn by trbdyn.paper.creep.growth_per_turn",
+    "law": "1: growth a turn by trbdyn.statics.creep.growth_per_turn",
     "theory": "1: growth a turn by (2 cos^4(gamma)/Z) (Cpc/Cpr) chi Fn",
     "fit": "1: growth a turn by 0.070 chi (Fn - 0.20), for the 30310 only",
     "stated": "1: rate without radial load by law, times 1 - l sin(gamma)/2",

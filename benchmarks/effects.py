@@ -30,9 +30,9 @@ from effect_cost.build import BuildError, Builds
 from effect_cost.catalogue import EFFECTS, EVERYTHING, NOTHING, Effect
 
 from trbdyn import Scene, Simulation, Start, TrbError
-from trbdyn.effects import Effects
-from trbdyn.flatten import diameter_deviation, face_rows, parameter_block
-from trbdyn.start import ring_motion
+from trbdyn.model.effects import Effects
+from trbdyn.model.flatten import diameter_deviation, face_rows, parameter_block
+from trbdyn.statics.ring_motion import ring_motion
 
 COLUMNS = {
     "effect": "text: name of the effect",

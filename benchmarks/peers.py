@@ -35,7 +35,7 @@ from peer_cost.methods import OURS, alternatives, own
 from peer_cost.picture import draw
 
 from trbdyn import Simulation
-from trbdyn.run_options import ACCURACY
+from trbdyn.run.options import ACCURACY
 
 COLUMNS = {
     "name": "1: integrator, with the package it comes from",

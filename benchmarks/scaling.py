@@ -24,7 +24,7 @@ import numpy as np
 from accuracy import measure
 
 from trbdyn import Scene, Simulation, Start, cases
-from trbdyn.effects import Effects
+from trbdyn.model.effects import Effects
 
 COLUMNS = {
     "sweep": "text: rollers, slices, speed, load, threads or memory",

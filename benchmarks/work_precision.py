@@ -29,7 +29,7 @@ from accuracy.picture import draw_front
 from accuracy.tables import BIASES, text_of
 
 from trbdyn import Simulation
-from trbdyn.run_options import ACCURACY
+from trbdyn.run.options import ACCURACY
 
 OBSERVED = {
     "pocket_mean": "N: mean force of all pockets together, impulse a second",
@@ -333,7 +333,7 @@ def run(plan: Plan, report: common.Report) -> None:
 
 
 def operating_point(case: states.Case) -> dict[str, Any]:
-    """What `trbdyn.estimate` finds a case by."""
+    """What `trbdyn.run.estimate` finds a case by."""
     definition = case.definition
     return {
         "speed_rpm": definition.speed_rpm,
@@ -352,7 +352,7 @@ def front_of(rows: Sequence[dict[str, Any]], case: str) -> list[str]:
 
 
 def write_table(report: common.Report, path: Path) -> None:
-    """Errors and costs over the tolerances' scale, for `trbdyn.estimate`."""
+    """Errors and costs over the tolerances' scale, for `trbdyn.run.estimate`."""
     errors = (*measure.QUANTITIES, *(f"{name}_worst" for name in measure.QUANTITIES))
     kept = ("scale", "cpu_s_per_revolution", *errors)
 
@@ -403,7 +403,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report | None:
         type=Path,
         const=TABLE,
         metavar="FILE",
-        help="write the table of trbdyn.estimate as well",
+        help="write the table of trbdyn.run.estimate as well",
     )
     parser.add_argument(
         "--from-json", type=Path, metavar="FILE", help="measure nothing, take the results of such a file"

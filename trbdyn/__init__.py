@@ -12,74 +12,80 @@ Everything is SI unless a name says otherwise. Names are imported when they are 
 from __future__ import annotations
 
 import importlib
-import importlib.metadata
 from typing import TYPE_CHECKING, Any
 
+from trbdyn import former_names
+
 if TYPE_CHECKING:
-    from trbdyn import animation, cases, errors, laws, lubricants, observables, pocket_shapes, study
-    from trbdyn import plotting as plot
-    from trbdyn.bearing import Bearing, Cage, Land, Material, Profile, Ribs, Roller, Roughness, Scatter
-    from trbdyn.effects import Effects
+    from trbdyn import errors, laws, plot, study
+    from trbdyn.base.version import __version__
     from trbdyn.errors import FileError, InputError, LoadError, RunWarning, StepError, TrbError
-    from trbdyn.lubricants import Lubricant, Oil
-    from trbdyn.motion import History
-    from trbdyn.pocket import Face, OtherPocket, Pocket
+    from trbdyn.model import cases, lubricants, pocket_shapes
+    from trbdyn.model.bearing import Bearing, Cage, Material, Profile, Ribs, Roller, Roughness, Scatter
+    from trbdyn.model.effects import Effects
+    from trbdyn.model.land import Land
+    from trbdyn.model.lubricants import Lubricant, Oil
+    from trbdyn.model.motion import History
+    from trbdyn.model.pocket import Face, OtherPocket, Pocket
+    from trbdyn.model.scene import RotatingLoad, Scene, Start
+    from trbdyn.plot import animation
     from trbdyn.reporting import report
-    from trbdyn.results import Result, load
-    from trbdyn.resuming import resume
-    from trbdyn.run_options import RunOptions
-    from trbdyn.scene import RotatingLoad, Scene, Start
-    from trbdyn.simulation import Simulation
-    from trbdyn.toml_case import load_case
+    from trbdyn.results import observables
+    from trbdyn.results.result import Result, load
+    from trbdyn.run.options import RunOptions
+    from trbdyn.run.resume import resume
+    from trbdyn.run.simulation import Simulation
+    from trbdyn.run.toml_case import load_case
+    from trbdyn.study.what_matters import sensitivity
     from trbdyn.viewer import view
-    from trbdyn.what_matters import sensitivity
 
 _MODULES = {
-    "animation": "trbdyn.animation",
-    "cases": "trbdyn.cases",
+    "animation": "trbdyn.plot.animation",
+    "cases": "trbdyn.model.cases",
     "errors": "trbdyn.errors",
     "laws": "trbdyn.laws",
-    "lubricants": "trbdyn.lubricants",
-    "observables": "trbdyn.observables",
-    "plot": "trbdyn.plotting",
-    "pocket_shapes": "trbdyn.pocket_shapes",
+    "lubricants": "trbdyn.model.lubricants",
+    "observables": "trbdyn.results.observables",
+    "plot": "trbdyn.plot",
+    "pocket_shapes": "trbdyn.model.pocket_shapes",
     "study": "trbdyn.study",
 }
 
 _NAMES = {
-    "Bearing": "trbdyn.bearing",
-    "Cage": "trbdyn.bearing",
-    "Effects": "trbdyn.effects",
-    "Face": "trbdyn.pocket",
+    "Bearing": "trbdyn.model.bearing",
+    "Cage": "trbdyn.model.bearing",
+    "Effects": "trbdyn.model.effects",
+    "Face": "trbdyn.model.pocket",
     "FileError": "trbdyn.errors",
-    "History": "trbdyn.motion",
+    "History": "trbdyn.model.motion",
     "InputError": "trbdyn.errors",
-    "Land": "trbdyn.bearing",
+    "Land": "trbdyn.model.land",
     "LoadError": "trbdyn.errors",
-    "Lubricant": "trbdyn.lubricants",
-    "Material": "trbdyn.bearing",
-    "Oil": "trbdyn.lubricants",
-    "OtherPocket": "trbdyn.pocket",
-    "Pocket": "trbdyn.pocket",
-    "Profile": "trbdyn.bearing",
-    "Result": "trbdyn.results",
-    "Ribs": "trbdyn.bearing",
-    "Roller": "trbdyn.bearing",
-    "RotatingLoad": "trbdyn.scene",
-    "Roughness": "trbdyn.bearing",
-    "RunOptions": "trbdyn.run_options",
+    "Lubricant": "trbdyn.model.lubricants",
+    "Material": "trbdyn.model.bearing",
+    "Oil": "trbdyn.model.lubricants",
+    "OtherPocket": "trbdyn.model.pocket",
+    "Pocket": "trbdyn.model.pocket",
+    "Profile": "trbdyn.model.bearing",
+    "Result": "trbdyn.results.result",
+    "Ribs": "trbdyn.model.bearing",
+    "Roller": "trbdyn.model.bearing",
+    "RotatingLoad": "trbdyn.model.scene",
+    "Roughness": "trbdyn.model.bearing",
+    "RunOptions": "trbdyn.run.options",
     "RunWarning": "trbdyn.errors",
-    "Scatter": "trbdyn.bearing",
-    "Scene": "trbdyn.scene",
-    "Simulation": "trbdyn.simulation",
-    "Start": "trbdyn.scene",
+    "Scatter": "trbdyn.model.bearing",
+    "Scene": "trbdyn.model.scene",
+    "Simulation": "trbdyn.run.simulation",
+    "Start": "trbdyn.model.scene",
     "StepError": "trbdyn.errors",
     "TrbError": "trbdyn.errors",
-    "load": "trbdyn.results",
-    "load_case": "trbdyn.toml_case",
+    "__version__": "trbdyn.base.version",
+    "load": "trbdyn.results.result",
+    "load_case": "trbdyn.run.toml_case",
     "report": "trbdyn.reporting",
-    "resume": "trbdyn.resuming",
-    "sensitivity": "trbdyn.what_matters",
+    "resume": "trbdyn.run.resume",
+    "sensitivity": "trbdyn.study.what_matters",
     "view": "trbdyn.viewer",
 }
 
@@ -130,10 +136,7 @@ __all__ = [
     "view",
 ]
 
-try:
-    __version__ = importlib.metadata.version("trbdyn")
-except importlib.metadata.PackageNotFoundError:
-    __version__ = "0+unknown"
+former_names.install()
 
 
 def __getattr__(name: str) -> Any:
@@ -143,6 +146,8 @@ def __getattr__(name: str) -> Any:
         value = importlib.import_module(_MODULES[name])
     elif name in _NAMES:
         value = getattr(importlib.import_module(_NAMES[name]), name)
+    elif f"trbdyn.{name}" in former_names.MODULES:
+        value = importlib.import_module(former_names.MODULES[f"trbdyn.{name}"])
     else:
         raise AttributeError(f"module 'trbdyn' has no attribute {name!r}")
     globals()[name] = value

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from accuracy.states import Case, at_state
 from trbdyn import Scene, Simulation
 from trbdyn.errors import RunWarning
-from trbdyn.results import Result
-from trbdyn.run_options import ACCURACY, RunOptions
-from trbdyn.simulation import State
+from trbdyn.results.result import Result
+from trbdyn.run.options import ACCURACY, RunOptions
+from trbdyn.run.simulation import State
 
 Array = NDArray[np.float64]
 Settings = Mapping[str, Any]

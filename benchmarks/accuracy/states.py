@@ -23,10 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import Scene, Simulation, cases
-from trbdyn.bearing import Scatter
-from trbdyn.effects import Effects
-from trbdyn.scene import Start
-from trbdyn.simulation import State
+from trbdyn.model.bearing import Scatter
+from trbdyn.model.effects import Effects
+from trbdyn.model.scene import Start
+from trbdyn.run.simulation import State
 
 Array = NDArray[np.float64]
 

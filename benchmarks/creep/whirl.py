@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import trbdyn as trb
-from trbdyn.scene import Scene
+from trbdyn.model.scene import Scene
 
 from .planar import Motion, growth
 

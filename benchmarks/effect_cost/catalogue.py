@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from trbdyn.effects import Effects
+from trbdyn.model.effects import Effects
 
 NODES: Final = {"quadrature": "gauss", "n_slices": 8}
 

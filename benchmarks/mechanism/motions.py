@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import observables
-from trbdyn.results import Result
+from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

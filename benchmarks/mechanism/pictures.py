@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib import ticker
 from numpy.typing import NDArray
 
-from trbdyn.plotting.style import COLOURS, GREY, LIGHT, LINES, MARKERS, STYLE
-from trbdyn.results import Result
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, MARKERS, STYLE
+from trbdyn.results.result import Result
 
 from . import motions
 from .slip import SIDES, Budget

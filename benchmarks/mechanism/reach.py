@@ -14,8 +14,8 @@ import numpy as np
 
 import trbdyn as trb
 from trbdyn import observables
-from trbdyn.paper.movable import Pockets
-from trbdyn.scene import Start
+from trbdyn.model.scene import Start
+from trbdyn.run.movable import Pockets
 
 SPEED_RPM = 300.0
 AXIAL_LOAD = 4930.0

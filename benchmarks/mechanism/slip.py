@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import trbdyn as trb
-from trbdyn.results import Result
+from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
-from trbdyn.flatten import diameter_deviation, face_rows, scene_entries
-from trbdyn.scene import Scene
-from trbdyn.simulation import build_model
-from trbdyn.start import ring_motion
+from trbdyn.model.flatten import diameter_deviation, face_rows, scene_entries
+from trbdyn.model.scene import Scene
+from trbdyn.statics.core_model import build_model
+from trbdyn.statics.ring_motion import ring_motion
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.scene import Scene
+from trbdyn.model.scene import Scene
 
 from .constants import Constants
 from .pocket import pocket_wrenches

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from numpy_model import Jacobian, NumpyModel, solvers
 
 from trbdyn import Effects, RunOptions, Scene, Simulation, Start
-from trbdyn.cases import scene_30310
-from trbdyn.run_options import ACCURACY, Tolerances
+from trbdyn.model.cases import scene_30310
+from trbdyn.run.options import ACCURACY, Tolerances
 
 Array = NDArray[np.float64]
 

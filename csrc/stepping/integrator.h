@@ -7,11 +7,11 @@
 
 /* Settings of an integration. X(name, default, lower, upper, text) */
 #define TRB_SETTINGS(X) \
-  X(rtol,           1e-4,  1e-12, 0.1,  "relative tolerance of velocities") \
-  X(atol_position,  1e-9,  1e-16, 1e-2, "tolerance of positions, m") \
-  X(atol_angle,     1e-7,  1e-14, 1e-1, "tolerance of angles, rad") \
-  X(atol_velocity,  1e-5,  1e-14, 10,   "tolerance of velocities, m/s") \
-  X(atol_spin,      1e-3,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
+  X(rtol,           1e-3,  1e-12, 0.1,  "relative tolerance of velocities") \
+  X(atol_position,  9e-10, 1e-16, 1e-2, "tolerance of positions, m") \
+  X(atol_angle,     9e-8,  1e-14, 1e-1, "tolerance of angles, rad") \
+  X(atol_velocity,  3e-4,  1e-14, 10,   "tolerance of velocities, m/s") \
+  X(atol_spin,      3e-2,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
   X(max_order,      2,     1,     5,    "highest order of BDF") \
   X(erk_order,      5,     2,     8,    "order of the explicit method") \
   X(rings_age,      1e-2,  0,     1e3,  "bearing time after which the part of the Jacobian from raceways and ribs is computed again, s") \

@@ -106,6 +106,7 @@ def main() -> int:
     if args.keep:
         for verdict in bad:
             small = shrink(verdict["table"], verdict["status"])
+            FOUND.mkdir(exist_ok=True)
             path = FOUND / f"{verdict['kind']}_{verdict['seed']}.json"
             path.write_text(
                 json.dumps({"status": verdict["status"], "broken": verdict["broken"], "scene": small}, indent=1) + "\n"

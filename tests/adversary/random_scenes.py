@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.cases import bearing_32216, rig_30310
-from trbdyn.lubricants import vg100
+from trbdyn.model.cases import bearing_32216, rig_30310
+from trbdyn.model.lubricants import iso_vg, vg100
 
 Table = dict[str, Any]
 
@@ -49,9 +49,20 @@ ORDINARY: Table = {
     "end_speed_rpm": None,
     "end_axial_load": None,
     "history_s": 0.005,
+    "oil": None,
+    "oil_fill": 0.0,
+    "rotating_share": 0.0,
+    "rotating_turns": 1.0,
 }
 """What a table that says nothing means; shrinking a failure leads back to these."""
 
+CATALOGUE: dict[str, Table] = {
+    "30205": {"bore": 0.025, "outside": 0.052, "width": 0.01625, "C": 30.8e3, "e": 0.37},
+    "32008": {"bore": 0.040, "outside": 0.068, "width": 0.019, "C": 52.8e3, "e": 0.37},
+    "33213": {"bore": 0.065, "outside": 0.120, "width": 0.041, "C": 194e3, "e": 0.40},
+    "1 m": {"bore": 0.6, "outside": 1.0, "width": 0.25, "C": 7.1e6, "e": 0.43},
+}
+"""Bearings of catalogue pages; loads, displacements and speeds of a table are scaled to them."""
 SCALED = ("play_radial", "play_circumferential", "play_axial")
 
 
@@ -116,6 +127,15 @@ def wide(rng: np.random.Generator) -> Table:
             "end_axial_load": table["axial_load"] * float(rng.uniform(0.7, 2.0)),
             "history_s": _log(rng, 1e-3, 2e-2),
         }
+    # drawn last, so that a seed's other entries stay what they were
+    if rng.random() < 0.15:
+        table["bearing"] = _one_of(rng, *CATALOGUE)
+    if rng.random() < 0.12:
+        table["oil"] = _one_of(rng, 32, 68, 220, 460)
+    if rng.random() < 0.12:
+        table["oil_fill"] = _log(rng, 1e-3, 1.0)
+    if rng.random() < 0.1 and table.get("displacement_x") is None and table.get("end_speed_rpm") is None:
+        table |= {"rotating_share": _log(rng, 1e-2, 0.5), "rotating_turns": float(rng.uniform(-2.0, 3.0))}
     return table
 
 
@@ -137,9 +157,15 @@ def make(table: Table) -> trb.Scene:
     """
     t = ORDINARY | table
     bearing = _bearing(t)
+    if t["bearing"] in CATALOGUE:
+        # what means the same for a bearing of another size: load by the rating, speed and displacement by the pitch diameter
+        load, length = CATALOGUE[t["bearing"]]["C"] / 130e3, bearing.pitch_diameter / 0.08
+        scales = {"speed_rpm": 1.0 / length, "end_speed_rpm": 1.0 / length, "axial_load": load, "end_axial_load": load}
+        scales |= {f"displacement_{axis}": length for axis in "xyz"}
+        t |= {name: t[name] * scale for name, scale in scales.items() if t[name] is not None}
     slope = math.tan(math.radians(bearing.cup_half_angle_deg))
     fields: Table = {
-        "lubricant": vg100(temperature_c=t["temperature_c"]),
+        "lubricant": vg100(t["temperature_c"]) if t["oil"] is None else iso_vg(t["oil"], t["temperature_c"]),
         "effects": _effects(t),
         "speed_rpm": _ramp(t["speed_rpm"], t["end_speed_rpm"], t["history_s"]),
         "misalignment_x": t["misalignment_x"],
@@ -154,13 +180,18 @@ def make(table: Table) -> trb.Scene:
             "radial_load": t["radial_share"] * lowest / slope,
             "radial_direction_deg": t["direction_deg"],
         }
-        if t["end_axial_load"] is not None:
+        if t["rotating_share"] > 0.0:
+            fields["rotating_load"] = trb.RotatingLoad(t["rotating_share"] * lowest / slope, turns=t["rotating_turns"])
+        if t["end_axial_load"] is not None or t["rotating_share"] > 0.0:
             fields["ring"] = "follows"
     return trb.Scene(bearing, start=_start_of(t), **fields)
 
 
 def _bearing(t: Table) -> trb.Bearing:
-    bearing = rig_30310() if t["bearing"] == "30310" else bearing_32216()
+    if t["bearing"] in CATALOGUE:
+        bearing = trb.Bearing.from_catalogue(**CATALOGUE[t["bearing"]], name=t["bearing"])
+    else:
+        bearing = rig_30310() if t["bearing"] == "30310" else bearing_32216()
     cage = bearing.cage
     cage = cage.replace(
         mass=cage.mass * t["cage_mass"],
@@ -183,7 +214,7 @@ def _effects(t: Table) -> trb.Effects:
         "frictionless": trb.Effects.frictionless,
     }[t["effects"]]()
     changes: Table = {"gravity": t["gravity"], "starvation_factor": t["starvation"]}
-    changes |= {"quadrature": "gauss", "n_slices": t["nodes"]}
+    changes |= {"quadrature": "gauss", "n_slices": t["nodes"], "oil_fill": t["oil_fill"]}
     for name in ("lubrication", "traction", "thermal", "rolling_resistance", "back_rib", "front_rib", "planar"):
         if t[name] is not None:
             changes[name] = t[name]

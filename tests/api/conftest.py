@@ -12,8 +12,8 @@ import pytest
 from numpy.typing import NDArray
 
 from trbdyn import _core
-from trbdyn.fields import Field
-from trbdyn.results import Result
+from trbdyn.results.fields import Field
+from trbdyn.results.result import Result
 
 Z, SLOTS = 12, 4
 RADIAL_PLAY, AXIAL_PLAY = 0.25e-3, 0.4e-3

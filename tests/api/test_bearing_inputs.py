@@ -12,9 +12,9 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import Bearing, Cage, InputError, Material, Profile, Ribs, Roller, Simulation
-from trbdyn.case_text import case_text
 from trbdyn.cli import main
-from trbdyn.toml_case import case_from_dict, load_case, shipped_cases
+from trbdyn.run.case_text import case_text
+from trbdyn.run.toml_case import case_from_dict, load_case, shipped_cases
 
 # number of rollers, half angle of the cup (deg), pitch diameter, diameter and length of the rollers (mm), axial load (N)
 CATALOGUE = {

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import observables
-from trbdyn.results import Result
+from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 
@@ -236,6 +236,17 @@ def test_cage_by_hand() -> None:
     turn = np.linspace(0.0, 3.0, 301)
     circle = np.stack([np.cos(-4.0 * math.pi * turn) + 5.0, np.sin(-4.0 * math.pi * turn) - 1.0, 0.0 * turn], axis=1)
     assert observables.whirl_frequency(turn, circle) == pytest.approx(-2.0, abs=0.02)
+
+
+def test_slip_of_the_set_is_the_mean_of_its_rollers(build: Callable[..., tuple[Any, Result]]) -> None:
+    run, result = build(n=201)
+    speed = run.column("roller_orbit_speed")
+    speed[:, 0] *= 0.9
+    values = Result.from_records(
+        run.records, run.layout, scene=result.scene, geometry=run.geometry, fields=run.fields, **run.ending()
+    )
+    expected = 1.0 - (11.0 * 0.999 + 0.9 * 0.999) / 12.0
+    np.testing.assert_allclose(values.cage_slip, expected, rtol=1e-9)
 
 
 def test_derived_by_hand(whirling: Result) -> None:

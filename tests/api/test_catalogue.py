@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
-from trbdyn.catalogue import RATIOS, rating_iso281
+from trbdyn.model.catalogue import RATIOS, rating_iso281
 from trbdyn.reporting.inputs import rows
-from trbdyn.what_matters import changed
+from trbdyn.study.what_matters import changed
 
 # d, D, T, width of the cup (mm), C (kN), e, as general catalogues list them; the last one is the 32216, 7.14 times as large
 CATALOGUE = {

@@ -14,8 +14,8 @@ import pytest
 
 from trbdyn.cli import main
 from trbdyn.errors import LoadError, StepError
-from trbdyn.result_file import ResultWriter
-from trbdyn.results import Result, load
+from trbdyn.results.result import Result, load
+from trbdyn.results.result_file import ResultWriter
 
 
 class FakeSimulation:
@@ -46,11 +46,11 @@ class FakeSimulation:
 
 @pytest.fixture
 def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, synthetic: Any) -> type[FakeSimulation]:
-    monkeypatch.setattr("trbdyn.paper.creep.creep_time", lambda scene: math.nan)  # needs a simulation that steps
-    module = ModuleType("trbdyn.simulation")
+    monkeypatch.setattr("trbdyn.results.derived.creep_time", lambda scene: math.nan)  # needs a simulation that steps
+    module = ModuleType("trbdyn.run.simulation")
     kind = type("Simulation", (FakeSimulation,), {"run_data": synthetic, "calls": [], "error": None})
     module.Simulation = kind  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "trbdyn.simulation", module)
+    monkeypatch.setitem(sys.modules, "trbdyn.run.simulation", module)
     monkeypatch.chdir(tmp_path)
     return kind
 

@@ -18,9 +18,9 @@ import pytest
 from matplotlib.collections import LineCollection
 from numpy.typing import NDArray
 
-from trbdyn import plotting
-from trbdyn.plotting.style import COLOURS
-from trbdyn.results import Result
+from trbdyn import plot
+from trbdyn.plot.style import COLOURS
+from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def curve(ax: Any, label: str) -> tuple[Array, Array]:
 
 
 def test_tilt(uneven: Result) -> None:
-    ax = plotting.tilt(uneven, last=None)
+    ax = plot.tilt(uneven, last=None)
     for index, label in enumerate((r"\theta_x", r"\theta_y")):
         x, y = curve(ax, label)
         np.testing.assert_allclose(x, turns(uneven))
@@ -71,13 +71,13 @@ def test_tilt(uneven: Result) -> None:
 
 
 def test_axial_motion(uneven: Result) -> None:
-    x, y = data(plotting.axial_motion(uneven).lines[0])
+    x, y = data(plot.axial_motion(uneven).lines[0])
     np.testing.assert_allclose(x, turns(uneven))
     np.testing.assert_allclose(y, 100.0 * uneven.cage_position[:, 2] / 0.4e-3)
 
 
 def test_whirl_radius(uneven: Result) -> None:
-    ax = plotting.whirl_radius(uneven)
+    ax = plot.whirl_radius(uneven)
     start, place = uneven.settling().index, uneven.cage_position[:, :2] / 0.25e-3
     x, y = curve(ax, "distance from the bearing axis")
     np.testing.assert_allclose(x, turns(uneven))
@@ -94,14 +94,14 @@ def test_whirl_radius(uneven: Result) -> None:
 def test_cage_locus(uneven: Result, plane: Any) -> None:
     place = uneven.cage_position if plane == "centre" else uneven.cage_rail_position
     expected = place[:, :2] / 0.25e-3
-    ax = plotting.cage_locus(uneven, plane=plane)
+    ax = plot.cage_locus(uneven, plane=plane)
     path = next(item for item in ax.collections if isinstance(item, LineCollection))
     segments = np.array(path.get_segments())
     np.testing.assert_allclose(segments[:, 0], expected[:-1])
     np.testing.assert_allclose(segments[:, 1], expected[1:])
     np.testing.assert_allclose(path.get_array(), turns(uneven)[:-1])
     np.testing.assert_allclose(np.ravel(data(ax.lines[-3])), expected[-1], err_msg="the mark of the end")
-    one = plotting.cage_locus(uneven, plane=plane, colour_by_time=False).lines[0]
+    one = plot.cage_locus(uneven, plane=plane, colour_by_time=False).lines[0]
     np.testing.assert_allclose(np.column_stack(data(one)), expected)
 
 
@@ -109,7 +109,7 @@ def test_cage_locus(uneven: Result, plane: Any) -> None:
 def test_pocket_forces(uneven: Result, pockets: list[int] | None) -> None:
     """A panel for each face that is touched, a row for each pocket: the largest force within each stretch of time."""
     names = [name.replace("_", " ") for name in uneven.slot_names]
-    figure = plotting.pocket_forces(uneven, pockets=pockets, last=None)
+    figure = plot.pocket_forces(uneven, pockets=pockets, last=None)
     chosen, force = list(range(12)) if pockets is None else pockets, uneven.pocket_force
     panels = [ax for ax in figure.axes if ax.get_title(loc="left")]
     assert [ax.get_title(loc="left") for ax in panels] == names[:3], "a face that is never touched has no panel"
@@ -123,7 +123,7 @@ def test_pocket_forces(uneven: Result, pockets: list[int] | None) -> None:
 
 
 def test_pocket_statistics(uneven: Result) -> None:
-    ax, force = plotting.pocket_statistics(uneven), uneven.pocket_force
+    ax, force = plot.pocket_statistics(uneven), uneven.pocket_force
     marks = [line for line in ax.lines if len(line.get_xdata()) == 12]
     assert len(marks) == 6
     for slot in range(3):
@@ -138,7 +138,7 @@ def test_pocket_statistics(uneven: Result) -> None:
 
 @pytest.mark.parametrize(("picture", "quantity"), [("contact_loads", "load"), ("film_parameter", "film_parameter")])
 def test_around_the_bearing(uneven: Result, picture: str, quantity: str) -> None:
-    ax = getattr(plotting, picture)(uneven)
+    ax = getattr(plot, picture)(uneven)
     angle = np.degrees(np.mod(uneven.roller_orbit_angle, 2.0 * np.pi))
     for index, side in enumerate(("outer", "inner", "rib")):
         values = uneven[f"{side}_{quantity}"]
@@ -158,7 +158,7 @@ def test_around_the_bearing(uneven: Result, picture: str, quantity: str) -> None
 
 
 def test_spacing_angles(uneven: Result) -> None:
-    ax = plotting.spacing_angles(uneven)
+    ax = plot.spacing_angles(uneven)
     gaps = np.degrees(uneven.spacing_angles())
     curves = [line for line in ax.lines if len(line.get_xdata()) == len(uneven)]
     assert len(curves) == 12
@@ -176,8 +176,8 @@ def test_spacing_angles(uneven: Result) -> None:
 
 def test_bars_of_the_splits(uneven: Result) -> None:
     for draw, split, unit in (
-        (plotting.torque_split, uneven.torque_by_loss, "N m"),
-        (plotting.power_split, uneven.power_split, "W"),
+        (plot.torque_split, uneven.torque_by_loss, "N m"),
+        (plot.power_split, uneven.power_split, "W"),
     ):
         ax = draw(uneven)
         shown = {name.replace("_", " "): value for name, value in split.items() if value}
@@ -193,7 +193,7 @@ def test_bars_of_the_splits(uneven: Result) -> None:
 
 
 def test_energy_audit(uneven: Result) -> None:
-    ax, balance = plotting.energy_audit(uneven), uneven.energy_balance
+    ax, balance = plot.energy_audit(uneven), uneven.energy_balance
     parts = {
         "work put in": balance["work_shaft"] + balance["work_gravity"] + balance["work_ring"],
         "losses": sum(values for name, values in balance.items() if name.startswith("loss_")),
@@ -213,7 +213,7 @@ def test_energy_audit(uneven: Result) -> None:
 
 def test_spectrum(uneven: Result) -> None:
     """Peaks at the order of the cage's whirl, and not at its mirror image."""
-    ax = plotting.spectrum(uneven)
+    ax = plot.spectrum(uneven)
     x, y = max((data(line) for line in ax.lines), key=lambda pair: pair[0].size)
     assert x[np.argmax(y)] == pytest.approx(1.0, abs=0.6)
     assert y[np.argmin(np.abs(x + 1.0))] < 0.5 * y.max()

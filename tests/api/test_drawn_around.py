@@ -16,10 +16,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.ticker import MultipleLocator
 
 import trbdyn as trb
-from trbdyn import plotting
-from trbdyn.plotting.whirling import section_points
-from trbdyn.replay import Replay
-from trbdyn.results import Result
+from trbdyn import plot
+from trbdyn.plot.whirling import section_points
+from trbdyn.results.result import Result
+from trbdyn.run.replay import Replay
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def _close() -> Iterator[None]:
 def test_a_map_is_the_mean_of_the_rollers_that_passed(loaded: Result, quantity: str) -> None:
     """Every cell: mean over the records used and the rollers in that sector whose node carries load."""
     records, bins = 7, 23  # no roller stands on a border at the start, save at 0
-    figure = plotting.contact_map(loaded, quantity, records=records, bins=bins)
+    figure = plot.contact_map(loaded, quantity, records=records, bins=bins)
     replay, factor = Replay(loaded), 1e-9 if quantity == "pressure" else 1.0
     index = np.linspace(0, len(loaded) - 1, records).round().astype(int)
     angle = np.mod(loaded.roller_orbit_angle[index], 2.0 * np.pi)
@@ -70,7 +70,7 @@ def test_a_map_is_the_mean_of_the_rollers_that_passed(loaded: Result, quantity: 
 
 
 def test_bars_of_a_pocket_stand_side_by_side_at_its_place(whirling: Result) -> None:
-    ax, statistics = plotting.pocket_polar(whirling), whirling.pocket_statistics()
+    ax, statistics = plot.pocket_polar(whirling), whirling.pocket_statistics()
     touched = [slot for slot in range(statistics.peak.shape[1]) if statistics.peak[:, slot].max() > 0.0]
     assert len(touched) > 1
     count = statistics.peak.shape[0]
@@ -104,7 +104,7 @@ def test_sections_of_a_record_that_begins_late(whirling: Result, once_per: Any) 
 
 
 def test_waterfall_stands_on_the_speed_and_marks_the_cage(loaded: Result) -> None:
-    ax = plotting.waterfall([loaded])
+    ax = plot.waterfall([loaded])
     assert list(ax.get_yticks()) == [2000]
     marks = [float(np.asarray(line.get_xdata())[0]) for line in ax.lines[1:]]
     assert marks == pytest.approx([loaded.geometry["cage_speed_ratio"], 1.0])
@@ -119,7 +119,7 @@ PICTURES += ("energy_audit", "pocket_statistics", "contact_loads", "film_paramet
 @pytest.mark.parametrize("name", PICTURES)
 def test_every_picture_has_its_legend_and_its_grid(name: str, whirling: Result) -> None:
     """Whatever has a label of its own stands in the legend; marks lie on a grid."""
-    ax = getattr(plotting, name)(whirling)
+    ax = getattr(plot, name)(whirling)
     _, labels = ax.get_legend_handles_labels()
     if len(labels) > 1:
         assert ax.get_legend() is not None
@@ -130,17 +130,17 @@ def test_every_picture_has_its_legend_and_its_grid(name: str, whirling: Result) 
 
 
 def test_scales(whirling: Result) -> None:
-    audit = plotting.energy_audit(whirling)
+    audit = plot.energy_audit(whirling)
     assert (audit.get_xscale(), audit.get_yscale()) == ("linear", "log")
     # four curves that lie upon each other are told apart by colour and width
     looks = [(to_rgb(line.get_color()), line.get_linewidth()) for line in audit.lines]
     assert len(set(looks)) == 4
     assert max(width for _, width in looks) == looks[0][1]
-    locus = plotting.cage_locus(whirling)
+    locus = plot.cage_locus(whirling)
     for axis in (locus.xaxis, locus.yaxis):
         assert isinstance(axis.get_major_locator(), MultipleLocator)
         np.testing.assert_allclose(np.diff(axis.get_major_locator().tick_values(-1.0, 1.0)), 0.5)
-    statistics = plotting.pocket_statistics(whirling)
+    statistics = plot.pocket_statistics(whirling)
     assert statistics.get_ylim()[0] == 0.0
 
 
@@ -148,7 +148,7 @@ def test_dimensions_of_the_drawing() -> None:
     """The arrows of a bearing's drawing end on the roller, at the ends of its length and on the bearing's axis."""
     bearing = trb.cases.rig_30310()
     geometry = bearing.geometry
-    ax = plotting.bearing_drawing(bearing)
+    ax = plot.bearing_drawing(bearing)
     turn = np.array(
         [
             [np.cos(geometry.roller_axis_angle), np.sin(geometry.roller_axis_angle)],
@@ -175,7 +175,7 @@ def test_dimensions_of_the_drawing() -> None:
 
 def test_the_roller_of_a_pocket_drawing_is_a_cone() -> None:
     bearing = trb.cases.rig_30310()
-    end, top = plotting.pocket_drawing(bearing, 2).axes[:2]
+    end, top = plot.pocket_drawing(bearing, 2).axes[:2]
     outline = np.asarray(top.patches[0].get_xy())
     geometry, half = bearing.geometry, 0.5e3 * bearing.roller.total_length
     for x, y in outline:

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from trbdyn import _core, cases, flatten
-from trbdyn.bearing import Bearing
-from trbdyn.effects import Effects
+from trbdyn import _core, cases
 from trbdyn.errors import InputError
-from trbdyn.lubricants import vg100
-from trbdyn.motion import History, knot_table
-from trbdyn.scene import Scene
+from trbdyn.model import flatten
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.effects import Effects
+from trbdyn.model.lubricants import vg100
+from trbdyn.model.motion import History, knot_table
+from trbdyn.model.scene import Scene
 
 
 @pytest.fixture(scope="module")

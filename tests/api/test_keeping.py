@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import keeping
-from trbdyn.cases import scene_30310
-from trbdyn.run_options import GROUPS
+from trbdyn.model.cases import scene_30310
+from trbdyn.run import keeping
+from trbdyn.run.options import GROUPS
 
 
 @pytest.mark.parametrize(

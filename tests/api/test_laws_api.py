@@ -101,7 +101,7 @@ def test_docstrings_name_every_argument_with_its_unit() -> None:
     """And nothing is described that no law takes."""
     import doctest
 
-    from trbdyn.law_texts import ARGUMENTS, EXAMPLES, OF_ONE_LAW
+    from trbdyn.laws.texts import ARGUMENTS, EXAMPLES, OF_ONE_LAW
 
     taken = set()
     for name in laws.names():

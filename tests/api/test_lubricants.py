@@ -10,9 +10,9 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import InputError, Lubricant, Oil, laws
-from trbdyn.flatten import lubricant_entries
-from trbdyn.lubricants import MINERAL, OILS, Dicke, astm_d341, iso_vg, vg100, wooster
-from trbdyn.paper.creep import contact_viscosity
+from trbdyn.model.flatten import lubricant_entries
+from trbdyn.model.lubricants import MINERAL, OILS, Dicke, astm_d341, iso_vg, vg100, wooster
+from trbdyn.statics.creep import contact_viscosity
 
 
 def test_fva3_keeps_its_numbers_bit_for_bit() -> None:

@@ -10,15 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from trbdyn import _core, cases, flatten, pocket_shapes
-from trbdyn.bearing import Bearing, Cage, Profile, Ribs, Roller, Scatter
-from trbdyn.effects import Effects, Friction
+from trbdyn import _core, cases, pocket_shapes
 from trbdyn.errors import InputError, StepError, TrbError
-from trbdyn.lubricants import Lubricant, vg100
-from trbdyn.motion import History
-from trbdyn.pocket import OtherPocket
-from trbdyn.run_options import ACCURACY, RunOptions
-from trbdyn.scene import Scene, Start
+from trbdyn.model import flatten
+from trbdyn.model.bearing import Bearing, Cage, Profile, Ribs, Roller, Scatter
+from trbdyn.model.effects import Effects, Friction
+from trbdyn.model.lubricants import Lubricant, vg100
+from trbdyn.model.motion import History
+from trbdyn.model.pocket import OtherPocket
+from trbdyn.model.scene import Scene, Start
+from trbdyn.run.options import ACCURACY, RunOptions
 
 
 @pytest.fixture(scope="module")
@@ -203,7 +204,7 @@ class TestScene:
         with pytest.raises(InputError) as caught:
             Scene({"n_rollers": 2, "roller": {"diameter": -3, "densty": 1}}, speed_rpm=None)
         lines = str(caught.value).splitlines()
-        assert "bearing.roller.diameter = -3 : must be > 0 (m)" in lines
+        assert "bearing.roller.diameter = -3 : must be >= 0.0001 (m)" in lines
         assert "bearing.n_rollers = 2 : must be >= 3" in lines
         assert any(
             line.startswith("bearing.roller.densty = 1 : unknown name; did you mean 'density'?") for line in lines

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.plotting.around import binned
-from trbdyn.plotting.whirling import section_points
-from trbdyn.replay import Replay
+from trbdyn.plot.around import binned
+from trbdyn.plot.whirling import section_points
+from trbdyn.run.replay import Replay
 
 
 @pytest.fixture(scope="module")

@@ -17,10 +17,10 @@ import pytest
 from matplotlib.collections import LineCollection
 from PIL import Image
 
-from trbdyn import animation, plotting
+from trbdyn import animation, plot
 from trbdyn.errors import FileError, InputError
-from trbdyn.plotting.style import COLOURS, thin
-from trbdyn.results import Result
+from trbdyn.plot.style import COLOURS, thin
+from trbdyn.results.result import Result
 
 
 @pytest.fixture(autouse=True)
@@ -32,7 +32,7 @@ def _no_traces() -> Iterator[None]:
 
 
 def test_cage_locus_shows_the_path_and_the_circles(whirling: Result) -> None:
-    ax = plotting.cage_locus(whirling)
+    ax = plot.cage_locus(whirling)
     path = next(item for item in ax.collections if isinstance(item, LineCollection))
     points = np.concatenate(path.get_segments())
     np.testing.assert_allclose(np.hypot(points[:, 0], points[:, 1]), 0.9, rtol=1e-9)
@@ -41,45 +41,41 @@ def test_cage_locus_shows_the_path_and_the_circles(whirling: Result) -> None:
     assert "C_{pr}" in ax.get_xlabel()
     texts = [text.get_text() for text in ax.get_legend().get_texts()]
     assert texts[:2] == ["radial play $C_{pr}$ = 0.25 mm", "circumferential play $C_{pc}$ = 0.12 mm"]
-    plain = plotting.cage_locus(
-        whirling, plane="rail", colour_by_time=False, circles={"Cpr": 1.0, "equal spacing": 0.436}
-    )
+    plain = plot.cage_locus(whirling, plane="rail", colour_by_time=False, circles={"Cpr": 1.0, "equal spacing": 0.436})
     assert len(plain.patches) == 2
     assert not plain.collections
 
 
 def test_pictures_draw_into_given_axes(whirling: Result) -> None:
     figure, axes = plt.subplots(2, 2)
-    for draw, ax in zip(
-        (plotting.tilt, plotting.axial_motion, plotting.spacing_angles, plotting.torque_split), axes.flat, strict=True
-    ):
+    for draw, ax in zip((plot.tilt, plot.axial_motion, plot.spacing_angles, plot.torque_split), axes.flat, strict=True):
         assert draw(whirling, ax=ax) is ax
     assert len(plt.get_fignums()) == 1
     assert figure.axes == list(axes.flat)
 
 
 def test_axes_carry_units_and_numbers(whirling: Result) -> None:
-    tilt = plotting.tilt(whirling, last=5.0)
+    tilt = plot.tilt(whirling, last=5.0)
     assert tilt.get_ylabel() == "cage tilt (mrad)"
     assert tilt.get_xlim() == pytest.approx((15.0, 20.0), abs=0.01)
     np.testing.assert_allclose(np.abs(tilt.lines[0].get_ydata()).max(), 0.2, rtol=1e-4)
-    spacing = plotting.spacing_angles(whirling, n=5)
+    spacing = plot.spacing_angles(whirling, n=5)
     assert "5 gaps" in spacing.get_ylabel()
     named = [line for line in spacing.lines if not line.get_label().startswith("_")]
     assert [line.get_label() for line in named] == ["1–6", "2–7", "3–8", "4–9", "5–10"]
     expected = np.degrees(whirling.spacing_angles(5)[0, 0])
     assert named[0].get_ydata()[0] == pytest.approx(expected)
-    loads = plotting.contact_loads(whirling)
+    loads = plot.contact_loads(whirling)
     assert "1833 N" in loads.get_legend().get_texts()[0].get_text()
-    audit = plotting.energy_audit(whirling)
+    audit = plot.energy_audit(whirling)
     assert any("1.3e-06" in text.get_text() for text in audit.get_legend().get_texts())
 
 
 def test_the_map_shows_the_orbit(build: Callable[..., tuple[Any, Result]]) -> None:
     """A cage that hangs far from the axis and hardly moves is no whirl."""
     hanging = build(radius=0.01e-3, centre=(0.0, -0.225e-3))[1]
-    assert float(plotting.whirl_map([hanging]).collections[0].get_array()[0]) < 0.05
-    ax = plotting.orbit_radius(hanging)
+    assert float(plot.whirl_map([hanging]).collections[0].get_array()[0]) < 0.05
+    ax = plot.orbit_radius(hanging)
     distance, orbit = (line.get_ydata() for line in ax.lines[:2])
     assert orbit.max() < 0.1 < 0.8 < distance.min()
     assert "not known to have settled" in ax.get_legend().get_texts()[2].get_text()
@@ -91,16 +87,16 @@ NEED_A_SCENE = ("pressure_map", "film_map")
 WHOLE = ("pocket_forces", "attitude", "load_zone", "pocket_polar", *NEED_A_SCENE)
 """Pictures that are a figure of their own, or need polar axes."""
 
-DRAWN = [name for name in plotting.PICTURES if name not in WHOLE]
+DRAWN = [name for name in plot.PICTURES if name not in WHOLE]
 
 
-@pytest.mark.parametrize("name", [name for name in plotting.PICTURES if name not in NEED_A_SCENE])
+@pytest.mark.parametrize("name", [name for name in plot.PICTURES if name not in NEED_A_SCENE])
 def test_the_title_names_the_quantity(name: str, whirling: Result, tmp_path: Path) -> None:
-    picture = plotting.PICTURES[name][0](whirling)
+    picture = plot.PICTURES[name][0](whirling)
     figure = picture if isinstance(picture, plt.Figure) else picture.figure
     quantity = figure.get_suptitle()
     assert len(quantity) > 8
-    plotting.save(picture, tmp_path / "a.png", "stub: 3000 rpm")
+    plot.save(picture, tmp_path / "a.png", "stub: 3000 rpm")
     assert figure.get_suptitle() == f"{quantity}\nstub: 3000 rpm"
 
 
@@ -110,7 +106,7 @@ def test_given_axes_keep_their_title_and_their_place(name: str, whirling: Result
     figure, axes = plt.subplots(2, 1, figsize=(6, 6))
     axes[0].set_title("mine")
     for ax in axes:
-        plotting.PICTURES[name][0](whirling, ax=ax)
+        plot.PICTURES[name][0](whirling, ax=ax)
     figure.draw_without_rendering()
     assert axes[0].get_title() == "mine"
     assert len(axes[1].get_title()) > 8
@@ -128,42 +124,42 @@ def test_given_axes_keep_their_title_and_their_place(name: str, whirling: Result
 def test_a_run_without_a_cage_has_no_picture_of_it(name: str, whirling: Result) -> None:
     whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers"}))
     with pytest.raises(InputError, match="has no cage"):
-        plotting.PICTURES[name][0](whirling)
+        plot.PICTURES[name][0](whirling)
 
 
 def test_the_audit_is_drawn_by_quiet_lines(whirling: Result) -> None:
-    ax = plotting.energy_audit(whirling)
+    ax = plot.energy_audit(whirling)
     assert all(line.get_xdata().size <= 241 for line in ax.lines)
     stored = np.abs(whirling.energy_balance["kinetic_energy"] + whirling.energy_balance["elastic_energy"])
     assert ax.lines[2].get_ydata().max() == pytest.approx(stored.max())
 
 
 def test_the_split_of_torque_has_the_shares_of_the_losses(whirling: Result) -> None:
-    ax = plotting.torque_split(whirling)
+    ax = plot.torque_split(whirling)
     loss = whirling.power_split
     widths = sorted(bar.get_width() for bar in ax.patches)
     np.testing.assert_allclose(
         widths, sorted(value / (2 * np.pi * 50.0) for value in loss.values() if value), rtol=1e-9
     )
     assert "forces on the inner ring" in ax.get_xlabel()
-    alone = plotting.torque_split(whirling.select(["torque"]))
+    alone = plot.torque_split(whirling.select(["torque"]))
     assert "force on the inner ring" in alone.figure.get_suptitle()
 
 
 def test_old_names_of_pictures(whirling: Result, tmp_path: Path) -> None:
     with pytest.warns(DeprecationWarning, match="orbit_radius"):
-        plotting.whirl_radius(whirling)
-    assert [path.stem for path in plotting.all(whirling, tmp_path, only=["whirl_radius"])] == ["orbit_radius"]
+        plot.whirl_radius(whirling)
+    assert [path.stem for path in plot.all(whirling, tmp_path, only=["whirl_radius"])] == ["orbit_radius"]
 
 
 def test_spectrum_peaks_at_the_cage_frequency(whirling: Result) -> None:
-    ax = plotting.spectrum(whirling)
+    ax = plot.spectrum(whirling)
     order, density = ax.lines[0].get_data()
     assert order[np.argmax(density)] == pytest.approx(1.0, abs=0.1)
 
 
 def test_pocket_forces_have_a_panel_a_face(whirling: Result) -> None:
-    figure = plotting.pocket_forces(whirling, last=4.0)
+    figure = plot.pocket_forces(whirling, last=4.0)
     panels = [ax for ax in figure.axes if ax.get_ylabel() == "pocket"]
     assert [ax.get_title(loc="left") for ax in panels] == ["leading bar", "trailing bar", "large end wall"]
     shown = panels[0].collections[0].get_array()
@@ -171,50 +167,50 @@ def test_pocket_forces_have_a_panel_a_face(whirling: Result) -> None:
     np.testing.assert_allclose(shown.reshape(12, -1).max(axis=1), last.pocket_force[:, :, 0].max(axis=0), rtol=0.02)
     assert np.ma.count_masked(shown) > 0.5 * shown.size
     assert "(N)" in figure.axes[-1].get_ylabel()
-    few = plotting.pocket_forces(whirling, pockets=[0, 6], last=None)
+    few = plot.pocket_forces(whirling, pockets=[0, 6], last=None)
     assert [text.get_text() for text in few.axes[0].get_yticklabels()] == ["1", "7"]
     with pytest.raises(InputError, match="pockets"):
-        plotting.pocket_forces(whirling, pockets=[12])
+        plot.pocket_forces(whirling, pockets=[12])
     with pytest.raises(InputError, match="rollers"):
-        plotting.spacing_angles(whirling, rollers=[12])
+        plot.spacing_angles(whirling, rollers=[12])
 
 
 def test_whirl_map_marks_every_run(build: Callable[..., tuple[Any, Result]]) -> None:
     runs = [build(radius=radius, n=2001)[1] for radius in (0.1e-3, 0.225e-3)]
-    ax = plotting.whirl_map(runs)
+    ax = plot.whirl_map(runs)
     np.testing.assert_allclose(ax.collections[0].get_array(), [0.4, 0.9], rtol=1e-2)
     assert "orbit" in ax.figure.axes[1].get_ylabel()
     np.testing.assert_allclose(ax.collections[0].get_offsets(), [[3000.0, 4.93]] * 2)
 
 
 def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
-    drawn = [name for name in plotting.PICTURES if name not in NEED_A_SCENE]
-    files = plotting.all(whirling, tmp_path / "new" / "pictures", only=drawn)
+    drawn = [name for name in plot.PICTURES if name not in NEED_A_SCENE]
+    files = plot.all(whirling, tmp_path / "new" / "pictures", only=drawn)
     assert [file.stem for file in files] == drawn
     for file in files:
         with Image.open(file) as image:
             assert image.width > 800
             assert len(image.convert("L").getcolors(256) or []) > 2
     assert not plt.get_fignums()
-    some = plotting.all(whirling.select(["torque", "cage"]), tmp_path / "some")
+    some = plot.all(whirling.select(["torque", "cage"]), tmp_path / "some")
     cage_and_torque = {"cage_locus", "axial_motion", "tilt", "spectrum", "poincare", "torque_split", "torque_sources"}
     assert {file.stem for file in some} == cage_and_torque
     whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers"}))
     assert not whirling.has_cage
-    bare = plotting.all(whirling.select(["cage", "rollers", "pocket"]), tmp_path / "bare")
+    bare = plot.all(whirling.select(["cage", "rollers", "pocket"]), tmp_path / "bare")
     assert [file.stem for file in bare] == ["spacing_angles", "attitude"]
     assert whirling.summary()["orbit_radius_over_cpr"] is None
-    assert plotting.conditions(whirling) == "stub: 3000 rpm, $F_a$ 4930 N"
+    assert plot.conditions(whirling) == "stub: 3000 rpm, $F_a$ 4930 N"
 
 
 def test_all_refuses_unknown_pictures_and_bad_folders(tmp_path: Path, whirling: Result) -> None:
     with pytest.raises(InputError, match="did you mean 'tilt'"):
-        plotting.all(whirling, tmp_path, only=["tilts"])
+        plot.all(whirling, tmp_path, only=["tilts"])
     (tmp_path / "file").write_text("")
     with pytest.raises(FileError, match="folder"):
-        plotting.all(whirling, tmp_path / "file" / "below", only=["tilt"])
+        plot.all(whirling, tmp_path / "file" / "below", only=["tilt"])
     with pytest.raises(FileError, match="cannot be written"):
-        plotting.save(plotting.tilt(whirling), tmp_path / "missing" / "tilt.png")
+        plot.save(plot.tilt(whirling), tmp_path / "missing" / "tilt.png")
     assert not plt.get_fignums()
 
 

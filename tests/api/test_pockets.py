@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from trbdyn import _core, cases, flatten, pocket_shapes
-from trbdyn.bearing import Bearing
+from trbdyn import _core, cases, pocket_shapes
 from trbdyn.errors import InputError
-from trbdyn.pocket import Face, OtherPocket, Pocket
+from trbdyn.model import flatten
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.pocket import Face, OtherPocket, Pocket
 
 
 @pytest.fixture(scope="module")

@@ -17,10 +17,10 @@ import h5py
 import numpy as np
 import pytest
 
-from trbdyn import fields as field_table
 from trbdyn.errors import FileError, InputError
-from trbdyn.result_file import ResultWriter
-from trbdyn.results import Result, load
+from trbdyn.results import fields as field_table
+from trbdyn.results.result import Result, load
+from trbdyn.results.result_file import ResultWriter
 
 
 def write(path: Path, run: Any, scene: Any, *, chunk: int = 500, finish: bool = True, **options: Any) -> Path:
@@ -121,7 +121,7 @@ def test_the_orbit_is_not_the_distance_from_the_axis(build: Callable[..., tuple[
 
 
 def _summary_text(result: Result) -> str:
-    from trbdyn import summary
+    from trbdyn.results import summary
 
     return summary.table(result.summary())
 
@@ -159,7 +159,7 @@ def test_torques_that_differ_are_explained(whirling: Result) -> None:
     effects = vars(whirling.scene.effects)
     whirling.scene.effects = SimpleNamespace(**(effects | {"rolling_pressure_force": True}))
     assert "speed up or slow down" in whirling.summary()["torque_note"]
-    from trbdyn.summary import torque_note
+    from trbdyn.results.summary import torque_note
 
     assert torque_note(whirling, 1.25, 1.2501) is None
 
@@ -245,9 +245,9 @@ def test_a_file_describes_itself(tmp_path: Path, synthetic: Any, stub_scene: Any
 
 
 def test_a_real_scene_survives_the_file(tmp_path: Path, synthetic: Any) -> None:
-    from trbdyn.cases import scene_30310
-    from trbdyn.pocket_shapes import drafted_pocket
-    from trbdyn.scene import Start
+    from trbdyn.model.cases import scene_30310
+    from trbdyn.model.pocket_shapes import drafted_pocket
+    from trbdyn.model.scene import Start
 
     scene = scene_30310(start=Start.state(np.linspace(0.0, 1.0, 20000) / 3.0, time=0.25))
     cage = scene.bearing.cage.replace(pocket=drafted_pocket(scene.bearing, 30.0))
@@ -274,7 +274,7 @@ spec = importlib.util.spec_from_file_location("synthetic_runs", sys.argv[2] + "/
 module = importlib.util.module_from_spec(spec)
 sys.modules["synthetic_runs"] = module
 spec.loader.exec_module(module)
-from trbdyn import result_file
+from trbdyn.results import result_file
 result_file.FLUSH_SECONDS = 0.0
 run = module.make_run(n=2001)
 writer = result_file.ResultWriter(sys.argv[1], scene=module.StubScene(), layout=run.layout, fields=run.fields)
@@ -459,7 +459,7 @@ def test_files_that_cannot_be_made(tmp_path: Path, synthetic: Any, stub_scene: A
 
 
 def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
-    from trbdyn import summary
+    from trbdyn.results import summary
 
     values = whirling.summary()
     assert values["axis_distance_over_cpr"] == pytest.approx(0.9)

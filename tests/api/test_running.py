@@ -10,9 +10,9 @@ import pytest
 import tqdm
 
 import trbdyn as trb
-from trbdyn import checkpoint
-from trbdyn.cases import scene_30310
 from trbdyn.errors import FileError, InputError, StepError
+from trbdyn.model.cases import scene_30310
+from trbdyn.run import checkpoint
 
 
 def test_a_copy_made_in_a_callback_goes_its_own_way() -> None:

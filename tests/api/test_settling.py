@@ -10,7 +10,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import observables as obs
-from trbdyn.cases import scene_30310
+from trbdyn.model.cases import scene_30310
 
 CAGE = 130.0  # rad/s
 NOISE = np.random.default_rng(5)
@@ -133,7 +133,7 @@ def test_creep_time_of_any_scene() -> None:
     """A number where the law holds, nan elsewhere; never a warning or an error."""
     import warnings
 
-    from trbdyn.paper.creep import creep_time
+    from trbdyn.statics.creep import creep_time
 
     known = [
         scene_30310(),

@@ -15,10 +15,10 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import FileError, History, InputError, Result, Simulation, StepError
-from trbdyn import fields as field_table
-from trbdyn import peaks as peak_table
-from trbdyn.cases import scene_30310
-from trbdyn.run_options import RunOptions
+from trbdyn.model.cases import scene_30310
+from trbdyn.results import fields as field_table
+from trbdyn.results import peaks as peak_table
+from trbdyn.run.options import RunOptions
 
 
 def simulate(**options: Any) -> Simulation:
@@ -49,6 +49,7 @@ def test_run_returns_everything(short: Result) -> None:
     ]
     for name in ("steps", "rhs_evaluations", "jacobian_evaluations", "wall_s", "wall_s_per_revolution"):
         assert short.stats[name] > 0, name
+    assert 0.0 < short.stats["smallest_step"] < 0.1 * 2e-3 / short.stats["steps"]  # a run begins with tiny steps
     assert short.stats["bearing_time_s"] == pytest.approx(2e-3)
     assert short.stats["revolutions"] == pytest.approx(0.1)
     assert short.meta["settings"]["integrator"] == "bdf"
@@ -218,7 +219,7 @@ def test_progress_bar(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.fixture
 def any_gravity(monkeypatch: pytest.MonkeyPatch) -> None:
     """Takes the limit of gravity away, so that a scene can be made which no step survives."""
-    monkeypatch.setattr("trbdyn.scene.MAX_GRAVITY", math.inf)
+    monkeypatch.setattr("trbdyn.model.scene.MAX_GRAVITY", math.inf)
 
 
 def failing(**options: Any) -> Simulation:

@@ -8,16 +8,16 @@ from pathlib import Path
 import pytest
 
 from trbdyn import cases
-from trbdyn.bearing import Bearing
-from trbdyn.case_text import case_text
-from trbdyn.effects import Effects
 from trbdyn.errors import FileError, InputError
-from trbdyn.lubricants import vg100
-from trbdyn.motion import History
-from trbdyn.pocket_shapes import drafted_pocket, relieved_pocket
-from trbdyn.run_options import RunOptions
-from trbdyn.scene import Scene, Start
-from trbdyn.toml_case import case_from_dict, find_case, load_case, shipped_cases
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.effects import Effects
+from trbdyn.model.lubricants import vg100
+from trbdyn.model.motion import History
+from trbdyn.model.pocket_shapes import drafted_pocket, relieved_pocket
+from trbdyn.model.scene import Scene, Start
+from trbdyn.run.case_text import case_text
+from trbdyn.run.options import RunOptions
+from trbdyn.run.toml_case import case_from_dict, find_case, load_case, shipped_cases
 
 BASE = '[bearing]\ncase = "30310"\n{bearing}\n[scene]\nspeed_rpm = 3000\naxial_load = 4930\n'
 
@@ -151,7 +151,7 @@ class TestMistakes:
             ),
             ("n_roller = 3", "", "bearing.n_roller = 3 : unknown name; did you mean 'n_rollers'? allowed: cage, case,"),
             ("n_rollers = 30", "", "bearing.n_rollers = 30 : must be <= 18"),
-            ("roller.diameter = -1e-3", "", "bearing.roller.diameter = -0.001 : must be > 0 (m)"),
+            ("roller.diameter = -1e-3", "", "bearing.roller.diameter = -0.001 : must be >= 0.0001 (m)"),
             ("cage = 3", "", "bearing.cage = 3 : must be a table of named values"),
             ("cage.pocket = 3", "", "bearing.cage.pocket = 3 : must be a table of named values"),
             (

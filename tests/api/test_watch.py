@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
-from trbdyn.cases import scene_30310
-from trbdyn.watch import STOP, WARN, WINDOWS, Watch
+from trbdyn.model.cases import scene_30310
+from trbdyn.run.watch import STOP, WARN, WINDOWS, Watch
 
 LOOSE: dict[str, Any] = {
     "rtol": 0.1,

@@ -10,9 +10,9 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import Effects, InputError, Simulation
-from trbdyn.cases import rig_30310, scene_30310
 from trbdyn.cli import main
-from trbdyn.plausible import UnusualInput
+from trbdyn.model.cases import rig_30310, scene_30310
+from trbdyn.statics.plausible import UnusualInput
 
 
 def short(sim: Simulation, **options: Any) -> trb.Result:

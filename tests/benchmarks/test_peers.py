@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from trbdyn import Effects, Simulation, Start
-from trbdyn.cases import scene_30310, scene_32216
+from trbdyn.model.cases import scene_30310, scene_32216
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 pytestmark = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="the benchmarks are not part of a source distribution")

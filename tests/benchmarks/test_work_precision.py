@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from trbdyn import InputError, Simulation, Start, cases
-from trbdyn.bearing import Scatter
-from trbdyn.effects import Effects
-from trbdyn.estimate import _case, estimate, table
-from trbdyn.run_options import ACCURACY
+from trbdyn.model.bearing import Scatter
+from trbdyn.model.effects import Effects
+from trbdyn.run.estimate import _case, estimate, table
+from trbdyn.run.options import ACCURACY
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 PRESET_FIGURES = {"wall_s_per_revolution", "real_time_factor", "error_cage_over_cpr", "error_cage_over_cpr_worst"}
@@ -135,7 +135,7 @@ def test_makes_the_table_of_estimates(
 ) -> None:
     import importlib
 
-    module = importlib.import_module("trbdyn.estimate")
+    module = importlib.import_module("trbdyn.run.estimate")
     monkeypatch.setattr(module, "TABLE", made_table)
     module.table.cache_clear()
     try:

@@ -10,8 +10,8 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import Effects, Result, Simulation
-from trbdyn import peaks as peak_table
-from trbdyn.cases import scene_30310
+from trbdyn.model.cases import scene_30310
+from trbdyn.results import peaks as peak_table
 
 SPAN = 0.06
 EVERY = [1e-3, 2e-4, 1e-4, 2e-5]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import Bearing, Effects
-from trbdyn.bearing import Profile
+from trbdyn.model.bearing import Profile
 
 Array = NDArray[np.float64]
 TILT = 5e-5

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import Effects, Simulation
-from trbdyn.run_options import ACCURACY
+from trbdyn.run.options import ACCURACY
 
 WINDOW = 3e-3
 PLAY = 0.25e-3

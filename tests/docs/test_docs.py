@@ -12,7 +12,7 @@ from pathlib import Path
 import matplotlib
 import pytest
 
-from trbdyn.cli import _parser
+from trbdyn.cli import make_parser
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -23,15 +23,15 @@ CELL = re.compile(r"^```\{code-cell\}[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTAL
 SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#]+)[^)]*\)")
 EXAMPLES = (
-    "trbdyn.catalogue",
-    "trbdyn.bearing",
-    "trbdyn.what_matters",
+    "trbdyn.model.catalogue",
+    "trbdyn.model.bearing",
+    "trbdyn.study.what_matters",
     "trbdyn.viewer",
     "trbdyn.viewer.gltf",
     "trbdyn.reporting",
-    "trbdyn.plotting.around",
-    "trbdyn.plotting.whirling",
-    "trbdyn.plotting.drawing",
+    "trbdyn.plot.around",
+    "trbdyn.plot.whirling",
+    "trbdyn.plot.drawing",
 )
 
 
@@ -53,7 +53,7 @@ def test_code_of_the_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_commands_exist() -> None:
-    parser, makefile, seen = _parser(), (ROOT / "Makefile").read_text(encoding="utf-8"), 0
+    parser, makefile, seen = make_parser(), (ROOT / "Makefile").read_text(encoding="utf-8"), 0
     for page in PAGES:
         for block in SHELL.findall(page.read_text(encoding="utf-8")):
             for line in block.splitlines():

@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 import trbdyn as trb
-from trbdyn import checkpoint
-from trbdyn.cases import scene_30310
 from trbdyn.errors import FileError, InputError, LoadError, StepError
-from trbdyn.toml_case import case_from_dict, find_case, load_case, shipped_cases
+from trbdyn.model.cases import scene_30310
+from trbdyn.run import checkpoint
+from trbdyn.run.toml_case import case_from_dict, find_case, load_case, shipped_cases
 
 COMMON = settings(
     max_examples=150,

@@ -5,9 +5,12 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import io
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -18,9 +21,16 @@ from matplotlib.animation import FuncAnimation
 from matplotlib.figure import Figure
 
 import trbdyn as trb
-from trbdyn import animation, plotting, running
-from trbdyn.cases import scene_30310
+from trbdyn import animation, plot
 from trbdyn.cli import FAULT, main
+from trbdyn.model.cases import scene_30310
+from trbdyn.run import running
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+paper: ModuleType | None = None
+if BENCHMARKS.is_dir():  # a source distribution has none
+    sys.path.insert(0, str(BENCHMARKS))
+    paper = importlib.import_module("paper.command")
 
 ODD = [
     "", " ", ".", "..", "/", "-", "--", "\n", "a\nb", "nul\0", "\ud800", "x" * 300, "保" * 100, "/dev/null", "/proc/self/mem",
@@ -78,7 +88,6 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A folder with all kinds of files, where every run ends at its first look at the callback."""
     import os
 
-    from trbdyn.paper import command as paper
     from trbdyn.study import runner
 
     folder = tmp_path_factory.mktemp("command line")
@@ -109,11 +118,12 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     patch.setattr(running, "CHUNK_STEPS", 3)
     patch.setattr(runner, "execute", lambda work, tasks, executor, workers: execute(work, tasks, "serial", workers))
     # drawing has tests of its own, and takes seconds each time
-    patch.setattr(plotting, "PICTURES", {"tilt": (lambda result: plt.figure(), ("cage",))})
+    patch.setattr(plot, "PICTURES", {"tilt": (lambda result: plt.figure(), ("cage",))})
     patch.setattr(Figure, "savefig", lambda self, path, **how: Path(path).write_bytes(b""))
     patch.setattr(animation, "animate", lambda result: FuncAnimation(plt.figure(), lambda frame: [], frames=1))
     patch.setattr(FuncAnimation, "save", lambda self, path, **how: Path(path).write_bytes(b""))
-    patch.setattr(paper, "run_points", lambda *rest, **named: {})
+    if paper is not None:
+        patch.setattr(paper, "run_points", lambda *rest, **named: {})
     yield folder
     patch.undo()
 
@@ -127,7 +137,7 @@ def call(arguments: list[str]) -> tuple[int, str]:
     said = io.StringIO()
     with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
         try:
-            code = main(arguments)
+            code = paper.main(arguments[1:]) if paper and arguments[:1] == ["paper"] else main(arguments)
         except SystemExit as ended:
             code = ended.code if isinstance(ended.code, int) else 99
     return code, said.getvalue()
@@ -139,7 +149,7 @@ def check(arguments: list[str]) -> None:
     assert code in (0, 1, 2), (code, said)
     assert code != FAULT
     lines = [line for line in said.split("\n") if line and not line.startswith(("\r", " ")) and "%|" not in line]
-    assert all(line.startswith("trbdyn") for line in lines), said
+    assert all(line.startswith(("trbdyn", "python benchmarks/paper")) for line in lines), said
     assert code == 0 or lines
     if code == 2:
         assert 1 <= len(lines) <= 8, said

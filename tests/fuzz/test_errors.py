@@ -20,12 +20,12 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import plotting, study
-from trbdyn.cases import scene_30310
+from trbdyn import plot, study
 from trbdyn.errors import FileError, InputError, TrbError
-from trbdyn.run_options import RunOptions
+from trbdyn.model.cases import scene_30310
+from trbdyn.run.options import RunOptions
+from trbdyn.run.toml_case import case_from_dict, load_case
 from trbdyn.study.index import Index, read_lines
-from trbdyn.toml_case import case_from_dict, load_case
 
 HUGE = 10**400
 CSRC = Path(__file__).parents[2] / "csrc"
@@ -298,14 +298,14 @@ def test_datasets_that_claim_more_than_the_file_holds(written: Path, tmp_path: P
 
 def test_a_packed_file_of_zeros_is_no_damage(tmp_path: Path) -> None:
     """What is compressed may be much smaller than what it holds."""
-    from trbdyn.result_file import ResultWriter
+    from trbdyn.results.result_file import ResultWriter
 
     scene, rows = scene_30310(), 200_000
     layout = [("time", 0, ()), ("cage_angular_velocity", 1, (3,)), ("roller_position", 4, (17, 3))]
     records = np.zeros((rows, 55))
     records[:, 0] = np.arange(rows)
     path = tmp_path / "zeros.h5"
-    from trbdyn import fields
+    from trbdyn.results import fields
 
     with ResultWriter(path, scene=scene, layout=layout, fields=fields.table(), compression="gzip") as writer:
         writer.append(records)
@@ -324,11 +324,11 @@ def test_the_shortest_runs_have_a_summary_and_pictures(tmp_path: Path, records: 
     assert values["torque"] > 0.0
     assert values["settled"] is False
     assert values["window_end"] > values["window_start"]
-    drawn = {path.stem for path in plotting.all(result, tmp_path)}
-    assert set(plotting.PICTURES) - drawn == ({"spectrum"} if len(result) < 8 else set())
+    drawn = {path.stem for path in plot.all(result, tmp_path)}
+    assert set(plot.PICTURES) - drawn == ({"spectrum"} if len(result) < 8 else set())
     if len(result) < 8:
         with pytest.raises(InputError, match="at least 8 records"):
-            plotting.all(result, tmp_path, ["spectrum"])
+            plot.all(result, tmp_path, ["spectrum"])
 
 
 def test_a_study_of_short_runs_is_done(tmp_path: Path) -> None:
@@ -342,12 +342,12 @@ def test_pictures_need_no_later_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_
     from matplotlib.axes import Axes
 
     result = trb.Simulation(scene_30310()).run(duration=1e-4, save_every=1e-5)
-    picture = plotting.tilt(result)
+    picture = plot.tilt(result)
     monkeypatch.setattr(Axes, "get_figure", lambda self: self.figure)
     with pytest.raises(TypeError):
         picture.get_figure(root=True)
     monkeypatch.setattr(picture.figure, "savefig", lambda path, dpi: Path(path).touch())
-    assert plotting.save(picture, tmp_path / "tilt.png").is_file()
+    assert plot.save(picture, tmp_path / "tilt.png").is_file()
 
 
 @pytest.mark.parametrize(

@@ -19,12 +19,12 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import checkpoint
-from trbdyn.cases import scene_30310
-from trbdyn.checkpoint import checkpoint_path, previous_path
 from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError, TrbError
-from trbdyn.hdf5_marks import take_lock
+from trbdyn.model.cases import scene_30310
+from trbdyn.results.hdf5_marks import take_lock
+from trbdyn.run import checkpoint
+from trbdyn.run.checkpoint import checkpoint_path, previous_path
 
 SPAN = {"duration": 4e-3, "save_every": 1e-5}
 FOREIGN = b"days of work of somebody else\n"
@@ -90,7 +90,7 @@ def test_the_command_line_replaces_only_if_asked(tmp_path: Path, capsys: pytest.
 
 
 def test_a_file_that_appears_while_a_run_is_prepared_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from trbdyn.result_file import ResultWriter
+    from trbdyn.results.result_file import ResultWriter
 
     path, header = tmp_path / "run.h5", ResultWriter._write_header
 
@@ -304,7 +304,7 @@ def test_a_result_replaced_during_the_run_is_kept_beside(tmp_path: Path, by: str
 def test_a_result_replaced_after_the_last_write_is_not_read_as_success(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from trbdyn.result_file import ResultWriter
+    from trbdyn.results.result_file import ResultWriter
 
     path, other = tmp_path / "run.h5", tmp_path / "other.h5"
     run(other, duration=1e-4)
@@ -322,7 +322,7 @@ def test_a_result_replaced_after_the_last_write_is_not_read_as_success(
 CHILD = """
 import os, sys, time
 import trbdyn as trb
-from trbdyn import result_file
+from trbdyn.results import result_file
 from trbdyn.cases import scene_30310
 
 result_file.FLUSH_SECONDS = 0.0

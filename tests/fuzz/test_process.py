@@ -21,8 +21,8 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.cases import scene_30310
-from trbdyn.checkpoint import checkpoint_path
+from trbdyn.model.cases import scene_30310
+from trbdyn.run.checkpoint import checkpoint_path
 
 
 def scene(number: int) -> trb.Scene:

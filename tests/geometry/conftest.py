@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from trbdyn import Simulation, cases
-from trbdyn.bearing import Bearing, Profile
-from trbdyn.geometry import Geometry
+from trbdyn.model.bearing import Bearing, Profile
+from trbdyn.model.geometry import Geometry
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from trbdyn import Simulation, cases
-from trbdyn.bearing import Bearing
-from trbdyn.effects import Effects
 from trbdyn.errors import InputError
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.effects import Effects
 
 TABLE = [
     ("roller_half_angle", math.degrees(1.0), 1.8707, 4),

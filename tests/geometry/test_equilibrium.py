@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, fsolve
 
 from trbdyn import Effects, LoadError, Scene, Simulation, cases
-from trbdyn.bearing import Bearing
 from trbdyn.errors import InputError
+from trbdyn.model.bearing import Bearing
 
 CUP = math.radians(12 + 57 / 60 + 10 / 3600)
 EVEN = 2 * np.pi * np.arange(12) / 12

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from trbdyn import Effects, Simulation, cases
-from trbdyn.bearing import Bearing
+from trbdyn.model.bearing import Bearing
 
 Array = NDArray[np.float64]
 SKEW, TILT = 5e-3, 2e-4

@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from trbdyn import Effects, Simulation, cases, pocket_shapes
-from trbdyn.bearing import Bearing
-from trbdyn.pocket import Face
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.pocket import Face
 
 Array = NDArray[np.float64]
 BARS, LARGE_END, SMALL_END = slice(0, 2), 2, 3

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from trbdyn import cases
-from trbdyn.geometry import Geometry
+from trbdyn.model.geometry import Geometry
 
 
 @pytest.fixture(scope="session")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from trbdyn import cases, laws
-from trbdyn.geometry import Geometry
-from trbdyn.lubricants import vg100
+from trbdyn.model.geometry import Geometry
+from trbdyn.model.lubricants import vg100
 
 DICKE = (327.79, 2.9862, 4.419e-3, 3.0115e-4)
 BOUNDARY = (0.1, 22.28, 181.46)

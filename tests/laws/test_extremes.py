@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from trbdyn import Effects, InputError, Scene, Simulation, cases, laws
-from trbdyn.lubricants import Dicke, Lubricant, vg100
+from trbdyn.model.lubricants import Dicke, Lubricant, vg100
 
 
 def assert_finite(scene: Scene) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from trbdyn import Effects, Scene, Simulation, cases, laws
-from trbdyn.lubricants import vg100
+from trbdyn.model.lubricants import vg100
 
 STARVED = {"starvation_factor": 0.1}
 """Thin films, so that boundary friction has its share."""

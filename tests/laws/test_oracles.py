@@ -11,7 +11,7 @@ from scipy.optimize import fsolve
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc, elliprd, elliprf
 
 from trbdyn import Effects, Simulation, cases, laws
-from trbdyn.bearing import Profile
+from trbdyn.model.bearing import Profile
 
 MODULUS = 226.37e9
 

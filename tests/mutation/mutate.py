@@ -28,7 +28,12 @@ JUDGED = Path(__file__).with_name("judged.toml")
 LONGEST = 600.0
 """Wall time for the tests of a fault (s). A fault that outlives them is not noticed."""
 
-PLANTED = ("trbdyn/cli.py", 'prog="trbdyn"', 'prog="trbdyn!"', "api/test_cli.py::test_the_module_runs_as_a_program")
+PLANTED = (
+    "trbdyn/cli/__init__.py",
+    'prog="trbdyn"',
+    'prog="trbdyn!"',
+    "api/test_cli.py::test_the_module_runs_as_a_program",
+)
 """A fault that only a process can meet that a test starts: file, text, other text, the test that must notice it."""
 
 Row = dict[str, Any]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trbdyn.observables import whirl_amplitude
-from trbdyn.paper.growth import FULL, growth_of
+from trbdyn.results.observables import whirl_amplitude, whirl_growth
+from trbdyn.results.observables.growth import FULL
 
 TURNS = np.arange(400) / 20.0
 
@@ -15,7 +15,7 @@ TURNS = np.arange(400) / 20.0
 @pytest.mark.parametrize("rate", [0.05, 0.15, -0.1])
 def test_rate_of_a_noisy_exponential(rate: float, seed: int) -> None:
     noise = 1.0 + 0.1 * np.random.default_rng(seed).normal(size=TURNS.size)
-    found = growth_of(TURNS, 0.02 * np.exp(rate * TURNS) * noise)
+    found = whirl_growth(TURNS, 0.02 * np.exp(rate * TURNS) * noise)
     assert found.rate == pytest.approx(rate, abs=5.0 * max(found.rate_error, 1e-4))
     assert found.rate_error < 0.02
     assert found.growing == (rate > 0.0)
@@ -25,8 +25,8 @@ def test_rate_of_a_noisy_exponential(rate: float, seed: int) -> None:
 
 def test_a_whirl_that_stands_does_not_grow() -> None:
     noise = 0.05 * np.random.default_rng(0).normal(size=TURNS.size)
-    assert not growth_of(TURNS, 0.5 * np.exp(noise)).growing
-    assert np.isnan(growth_of(TURNS[:10], np.full(10, 0.5)).rate)
+    assert not whirl_growth(TURNS, 0.5 * np.exp(noise)).growing
+    assert np.isnan(whirl_growth(TURNS[:10], np.full(10, 0.5)).rate)
 
 
 def test_amplitude_counts_only_what_turns_with_the_cage() -> None:

@@ -8,9 +8,10 @@ Amplitudes over Cpr: 3000 rpm, 4930 N: 0.744, 0.762, 0.760, 0.765; 2000 rpm, 493
 
 from __future__ import annotations
 
+from paper.points import Condition, Point
+
 import trbdyn as trb
-from trbdyn.observables import whirl_amplitude
-from trbdyn.paper.points import Condition, Point
+from trbdyn.results.observables import whirl_amplitude
 
 
 def amplitude(condition: Condition, duration: float) -> float:

@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from paper.point_numbers import read_run
+from paper.points import Condition, Point, StartKind
+from paper.settle import Plan, PointTask, run_point
 
-from trbdyn.paper.movable import Pockets
-from trbdyn.paper.numbers import read_run
-from trbdyn.paper.points import Condition, Point, StartKind
-from trbdyn.paper.settle import Plan, PointTask, run_point
+from trbdyn.run.movable import Pockets
 
 pytestmark = pytest.mark.slow
 

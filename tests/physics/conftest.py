@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 import trbdyn as trb
 from trbdyn import Bearing, Effects, Scene, Simulation
-from trbdyn.pocket import Pocket
+from trbdyn.model.pocket import Pocket
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from trbdyn import Effects, History, Result
-from trbdyn.scene import Start
+from trbdyn.model.scene import Start
 
 LOSSES = (
     "traction_outer",

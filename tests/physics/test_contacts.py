@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import Bearing, Effects, History, Simulation
-from trbdyn.bearing import Profile
+from trbdyn.model.bearing import Profile
 
 Array = NDArray[np.float64]
 STILL = Effects.frictionless().replace(gravity=False, back_rib=False, front_rib=False)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.paper.creep import creep, growth_per_turn
+from trbdyn.statics.creep import creep, growth_per_turn
 
 GAUSS = trb.Effects.paper().replace(quadrature="gauss", n_slices=8)
 RIG = {"n_rollers": 12, "lean": math.radians(26.39), "play_ratio": 0.48, "inertia": 1.149}

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.bearing import Profile, Scatter
+from trbdyn.model.bearing import Profile, Scatter
 
 STATES = 400
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from trbdyn import Effects, InputError
-from trbdyn.scene import Start
+from trbdyn.model.scene import Start
 
 PAPER = Effects.paper()
 FILMS = ("film_nodes", "thermal_nodes", "traction_nodes", "rolling_nodes")

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 import trbdyn as trb
 from trbdyn import Effects, Simulation
-from trbdyn.pocket import Face
+from trbdyn.model.pocket import Face
 
 Array = NDArray[np.float64]
 FREE = Effects.frictionless().replace(gravity=False)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.cases import rig_30310
+from trbdyn.model.cases import rig_30310
 
 START = 1e-4
 """Axial place of the cage from which gaps are counted (m)."""

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import Effects, Scene, Simulation
-from trbdyn.bearing import Profile
-from trbdyn.flatten import scene_entries
+from trbdyn.model.bearing import Profile
+from trbdyn.model.flatten import scene_entries
 
 Array = NDArray[np.float64]
 BASE = Effects.standard().replace(damping="off")

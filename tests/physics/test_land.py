@@ -15,11 +15,11 @@ from scipy.integrate import quad
 
 import trbdyn as trb
 from trbdyn import Effects, Simulation
-from trbdyn.effects import Friction
 from trbdyn.errors import InputError
-from trbdyn.scene import Start
-from trbdyn.summary import table
-from trbdyn.toml_case import case_from_dict
+from trbdyn.model.effects import Friction
+from trbdyn.model.scene import Start
+from trbdyn.results.summary import table
+from trbdyn.run.toml_case import case_from_dict
 
 Array = NDArray[np.float64]
 

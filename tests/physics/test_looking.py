@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from trbdyn import Effects, InputError, laws
-from trbdyn import fields as field_table
+from trbdyn.results import fields as field_table
 
 LANES = (
     "interference",

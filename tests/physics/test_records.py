@@ -11,8 +11,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from trbdyn import Effects, Simulation, fields
-from trbdyn.effects import Friction
+from trbdyn import Effects, Simulation
+from trbdyn.model.effects import Friction
+from trbdyn.results import fields
 
 Array = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ from scipy.interpolate import CubicHermiteSpline
 
 import trbdyn as trb
 from trbdyn import Effects, History, InputError, LoadError, RotatingLoad, Simulation, Start
-from trbdyn.cases import scene_30310
-from trbdyn.ring_path import PATH_TOLERANCE
-from trbdyn.start import EquilibriumSolver, least_axial_load, nominal_angles
+from trbdyn.model.cases import scene_30310
+from trbdyn.statics.equilibrium import EquilibriumSolver, least_axial_load, nominal_angles
+from trbdyn.statics.ring_path import PATH_TOLERANCE
 
 TURNS = {
     "load turned eight times": (

@@ -10,8 +10,8 @@ from collections.abc import Callable
 import pytest
 
 import trbdyn as trb
-from trbdyn.cases import scene_30310, scene_32216
-from trbdyn.lubricants import vg100
+from trbdyn.model.cases import scene_30310, scene_32216
+from trbdyn.model.lubricants import vg100
 
 PRESETS = ("fast", "standard", "reference")
 MOST_STEPS = 60_000

@@ -44,3 +44,14 @@ def test_a_whirling_cage_begins_at_the_eccentricity_that_was_asked_for(eccentric
     pressed = float(first["pocket_force"].max()) > 300.0
     assert pressed == any("start.eccentricity" in text for text in sim.warnings)
     assert pressed == (eccentricity == 1.0 and axial_load == 4930.0)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.013])
+def test_the_angle_of_a_saved_state_counts_from_zero(time: float) -> None:
+    """At constant speed: angles of the shaft belong to the time of the state, unless another angle is given with it."""
+    scene = cases.scene_30310(3000.0)
+    vector = trb.Simulation(scene).state.vector
+    found = trb.Simulation(scene.replace(start=trb.Start.state(vector, time=time))).record()
+    assert float(found["shaft_angle"]) == pytest.approx(100.0 * np.pi * time, abs=1e-12)
+    given = trb.Simulation(scene.replace(start=trb.Start.state(vector, time=time, shaft_angle=0.5))).record()
+    assert float(given["shaft_angle"]) == pytest.approx(0.5, abs=1e-12)

@@ -59,11 +59,11 @@ WHEEL = re.compile(r"pip install trbdyn-([\d.]+)-cp311-abi3-(manylinux_\d+_\d+)_
 MINUTES = {
     ".venv/bin/python benchmarks/work_precision.py",
     ".venv/bin/python benchmarks/peers.py --quick",
-    "python -m trbdyn paper",
+    "python benchmarks/paper",
 }
 SHORTER = {  # options that the page or the command itself names
     ".venv/bin/python benchmarks/work_precision.py": " --quick",
-    "python -m trbdyn paper": " --help",
+    "python benchmarks/paper": " --help",
 }
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
 PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"

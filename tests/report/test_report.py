@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import summary
 from trbdyn.cli import main
-from trbdyn.plotting import PICTURES
+from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
 from trbdyn.reporting.inputs import field_texts, rows
 from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict
+from trbdyn.results import summary
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +87,9 @@ def test_the_verdict_follows_the_run(result: trb.Result) -> None:
     assert said(cage_motion="circling")["The cage whirls"] == "care"
     assert said(cage_motion="stable")["The cage does not whirl"] == "good"
     assert said(cage_motion="unstable")["The cage moves without order"] == "bad"
-    assert said(energy_closure=2e-3)["The energy does not add up"] == "bad"
+    assert said(energy_closure=9e-4)["The energy adds up"] == "good"
+    assert said(energy_closure=2e-3)["The energy adds up, not closely"] == "care"
+    assert said(energy_closure=2e-2)["The energy does not add up"] == "bad"
     assert said(film_parameter_rib=0.5)["Films are too thin"] == "bad"
     assert said(film_parameter_rib=2.0)["Films carry, with some contact"] == "care"
     assert said(inner_pressure_max=5e9)["Pressures"] == "bad"

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
-from trbdyn.cases import scene_30310
+from trbdyn.model.cases import scene_30310
 
 SCHEDULE: dict[str, Any] = {"duration": 0.12, "save_every": 1e-4, "checkpoint_every": 4e-3}
 
 RUN = """
 import sys
 import trbdyn as trb
-from trbdyn import result_file
+from trbdyn.results import result_file
 from trbdyn.cases import scene_30310
 
 result_file.FLUSH_SECONDS = 0.02
@@ -29,7 +29,7 @@ trb.Simulation(scene).run(duration=0.12, save_every=1e-4, checkpoint_every=4e-3,
 RESUME = """
 import sys
 import trbdyn as trb
-from trbdyn import result_file
+from trbdyn.results import result_file
 
 result_file.FLUSH_SECONDS = 0.02
 print("ready", flush=True)

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import _core, checkpoint
-from trbdyn.cases import scene_30310
-from trbdyn.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
+from trbdyn import _core
 from trbdyn.errors import FileError, InputError
+from trbdyn.model.cases import scene_30310
+from trbdyn.run import checkpoint
+from trbdyn.run.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
 
 EVERY = 1.7e-3
 
@@ -284,6 +285,7 @@ def test_checkpoints_that_say_what_cannot_be_are_refused(broken: Path, changes: 
         {"done": -1},
         {"done": True},
         {"start": 1.0, "end": 0.0},
+        {"counters": {"pocket": "three"}},
         {"state": np.array([np.nan])},
         {"peaks": np.array([np.nan])},
     ],

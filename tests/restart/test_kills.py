@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn import checkpoint
 from trbdyn.errors import FileError
-from trbdyn.sources import segment_paths
+from trbdyn.results.sources import segment_paths
+from trbdyn.run import checkpoint
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 

@@ -13,7 +13,7 @@ from hard_scenes import Hard, smooth
 from numpy.typing import NDArray
 
 import trbdyn as trb
-from trbdyn import running
+from trbdyn.run import running
 
 Array = NDArray[np.float64]
 

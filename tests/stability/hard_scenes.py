@@ -11,11 +11,11 @@ from typing import Any, Literal
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.cases import rig_30310, scene_30310
 from trbdyn.errors import InputError, LoadError, StepError
-from trbdyn.pocket import OtherPocket, Pocket
-from trbdyn.pocket_shapes import chamfered_pocket, default_pocket, one_sided_pocket, stepped_pocket
-from trbdyn.start import StateView
+from trbdyn.model.cases import rig_30310, scene_30310
+from trbdyn.model.pocket import OtherPocket, Pocket
+from trbdyn.model.pocket_shapes import chamfered_pocket, default_pocket, one_sided_pocket, stepped_pocket
+from trbdyn.statics.state_view import StateView
 
 Make = Callable[[], trb.Scene]
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
-from trbdyn.results import Result
+from trbdyn.results.result import Result
 
 
 def _module(name: str) -> ModuleType:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.replay import Replay
+from trbdyn.run.replay import Replay
 
 NOT_IN_A_STATE = ("energy", "peaks")
 

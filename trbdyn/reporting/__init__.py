@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from trbdyn.errors import FileError, InputError, unknown_name
 
 if TYPE_CHECKING:
-    from trbdyn.results import Result
+    from trbdyn.results.result import Result
 
 __all__ = ["report", "save_pdf"]
 
@@ -48,7 +48,7 @@ def report(
     title : str
         Title; by default the bearing's name.
     pictures : sequence of str, optional
-        Names of the pictures, of those in `trbdyn.plotting.PICTURES`; by default all that the recorded groups allow.
+        Names of the pictures, of those in `trbdyn.plot.PICTURES`; by default all that the recorded groups allow.
     pdf : bool
         Also write a PDF beside it; needs Chromium.
 
@@ -72,7 +72,7 @@ def report(
     >>> "The energy adds up" in path.read_text()
     True
     """
-    from trbdyn.plotting import PICTURES
+    from trbdyn.plot import PICTURES
     from trbdyn.reporting.page import page
 
     for name in pictures or ():

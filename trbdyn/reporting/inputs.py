@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from trbdyn.scene import Scene
-from trbdyn.validation import Model
+from trbdyn.base.validation import Model
+from trbdyn.model.scene import Scene
 
 HIDDEN = ("estimates",)
 LONGEST_LIST = 6

@@ -16,6 +16,8 @@ MEANINGS: Final[dict[str, str]] = {
     "creep_time": "Time in which creep of the rollers lets the whirl change by its own size.",
     "window_start": "Averages are taken from this time on.",
     "window_end": "Averages are taken up to this time.",
+    "confidence": "Half width of the interval that holds the true mean in 95 of 100 cases.",
+    "confidence_note": "How the numbers behind ± were found: the true mean lies within in 95 of 100 cases.",
     "speed_rpm": "Mean speed of the inner ring.",
     "cage_speed_ratio": "Turns of the cage for each turn of the shaft.",
     "cage_speed_ratio_kinematic": "The same if all rollers rolled without slip.",
@@ -58,7 +60,7 @@ MEANINGS: Final[dict[str, str]] = {
     "torque": "Friction torque that the shaft has to overcome.",
     "torque_outer": "Friction torque that the outer ring passes on to the housing.",
     "power_loss": "Heat that the bearing makes.",
-    "energy_closure": "Error of the energy balance over the dissipated work: below 0.001 the books close.",
+    "energy_closure": "Energy that does not add up, over the dissipated work: below 0.001 is good, above 0.01 too much.",
     "energy_residual": "Error of the energy balance.",
     "steps": "Steps of the integrator.",
     "rhs_evaluations": "How often all forces were computed.",
@@ -70,7 +72,7 @@ MEANINGS: Final[dict[str, str]] = {
     "whirl_radius_over_cpr": "Old name of axis_distance_over_cpr.",
     "power_split": "Share of each kind in the power loss.",
 }
-"""A sentence for each entry of `trbdyn.summary.LABELS`; an entry without one is shown without."""
+"""A sentence for each entry of `trbdyn.results.summary.LABELS`; an entry without one is shown without."""
 
 CAPTIONS: Final[dict[str, str]] = {
     "cage_locus": "Path of the cage's centre. The outer circle is the radial play Cpr; a whirl along it uses up the play.",

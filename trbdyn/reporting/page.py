@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict, warnings
-from trbdyn.summary import LABELS, UNPRINTED
+from trbdyn.results.summary import LABELS, UNPRINTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from trbdyn.results import Result
+    from trbdyn.results.result import Result
 
 STYLE = """
 :root { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1b1f24; }
@@ -69,7 +69,7 @@ def _safe(text: object) -> str:
 
 
 def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
-    from trbdyn.plotting import conditions
+    from trbdyn.plot import conditions
 
     lines = []
     for result, name in zip(results, names, strict=True):
@@ -117,7 +117,7 @@ def _value(table: Mapping[str, Row], path: str) -> str:
 
 
 def _simulated(results: Sequence[Result], names: Sequence[str]) -> str:
-    from trbdyn.plotting import bearing_drawing, pocket_drawing
+    from trbdyn.plot import bearing_drawing, pocket_drawing
 
     bearings = [result.scene.bearing for result in results]
     chosen = [0] if len(results) == 1 or bearings[0] == bearings[1] else [0, 1]
@@ -138,7 +138,7 @@ def image(draw: Callable[[], Axes | Figure]) -> str:
     import matplotlib.pyplot as plt
     from matplotlib.figure import Figure
 
-    from trbdyn.plotting.style import STYLE as PLOT_STYLE
+    from trbdyn.plot.style import STYLE as PLOT_STYLE
 
     picture = draw()
     figure = picture if isinstance(picture, Figure) else picture.get_figure(root=True)
@@ -157,7 +157,7 @@ def _figure(draw: Callable[[], Axes | Figure], caption: str) -> str:
 
 
 def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[str] | None) -> str:
-    from trbdyn.plotting import PICTURES
+    from trbdyn.plot import PICTURES
 
     def possible(result: Result, name: str) -> bool:
         there = set(result.groups) - (set() if result.has_cage else {"pocket"})
@@ -200,13 +200,17 @@ def _numbers(numbers: Sequence[dict[str, Any]], names: Sequence[str]) -> str:
                 if any(entries):
                     body.append(_number_row(part.replace("_", " "), entries, unit, ""))
             continue
-        body.append(_number_row(words, values, unit, MEANINGS.get(key, "")))
+        widths = [(entry.get("confidence") or {}).get(key) for entry in numbers]
+        body.append(_number_row(words, values, unit, MEANINGS.get(key, ""), widths))
     heads = "".join(f"<th>{_safe(name)}</th>" for name in names) if len(numbers) > 1 else "<th>value</th>"
     return f"<h2>Numbers</h2><table><tr><th>quantity</th>{heads}<th>unit</th><th>what it means</th></tr>{''.join(body)}</table>"
 
 
-def _number_row(words: str, values: Sequence[Any], unit: str, meaning: str) -> str:
-    shown = [_amount(value) for value in values]
+def _number_row(
+    words: str, values: Sequence[Any], unit: str, meaning: str, half_widths: Sequence[float | None] = ()
+) -> str:
+    widths = [*half_widths, *[None] * (len(values) - len(half_widths))]
+    shown = [_amount(value) + ("" if w is None else f" ± {w:.2g}") for value, w in zip(values, widths, strict=True)]
     differs = " class='differs'" if len(set(shown)) > 1 else ""
     cells = "".join(f"<td class='n'>{_safe(text)}</td>" for text in shown)
     return f"<tr{differs}><td>{_safe(words.strip())}</td>{cells}<td class='u'>{_safe(unit)}</td><td>{_safe(meaning)}</td></tr>"

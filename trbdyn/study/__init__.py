@@ -19,7 +19,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from trbdyn.run_options import RunOptions
+    from trbdyn.run.options import RunOptions
     from trbdyn.study.definition import Axis, Case, Study, fingerprint
     from trbdyn.study.design import cases, grid, of_scenes, random
     from trbdyn.study.gather import load, save
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _NAMES = {
     "Axis": "trbdyn.study.definition",
     "Case": "trbdyn.study.definition",
-    "RunOptions": "trbdyn.run_options",
+    "RunOptions": "trbdyn.run.options",
     "STUDIES": "trbdyn.study.study_file",
     "Study": "trbdyn.study.definition",
     "cases": "trbdyn.study.design",

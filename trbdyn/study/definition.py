@@ -15,12 +15,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from trbdyn.base.own_files import file_path
+from trbdyn.base.validation import Model
 from trbdyn.errors import InputError, Path, join_path
-from trbdyn.own_files import file_path
-from trbdyn.run_options import RunOptions
-from trbdyn.scene import Scene
-from trbdyn.toml_case import TABLES, case_from_dict, find_case, read_tables, shipped_cases
-from trbdyn.validation import Model
+from trbdyn.model.scene import Scene
+from trbdyn.run.options import RunOptions
+from trbdyn.run.toml_case import TABLES, case_from_dict, find_case, read_tables, shipped_cases
 
 Table = dict[str, Any]
 Overrides = Mapping[str, Any]
@@ -40,7 +40,7 @@ class Base:
     Attributes
     ----------
     tables : dict
-        Tables as in a TOML case, `trbdyn.toml_case`.
+        Tables as in a TOML case, `trbdyn.run.toml_case`.
     whole : bool
         Whether every value is given, as for a base made of a scene.
     """

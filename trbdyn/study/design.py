@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
-from trbdyn.run_options import RunOptions
-from trbdyn.scene import Scene
+from trbdyn.model.scene import Scene
+from trbdyn.run.options import RunOptions
+from trbdyn.run.toml_case import TABLES
 from trbdyn.study.definition import Axis, Base, Case, Overrides, Study, label, plain
-from trbdyn.toml_case import TABLES
-from trbdyn.validation import number_of
 
 
 def _case(base: Base, parameters: Mapping[str, Any], overrides: Overrides) -> Case:

@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.own_files import file_path, write_whole
 from trbdyn.errors import FileError
-from trbdyn.own_files import file_path, write_whole
+from trbdyn.model.scene import Scene
+from trbdyn.results.summary import LABELS
+from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Study
 from trbdyn.study.index import Entry
 
@@ -83,9 +86,6 @@ def _about_path(path: str) -> dict[str, str]:
 
 def unit_of(path: str) -> str:
     """Unit of the field at a dotted path, for instance "kg" for ``bearing.cage.mass``; empty where it is no field with a unit."""
-    from trbdyn.run_options import RunOptions
-    from trbdyn.scene import Scene
-
     table, *parts = re.sub(r"\[\d+\]", "", path).split(".")
     owner: Any = RunOptions if table == "run" else Scene
     for name in parts if table in ("scene", "run") else [table, *parts]:
@@ -127,8 +127,9 @@ def _stacked(values: Sequence[Any]) -> NDArray[Any]:
 
 
 def _attributes(name: str) -> dict[str, str]:
-    from trbdyn.summary import LABELS
-
+    if name.startswith("confidence_") and name.removeprefix("confidence_") in LABELS:
+        words, unit = LABELS[name.removeprefix("confidence_")]
+        return {"long_name": f"{words.strip()}: half width of the 95 % confidence interval", "units": unit or "1"}
     for label, (words, unit) in LABELS.items():
         if name == label or (name.startswith(f"{label}_") and label.endswith(("_split", "_by_loss"))):
             return {"long_name": words.strip() or label, "units": unit or "1"}

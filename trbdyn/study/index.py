@@ -17,8 +17,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from trbdyn.base.own_files import write_whole
 from trbdyn.errors import FileError
-from trbdyn.own_files import write_whole
 
 INDEX = "index.jsonl"
 

@@ -10,10 +10,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from trbdyn.base.own_files import folder_path
+from trbdyn.base.version import __version__
 from trbdyn.errors import FileError, InputError
-from trbdyn.own_files import folder_path
-from trbdyn.run_options import RunOptions
-from trbdyn.scene import Scene
+from trbdyn.model.scene import Scene
+from trbdyn.results.result import load
+from trbdyn.run.options import RunOptions
 from trbdyn.study import gather
 from trbdyn.study.definition import Case, Study
 from trbdyn.study.design import of_scenes
@@ -160,7 +162,6 @@ def _report(outcome: Outcome[Task]) -> Report:
 
 
 def _entry(case: Case, report: Report) -> Entry:
-    from trbdyn import __version__
 
     return Entry(
         name=case.name,
@@ -184,8 +185,6 @@ def _observed(index: Index, case: Case, functions: Mapping[str, Observable]) -> 
     missing = {name: function for name, function in functions.items() if name not in entry.values}
     if not missing:
         return entry
-    from trbdyn.results import load
-
     result = load(index.folder / entry.file)
     values, mistakes = apply(result, missing)
     message = "; ".join([entry.message.partition("; the observable")[0], *mistakes])

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path as FilePath
 from typing import Final
 
+from trbdyn.base.own_files import file_path
+from trbdyn.base.shipped import DATA
 from trbdyn.errors import InputError
-from trbdyn.own_files import file_path
 from trbdyn.study.definition import Study, Table, read_toml
 from trbdyn.study.design import cases, grid, random
-from trbdyn.toml_case import DATA
 
 STUDIES: Final = DATA / "studies"
 """Where the shipped studies lie."""
@@ -25,7 +25,7 @@ def shipped_studies() -> tuple[str, ...]:
 def load_study(path: str | FilePath) -> Study:
     """A study from a TOML file, or one that ships with the package by its name.
 
-    The file holds the tables of a case (see `trbdyn.toml_case`) that every run shares, and a table ``[study]`` with
+    The file holds the tables of a case (see `trbdyn.run.toml_case`) that every run shares, and a table ``[study]`` with
 
     - ``case``: name of a case to start from (optional); the tables of the file are put into it;
     - one of ``[study.grid]`` (values of each path), ``[[study.list]]`` (a table of values by paths for each case) and

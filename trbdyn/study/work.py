@@ -8,24 +8,20 @@ import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from trbdyn.errors import StepError, TrbError
-from trbdyn.run_options import RunOptions
-from trbdyn.scene import Scene
-
-if TYPE_CHECKING:
-    from trbdyn.results import Result
-    from trbdyn.simulation import Simulation
+from trbdyn.model.scene import Scene
+from trbdyn.results.result import Result, load
+from trbdyn.run.options import RunOptions
+from trbdyn.run.simulation import Simulation
 
 Observable = Callable[["Result"], Any]
 
 NOT_OBSERVABLE: Final = ("success", "message")
 """Entries of a summary that are told otherwise."""
-
-_OF_A_RUN: Final = ("revolutions", "duration", "save_every", "save_groups")
 
 
 @dataclass(frozen=True)
@@ -78,12 +74,7 @@ class Report:
 
 def simulation(scene: Scene, run: RunOptions) -> Simulation:
     """A simulation with the settings of run options."""
-    from trbdyn.simulation import Simulation
-
-    default = RunOptions()
-    names = [name for name in RunOptions.model_fields if name not in _OF_A_RUN]
-    settings = {name: getattr(run, name) for name in names if getattr(run, name) != getattr(default, name)}
-    return Simulation(scene, **settings)
+    return Simulation(scene, **run.of_simulation())
 
 
 def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
@@ -111,8 +102,6 @@ def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
         part.replace(kept)
         file = kept.name
         if result is not None:
-            from trbdyn.results import load
-
             result = load(kept)
     values: dict[str, Any] = {}
     if result is not None and report.status == "done":

@@ -12,19 +12,20 @@ from __future__ import annotations
 import html as markup
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from trbdyn.errors import FileError, InputError
 from trbdyn.viewer import data as data_of
+from trbdyn.viewer.gltf import save_gltf
 from trbdyn.viewer.page import page
 from trbdyn.viewer.shapes import shapes
 
 if TYPE_CHECKING:
-    from trbdyn.results import Result
+    from trbdyn.results.result import Result
 
-__all__ = ["MAX_SIZE_MB", "View", "view"]
+__all__ = ["MAX_SIZE_MB", "View", "save_gltf", "view"]
 
 MAX_SIZE_MB: Final = 12.0
 """Largest file that the view writes unless told otherwise (MB)."""
@@ -176,11 +177,3 @@ def frames_that_fit(result: Result, max_size_mb: float, n_faces: int, n_stations
         need = (_FIXED_BYTES + 0.5 * meshes + 2 * a_frame / 0.75) / 1e6
         raise InputError.of("max_size_mb", max_size_mb, f"must be at least {need:.1f} for this bearing (MB)")
     return fit
-
-
-def __getattr__(name: str) -> Any:
-    if name == "save_gltf":
-        from trbdyn.viewer.gltf import save_gltf
-
-        return save_gltf
-    raise AttributeError(f"module 'trbdyn.viewer' has no attribute {name!r}")

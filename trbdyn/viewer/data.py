@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
-from trbdyn.replay import Replay
+from trbdyn.model.motion import value_at
+from trbdyn.run.replay import Replay
+from trbdyn.run.simulation import Simulation
 
 if TYPE_CHECKING:
-    from trbdyn.results import Result
+    from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 
@@ -100,7 +102,7 @@ def frames(result: Result, *, revolutions: float | None, max_frames: int, along:
     InputError
         If a group is missing, there are fewer than two records, or an argument is not allowed.
     """
-    from trbdyn.plotting.cage import last_turns
+    from trbdyn.plot.cage import last_turns
 
     check(result, revolutions, max_frames)
     shown = last_turns(result, revolutions)
@@ -175,12 +177,8 @@ def _spin(result: Result) -> Array:
 
 def _ring_tilt(result: Result, index: NDArray[np.int64]) -> Array:
     """Rotation of the inner ring about x and y (rad): prescribed, or from the equilibrium at the start."""
-    from trbdyn.motion import value_at
-
     scene = result.scene
     if scene.moments != (None, None):
-        from trbdyn.simulation import Simulation
-
         return np.broadcast_to(Simulation(scene).equilibrium.displacement[3:5], (index.size, 2))
     turns = (scene.misalignment_x, scene.misalignment_y)
     time = result["time"][index]

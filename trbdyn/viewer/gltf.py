@@ -18,11 +18,12 @@ from scipy.spatial.transform import Rotation
 
 from trbdyn.errors import FileError, InputError
 from trbdyn.viewer.data import Frames, check, default_factor, frames
-from trbdyn.viewer.shapes import Mesh, Shapes, shapes
+from trbdyn.viewer.meshes import Mesh, join
+from trbdyn.viewer.shapes import Shapes, shapes
 
 if TYPE_CHECKING:
-    from trbdyn.bearing import Bearing
-    from trbdyn.results import Result
+    from trbdyn.model.bearing import Bearing
+    from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 
@@ -168,7 +169,6 @@ class _Document:
 
     def write(self, taken: Frames, seconds_per_turn: float) -> bytes:
         """The bytes of the file."""
-        from trbdyn.viewer.shapes import join
 
         meshes, count = self.meshes, self.bearing.n_rollers
         time, pose = _keys(taken, seconds_per_turn, count)

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from trbdyn.viewer.data import Frames, Quantity, default_factor, facts
 from trbdyn.viewer.library import three_js
-from trbdyn.viewer.shapes import AROUND, Mesh, Shapes
+from trbdyn.viewer.meshes import Mesh
+from trbdyn.viewer.shapes import AROUND, Shapes
 
 if TYPE_CHECKING:
-    from trbdyn.results import Result
+    from trbdyn.results.result import Result
 
 FULL = np.iinfo(np.uint16).max
 

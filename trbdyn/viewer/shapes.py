@@ -2,10 +2,7 @@
 
 Origin: on the bearing axis in the roller-centre plane; z towards the rollers' large ends. Contact surfaces are those
 of the model; what the model does not know (outer surface of the cup, bore of the cone, body of the cage behind the
-faces) is drawn in usual proportions.
-
-Motion and clearances can be drawn larger by one factor: a mesh may carry a `shift`, by which its points move for each
-unit of the factor beyond one. A gap drawn so closes exactly where the real one closes, to first order in the motion.
+faces) is drawn in usual proportions. Motion and clearances can be drawn larger by one factor (`trbdyn.viewer.meshes`).
 """
 
 from __future__ import annotations
@@ -17,11 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull
 
-from trbdyn import laws
+from trbdyn.model.outlines import cone_outline, cup_outline, profile_drop, rail_bands
+from trbdyn.viewer.meshes import Mesh, flat_mesh, join, revolve, strip
 
 if TYPE_CHECKING:
-    from trbdyn.bearing import Bearing
-    from trbdyn.pocket import Face
+    from trbdyn.model.bearing import Bearing
+    from trbdyn.model.pocket import Face
 
 Array = NDArray[np.float64]
 
@@ -29,30 +27,6 @@ AROUND = 48
 """Facets around a roller; rings have four times as many."""
 CUT = (np.radians(-60.0), np.radians(70.0))
 """Sector of the cup that is left out, so that rollers and cage can be seen (rad from x towards y)."""
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """Triangles.
-
-    Attributes
-    ----------
-    position, normal : ndarray, shape (n, 3)
-        Vertices (m) and unit normals.
-    index : ndarray of int, shape (m, 3)
-        Triangles, counter-clockwise seen from outside.
-    shift : ndarray, shape (n, 3), optional
-        How far each vertex moves for each unit of the factor of exaggeration beyond one (m).
-    """
-
-    position: Array
-    normal: Array
-    index: NDArray[np.int64]
-    shift: Array | None = None
-
-    def exaggerated(self, factor: float) -> Array:
-        """Vertices for a factor of exaggeration, shape (n, 3)."""
-        return self.position if self.shift is None else self.position + (factor - 1.0) * self.shift
 
 
 @dataclass(frozen=True)
@@ -138,180 +112,7 @@ def shapes(bearing: Bearing, stations: ArrayLike) -> Shapes:
     )
 
 
-def revolve(
-    profile: ArrayLike, *, facets: int, start: float = 0.0, stop: float = 2.0 * np.pi, caps: bool = False
-) -> Mesh:
-    """A closed outline turned about the z axis.
-
-    Parameters
-    ----------
-    profile : array_like, shape (k, 2)
-        Corners (r, z) of a closed outline.
-    facets : int
-        Facets around.
-    start, stop : float
-        Sector (rad).
-    caps : bool
-        Close the two ends of the sector.
-    """
-    corners = np.asarray(profile, dtype=float)
-    r, z = corners.T
-    if float(np.sum(z * np.roll(r, -1) - r * np.roll(z, -1))) < 0.0:
-        corners = corners[::-1]
-    angles = np.linspace(start, stop, facets + 1)
-    parts = [_strip(np.array([a, b]), angles) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
-    if caps:
-        parts += [_cap(corners, angle, sign) for angle, sign in ((start, -1.0), (stop, 1.0))]
-    return join(parts)
-
-
-def _strip(rows: Array, angles: Array, normal_rows: Array | None = None) -> Mesh:
-    """The surface between rows (r, z), turned about z; normals from the rows' direction unless given."""
-    if normal_rows is None:
-        along = np.gradient(rows, axis=0)
-        normal_rows = np.stack([along[:, 1], -along[:, 0]], axis=1)
-        length = np.linalg.norm(normal_rows, axis=1, keepdims=True)
-        normal_rows = -normal_rows / np.where(length > 0.0, length, 1.0)
-    cosine, sine = np.cos(angles), np.sin(angles)
-    flat = np.ones_like(angles)
-
-    def turned(values: Array) -> Array:
-        r, z = values[:, :1], values[:, 1:]
-        return np.stack([r * cosine, r * sine, z * flat], axis=-1).reshape(-1, 3)
-
-    count = angles.size
-    first = (np.arange(rows.shape[0] - 1)[:, None] * count + np.arange(count - 1)).ravel()
-    index = np.concatenate(
-        [np.stack([first, first + count, first + 1], 1), np.stack([first + 1, first + count, first + count + 1], 1)]
-    )
-    return _facing(Mesh(turned(rows), turned(normal_rows), index))
-
-
-def _facing(mesh: Mesh) -> Mesh:
-    """The mesh with every triangle counter-clockwise seen from the side of its normals."""
-    a, b, c = mesh.position[mesh.index].transpose(1, 0, 2)
-    away = np.einsum("ij,ij->i", np.cross(b - a, c - a), mesh.normal[mesh.index].sum(axis=1)) < 0.0
-    index = mesh.index.copy()
-    index[away] = index[away][:, ::-1]
-    return Mesh(mesh.position, mesh.normal, index, mesh.shift)
-
-
-def _cap(corners: Array, angle: float, sign: float) -> Mesh:
-    """A flat end of a revolved outline, whose triangles fan from its middle: right for outlines that see it."""
-    middle = corners.mean(axis=0)
-    points = np.vstack([middle, corners])
-    position = np.stack([points[:, 0] * np.cos(angle), points[:, 0] * np.sin(angle), points[:, 1]], axis=1)
-    normal = np.broadcast_to(sign * np.array([-np.sin(angle), np.cos(angle), 0.0]), position.shape)
-    count = corners.shape[0]
-    ring = np.arange(count)
-    index = np.stack([np.zeros(count, int), 1 + ring, 1 + (ring + 1) % count], axis=1)
-    return _facing(Mesh(position, np.array(normal), index))
-
-
-def join(parts: list[Mesh]) -> Mesh:
-    """Several meshes as one."""
-    offsets = np.cumsum([0, *(part.position.shape[0] for part in parts[:-1])])
-    shift = None
-    if any(part.shift is not None for part in parts):
-        shift = np.vstack([np.zeros_like(part.position) if part.shift is None else part.shift for part in parts])
-    return Mesh(
-        np.vstack([part.position for part in parts]),
-        np.vstack([part.normal for part in parts]),
-        np.vstack([part.index + offset for part, offset in zip(parts, offsets, strict=True)]),
-        shift,
-    )
-
-
-def flat_mesh(points: Array, triangles: NDArray[np.int64], shift: Array | None = None) -> Mesh:
-    """A mesh whose triangles keep their own corners and normals, so that its edges look sharp."""
-    position = points[triangles].reshape(-1, 3)
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    normal = np.cross(b - a, c - a)
-    length = np.linalg.norm(normal, axis=1, keepdims=True)
-    normal = np.repeat(normal / np.where(length > 0.0, length, 1.0), 3, axis=0)
-    moved = None if shift is None else shift[triangles].reshape(-1, 3)
-    return Mesh(position, normal, np.arange(position.shape[0]).reshape(-1, 3), moved)
-
-
-# ---- rings ----
-
-
-def _on_race(bearing: Bearing, half_angle: float, station: float, height: float = 0.0) -> Array:
-    """(r, z) on a raceway where a roller's station touches it, or a height above it (away from the material)."""
-    geometry = bearing.geometry
-    distance = (geometry.apex_to_mid + station) / np.cos(geometry.roller_half_angle)
-    sine, cosine = np.sin(half_angle), np.cos(half_angle)
-    return np.array([distance * sine + height * cosine, distance * cosine - height * sine - geometry.centre_plane])
-
-
-def cup_outline(bearing: Bearing) -> list[Array]:
-    roller = bearing.roller
-    half = 0.5 * roller.total_length
-    small, large = (
-        _on_race(bearing, np.radians(bearing.cup_half_angle_deg), station) for station in (-1.06 * half, 1.06 * half)
-    )
-    outside = large[0] + 0.3 * roller.diameter
-    return [small, large, np.array([outside, large[1]]), np.array([outside, small[1]])]
-
-
-def cone_outline(bearing: Bearing) -> list[Array]:
-    geometry, roller, ribs = bearing.geometry, bearing.roller, bearing.ribs
-    size, angle = roller.diameter, geometry.cone_half_angle
-    front_station = geometry.small_end_station - ribs.front_clearance
-    small, large = (_on_race(bearing, angle, station) for station in (front_station, 0.5 * roller.total_length))
-    tilt = geometry.rib_normal_angle
-    face = np.array([np.cos(tilt), -np.sin(tilt)])
-    contact = np.array([geometry.rib_contact_radius, geometry.rib_contact_z - geometry.centre_plane])
-    rib_foot, rib_top = (contact + (h - ribs.contact_height) * face for h in (0.0, ribs.edge_high))
-    axis = geometry.roller_axis_angle
-    across = np.array([np.cos(axis), -np.sin(axis)])
-    front_top = small + ribs.front_high * across
-    bore = max(small[0] - 0.35 * size, 0.4 * small[0])
-    back, front = rib_foot[1] + 0.28 * size, small[1] - 0.16 * size
-    outline = [
-        (bore, front),
-        (bore, back),
-        (rib_top[0], back),
-        rib_top,
-        rib_foot,
-        large,
-        small,
-        front_top,
-        (front_top[0], front),
-    ]
-    return [np.array(corner) for corner in outline]
-
-
 # ---- roller ----
-
-
-def profile_drop(bearing: Bearing, stations: ArrayLike) -> Array:
-    """Drop of the roller's profile below its straight cone (m), shape (n,).
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    stations : array_like, shape (n,)
-        Places from mid length along the axis (m); those beyond the effective length have the drop of its ends.
-    """
-    roller = bearing.roller
-    profile, half = roller.profile, 0.5 * roller.effective_length
-    place = np.clip(np.asarray(stations, dtype=float), -half, half)
-    if profile.kind == "crowned":
-        return np.asarray(laws.profile_crowned(station=place, radius=profile.crown_radius))
-    if profile.kind == "logarithmic":
-        drop = laws.profile_logarithmic(
-            station=place,
-            length=roller.effective_length,
-            k1=profile.k1,
-            k2=profile.k2,
-            zm=profile.zm,
-            load=profile.load,
-            effective_modulus=bearing.geometry.effective_modulus,
-        )
-        return np.asarray(drop)
-    return np.zeros_like(place)
 
 
 def _roller(bearing: Bearing, stations: Array) -> Mesh:
@@ -322,7 +123,7 @@ def _roller(bearing: Bearing, stations: Array) -> Mesh:
     angles = np.linspace(0.0, 2.0 * np.pi, AROUND + 1)
     rows = np.stack([radius, stations - offset], axis=1)
     outward = np.broadcast_to([np.cos(geometry.roller_half_angle), -np.sin(geometry.roller_half_angle)], rows.shape)
-    flank = _strip(rows - np.stack([drop, 0.0 * drop], axis=1), angles, np.array(outward))
+    flank = strip(rows - np.stack([drop, 0.0 * drop], axis=1), angles, np.array(outward))
     inward = np.repeat(-drop, angles.size)[:, None]
     around = np.tile(np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1), (stations.size, 1))
     flank = Mesh(flank.position, flank.normal, flank.index, inward * around)
@@ -336,10 +137,10 @@ def _roller(bearing: Bearing, stations: Array) -> Mesh:
     small = 0.95 * geometry.small_end_radius
     parts = [
         flank,
-        _strip(np.array([sphere[-1], last]), angles),
-        _strip(sphere, angles, np.stack([r, sphere[:, 1] - centre], axis=1) / geometry.sphere_radius),
-        _strip(np.array([first, [small, bottom - offset]]), angles),
-        _strip(np.array([[small, bottom - offset], [0.0, bottom - offset]]), angles),
+        strip(np.array([sphere[-1], last]), angles),
+        strip(sphere, angles, np.stack([r, sphere[:, 1] - centre], axis=1) / geometry.sphere_radius),
+        strip(np.array([first, [small, bottom - offset]]), angles),
+        strip(np.array([[small, bottom - offset], [0.0, bottom - offset]]), angles),
     ]
     return join(parts)
 
@@ -458,26 +259,6 @@ def _plate(face: FaceMesh, thickness: float) -> Mesh:
     corners = face.mesh.position - 1e-3 * thickness * face.normal
     back = corners[face.mesh.index][:, ::-1].reshape(-1, 3) - thickness * face.normal
     return flat_mesh(back, np.arange(back.shape[0]).reshape(-1, 3), np.broadcast_to(face.shift, back.shape))
-
-
-def rail_bands(bearing: Bearing) -> list[tuple[float, float, float, float, float]]:
-    """Lowest n, highest n, stations of the near and the far side, shift along a: of the small- and the large-end
-    rail.
-    """
-    roller, cage = bearing.roller, bearing.cage
-    half, thickness = 0.5 * roller.total_length, 0.22 * roller.diameter
-    out = []
-    for part, sign in (("small_end", -1.0), ("large_end", 1.0)):
-        walls = [face for face in bearing.pocket.faces if face.part == part]
-        near, low, high = half + cage.play_axial, cage.wall_inner, cage.wall_outer
-        shift = cage.play_axial if part == "small_end" else 0.0
-        if walls:
-            corners = np.vstack([face.vertices for face in walls])
-            low, high = float(corners[:, 0].min()), float(corners[:, 0].max())
-            near = float(np.abs(corners[:, 2]).max())
-        near += 1e-4 * roller.diameter
-        out.append((low, high, sign * near, sign * (near + thickness), sign * shift))
-    return out
 
 
 def _rail(bearing: Bearing, band: tuple[float, float, float, float, float]) -> Mesh:

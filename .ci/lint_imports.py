@@ -1,0 +1,89 @@
+"""Rules of the Python package's imports beside its layers. Prints each breach and exits with 1 if there is one.
+
+Circles: no modules import each other in a circle, not even through an import inside of a function. Imports for type checkers do
+not run and do not count.
+
+Late imports: an import stands at the top of its file. Inside of a function stand only those that would make every start slow, or
+need a package that is optional: the packages of HEAVY, the modules of the package that load them, and what commands need
+(trbdyn/cli).
+"""
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import grimp
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = "trbdyn"
+HEAVY = ("dask", "distributed", "h5py", "matplotlib", "pydantic_core", "scipy", "tqdm", "xarray")
+LOAD_HEAVY = ("trbdyn.plot", "trbdyn.reporting.page", "trbdyn.results.result")
+COMMANDS = ("trbdyn/cli/",)
+
+
+def circles(package: str) -> list[list[str]]:
+    """Sets of modules of which each imports the others, directly or not; each in order of names."""
+    graph = grimp.build_graph(package, exclude_type_checking_imports=True, cache_dir=None)
+    imports = {module: sorted(graph.find_modules_directly_imported_by(module)) for module in graph.modules}
+    index: dict[str, int] = {}
+    lowest: dict[str, int] = {}
+    open_ones: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(module: str) -> None:
+        """Tarjan's algorithm for strongly connected components."""
+        index[module] = lowest[module] = len(index)
+        open_ones.append(module)
+        for other in imports[module]:
+            if other not in index:
+                visit(other)
+                lowest[module] = min(lowest[module], lowest[other])
+            elif other in open_ones:
+                lowest[module] = min(lowest[module], index[other])
+        if lowest[module] == index[module]:
+            start = open_ones.index(module)
+            circle = open_ones[start:]
+            del open_ones[start:]
+            if len(circle) > 1 or module in imports[module]:
+                found.append(sorted(circle))
+
+    for module in sorted(imports):
+        if module not in index:
+            visit(module)
+    return found
+
+
+def late_imports(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Line and module of each import inside of a function."""
+    for function in ast.walk(tree):
+        if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
+            continue
+        for node in ast.walk(function):
+            if isinstance(node, ast.Import):
+                yield from ((node.lineno, alias.name) for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and node.module:
+                yield from ((node.lineno, f"{node.module}.{alias.name}") for alias in node.names)
+
+
+def below(module: str, tops: tuple[str, ...]) -> bool:
+    return any(module == top or module.startswith(top + ".") for top in tops)
+
+
+def main() -> int:
+    breaches = [f"imports run in a circle: {', '.join(circle)}" for circle in circles(PACKAGE)]
+    for path in sorted((ROOT / PACKAGE).rglob("*.py")):
+        name = path.relative_to(ROOT).as_posix()
+        if name.startswith(COMMANDS):
+            continue
+        for line, module in sorted(set(late_imports(ast.parse(path.read_text(encoding="utf-8"))))):
+            if not below(module, HEAVY + LOAD_HEAVY):
+                breaches.append(f"{name}:{line}: {module} is imported inside of a function: import it at the top")
+    for breach in breaches:
+        print(breach)
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
+    sys.exit(main())

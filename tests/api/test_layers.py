@@ -1,0 +1,188 @@
+"""The package is built in layers: modules are found by their old names, tables of the core say units and ranges, nothing is
+loaded before it is needed.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import json
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from pydantic import ValidationError
+
+import trbdyn as trb
+from trbdyn import _core, former_names
+from trbdyn.base.validation import Model
+from trbdyn.cli import case
+from trbdyn.model.bearing import Bearing, Cage, Ribs
+from trbdyn.model.core_table import PARAMETERS, SETTINGS
+from trbdyn.model.effects import Effects, Friction
+from trbdyn.model.flatten import bearing_entries, effects_entries, lubricant_entries
+from trbdyn.model.lubricants import Dicke, Lubricant
+from trbdyn.model.material import Material, Roughness
+from trbdyn.model.roller import Profile, Roller
+from trbdyn.run.options import ACCURACY, RunOptions, Tolerances
+from trbdyn.run.simulation import Simulation
+
+ROOT = Path(__file__).parents[2]
+MODELS: tuple[type[Model], ...] = (
+    Bearing, Cage, Dicke, Effects, Friction, Lubricant, Material, Profile, Ribs, Roller, Roughness,
+)  # fmt: skip
+
+
+def in_a_new_process(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("old", sorted(former_names.MODULES))
+def test_a_module_is_found_by_its_old_name(old: str) -> None:
+    module = importlib.import_module(old)
+    assert module is importlib.import_module(former_names.MODULES[old])
+    assert module.__spec__ is not None
+    assert module.__spec__.name == module.__name__ == former_names.MODULES[old]
+
+
+def test_modules_below_a_moved_one_are_not_loaded_twice() -> None:
+    code = "import trbdyn.plotting.style as one, trbdyn.plot.style as two; print(one is two)"
+    assert in_a_new_process(code).split() == ["True"]
+
+
+def test_objects_that_were_pickled_by_the_old_names_can_be_read() -> None:
+    scene = trb.Scene(
+        trb.cases.rig_30310(),
+        speed_rpm=3000,
+        axial_load=trb.History(times=(0.0, 1.0), values=(900.0, 990.0)),
+        ring="follows",
+    )
+    state = Simulation(trb.cases.scene_30310(1000.0, 3080.0)).state
+    text = pickle.dumps((scene, state), protocol=0)
+    moved = {
+        "model.bearing": "bearing", "model.roller": "bearing", "model.material": "bearing", "model.scene": "scene",
+        "model.start": "scene", "model.motion": "motion", "model.lubricants.lubricant": "lubricants",
+        "model.lubricants.viscosity": "lubricants", "model.effects": "effects", "run.simulation": "simulation",
+    }  # fmt: skip
+    for new, old in moved.items():
+        text = text.replace(f"trbdyn.{new}\n".encode(), f"trbdyn.{old}\n".encode())
+    assert b"trbdyn.model" not in text
+    assert b"trbdyn.run" not in text
+    again, state_again = pickle.loads(text)
+    assert again == scene
+    assert state_again.time == state.time
+
+
+def test_public_modules_are_attributes() -> None:
+    for name in ("animation", "cases", "errors", "laws", "lubricants", "observables", "plot", "pocket_shapes", "study"):
+        assert isinstance(getattr(trb, name), ModuleType)
+    assert trb.bearing.Scatter is trb.Scatter
+    with pytest.raises(AttributeError, match="no attribute 'paper'"):
+        _ = trb.paper
+    with pytest.raises(ModuleNotFoundError):
+        importlib.import_module("trbdyn.paper")
+
+
+def test_help_comes_without_numpy_and_pydantic() -> None:
+    code = "import sys, trbdyn.cli as c; c.make_parser(); print([n for n in ('numpy', 'pydantic', 'h5py') if n in sys.modules])"
+    assert in_a_new_process(code).strip() == "[]"
+
+
+def test_every_parameter_of_the_core_has_an_input() -> None:
+    given = {**bearing_entries(trb.cases.rig_30310()), **lubricant_entries(trb.lubricants.vg100())}
+    given |= effects_entries(trb.Effects())
+    named = {
+        extra["parameter"]
+        for model in MODELS
+        for field in model.model_fields.values()
+        if isinstance(extra := field.json_schema_extra, dict) and "parameter" in extra
+    }
+    numbers = {name for name, row in PARAMETERS.items() if row.unit != "choice"}
+    of_other_bodies = {f"{body}_{name}" for body in ("roller", "cage") for name in ("youngs_modulus", "poisson_ratio")}
+    assert named == numbers - of_other_bodies - {"cup_half_angle"}  # given in degrees
+    assert set(given) == set(PARAMETERS)
+
+
+def test_ranges_and_units_are_those_of_the_core() -> None:
+    code = """
+import trbdyn._core as core
+rows = core.parameter_table()
+core.parameter_table = lambda: [(n, "furlong" if n == "crown_radius" else u, 7.0 if n == "crown_radius" else a, b, t)
+                                for n, u, a, b, t in rows]
+import trbdyn as trb
+try:
+    trb.Profile.crowned(5.0)
+except trb.InputError as error:
+    print(error)
+"""
+    assert "must be >= 7 (furlong)" in in_a_new_process(code)
+
+
+def test_one_default_for_each_setting() -> None:
+    assert RunOptions().settings() == {
+        "integrator": "bdf",
+        **{
+            name: SETTINGS[name].default
+            for name in (*Tolerances.model_fields, "max_order", "first_step", "rings_share", "impact_share")
+        },
+    }
+    assert ACCURACY["standard"].rtol == {row[0]: row[1] for row in _core.setting_table()}["rtol"]
+    with pytest.raises((trb.InputError, ValidationError), match="max_order"):
+        RunOptions(max_order=int(SETTINGS["max_order"].upper) + 1)
+
+
+def test_the_command_line_hands_on_every_option_of_a_case(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    seen: list[RunOptions] = []
+
+    def look(self: Simulation, **arguments: object) -> None:
+        seen.append(self.options)
+
+    monkeypatch.setattr(Simulation, "run", look)
+    options = RunOptions(duration=1e-3, when_wrong="go_on", integrator="erk", max_order=1, rings_share=0.0)
+    scene = trb.cases.scene_30310(1000.0, 3080.0)
+    case.simulate(scene, options, tmp_path / "a.h5", quiet=True, overwrite=False)
+    assert seen[0].of_simulation() == options.of_simulation()
+    assert seen[0].when_wrong == "go_on"
+
+
+def load_rules() -> ModuleType:
+    pytest.importorskip("grimp", reason="grimp comes with make lint")
+    place = ROOT / ".ci" / "lint_imports.py"
+    if not place.is_file():
+        pytest.skip("the checks are not part of a source distribution")
+    spec = importlib.util.spec_from_file_location("lint_imports", place)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_circle_of_imports_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rules = load_rules()
+    package = tmp_path / "ringed"
+    package.mkdir()
+    for name, text in {
+        "__init__": "",
+        "one": "from ringed import two",
+        "two": "def late():\n    from ringed.three import late\n",
+        "three": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from ringed import one\n",
+    }.items():
+        (package / f"{name}.py").write_text(text)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert rules.circles("ringed") == []
+    (package / "three.py").write_text("from ringed.one import two\n")
+    assert rules.circles("ringed") == [["ringed.one", "ringed.three", "ringed.two"]]
+
+
+def test_imports_run_in_no_circle() -> None:
+    assert load_rules().circles("trbdyn") == []
+
+
+def test_files_hold_the_version_that_the_package_has() -> None:
+    assert json.loads(json.dumps(trb.__version__)) == importlib.import_module("trbdyn.base.version").__version__

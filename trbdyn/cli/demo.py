@@ -1,0 +1,73 @@
+"""The command ``demo``: a bearing, its pictures, report and 3-D view, in one go."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import Any, Final
+
+from trbdyn.cli.case import simulate
+from trbdyn.cli.outcome import DONE, FAILED
+
+DEMO_PICTURES: Final = ("cage_locus", "spacing_angles", "tilt", "pocket_forces")
+DEMO_REPORT: Final = (
+    "cage_locus",
+    "orbit_radius",
+    "load_zone",
+    "pressure_map",
+    "film_map",
+    "pocket_polar",
+    "torque_split",
+    "energy_audit",
+)
+DEMO_WORDS: Final = (
+    "A tapered roller bearing 30310 turns at 3000 rpm under 4930 N axial load, for {turns:g} turns of the shaft.\n"
+    "Its cage starts off centre. Will it whirl, how hard do the rollers strike it, and what does the bearing cost in torque?\n"
+    "Everything is written to {folder}."
+)
+
+
+def add_demo_parser(
+    commands: Any, common: Sequence[argparse.ArgumentParser], length: Sequence[argparse.ArgumentParser]
+) -> None:
+    """Add the command ``demo``."""
+    demo = commands.add_parser(
+        "demo", parents=[*common, *length], help="the 30310 at 3000 rpm and 4930 N, from a whirling start"
+    )
+    demo.add_argument("-o", "--output", metavar="FOLDER", default="demo", help="folder (default: demo)")
+    demo.add_argument("--overwrite", action="store_true", help="replace the run that is in the folder")
+    demo.set_defaults(command=_demo)
+
+
+def _demo(options: argparse.Namespace) -> int:
+    from trbdyn import plot
+    from trbdyn.model.cases import scene_30310
+    from trbdyn.model.effects import Effects
+    from trbdyn.model.scene import Start
+    from trbdyn.reporting import report
+    from trbdyn.reporting.verdict import what_matters
+    from trbdyn.results import summary
+    from trbdyn.run.options import RunOptions
+    from trbdyn.viewer import view
+
+    revolutions = 50.0 if options.revolutions is None else options.revolutions
+    run = RunOptions(revolutions=revolutions, accuracy=options.accuracy or "standard")
+    scene = scene_30310(3000.0, 4930.0, effects=Effects.paper(), start=Start.whirl(0.9))
+    run.end_time(scene.speed_rpm)
+    folder = plot.make_folder(options.output)
+    if not options.quiet:
+        print(DEMO_WORDS.format(turns=revolutions, folder=folder))
+    result = simulate(scene, run, folder / "run.h5", quiet=options.quiet, overwrite=options.overwrite)
+    plot.all(result, folder, DEMO_PICTURES)
+    numbers = result.summary()
+    summary.write_json(numbers, folder / "summary.json")
+    page = report(result, folder / "report.html", pictures=DEMO_REPORT)
+    moving = folder / "view.html"
+    view(result, moving)
+    if not options.quiet:
+        print("\n" + "\n".join(f"{number}. {text}" for number, text in enumerate(what_matters(result, numbers), 1)))
+        print(f"\nreport: {page}\n3-D view: {moving}")
+    if not result.success:
+        print(f"trbdyn: {result.message}", file=sys.stderr)
+    return DONE if result.success else FAILED

@@ -1,0 +1,102 @@
+"""The commands ``plot`` and ``info``: pictures and contents of a result file, contents of a case."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trbdyn.base.own_files import file_path
+from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.outcome import DONE
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+
+def add_look_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -> None:
+    """Add the commands ``plot`` and ``info``."""
+    plot = commands.add_parser("plot", parents=[*common], help="draw a result's pictures")
+    plot.add_argument("file", metavar="FILE", help="a result file")
+    plot.add_argument("-o", "--output", metavar="FOLDER", help="folder (default: FILE without its ending, + _plots)")
+    plot.add_argument("--only", nargs="+", metavar="NAME", help="draw these pictures only")
+    plot.add_argument("--animation", action="store_true", help="also write animation.gif")
+    plot.set_defaults(command=_plot)
+
+    info = commands.add_parser("info", parents=[*common], help="show what a result file or a case holds")
+    info.add_argument("file", metavar="FILE|CASE", help="a result file, a TOML file or the name of a shipped case")
+    info.add_argument("--json", action="store_true", help="as JSON")
+    add_set(info)
+    info.set_defaults(command=_info)
+
+
+def _plot(options: argparse.Namespace) -> int:
+    from trbdyn import plot
+    from trbdyn.results.result import load
+
+    result = load(options.file)
+    folder = Path(f"{Path(options.file).with_suffix('')}_plots" if options.output is None else options.output)
+    written = plot.all(result, folder, options.only)
+    if options.animation:
+        from trbdyn.plot import animation
+
+        written.append(animation.save(animation.animate(result), folder / "animation.gif"))
+    for path in written:
+        print(path)
+    return DONE
+
+
+def _info(options: argparse.Namespace) -> int:
+    path = file_path(options.file, "file")
+    if path.is_file() and path.suffix != ".toml":
+        return _info_result(path, as_json=options.json)
+    scene, run = case_with_changes(options.file, options.changes)
+    if options.json:
+        print(json.dumps({"scene": scene.to_dict(), "run": run.to_dict()}, indent=2))
+        return DONE
+    print(_describe(scene))
+    print("\nderived geometry (m, rad, kg)")
+    for name, value in asdict(scene.bearing.geometry).items():
+        print(f"    {name:<28} {value:.6g}")
+    return DONE
+
+
+def _info_result(path: Path, *, as_json: bool) -> int:
+    from trbdyn.results import summary
+    from trbdyn.results.result import load
+
+    result = load(path)
+    values = result.summary()
+    if as_json:
+        about = {"meta": result.meta, "records": len(result), "groups": result.groups, "stats": result.stats}
+        print(json.dumps(summary.clean(about | {"summary": values}), indent=2, allow_nan=False))
+        return DONE
+    print(_describe(result.scene))
+    print(f"{len(result)} records, groups {', '.join(result.groups)}")
+    print(", ".join(f"{name} {value}" for name, value in result.meta.items() if isinstance(value, str | int)))
+    print()
+    print(summary.table(values))
+    return DONE
+
+
+def _describe(scene: Scene) -> str:
+    """What is run, in a few lines."""
+    bearing, cage = scene.bearing, scene.bearing.cage
+    effects = scene.effects.to_dict()
+    effects.pop("friction")
+    return "\n".join(
+        (
+            f"bearing {bearing.name}: {bearing.n_rollers} rollers, pitch diameter {1e3 * bearing.pitch_diameter:.4g} mm, "
+            f"cage play {1e3 * cage.play_radial:.3g} mm radial, {1e3 * cage.play_circumferential:.3g} mm circumferential",
+            f"speed {_amount(scene.speed_rpm)} rpm, axial load {_amount(scene.axial_load)} N, "
+            f"radial load {_amount(scene.radial_load)} N, oil at {scene.lubricant.temperature_c:g} C, start {scene.start.kind}",
+            "effects: " + ", ".join(f"{name} {value}" for name, value in effects.items()),
+        )
+    )
+
+
+def _amount(quantity: Any) -> str:
+    return f"{quantity:g}" if isinstance(quantity, int | float) else "history"

@@ -1,0 +1,110 @@
+"""The commands ``run`` and ``resume``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trbdyn.base.own_files import file_path, output_path
+from trbdyn.cli.case import add_set, case_with_changes, simulate
+from trbdyn.cli.outcome import DONE, FAILED, one_line
+from trbdyn.errors import FileError, InputError
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+
+def add_run_parsers(
+    commands: Any, common: Sequence[argparse.ArgumentParser], length: Sequence[argparse.ArgumentParser]
+) -> None:
+    """Add the commands ``run`` and ``resume``."""
+    run = commands.add_parser("run", parents=[*common, *length], help="run a case")
+    run.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
+    run.add_argument("-o", "--output", metavar="FILE", help="result file (default: CASE.h5 in this folder)")
+    run.add_argument("--duration", type=float, metavar="S", help="bearing time (s), in place of revolutions")
+    run.add_argument(
+        "--save-every",
+        type=float,
+        metavar="S",
+        help="time between records (s); default 1e-4, up to 1e-3 in long runs",
+    )
+    run.add_argument(
+        "--checkpoint-every", type=float, metavar="S", help="bearing time between checkpoints (s), to resume from"
+    )
+    run.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    run.add_argument("--overwrite", action="store_true", help="replace result and summary if they are there")
+    add_set(run)
+    run.set_defaults(command=_run)
+
+    resume = commands.add_parser("resume", parents=[*common], help="go on with a run that was cut off")
+    resume.add_argument("file", metavar="FILE", help="its result file; the checkpoint lies beside it")
+    resume.add_argument("--instruction-set", metavar="NAME", help="kernel variant, in place of the one it began with")
+    resume.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
+    resume.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    resume.add_argument("--overwrite", action="store_true", help="replace the summary if it is there")
+    resume.set_defaults(command=_resume)
+
+
+def _run(options: argparse.Namespace) -> int:
+    scene, run = case_with_changes(options.case, options.changes)
+    changes = {
+        name: getattr(options, name)
+        for name in ("revolutions", "duration", "save_every", "accuracy", "checkpoint_every")
+        if getattr(options, name) is not None
+    }
+    if "revolutions" in changes and "duration" not in changes:
+        changes["duration"] = None
+    if "duration" in changes and "revolutions" not in changes:
+        changes["revolutions"] = None
+    name = f"{Path(options.case).stem}.h5" if options.output is None else options.output
+    output = output_path(name, overwrite=options.overwrite)
+    _check_summary(options.summary, output, overwrite=options.overwrite)
+    given = run.model_fields_set | changes.keys()
+    result = simulate(
+        scene, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite, given=given
+    )
+    return _finish(result, output, options.summary, quiet=options.quiet)
+
+
+def _check_summary(summary_file: str | None, output: Path, *, overwrite: bool) -> None:
+    """See before a run that its summary can be written."""
+    if summary_file is None:
+        return
+    path = output_path(summary_file, overwrite=overwrite, field="summary")
+    if path.absolute() == output.absolute():
+        raise InputError.of("summary", summary_file, "must be another file than the result")
+    if not path.parent.is_dir():
+        raise FileError(f"{path}: cannot be written: there is no folder {path.parent}")
+
+
+def _resume(options: argparse.Namespace) -> int:
+    from trbdyn.run.resume import resume
+
+    _check_summary(options.summary, file_path(options.file, "file"), overwrite=options.overwrite)
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always", UserWarning)
+        try:
+            result = resume(options.file, instruction_set=options.instruction_set, progress=not options.quiet)
+        finally:
+            for note in notes:
+                print(f"trbdyn: {one_line(str(note.message))}", file=sys.stderr)
+    return _finish(result, Path(options.file), options.summary, quiet=options.quiet)
+
+
+def _finish(result: Result, output: Path, summary_file: str | Path | None, *, quiet: bool) -> int:
+    """Write and print the summary; the exit code says whether the run reached its end."""
+    from trbdyn.results import summary
+
+    values = result.summary()
+    if summary_file is not None:
+        summary.write_json(values, summary_file)
+    if not quiet:
+        print(summary.table(values))
+        print(f"\n{len(result)} records in {output}: {result.meta.get('kept', '')}")
+    if not result.success:
+        print(f"trbdyn: {one_line(result.message)}", file=sys.stderr)
+    return DONE if result.success else FAILED

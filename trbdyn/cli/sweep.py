@@ -1,0 +1,90 @@
+"""The subcommand ``sweep``: run a study from a TOML file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    import xarray
+
+DONE, FAILED = 0, 1
+
+COLUMNS: Final = (
+    "status",
+    "settling",
+    "cage_motion",
+    "orbit_radius_over_cpr",
+    "whirl_ratio",
+    "pocket_force_p95",
+    "torque",
+)
+"""Observables in the table that is printed."""
+
+
+def add_sweep_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> argparse.ArgumentParser:
+    """Add the subcommand to a parser's commands."""
+    sweep: argparse.ArgumentParser = commands.add_parser(
+        "sweep",
+        parents=[*parents],
+        help="run a parameter study",
+        description="Run a parameter study from a TOML file.",
+    )
+    sweep.add_argument("study", metavar="STUDY", help="a TOML file, or the name of a shipped study")
+    sweep.add_argument("-o", "--output", metavar="FOLDER", help="folder (default: STUDY without its ending)")
+    sweep.add_argument("--workers", type=int, metavar="N", help="worker processes (default, and at most: the cores)")
+    sweep.add_argument("--again", action="store_true", help="run cases again that are done")
+    sweep.add_argument("--quiet", action="store_true", help="no progress bar, no table")
+    sweep.set_defaults(command=run_sweep)
+    return sweep
+
+
+def run_sweep(options: argparse.Namespace) -> int:
+    """Run a study; the exit code is 0 if no case failed."""
+    from trbdyn.study.runner import run
+    from trbdyn.study.study_file import load_study
+
+    study = load_study(options.study)
+    folder = Path(options.study).stem if options.output is None else options.output
+    data = run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
+    failed = int((data.status != "done").sum())
+    if not options.quiet:
+        print(table(data))
+        print(f"\n{data.status.size} cases, results and observables.nc in {folder}")
+    for line in problems(data):
+        print(f"trbdyn: {line}", file=sys.stderr)
+    return FAILED if failed else DONE
+
+
+def problems(data: xarray.Dataset) -> list[str]:
+    """What the cases that failed say, one line each."""
+    rows = data[["status", "message"]].to_dataframe()
+    bad = rows[rows["status"] != "done"]
+    return [
+        f"{where}: {str(message).splitlines()[0] if message else 'not run'}"
+        for where, message in bad["message"].items()
+    ]
+
+
+def table(data: xarray.Dataset, columns: tuple[str, ...] = COLUMNS) -> str:
+    """Parameters and some observables as a table for people."""
+    shown = [name for name in columns if name in data]
+    parameters = [str(dim) for dim in data.dims if dim in data.coords and dim != "case"]
+    parameters += [str(name) for name in data.coords if name not in parameters and data[name].dims == ("case",)]
+    frame = data[shown].to_dataframe().reset_index()
+    frame = frame[[name for name in parameters if name in frame and name != "case"] + shown]
+    rows = [
+        [str(name) for name in frame.columns],
+        *([_text(value) for value in row] for row in frame.itertuples(index=False)),
+    ]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, float):
+        return "-" if value != value else f"{value:.5g}"
+    return str(value) or "-"

@@ -1,0 +1,62 @@
+"""The command ``view``: a result as a moving 3-D view in a browser."""
+
+from __future__ import annotations
+
+import argparse
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+
+def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
+    """Add the command ``view``."""
+    view = commands.add_parser("view", parents=[*parents], help="show a result as a moving 3-D view in a browser")
+    view.add_argument("file", metavar="FILE", help="a result file")
+    view.add_argument(
+        "-o", "--output", metavar="HTML", help="HTML file to write (default: FILE without its ending, + _view.html)"
+    )
+    view.add_argument(
+        "--revolutions",
+        type=float,
+        default=10.0,
+        metavar="N",
+        help="last turns of the shaft to show (default 10); 0: all",
+    )
+    view.add_argument("--frames", type=int, default=600, metavar="N", help="most records to take (default 600)")
+    view.add_argument(
+        "--max-size", type=float, default=12.0, metavar="MB", help="largest size of the file (default 12 MB)"
+    )
+    view.add_argument(
+        "--exaggeration",
+        type=float,
+        metavar="X",
+        help="factor by which motion and clearances are drawn larger at the start",
+    )
+    view.add_argument("--gltf", metavar="GLB", help="also write an animated glTF file (its last 2 turns of the shaft)")
+    view.add_argument("--no-open", action="store_true", help="write the file, open no browser")
+    view.set_defaults(command=_view)
+
+
+def _view(options: argparse.Namespace) -> int:
+    from trbdyn.results.result import load
+    from trbdyn.viewer import view
+
+    result = load(options.file)
+    output = Path(options.output or f"{Path(options.file).with_suffix('')}_view.html")
+    view(
+        result,
+        output,
+        revolutions=options.revolutions or None,
+        max_frames=options.frames,
+        max_size_mb=options.max_size,
+        exaggeration=options.exaggeration,
+    )
+    print(f"{output}: open it in a browser; it needs no network")
+    if options.gltf:
+        from trbdyn.viewer.gltf import save_gltf
+
+        print(save_gltf(result, options.gltf, exaggeration=options.exaggeration))
+    if not options.no_open:
+        webbrowser.open(output.resolve().as_uri())
+    return 0

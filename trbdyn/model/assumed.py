@@ -1,0 +1,246 @@
+"""Inputs of a bearing that were not given: assumed in proportion to the 30310 rig (docs/theory/geometry.md#the-30310-in-numbers).
+
+A number is *given* where the user gave it, and *assumed* otherwise; `Bearing.assumed` lists the latter, and a result
+keeps the list. An assumed number follows the bearing: after ``bearing.replace(pitch_diameter=...)`` it is that of the
+new size.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+from trbdyn.base.validation import Model, as_number
+from trbdyn.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from trbdyn.model.bearing import Bearing
+
+RIG: Final[dict[str, float]] = {
+    "diameter": 14.0e-3,
+    "effective_length": 19.8e-3,
+    "pitch_diameter": 82.389e-3,
+    "total_length": 20.8e-3,
+    "end_stiffness": 1e10,
+    "load": 1833.0,
+    "contact_height": 1.667e-3,
+    "edge_low": 0.3e-3,
+    "edge_high": 3.5e-3,
+    "front_clearance": 0.2e-3,
+    "front_low": 0.3e-3,
+    "front_high": 2.0e-3,
+    "mass": 0.20,
+    "inertia_axial": 3.9e-4,
+    "inertia_transverse": 2.1e-4,
+    "play_radial": 0.25e-3,
+    "play_circumferential": 0.12e-3,
+    "play_axial": 0.4e-3,
+    "rail_offset": 12e-3,
+    "bar_width": 3e-3,
+    "wall_inner": 1.5e-3,
+    "wall_outer": 4.5e-3,
+    "wall_half_width": 6e-3,
+    "land_inner_radius": 39.5e-3,
+    "land_outer_radius": 50.5e-3,
+    "land_width": 3e-3,
+    "land_clearance": 0.1e-3,
+    "land_contact_film": 1e-6,
+}
+"""Numbers of the 30310 rig (m, kg, kg m2, N, N/m^1.5), to which assumed ones are in proportion."""
+
+_WITH_DIAMETER: Final = {
+    "ribs": ("contact_height", "front_clearance", "front_low", "front_high"),
+    "cage": ("play_radial", "play_circumferential", "play_axial", "bar_width", "wall_half_width"),
+}
+_CONSTANT: Final = {
+    "roller": ("density", "sphere_ratio"),
+    "roller.profile": ("kind", "k1", "k2", "zm"),
+    "cage": ("offset",),
+    "material": ("youngs_modulus", "poisson_ratio"),
+    "roughness": ("raceway", "rib"),
+    "land": ("fill",),
+}
+"""Assumed numbers that do not depend on the size."""
+_SECTIONS: Final = ("roller", "ribs", "cage", "material", "roughness", "land")
+
+Values = dict[str, Any]
+
+
+def _small_end_radius(given: Mapping[str, float]) -> float:
+    """Radius of the roller's small end (m); the cones follow from the same fixed-point iteration as in the core."""
+    cup, pitch, diameter = math.radians(given["cup_half_angle_deg"]), given["pitch_diameter"], given["diameter"]
+    nu = 0.0
+    for _ in range(50):
+        nu = math.atan2(0.5 * diameter * math.sin(cup - nu), 0.5 * pitch)
+    return 0.5 * diameter - 0.5 * given["total_length"] * math.tan(nu)
+
+
+def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """Numbers that belong to a bearing of this size.
+
+    Parameters
+    ----------
+    size : mapping of str to float
+        diameter, effective_length, pitch_diameter (m), cup_half_angle_deg (deg); as far as they are given total_length
+        (m), contact_height (m), the cage's mass (kg) and the land's clearance (m).
+
+    Returns
+    -------
+    dict of str to dict of str to float
+        By section: 'roller', 'roller.profile', 'ribs', 'cage', 'land'.
+    """
+    across, along = size["diameter"] / RIG["diameter"], size["effective_length"] / RIG["effective_length"]
+    pitch = size["pitch_diameter"] / RIG["pitch_diameter"]
+    total = size.get(
+        "total_length", size["effective_length"] + (RIG["total_length"] - RIG["effective_length"]) * across
+    )
+    made: dict[str, dict[str, float]] = {
+        section: {name: RIG[name] * across for name in names} for section, names in _WITH_DIAMETER.items()
+    }
+    made["roller"] = {"total_length": total, "end_stiffness": RIG["end_stiffness"] * math.sqrt(across)}
+    made["roller.profile"] = {"load": RIG["load"] * (across * along)}
+    height = size.get("contact_height", made["ribs"]["contact_height"]) / RIG["contact_height"]
+    made["ribs"] |= {name: RIG[name] * height for name in ("edge_low", "edge_high")}
+    mass = size.get("mass", RIG["mass"] * pitch**2 * along)
+    turned = mass / RIG["mass"] * pitch**2
+    made["cage"] |= {name: RIG[name] * turned for name in ("inertia_axial", "inertia_transverse")}
+    end = _small_end_radius({**size, "total_length": total})
+    end = end if end > 0.0 else math.inf  # a roller beyond the apex: the core reports it
+    made["cage"] |= {
+        "mass": mass,
+        "rail_offset": RIG["rail_offset"] * along,
+        "wall_inner": min(RIG["wall_inner"] * across, 0.3 * end),
+        "wall_outer": min(RIG["wall_outer"] * across, 0.9 * end),
+    }
+    clearance = size.get("clearance", RIG["land_clearance"] * across)
+    made["land"] = {
+        "offset": RIG["rail_offset"] * along,
+        "inner_radius": RIG["land_inner_radius"] * pitch,
+        "outer_radius": RIG["land_outer_radius"] * pitch,
+        "width": RIG["land_width"] * along,
+        "clearance": clearance,
+        "contact_film": RIG["land_contact_film"] * (clearance / RIG["land_clearance"]),
+    }
+    return made
+
+
+def with_assumed(values: Mapping[str, Any], kinds: Mapping[str, type[Model]]) -> Values:
+    """Fields of a bearing, its sections made whole with assumed numbers.
+
+    A list ``assumed`` among the fields, as `Bearing.to_dict` writes it, says which of the numbers were not given: they
+    stay as they are, so that a result keeps what it was made with.
+
+    Parameters
+    ----------
+    values : mapping
+        Fields of a bearing.
+    kinds : mapping of str to type
+        Model of each section, by its path: 'roller', 'roller.profile', 'ribs', 'cage', 'material', 'roughness', 'land'.
+
+    Raises
+    ------
+    InputError
+        If a section is wrong.
+    """
+    found = dict(values)
+    kept = found.pop("assumed", ())
+    if not isinstance(kept, list | tuple) or not all(isinstance(path, str) for path in kept):
+        raise InputError.of(("bearing", "assumed"), kept, "must be a list of paths of inputs, such as 'cage.bar_width'")
+    kept = set(kept)
+    sections = {name: _given(found.get(name, {})) for name in _SECTIONS}
+    if any(section is None for section in sections.values()) or "roller" not in found:
+        return found
+    given: dict[str, Values] = {name: dict(section or {}) for name, section in sections.items()}
+    profile = _given(given["roller"].get("profile", {}))
+    if profile is None:
+        return found
+    given["roller.profile"] = profile
+    stored = {
+        section: {name: numbers.pop(name) for name in list(numbers) if f"{section}.{name}" in kept}
+        for section, numbers in given.items()
+    }
+    size = _size(found, given)
+    made: Mapping[str, Mapping[str, float]] = {} if size is None else scaled(size)
+    problems: list[Problem] = []
+
+    def build(kind: type[Model], section: str, extra: Values, raw: Any) -> Any:
+        numbers = {**made.get(section, {}), **stored[section], **given[section], **extra}
+        try:
+            model = kind(**numbers)
+        except InputError as error:
+            if isinstance(raw, Mapping):
+                return numbers  # reported with everything else that is wrong when the fields of the bearing are checked
+            problems.extend(error.under(tuple(section.split("."))).problems)
+            return raw
+        object.__setattr__(model, "__pydantic_fields_set__", {*given[section], *extra})
+        return model
+
+    own = build(kinds["roller.profile"], "roller.profile", {}, given["roller"].get("profile", {}))
+    for section in _SECTIONS:
+        given[section].pop("profile", None)
+        extra = {"profile": own} if section == "roller" else {}
+        found[section] = build(kinds[section], section, extra, found.get(section, {}))
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def _given(section: Any) -> Values | None:
+    """What was given of a section; None if it is none."""
+    if isinstance(section, Model):
+        return {name: getattr(section, name) for name in section.model_fields_set}
+    return dict(section) if isinstance(section, Mapping) else None
+
+
+def _size(found: Values, given: Mapping[str, Values]) -> dict[str, float] | None:
+    """What assumed numbers depend on; None where it is missing or cannot be right, which is reported elsewhere."""
+    wanted = {
+        "diameter": given["roller"].get("diameter"),
+        "effective_length": given["roller"].get("effective_length"),
+        "pitch_diameter": found.get("pitch_diameter"),
+        "cup_half_angle_deg": found.get("cup_half_angle_deg"),
+    }
+    optional = {
+        "total_length": given["roller"].get("total_length"),
+        "contact_height": given["ribs"].get("contact_height"),
+        "mass": given["cage"].get("mass"),
+        "clearance": given["land"].get("clearance"),
+    }
+    size: dict[str, float] = {}
+    for name, value in {**wanted, **optional}.items():
+        try:
+            number = as_number(value)
+        except ValueError:
+            number = math.nan
+        if math.isfinite(number) and 0.0 < number < 1e6:
+            size[name] = number
+        elif name in wanted:
+            return None
+    return size
+
+
+def assumed_inputs(bearing: Bearing) -> dict[str, float]:
+    """Inputs that were not given: value by path."""
+    names: dict[str, list[str]] = {section: list(numbers) for section, numbers in _CONSTANT.items()}
+    for section, numbers in scaled(
+        {
+            "diameter": bearing.roller.diameter,
+            "effective_length": bearing.roller.effective_length,
+            "pitch_diameter": bearing.pitch_diameter,
+            "cup_half_angle_deg": bearing.cup_half_angle_deg,
+        }
+    ).items():
+        names[section] = [*numbers, *names.get(section, [])]
+    found: dict[str, float] = {}
+    for section, fields in names.items():
+        part: Any = bearing
+        for name in section.split("."):
+            part = getattr(part, name)
+        unused = {"load", "k1", "k2", "zm"} if getattr(part, "kind", "logarithmic") != "logarithmic" else set()
+        found |= {
+            f"{section}.{name}": getattr(part, name)
+            for name in fields
+            if name not in part.model_fields_set and name not in unused
+        }
+    return found

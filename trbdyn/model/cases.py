@@ -1,0 +1,185 @@
+"""Bearings and scenes that ship with the package."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+from trbdyn.model.bearing import Bearing, Cage, Profile, Ribs, Roller
+from trbdyn.model.effects import Effects
+from trbdyn.model.lubricants import vg100
+from trbdyn.model.scene import Scene
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """Speed and loads of a measurement.
+
+    Attributes
+    ----------
+    speed_rpm : float
+        Speed of the inner ring (rpm).
+    axial_load : float
+        Axial load (N).
+    radial_load : float
+        Radial load (N).
+    """
+
+    speed_rpm: float
+    axial_load: float
+    radial_load: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """For instance ``3000rpm_4930N`` or ``2000rpm_4930N_5530N``."""
+        loads = f"{self.axial_load:g}N" + (f"_{self.radial_load:g}N" if self.radial_load else "")
+        return f"{self.speed_rpm:g}rpm_{loads}"
+
+
+_SPEEDS = (1000.0, 2000.0, 3000.0)
+
+OPERATING_POINTS: Final = {
+    point.name: point
+    for point in (
+        *(OperatingPoint(speed, axial) for axial in (1230.0, 3080.0, 4930.0) for speed in _SPEEDS),
+        *(OperatingPoint(speed, 4930.0, radial) for radial in (2780.0, 5530.0, 8380.0) for speed in _SPEEDS),
+    )
+}
+"""The paper's speeds and loads (Sakaguchi and Harada 2006) for the 30310 rig, by name."""
+
+MEASURED_TORQUE_32216: Final = {500.0: 1.30, 2000.0: 2.95, 4000.0: 3.75}
+"""Measured torque (N m) of the 32216 at an axial load of 6 kN, FVA3 at 50 C, by speed (rpm); Wingertszahn et al. 2023.
+
+Read from a figure; another reading of the same figure gives 1.20, 2.75 and 3.80 N m.
+"""
+
+MEASURED_TORQUE_32216_COMBINED: Final = {500.0: 1.50, 1000.0: 1.95, 2000.0: 2.50, 4000.0: 3.25}
+"""The same at an axial load of 6 kN with a radial load of 6.5 kN."""
+
+
+def rig_30310() -> Bearing:
+    """The test bearing of Sakaguchi and Harada 2006: equivalent of 30310 (50 x 110 x 29.25 mm), 12 rollers.
+
+    The design load of the rollers' profile is the outer load of a roller at an axial load of 4930 N (assumed).
+    """
+    return Bearing(
+        name="30310",
+        n_rollers=12,
+        cup_half_angle_deg=12.0 + 57.0 / 60.0 + 10.0 / 3600.0,
+        pitch_diameter=82.389e-3,
+        roller=Roller(
+            diameter=14.0e-3, effective_length=19.8e-3, total_length=20.8e-3, profile=Profile.logarithmic(1833.0)
+        ),
+        ribs=Ribs(contact_height=1.667e-3),
+        cage=Cage(
+            mass=0.20,
+            inertia_axial=3.9e-4,
+            inertia_transverse=2.1e-4,
+            play_radial=0.25e-3,
+            play_circumferential=0.12e-3,
+        ),
+    )
+
+
+def bearing_32216() -> Bearing:
+    """A 32216 (80 x 140 x 35.25 mm) from catalogue numbers; 16 rollers.
+
+    Known are the pitch diameter, diameter, length and number of the rollers (Wingertszahn et al. 2023, Lubricants
+    11:369). That source gives no cup angle: it is that of ISO 355 for the series 3EC, 15 deg 38' 32", which agrees
+    with the catalogues' e = 0.42 to 0.43 = 1.5 tan(alpha). All other numbers are assumed: those of the 30310 rig,
+    lengths of rib and pocket scaled with the roller's diameter (17/14), bars with its length, the cage's mass with
+    pitch diameter squared times length, its inertias with pitch diameter squared in addition. The profile's design
+    load is the outer load of a roller at 6 kN.
+    """
+    rig = rig_30310()
+    scale = 17.0 / 14.0
+    length, pitch_diameter = 22.7e-3, 108.5e-3
+    mass = (pitch_diameter / rig.pitch_diameter) ** 2 * length / rig.roller.effective_length
+    inertia = mass * (pitch_diameter / rig.pitch_diameter) ** 2
+    return Bearing(
+        name="32216",
+        n_rollers=16,
+        cup_half_angle_deg=15.0 + 38.0 / 60.0 + 32.0 / 3600.0,
+        pitch_diameter=pitch_diameter,
+        roller=Roller(
+            diameter=17.0e-3,
+            effective_length=length,
+            total_length=length + 1.0e-3,
+            profile=Profile.logarithmic(1391.0),
+            end_stiffness=rig.roller.end_stiffness,
+        ),
+        ribs=Ribs(
+            contact_height=scale * rig.ribs.contact_height,
+            edge_low=scale * rig.ribs.edge_low,
+            edge_high=scale * rig.ribs.edge_high,
+            front_clearance=rig.ribs.front_clearance,
+            front_low=scale * rig.ribs.front_low,
+            front_high=scale * rig.ribs.front_high,
+        ),
+        cage=Cage(
+            mass=mass * rig.cage.mass,
+            inertia_axial=inertia * rig.cage.inertia_axial,
+            inertia_transverse=inertia * rig.cage.inertia_transverse,
+            play_radial=scale * rig.cage.play_radial,
+            play_circumferential=scale * rig.cage.play_circumferential,
+            play_axial=scale * rig.cage.play_axial,
+            rail_offset=rig.cage.rail_offset * length / rig.roller.effective_length,
+            bar_width=scale * rig.cage.bar_width,
+            wall_inner=scale * rig.cage.wall_inner,
+            wall_outer=scale * rig.cage.wall_outer,
+            wall_half_width=scale * rig.cage.wall_half_width,
+        ),
+    )
+
+
+def scene_30310(
+    speed_rpm: float = 3000.0, axial_load: float = 4930.0, radial_load: float = 0.0, **changes: Any
+) -> Scene:
+    """The 30310 rig: VG100 at 60 C, effects of the paper.
+
+    Parameters
+    ----------
+    speed_rpm : float
+        Speed of the inner ring (rpm).
+    axial_load, radial_load : float
+        Loads (N); the radial load acts on the inner ring along +y (loaded zone on top).
+    **changes
+        Other fields of `Scene`.
+    """
+    fields = {"lubricant": vg100(temperature_c=60.0), "effects": Effects.paper(), **changes}
+    return Scene(
+        fields.pop("bearing", None) or rig_30310(),
+        speed_rpm=speed_rpm,
+        axial_load=axial_load,
+        radial_load=radial_load,
+        **fields,
+    )
+
+
+def scene_32216(
+    speed_rpm: float = 2000.0, axial_load: float = 6000.0, radial_load: float = 0.0, **changes: Any
+) -> Scene:
+    """The 32216: FVA3 at 50 C, effects as by default (`Effects.standard`).
+
+    Parameters
+    ----------
+    speed_rpm : float
+        Speed of the inner ring (rpm): its torque is known at those of `MEASURED_TORQUE_32216`.
+    axial_load, radial_load : float
+        Loads (N).
+    **changes
+        Other fields of `Scene`.
+    """
+    fields = {"lubricant": vg100(temperature_c=50.0), **changes}
+    return Scene(
+        fields.pop("bearing", None) or bearing_32216(),
+        speed_rpm=speed_rpm,
+        axial_load=axial_load,
+        radial_load=radial_load,
+        **fields,
+    )
+
+
+BEARINGS: Final[dict[str, Callable[[], Bearing]]] = {"30310": rig_30310, "32216": bearing_32216}
+"""Shipped bearings by name, as TOML cases call for them."""

@@ -1,0 +1,116 @@
+"""Units, ranges and texts of inputs from the core's tables, where they are said once: parameters of a model
+(``csrc/bearing/params.h``) and settings of an integration (``csrc/stepping/integrator.h``).
+
+Models add what the core cannot know: defaults, angles in degrees, and bounds that are stricter than the table's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from pydantic import Field
+
+from trbdyn import _core
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A row of the core's table.
+
+    Attributes
+    ----------
+    name : str
+        Name of the parameter.
+    unit : str
+        SI unit; ``"count"`` and ``"choice"`` stand for whole numbers.
+    lower, upper : float
+        Smallest and largest allowed value.
+    text : str
+        What it is.
+    """
+
+    name: str
+    unit: str
+    lower: float
+    upper: float
+    text: str
+
+
+PARAMETERS: Final = {row[0]: Parameter(*row) for row in _core.parameter_table()}
+"""Rows of the core's table, by name."""
+
+
+def parameter(name: str, **bounds: float) -> Any:
+    """Metadata of a field that is a parameter of the core: its unit, range and text.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter in the core's table.
+    **bounds : float
+        Bounds that are stricter than the table's: ``gt``, ``ge``, ``lt`` or ``le``.
+
+    Raises
+    ------
+    KeyError
+        If the core has no such parameter: package and core do not belong together.
+    """
+    row = PARAMETERS[name]
+    whole = row.unit in ("count", "choice")
+    if "gt" not in bounds:
+        bounds.setdefault("ge", int(row.lower) if whole else row.lower)
+    if "lt" not in bounds:
+        bounds.setdefault("le", int(row.upper) if whole else row.upper)
+    extra: dict[str, Any] = {"unit": "1" if whole else row.unit, "parameter": name}
+    options: dict[str, Any] = dict(bounds)
+    return Field(description=row.text, json_schema_extra=extra, **options)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A row of the core's table of settings.
+
+    Attributes
+    ----------
+    name : str
+        Name of the setting.
+    default : float
+        What it is unless something else is asked for.
+    lower, upper : float
+        Smallest and largest allowed value.
+    text : str
+        What it is, with its unit.
+    """
+
+    name: str
+    default: float
+    lower: float
+    upper: float
+    text: str
+
+
+SETTINGS: Final = {row[0]: Setting(*row) for row in _core.setting_table()}
+"""Settings of an integration, by name."""
+
+
+def setting(name: str, unit: str, **bounds: float) -> Any:
+    """Metadata of a field that is a setting of the core's integration: its range and text.
+
+    Parameters
+    ----------
+    name : str
+        Name of the setting in the core's table.
+    unit : str
+        Its unit.
+    **bounds : float
+        ``ge`` or ``le`` where the field allows more than the core, as 0 for a choice of the integrator.
+
+    Raises
+    ------
+    KeyError
+        If the core has no such setting: package and core do not belong together.
+    """
+    row = SETTINGS[name]
+    options: dict[str, Any] = {"ge": row.lower, "le": row.upper} | bounds
+    return Field(description=row.text, json_schema_extra={"unit": unit, "setting": name}, **options)

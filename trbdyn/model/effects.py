@@ -1,0 +1,214 @@
+"""Effects: the switches and choices of a scene. What is off is not evaluated."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import model_validator
+
+from trbdyn.base.validation import Flag, Model, Number, Whole
+from trbdyn.errors import InputError
+from trbdyn.model.core_table import parameter
+
+
+class Friction(Model):
+    """Constants of friction and the small speeds that keep its laws smooth.
+
+    Parameters
+    ----------
+    lambda_boundary, lambda_full : float
+        Film parameters below which friction is boundary, and above which the film carries all (1).
+    boundary_limit, boundary_slope, boundary_decay : float
+        mu_bd = (-limit + slope s) exp(-decay s) + limit of the slide-roll ratio s (1).
+    dry_friction : float
+        Coulomb coefficient of dry contacts and of traction 'coulomb' (1); assumed.
+    coulomb_speed : float
+        Sliding speed over which Coulomb friction turns smoothly through zero (m/s); assumed.
+    cage_entrainment_speed : float
+        ue, guards the slide-roll ratio where surfaces do not roll (m/s); assumed.
+    speed_floor : float
+        Smallest mean speed in films and slide-roll ratios, smooth (m/s); assumed.
+    thermal_floor : float
+        Smallest thermal film reduction factor, smooth (1).
+    rolling_blend : float
+        Half width in h_PE/h_IR over which rolling resistance sets in (1); assumed.
+
+    Notes
+    -----
+    Sources: Sakaguchi and Harada 2006, eqs. 2, 6 and 10; docs/theory/lubrication.md#mixed-friction.
+    """
+
+    lambda_boundary: Annotated[Number, parameter("lambda_boundary")] = 0.01
+    lambda_full: Annotated[Number, parameter("lambda_full")] = 1.5
+    boundary_limit: Annotated[Number, parameter("boundary_limit")] = 0.1
+    boundary_slope: Annotated[Number, parameter("boundary_slope")] = 22.28
+    boundary_decay: Annotated[Number, parameter("boundary_decay")] = 181.46
+    dry_friction: Annotated[Number, parameter("dry_friction")] = 0.1
+    coulomb_speed: Annotated[Number, parameter("coulomb_speed")] = 0.01
+    cage_entrainment_speed: Annotated[Number, parameter("cage_entrainment_speed")] = 0.05
+    speed_floor: Annotated[Number, parameter("speed_floor")] = 1e-3
+    thermal_floor: Annotated[Number, parameter("thermal_floor")] = 0.05
+    rolling_blend: Annotated[Number, parameter("rolling_blend")] = 0.1
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.lambda_full <= self.lambda_boundary:
+            raise InputError.of(
+                "lambda_full", self.lambda_full, f"must be > lambda_boundary, {self.lambda_boundary:g} (1)"
+            )
+        return self
+
+
+class Effects(Model):
+    """Every switch and choice of a scene; the defaults are those of `standard`.
+
+    They are chosen by physics. The pressure of a rolling contact's film is not symmetric: that makes rolling resistance, and it
+    pushes the roller, too. With this force (`rolling_pressure_force`) the moments on a roller balance, and both rings carry the
+    same friction torque, as they must in steady rotation; without it they differ by about 40 %. The film at the rib is that of
+    the piezoviscous-elastic regime (`rib_film` 'pe'): the other formula gives tens of micrometres there, so that no rib would
+    ever run in mixed friction. Contacts damp a little (assumed). `paper` has none of these: it repeats the paper.
+
+    Parameters
+    ----------
+    gravity : bool
+        Gravity acts.
+    bodies : {'rollers_and_cage', 'rollers'}
+        Rollers with their cage, or without one; rollers without a cage must not touch each other.
+    planar : bool
+        Axial positions and tilts of rollers and cage are frozen.
+    lubrication : {'mixed', 'full_film', 'boundary', 'dry'}
+        How friction arises. Dry: Coulomb friction everywhere. Boundary: the law of eq. 6 alone. Full film: no boundary
+        share.
+    traction : {'muraki_kimura', 'coulomb', 'none'}
+        Friction of films; acts where lubrication is mixed or full film.
+    thermal : bool
+        Thermal reduction of films; acts where there are films.
+    rolling_resistance : bool
+        EHL rolling resistance; acts where there are films.
+    rolling_pressure_force : bool
+        Pressure force of the rolling film on the roller; needs `rolling_resistance`, and is off by default without it.
+    starvation_factor : float
+        Factor of every film thickness (1).
+    back_rib, front_rib : bool
+        Roller ends against the ribs of the inner ring.
+    rib_film : {'max', 'pe'}
+        Film at the back-face rib: the thicker of piezoviscous-elastic and isoviscous-rigid, or the former.
+    pocket_bars, pocket_ends : bool
+        Flank, and ends, of the rollers against the faces of their pockets.
+    pocket_edges : bool
+        Faces end at their outlines; without it they are unbounded planes.
+    guidance : {'rollers', 'inner_land', 'outer_land'}
+        What guides the cage: its rollers alone, or also a land of the inner or outer ring, whose numbers are `Bearing.land`.
+        The land has an oil film where lubrication is mixed or full film; below a stated height of the film the cage touches
+        it, with the friction of pockets.
+    oil_fill : float
+        Share of oil in the mixture of oil and air round the rollers, from 0 (no drag) to 1 (a flooded bearing). It is
+        known in no bearing: show its effect over a band, 0 to 0.3 (assumed). The mixture rests.
+    drag_coefficient : float
+        Cd of a roller that moves across its axis, on its diameter times its length (assumed; a cylinder alone has 1.0 to
+        1.2). Acts where `oil_fill` is not 0.
+    damping : {'off', 'hunt_crossley'}
+        Normal damping of contacts, F = q (1 + c d_dot).
+    damping_race, damping_cage : float
+        c of raceways and ribs, and of pockets (s/m); assumed.
+    quadrature : {'uniform', 'gauss'}
+        Nodes along a contact line: uniform slices or Gauss-Legendre nodes.
+    n_slices : int
+        Number of slices or nodes along a contact line.
+    friction : Friction
+        Constants of friction.
+    """
+
+    gravity: Flag = True
+    bodies: Literal["rollers_and_cage", "rollers"] = "rollers_and_cage"
+    planar: Flag = False
+    lubrication: Literal["mixed", "full_film", "boundary", "dry"] = "mixed"
+    traction: Literal["muraki_kimura", "coulomb", "none"] = "muraki_kimura"
+    thermal: Flag = True
+    rolling_resistance: Flag = True
+    rolling_pressure_force: Flag = True
+    starvation_factor: Annotated[Number, parameter("starvation_factor")] = 1.0
+    back_rib: Flag = True
+    front_rib: Flag = True
+    rib_film: Literal["max", "pe"] = "pe"
+    pocket_bars: Flag = True
+    pocket_ends: Flag = True
+    pocket_edges: Flag = True
+    guidance: Literal["rollers", "inner_land", "outer_land"] = "rollers"
+    oil_fill: Annotated[Number, parameter("oil_fill")] = 0.0
+    drag_coefficient: Annotated[Number, parameter("drag_coefficient")] = 1.0
+    damping: Literal["off", "hunt_crossley"] = "hunt_crossley"
+    damping_race: Annotated[Number, parameter("damping_race")] = 0.1
+    damping_cage: Annotated[Number, parameter("damping_cage")] = 0.5
+    quadrature: Literal["uniform", "gauss"] = "gauss"
+    n_slices: Annotated[Whole, parameter("n_slices")] = 16
+    friction: Friction = Friction()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _follow(cls, values: Any) -> Any:
+        """Without rolling resistance its pressure force is off, unless it is asked for."""
+        if (
+            isinstance(values, dict)
+            and values.get("rolling_resistance") is False
+            and "rolling_pressure_force" not in values
+        ):
+            return {**values, "rolling_pressure_force": False}
+        return values
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.rolling_pressure_force and not self.rolling_resistance:
+            raise InputError.of("rolling_pressure_force", True, "needs rolling_resistance = True")
+        if self.guidance != "rollers" and self.bodies == "rollers":
+            raise InputError.of("guidance", self.guidance, "needs a cage: bodies = 'rollers_and_cage'")
+        if self.n_slices == 1 and not self.back_rib:
+            raise InputError.of("n_slices", 1, "must be >= 2 without back_rib: one slice lets rollers tilt freely")
+        return self
+
+    @property
+    def films(self) -> bool:
+        """Whether contacts have lubricant films."""
+        return self.lubrication in ("mixed", "full_film")
+
+    @classmethod
+    def standard(cls) -> Self:
+        """What we recommend, and the default: the paper's effects, and the rolling film's pressure force (torques on both rings
+        agree), normal damping, the piezoviscous-elastic film at the rib, Gauss nodes.
+        """
+        return cls()
+
+    @classmethod
+    def paper(cls) -> Self:
+        """The assumptions of Sakaguchi and Harada 2006, errata corrected: no damping, no pressure force of the rolling film,
+        uniform slices.
+        """
+        return cls(rolling_pressure_force=False, rib_film="max", damping="off", quadrature="uniform", n_slices=24)
+
+    @classmethod
+    def frictionless(cls) -> Self:
+        """Normal contact alone: no friction, no rolling resistance, no damping. Energy is conserved."""
+        return cls.paper().replace(lubrication="full_film", traction="none", thermal=False, rolling_resistance=False)
+
+    @classmethod
+    def minimal(cls) -> Self:
+        """The least that turns a bearing: planar motion, dry Coulomb friction, no front rib, no pocket ends."""
+        return cls.paper().replace(
+            planar=True,
+            lubrication="dry",
+            traction="coulomb",
+            thermal=False,
+            rolling_resistance=False,
+            front_rib=False,
+            pocket_ends=False,
+            quadrature="gauss",
+            n_slices=8,
+        )
+
+
+PRESETS = {
+    "standard": Effects.standard,
+    "paper": Effects.paper,
+    "frictionless": Effects.frictionless,
+    "minimal": Effects.minimal,
+}

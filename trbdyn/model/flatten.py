@@ -1,0 +1,347 @@
+"""From validated models to the flat float64 arrays that the core takes.
+
+The core's own tables say which numbers it wants, in which order and range. Everything here goes by their names, so that
+a number that is missing, or one too many, is an error at once.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+from trbdyn.base.validation import Model
+from trbdyn.errors import MISSING, InputError, Path, Problem
+from trbdyn.model.effects import Effects
+from trbdyn.model.geometry import Geometry
+from trbdyn.model.lubricants import Dicke, Lubricant, vg100
+from trbdyn.model.motion import History, knot_table, value_at
+
+if TYPE_CHECKING:
+    from trbdyn.model.bearing import Bearing, Material
+    from trbdyn.model.pocket import Face
+    from trbdyn.model.scene import Scene
+
+FloatArray = NDArray[np.float64]
+
+PROFILES = {"straight": 0, "crowned": 1, "logarithmic": 2}
+QUADRATURES = {"uniform": 0, "gauss": 1}
+PRESSURE_LAWS = {"dicke": 0, "roelands": 1, "barus": 2}
+LUBRICATION = {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3}
+TRACTION = {"none": 0, "coulomb": 1, "muraki_kimura": 2}
+RIB_FILMS = {"max": 0, "pe": 1}
+GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
+PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A number for the core, and where the user gave it.
+
+    Attributes
+    ----------
+    path : tuple of str
+        The field, from the model that the entries describe.
+    value : float
+        The number (SI).
+    """
+
+    path: Path
+    value: float
+
+
+Entries = dict[str, Entry]
+
+
+def named_entries(model: Model, *path: str) -> Entries:
+    """Numbers of the fields that name their parameter (`trbdyn.model.core_table.parameter`); `path` leads to the model."""
+    return {
+        str(extra["parameter"]): Entry((*path, name), getattr(model, name))
+        for name, field in type(model).model_fields.items()
+        if isinstance(extra := field.json_schema_extra, dict) and "parameter" in extra
+    }
+
+
+def bearing_entries(bearing: Bearing) -> Entries:
+    """Numbers of a bearing, by their names in the core's table; paths start at the bearing."""
+    roller, cage = bearing.roller, bearing.cage
+    return {
+        **named_entries(bearing),
+        **named_entries(roller, "roller"),
+        **named_entries(roller.profile, "roller", "profile"),
+        **named_entries(bearing.ribs, "ribs"),
+        **named_entries(cage, "cage"),
+        **named_entries(bearing.roughness, "roughness"),
+        **named_entries(bearing.land, "land"),
+        "cup_half_angle": Entry(("cup_half_angle_deg",), math.radians(bearing.cup_half_angle_deg)),
+        "profile": Entry(("roller", "profile", "kind"), PROFILES[roller.profile.kind]),
+        **_material("", ("material",), bearing.material),
+        **_material("roller_", ("roller", "material") if roller.material else ("material",), bearing.roller_material),
+        **_material("cage_", ("cage", "material") if cage.material else ("material",), bearing.cage_material),
+    }
+
+
+def _material(prefix: str, path: Path, material: Material) -> Entries:
+    return {
+        f"{prefix}{name}": Entry((*path, name), getattr(material, name)) for name in ("youngs_modulus", "poisson_ratio")
+    }
+
+
+def lubricant_entries(lubricant: Lubricant) -> Entries:
+    """Numbers of a lubricant, by their names in the core's table; paths start at the lubricant."""
+    return {
+        **named_entries(lubricant.dicke or Dicke(), "dicke"),
+        **named_entries(lubricant),
+        "viscosity_law": Entry(("pressure_law",), PRESSURE_LAWS[lubricant.pressure_law]),
+    }
+
+
+def effects_entries(effects: Effects) -> Entries:
+    """Numbers of the effects, by their names in the core's table; paths start at the effects.
+
+    Effects of films are handed on as off where there are no films.
+    """
+    rolling = effects.films and effects.rolling_resistance
+    return {
+        **named_entries(effects),
+        **named_entries(effects.friction, "friction"),
+        "quadrature": Entry(("quadrature",), QUADRATURES[effects.quadrature]),
+        "damping": Entry(("damping",), float(effects.damping == "hunt_crossley")),
+        "guidance": Entry(("guidance",), GUIDANCE[effects.guidance]),
+        "with_cage": Entry(("bodies",), float(effects.bodies == "rollers_and_cage")),
+        "planar": Entry(("planar",), float(effects.planar)),
+        "lubrication": Entry(("lubrication",), LUBRICATION[effects.lubrication]),
+        "traction": Entry(("traction",), TRACTION[effects.traction]),
+        "thermal": Entry(("thermal",), float(effects.films and effects.thermal)),
+        "rolling_resistance": Entry(("rolling_resistance",), float(rolling)),
+        "rolling_pressure_force": Entry(("rolling_pressure_force",), float(rolling and effects.rolling_pressure_force)),
+        "back_rib": Entry(("back_rib",), float(effects.back_rib)),
+        "front_rib": Entry(("front_rib",), float(effects.front_rib)),
+        "rib_film": Entry(("rib_film",), RIB_FILMS[effects.rib_film]),
+        "pocket_bars": Entry(("pocket_bars",), float(effects.pocket_bars)),
+        "pocket_ends": Entry(("pocket_ends",), float(effects.pocket_ends)),
+        "pocket_edges": Entry(("pocket_edges",), float(effects.pocket_edges)),
+    }
+
+
+def block_of(entries: Mapping[str, Entry]) -> FloatArray:
+    """The core's parameter block, shape (P,): float64 in the order of `_core.parameter_table()`.
+
+    Raises
+    ------
+    InputError
+        If a number lies outside the range of the core's table.
+    RuntimeError
+        If a name of the table has no entry, or an entry no name: package and core do not belong together.
+    """
+    table = _core.parameter_table()
+    names = {row[0] for row in table}
+    if names != set(entries):
+        raise RuntimeError(f"the core's table of parameters and the models differ in {sorted(names ^ set(entries))}")
+    problems = [
+        Problem(
+            entries[name].path,
+            entries[name].value,
+            f"must be from {lower:g} to {upper:g}{'' if unit == '1' else f' ({unit})'}",
+        )
+        for name, unit, lower, upper, _ in table
+        if not lower <= entries[name].value <= upper
+    ]
+    if problems:
+        raise InputError(problems)
+    return np.array([entries[row[0]].value for row in table], dtype=np.float64)
+
+
+def prefixed(prefix: str, entries: Entries) -> Entries:
+    """The entries with their paths starting at `prefix`."""
+    return {name: Entry((prefix, *entry.path), entry.value) for name, entry in entries.items()}
+
+
+def bearing_geometry(bearing: Bearing) -> Geometry:
+    """Derived geometry of a bearing.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not fit together.
+    """
+    entries = {**lubricant_entries(vg100()), **effects_entries(Effects()), **bearing_entries(bearing)}
+    try:
+        return Geometry.from_parameters(block_of(entries))
+    except _core.CoreError as error:
+        raise input_error_of_core(error, entries) from None
+
+
+def input_error_of_core(error: Exception, entries: Mapping[str, Entry]) -> InputError:
+    """The core's complaint about a parameter (``name = value unit: what is allowed``), told in the user's terms."""
+    text = str(error)
+    match = re.match(r"(\w+) = (\S+?)[:\s](.*)", text, re.DOTALL)
+    if match is None or match[1] not in entries:
+        return InputError([Problem((), MISSING, text)])
+    entry = entries[match[1]]
+    return InputError([Problem(entry.path, entry.value, text.split(": ", 1)[-1])])
+
+
+def scene_entries(scene: Scene) -> Entries:
+    """Numbers of a scene, by their names in the core's table; paths start at the scene."""
+    return {
+        **prefixed("bearing", bearing_entries(scene.bearing)),
+        **prefixed("lubricant", lubricant_entries(scene.lubricant)),
+        **prefixed("effects", effects_entries(scene.effects)),
+    }
+
+
+def parameter_block(scene: Scene) -> FloatArray:
+    """The core's parameter block of a scene, shape (P,): float64 in the order of `_core.parameter_table()`.
+
+    Raises
+    ------
+    InputError
+        If a number lies outside the range of the core's table.
+    """
+    return block_of(scene_entries(scene))
+
+
+def face_rows(scene: Scene) -> FloatArray:
+    """Faces of the cage's pockets as the core takes them, shape (F, C): one row for each face, columns of
+    `_core.face_table()`.
+    """
+    columns = [(name, count) for name, count, _, _ in _core.face_table()]
+    return np.array(
+        [_face_row(columns, pocket, face) for pocket, face in scene.bearing.pocket_faces()], dtype=np.float64
+    )
+
+
+def _face_row(columns: list[tuple[str, int]], pocket: int, face: Face) -> list[float]:
+    values: dict[str, list[float]] = {
+        "pocket": [pocket],
+        "slot": [face.slot],
+        "part": [PARTS[face.part]],
+        "origin": list(face.origin),
+        "u": list(face.u),
+        "v": list(face.v),
+        "stiffness_factor": [face.stiffness_factor],
+        "friction_factor": [face.friction_factor],
+        "n_vertices": [len(face.outline)],
+        "outline": [number for vertex in face.outline for number in vertex],
+    }
+    if set(values) != {name for name, _ in columns}:
+        raise RuntimeError(
+            f"the core's table of faces and Face differ in {sorted(set(values) ^ {name for name, _ in columns})}"
+        )
+    row: list[float] = []
+    for name, count in columns:
+        row += values[name] + [0.0] * (count - len(values[name]))
+    return row
+
+
+def diameter_deviation(scene: Scene) -> FloatArray:
+    """Deviation of each roller's diameter (m), shape (Z,)."""
+    return np.ascontiguousarray(scene.bearing.diameter_deviation, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class RingLoad:
+    """What acts on the inner ring at an instant.
+
+    Attributes
+    ----------
+    force : ndarray, shape (3,)
+        Force on the ring (N).
+    moment : ndarray, shape (2,)
+        Moment on the ring about x and y through the roller-centre plane (N m).
+    fixed : ndarray, shape (5,)
+        1 where `displacement` is prescribed, 0 where it is to be found.
+    displacement : ndarray, shape (5,)
+        Displacement along x, y, z (m) and rotation about x, y (rad).
+    shaft_speed : float
+        Speed of the shaft (rad/s).
+    gravity : ndarray, shape (3,)
+        Acceleration of gravity (m/s2).
+    """
+
+    force: FloatArray
+    moment: FloatArray
+    fixed: FloatArray
+    displacement: FloatArray
+    shaft_speed: float
+    gravity: FloatArray
+
+
+def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
+    """What acts on the inner ring at a time (s)."""
+    radial, direction = value_at(scene.radial_load, time), math.radians(value_at(scene.radial_direction_deg, time))
+    force = np.array([radial * math.cos(direction), radial * math.sin(direction), -value_at(scene.axial_load, time)])
+    if scene.rotating_load is not None:
+        size, turned = value_at(scene.rotating_load.load, time), scene.rotating_load_angle(time)
+        force[:2] += size * np.array([math.cos(turned), math.sin(turned)])
+    places = scene.displacement or (None, None, None)
+    moments = scene.moments
+    turns = (value_at(scene.misalignment_x, time), value_at(scene.misalignment_y, time))
+    return RingLoad(
+        force=force,
+        moment=np.array([0.0 if moment is None else value_at(moment, time) for moment in moments]),
+        fixed=np.array([float(held) for held in scene.ring_is_placed]),
+        displacement=np.array([*(0.0 if place is None else value_at(place, time) for place in places), *turns]),
+        shaft_speed=value_at(scene.speed_rpm, time) * math.pi / 30.0,
+        gravity=np.array([value_at(quantity, time) for quantity in _gravity(scene)]),
+    )
+
+
+def motion_table(scene: Scene, path: Sequence[float | History]) -> FloatArray:
+    """Prescribed motion of the inner ring, as the core takes it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    path : sequence of float or History, length 5
+        Displacement (m) and rotation (rad) of the ring that were found by equilibria. What the scene prescribes is
+        taken from the scene instead.
+
+    Returns
+    -------
+    ndarray, shape (K, 19)
+        Knot time, then value and slope of each channel of `_core.motion_table()`; the last `scene.period` repeats.
+    """
+    given = [*(scene.displacement or (None, None, None)), scene.misalignment_x, scene.misalignment_y]
+    ring = [
+        path[axis] if place is None or not held else place
+        for axis, (place, held) in enumerate(zip(given, scene.ring_is_placed, strict=True))
+    ]
+    gravity = _gravity(scene)
+    channels: dict[str, float | History] = {
+        "displacement_x": ring[0],
+        "displacement_y": ring[1],
+        "displacement_z": ring[2],
+        "rotation_x": ring[3],
+        "rotation_y": ring[4],
+        "shaft_speed": _scaled(scene.speed_rpm, math.pi / 30.0),
+        "gravity_x": gravity[0],
+        "gravity_y": gravity[1],
+        "gravity_z": gravity[2],
+    }
+    names = [name for name, _, _ in _core.motion_table()]
+    if set(names) != set(channels):
+        raise RuntimeError(f"the core's table of motion and the scene differ in {sorted(set(names) ^ set(channels))}")
+    return knot_table([channels[name] for name in names], scene.start.time, scene.settled, scene.period)
+
+
+def _gravity(scene: Scene) -> tuple[float | History, float | History, float | History]:
+    return scene.gravity if scene.effects.gravity else (0.0, 0.0, 0.0)
+
+
+def _scaled(quantity: float | History, factor: float) -> float | History:
+    if not isinstance(quantity, History):
+        return factor * quantity
+    slopes = quantity.slopes
+    return quantity.replace(
+        values=tuple(factor * value for value in quantity.values),
+        slopes=None if slopes is None else tuple(factor * slope for slope in slopes),
+    )

@@ -1,0 +1,419 @@
+"""Quantities that change in time.
+
+Wherever a scene takes a `Quantity` it takes a number or a `History`: values at times, joined by a smooth monotone curve
+(PCHIP, Fritsch and Carlson 1980) whose slope is zero at both ends, so that the quantity stays smooth where it is
+constant outside its table. A history may also repeat for ever, as `History.harmonic` does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Annotated, Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import model_validator
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+from trbdyn.base.validation import Flag, Model, Number, as_number, unit
+from trbdyn.errors import InputError
+
+FloatArray = NDArray[np.float64]
+
+MAX_TIME = 1e6
+"""Latest time of anything (s): up to there times are told apart to a tenth of a nanosecond, the first steps of a
+run.
+"""
+
+HARMONIC_PIECES = 24
+"""Cubic pieces of a period of `History.harmonic`: a multiple of four."""
+
+MOST_REPETITIONS = 1000
+"""Most repetitions of a quantity before everything that repeats begins again together."""
+
+SAME_PERIOD = 1e-11
+"""Periods whose ratio differs by no more than this from a fraction belong together."""
+
+SAME_TIME = 4e-15
+"""Times that differ by this share of the largest one at most are the same."""
+
+
+class History(Model):
+    """A quantity given at times. Before the first and after the last time it is constant, unless it repeats.
+
+    Parameters
+    ----------
+    times : sequence of float
+        Times (s), ascending, at least two, from -1e6 to 1e6.
+    values : sequence of float
+        The quantity at each time.
+    slopes : sequence of float, optional
+        Its derivative in time at each time; without it the curve is monotone between two times.
+    repeats : bool
+        The curve repeats itself before the first and after the last time: `times` span one period.
+    """
+
+    times: tuple[Annotated[Number, unit("s")], ...]
+    values: tuple[Number, ...]
+    slopes: tuple[Number, ...] | None = None
+    repeats: Flag = False
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if len(self.times) < 2:
+            raise InputError.of("times", self.times, "must have at least two entries (s)")
+        for name, given in (("values", self.values), ("slopes", self.slopes)):
+            if given is not None and len(given) != len(self.times):
+                raise InputError.of(name, given, f"must have one entry for each time, {len(self.times)}")
+        steps = np.diff(self.times)
+        if not np.all(steps > 0):
+            place = int(np.argmin(steps > 0)) + 1
+            raise InputError.of(("times", place), self.times[place], "must be later than the time before it (s)")
+        farthest = int(np.argmax(np.abs(self.times)))
+        if abs(self.times[farthest]) > MAX_TIME:
+            raise InputError.of(
+                ("times", farthest), self.times[farthest], f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)"
+            )
+        if self.repeats:
+            for name, given in (("values", self.values), ("slopes", self.slopes)):
+                if given is not None and given[0] != given[-1]:
+                    limit = f"must be {given[0]:g} as the first: a history that repeats ends as it begins"
+                    raise InputError.of((name, len(given) - 1), given[-1], limit)
+        self._check_curve(steps)
+        return self
+
+    def _check_curve(self, steps: FloatArray) -> None:
+        with np.errstate(all="ignore"):
+            try:
+                finite = bool(np.isfinite(self._curve.c).all())
+            except ValueError:  # SciPy refuses slopes that are not finite
+                finite = False
+            steepest = int(np.argmax(np.abs(np.diff(self.values) / steps))) + 1
+        if not finite:
+            raise InputError.of(
+                ("values", steepest),
+                self.values[steepest],
+                "must be closer to the value before it: the curve overflows",
+            )
+
+    @classmethod
+    def table(cls, times: Sequence[float] | FloatArray, values: Sequence[float] | FloatArray) -> Self:
+        """A history through `values` at `times` (s)."""
+        return cls(times=_listed("times", times), values=_listed("values", values))
+
+    @classmethod
+    def ramp(cls, start: float, end: float, before: float, after: float) -> Self:
+        """A smooth change from `before` to `after` between the times `start` and `end` (s)."""
+        return cls(times=(start, end), values=(before, after))
+
+    @classmethod
+    def harmonic(
+        cls, mean: float = 0.0, amplitude: float = 1.0, *, frequency_hz: float, phase_deg: float = 0.0
+    ) -> Self:
+        """A harmonic change without beginning and end: mean + amplitude cos(2 pi f t + phase).
+
+        Parameters
+        ----------
+        mean : float
+            Mean value.
+        amplitude : float
+            Amplitude, >= 0.
+        frequency_hz : float
+            Frequency f (Hz), > 0.
+        phase_deg : float
+            Phase (deg): 0 begins at the largest value, -90 at the mean, rising.
+
+        Returns
+        -------
+        History
+            One period of 24 cubic pieces, off the cosine by at most 1.3e-5 of the amplitude.
+
+        Raises
+        ------
+        InputError
+            If an argument is not allowed.
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> load = trb.History.harmonic(3000.0, 500.0, frequency_hz=50.0)
+        >>> float(load.value(0.0)), float(load.value(0.01))
+        (3500.0, 2500.0)
+        """
+        found: dict[str, float] = {}
+        for name, value in (
+            ("mean", mean),
+            ("amplitude", amplitude),
+            ("frequency_hz", frequency_hz),
+            ("phase_deg", phase_deg),
+        ):
+            try:
+                found[name] = as_number(value)
+            except ValueError as error:
+                raise InputError.of(name, value, str(error)) from None
+            if not math.isfinite(found[name]):
+                raise InputError.of(name, value, "must be a finite number")
+        if found["amplitude"] < 0.0:
+            raise InputError.of("amplitude", amplitude, "must be >= 0; turn phase_deg by 180 for the opposite")
+        if not 1e-6 <= found["frequency_hz"] <= 1e6:
+            raise InputError.of("frequency_hz", frequency_hz, "must be from 1e-06 to 1e+06 (Hz)")
+        period = 1.0 / found["frequency_hz"]
+        # the knots lie at the extremes and at the mean, so that the curve keeps to its amplitude exactly
+        steps = np.arange(HARMONIC_PIECES + 1) / HARMONIC_PIECES
+        times = (steps - math.fmod(found["phase_deg"], 360.0) / 360.0) * period
+        waves = np.cos(2.0 * math.pi * steps), -np.sin(2.0 * math.pi * steps)
+        quarter = HARMONIC_PIECES // 4
+        for place in range(5):
+            waves[0][place * quarter] = (1.0, 0.0, -1.0, 0.0, 1.0)[place]
+            waves[1][place * quarter] = (0.0, -1.0, 0.0, 1.0, 0.0)[place]
+        values = found["mean"] + found["amplitude"] * waves[0]
+        slopes = found["amplitude"] * 2.0 * math.pi / period * waves[1]
+        return cls(times=tuple(times), values=tuple(values), slopes=tuple(slopes), repeats=True)
+
+    @property
+    def period(self) -> float | None:
+        """How long it takes to repeat (s); None where it does not."""
+        return self.times[-1] - self.times[0] if self.repeats else None
+
+    @cached_property
+    def _curve(self) -> CubicHermiteSpline:
+        times, values = np.array(self.times), np.array(self.values)
+        if self.slopes is not None:
+            return CubicHermiteSpline(times, values, np.array(self.slopes))
+        if self.repeats:
+            period = times[-1] - times[0]
+            around = np.concatenate([times[:-1] - period, times, times[1:] + period])
+            again = np.concatenate([values[:-1], values, values[1:]])
+            slopes = PchipInterpolator(around, again).derivative()(times)
+            slopes[-1] = slopes[0]
+        else:
+            slopes = PchipInterpolator(times, values).derivative()(times)
+            slopes[0] = slopes[-1] = 0.0
+        return CubicHermiteSpline(times, values, slopes)
+
+    @cached_property
+    def extremes(self) -> tuple[float, float]:
+        """Smallest and largest value that the curve takes."""
+        if self.slopes is None:
+            return min(self.values), max(self.values)
+        turns = self._curve.derivative().roots(discontinuity=False, extrapolate=False)
+        inside = self._curve(turns[np.isfinite(turns)])
+        return min(*self.values, *inside), max(*self.values, *inside)
+
+    def _inside(self, time: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Times within the table, and how many periods lie between them and the given ones."""
+        given, (first, last) = np.asarray(time, dtype=np.float64), (self.times[0], self.times[-1])
+        if not self.repeats:
+            return np.clip(given, first, last), np.zeros_like(given)
+        count = np.floor((given - first) / (last - first))
+        return np.clip(given - count * (last - first), first, last), count
+
+    def value(self, time: ArrayLike) -> FloatArray:
+        """The quantity at a time or at times (s); same shape as `time`."""
+        return np.asarray(self._curve(self._inside(time)[0]), dtype=np.float64)
+
+    def slope(self, time: ArrayLike) -> FloatArray:
+        """Its derivative in time at a time or at times (s); same shape as `time`."""
+        slope = self._curve(self._inside(time)[0], 1)
+        if not self.repeats:
+            given = np.asarray(time, dtype=np.float64)
+            slope = np.where((given < self.times[0]) | (given > self.times[-1]), 0.0, slope)
+        return np.asarray(slope, dtype=np.float64)
+
+    def integral(self, start: float, end: float) -> float:
+        """Its integral in time from `start` to `end` (s)."""
+        first, last = self.times[0], self.times[-1]
+        if self.repeats:
+            whole = float(self._curve.integrate(first, last))
+            (low, high), (before, after) = self._inside([start, end])
+            return float(self._curve.integrate(low, high)) + (after - before) * whole
+        inside = float(self._curve.integrate(min(max(start, first), last), min(max(end, first), last)))
+        before = self.values[0] * (min(end, first) - min(start, first))
+        after = self.values[-1] * (max(end, last) - max(start, last))
+        return before + inside + after
+
+    def knots(self, start: float, end: float) -> FloatArray:
+        """Times of its knots after `start` and before `end` (s), ascending."""
+        times = np.array(self.times)
+        if self.repeats:
+            first, period = self.times[0], self.times[-1] - self.times[0]
+            counts = np.arange(math.floor((start - first) / period), math.ceil((end - first) / period) + 1)
+            times = (times[:-1] + period * counts[:, None]).ravel()
+        return times[(times > start) & (times < end)]
+
+
+def _listed(name: str, values: object) -> tuple[Any, ...]:
+    if isinstance(values, str | bytes) or not isinstance(values, Iterable):
+        raise InputError.of(("history", name), values, "must be a sequence of numbers")
+    return tuple(values)
+
+
+def _as_quantity(value: object) -> float | History:
+    if isinstance(value, History):
+        return value
+    if isinstance(value, Mapping):
+        return History(**{str(key): entry for key, entry in value.items()})
+    try:
+        return as_number(value)
+    except ValueError:
+        raise ValueError("must be a number or a History of times and values") from None
+
+
+def _finite(value: float | History) -> float | History:
+    if isinstance(value, float) and not np.isfinite(value):
+        raise ValueError("must be a finite number")
+    return value
+
+
+class _QuantitySchema:
+    """Tells pydantic to take a number or a History without trying one after the other, so that messages stay short."""
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(
+            lambda value: _finite(_as_quantity(value)),
+            serialization=core_schema.plain_serializer_function_ser_schema(_plain, when_used="always"),
+        )
+
+
+def _plain(value: float | History) -> object:
+    return value.to_dict() if isinstance(value, History) else value
+
+
+Quantity = Annotated[float | History, _QuantitySchema]
+
+
+def value_at(quantity: float | History, time: float) -> float:
+    """A quantity at a time (s)."""
+    return float(quantity.value(time)) if isinstance(quantity, History) else quantity
+
+
+def values_of(quantity: float | History) -> tuple[float, ...]:
+    """Every number that a quantity is given by, with the smallest and the largest that it takes."""
+    if not isinstance(quantity, History):
+        return (quantity,)
+    return quantity.values if quantity.slopes is None else (*quantity.values, *quantity.extremes)
+
+
+def is_constant(quantity: float | History) -> bool:
+    """Whether a quantity never changes."""
+    return len(set(values_of(quantity))) == 1
+
+
+def settled_time(quantities: Sequence[float | History], start: float) -> float:
+    """From when on nothing changes any more but what repeats (s); not before `start`."""
+    return max([start, *(q.times[-1] for q in quantities if isinstance(q, History) and not q.repeats)])
+
+
+def common_period(periods: Mapping[str, float]) -> float | None:
+    """The shortest time after which everything that repeats begins again together (s); None if there is nothing.
+
+    Parameters
+    ----------
+    periods : mapping of str to float
+        Period of each quantity that repeats (s), by the field's name.
+
+    Raises
+    ------
+    InputError
+        If there is none within 1000 repetitions.
+    """
+    if not periods:
+        return None
+    (base_name, base), *others = periods.items()
+    repeated = 1
+    for name, period in others:
+        ratio = Fraction(period / base).limit_denominator(MOST_REPETITIONS)
+        if ratio <= 0 or abs(float(ratio) * base / period - 1.0) > SAME_PERIOD:
+            raise InputError.of(
+                name,
+                period,
+                f"must repeat together with {base_name}, whose period is {base:.9g} s: no common period within "
+                f"{MOST_REPETITIONS} repetitions; give one of them as a table that covers the run (s)",
+            )
+        repeated = math.lcm(repeated, ratio.numerator)
+    if repeated > MOST_REPETITIONS:
+        raise InputError.of(
+            base_name,
+            base,
+            f"must have a common period with the others within {MOST_REPETITIONS} repetitions, not {repeated} (s)",
+        )
+    return repeated * base
+
+
+def knot_times(quantities: Sequence[float | History], start: float = 0.0, end: float | None = None) -> FloatArray:
+    """`start`, `end` and every time between them at which one of the quantities has a knot (s); ascending, shape (K,).
+
+    Without `end`: up to the last knot of what does not repeat, and one longest period of what repeats.
+    """
+    if end is None:
+        periods = [q.times[-1] - q.times[0] for q in quantities if isinstance(q, History) and q.repeats]
+        end = settled_time(quantities, start) + max(periods, default=0.0)
+    times = {start, end}
+    for quantity in quantities:
+        if isinstance(quantity, History):
+            times.update(quantity.knots(start, end).tolist())
+    return _apart(np.array(sorted(times)))
+
+
+def _apart(times: FloatArray) -> FloatArray:
+    """The times without those that are the same but for rounding."""
+    if len(times) < 3:
+        return times
+    least = SAME_TIME * max(float(np.max(np.abs(times))), float(times[-1] - times[0]))
+    kept = [times[0]]
+    for time in times[1:-1]:
+        if time - kept[-1] > least and times[-1] - time > least:
+            kept.append(time)
+    return np.array([*kept, times[-1]])
+
+
+def knot_table(
+    quantities: Sequence[float | History],
+    start: float = 0.0,
+    settled: float | None = None,
+    period: float | None = None,
+) -> FloatArray:
+    """Knots of a cubic Hermite curve for each quantity, all at the same times: as the core takes prescribed motion.
+
+    Parameters
+    ----------
+    quantities : sequence of float or History, length C
+        A channel each.
+    start : float
+        Time from which on the motion is needed (s).
+    settled : float, optional
+        From when on nothing changes but what repeats (s); by default the last knot of what does not.
+    period : float, optional
+        Common period of what repeats (s): the table then ends one period after `settled`.
+
+    Returns
+    -------
+    ndarray, shape (K, 1 + 2 C)
+        Time (s), then value and slope of each channel. The curves are those of the histories, exactly: a cubic piece
+        split at another channel's knot stays the same cubic. A motion that never changes has one knot, at time 0.
+    """
+    settled = settled_time(quantities, start) if settled is None else settled
+    if not any(isinstance(q, History) for q in quantities):
+        return np.array([[0.0, *(part for quantity in quantities for part in (quantity, 0.0))]])
+    if period is None:
+        times = knot_times(quantities, start, settled) if settled > start else np.array([start])
+    else:
+        before = knot_times(quantities, start, settled)[:-1] if settled > start else np.empty(0)
+        times = np.concatenate([before, knot_times(quantities, settled, settled + period)])
+    table = np.zeros((len(times), 1 + 2 * len(quantities)))
+    table[:, 0] = times
+    for channel, quantity in enumerate(quantities):
+        if isinstance(quantity, History):
+            table[:, 1 + 2 * channel] = quantity.value(times)
+            table[:, 2 + 2 * channel] = quantity.slope(times)
+        else:
+            table[:, 1 + 2 * channel] = quantity
+    if period is not None:
+        table[-1, 1:] = table[int(np.searchsorted(times, settled)), 1:]
+    return table

@@ -1,0 +1,133 @@
+"""A tapered roller: sizes, profile of its generator, deviations of its diameter."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from trbdyn.base.validation import Model, Number, Whole, unit
+from trbdyn.errors import InputError
+from trbdyn.model.assumed import RIG
+from trbdyn.model.core_table import parameter
+from trbdyn.model.material import Material
+
+
+class Profile(Model):
+    """Shape of the roller's generator; only the numbers of its kind are used.
+
+    Parameters
+    ----------
+    kind : {'logarithmic', 'crowned', 'straight'}
+        Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((abs(y) - a)/(k2 a) + 1)^2]} for abs(y) > a - k2 a with A = 2 k1 Q/(pi
+        L E'), a = L/2.
+    crown_radius : float
+        Radius of the arc of a crowned roller (m).
+    k1, k2 : float
+        Constants of the logarithmic profile (1).
+    zm : float
+        Drop of the logarithmic profile at the end (m).
+    load : float
+        Design load Q of the logarithmic profile (N); by default the one of the 30310 rig times diameter and length of
+        the roller over those of the rig, that is at the same pressure.
+    """
+
+    _assumed: ClassVar[bool] = True
+
+    kind: Literal["logarithmic", "crowned", "straight"] = "logarithmic"
+    crown_radius: Annotated[Number, parameter("crown_radius")] = 100.0
+    k1: Annotated[Number, parameter("profile_k1")] = 1.5
+    k2: Annotated[Number, parameter("profile_k2")] = 0.4
+    zm: Annotated[Number, parameter("profile_zm")] = 10e-6
+    load: Annotated[Number, parameter("profile_load")] = RIG["load"]
+
+    @classmethod
+    def straight(cls) -> Self:
+        """A straight generator."""
+        return cls(kind="straight")
+
+    @classmethod
+    def crowned(cls, radius: float) -> Self:
+        """An arc of this radius (m)."""
+        return cls(kind="crowned", crown_radius=radius)
+
+    @classmethod
+    def logarithmic(cls, load: float | None = None, *, k1: float = 1.5, k2: float = 0.4, zm: float = 10e-6) -> Self:
+        """A logarithmic profile for a design load (N); without it the one that the roller's size gives."""
+        given = {} if load is None else {"load": load}
+        return cls(kind="logarithmic", k1=k1, k2=k2, zm=zm, **given)
+
+
+class Scatter(Model):
+    """Random deviations of the rollers' diameters.
+
+    Parameters
+    ----------
+    range : float
+        Width of the range (m): each deviation is uniform over -range/2 to range/2.
+    seed : int
+        Seed of the random numbers.
+    """
+
+    range: Annotated[Number, unit("m", ge=0, le=1e-3)]
+    seed: Annotated[Whole, unit("1", ge=0)]
+
+    def draw(self, count: int) -> NDArray[np.float64]:
+        """The deviations (m), shape (count,): the same ones for the same seed."""
+        return np.random.default_rng(self.seed).uniform(-0.5 * self.range, 0.5 * self.range, count)
+
+
+class Roller(Model):
+    """A tapered roller.
+
+    Parameters
+    ----------
+    diameter : float
+        Dwe, diameter at mid length, perpendicular to the roller's axis (m).
+    effective_length : float
+        Lwe, effective length of the contact line (m).
+    total_length : float
+        Length over the ends, centred on the effective length (m); by default the effective length and a fourteenth of
+        the diameter.
+    density : float
+        Density (kg/m3).
+    profile : Profile
+        Shape of the generator.
+    diameter_deviation : sequence of float, optional
+        Deviation of each roller's diameter (m), one a roller; not together with `diameter_scatter`.
+    diameter_scatter : Scatter, optional
+        Random deviations, one for each roller.
+    sphere_ratio : float
+        Radius of the large end's sphere over the distance from the apex to the large end (1); assumed.
+    end_stiffness : float
+        k of roller end against a flat of the ring, force = k d^1.5 (N/m^1.5); against the cage's walls in the ratio of
+        the composite moduli. By default 1e10 times the root of the diameter over that of the 30310 rig; assumed.
+    material : Material, optional
+        Elasticity of the rollers; that of the bearing by default.
+    """
+
+    _assumed: ClassVar[bool] = True
+
+    diameter: Annotated[Number, parameter("roller_diameter")]
+    effective_length: Annotated[Number, parameter("effective_length")]
+    total_length: Annotated[Number, parameter("total_length")] = RIG["total_length"]
+    density: Annotated[Number, parameter("roller_density")] = 7810.0
+    profile: Profile = Profile()
+    diameter_deviation: tuple[Annotated[Number, unit("m", ge=-1e-3, le=1e-3)], ...] | None = None
+    diameter_scatter: Scatter | None = None
+    sphere_ratio: Annotated[Number, parameter("sphere_ratio")] = 0.90
+    end_stiffness: Annotated[Number, parameter("end_stiffness")] = RIG["end_stiffness"]
+    material: Material | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if "total_length" in self.model_fields_set and self.total_length < self.effective_length:
+            limit = f"must be >= effective_length, {self.effective_length:g} (m)"
+            raise InputError.of("total_length", self.total_length, limit)
+        if self.diameter_deviation is not None and self.diameter_scatter is not None:
+            raise InputError.of(
+                "diameter_scatter", self.diameter_scatter, "must not be given together with diameter_deviation"
+            )
+        return self

@@ -1,0 +1,343 @@
+"""A scene: one bearing, what acts on it, and how it starts."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import field_validator, model_validator
+
+from trbdyn.base.validation import Model, unit
+from trbdyn.errors import MISSING, InputError, Path
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.effects import Effects
+from trbdyn.model.flatten import parameter_block
+from trbdyn.model.lubricants import Lubricant, vg100
+from trbdyn.model.motion import (
+    History,
+    Quantity,
+    common_period,
+    is_constant,
+    knot_times,
+    settled_time,
+    value_at,
+    values_of,
+)
+from trbdyn.model.rotating_load import RotatingLoad, check_sign
+from trbdyn.model.start import Start
+
+__all__ = ["MAX_GRAVITY", "MAX_SPEED_RPM", "RotatingLoad", "Scene", "Start"]
+
+MAX_SPEED_RPM = 1e6
+MAX_GRAVITY = 1e7
+"""Largest part of gravity (m/s2), a million times the usual: no machine shakes harder, and nothing overflows."""
+
+
+class Scene(Model):
+    """One bearing, what acts on it, and how it starts. Every quantity is a number or a `History`.
+
+    Frame: origin at the common apex of the cones; z along the bearing axis towards the rollers' large ends; positive
+    speed about +z. Loads act on the inner ring.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    speed_rpm : float or History
+        Speed of the inner ring (rpm).
+    axial_load : float or History
+        Axial load Fa (N), presses the inner ring towards -z; must be > 0 unless `displacement` gives the axial
+        position.
+    radial_load : float or History
+        Magnitude of the radial load Fr (N).
+    radial_direction_deg : float or History
+        Direction of the radial load on the inner ring, from +x towards +y (deg); 90: loaded zone on top.
+    misalignment_x, misalignment_y : float or History
+        Rotation of the inner ring about x and y, through the roller-centre plane (rad).
+    moment_x, moment_y : float or History, optional
+        Moment on the inner ring about x or y (N m): the ring's rotation follows from it and must not be prescribed.
+    rotating_load : RotatingLoad, optional
+        A radial load that rotates; needs ``ring = 'follows'``.
+    displacement : tuple of float, History or None, shape (3,), optional
+        Position of the inner ring along x, y, z (m), in place of loads. Where an entry is None, the load along it
+        decides: ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts. TOML writes
+        'free' for None.
+    lubricant : Lubricant
+        The oil.
+    effects : Effects
+        Switches and choices; `Effects.standard` by default.
+    start : Start
+        How a run starts.
+    ring : {'held', 'follows'}
+        Held: the ring stays at its equilibrium at the start, as in the paper. Follows: it moves through the equilibria
+        of its load history, with evenly spaced rollers; its path lies within `trbdyn.statics.ring_path.PATH_TOLERANCE` of them.
+    gravity : tuple of float or History, shape (3,)
+        Acceleration of gravity (m/s2), each part from -1e7 to 1e7; acts if `effects.gravity`.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong or does not fit together.
+    """
+
+    _root: ClassVar[str | None] = ""
+
+    bearing: Bearing
+    speed_rpm: Annotated[Quantity, unit("rpm")]
+    axial_load: Annotated[Quantity, unit("N")] = 0.0
+    radial_load: Annotated[Quantity, unit("N")] = 0.0
+    radial_direction_deg: Annotated[Quantity, unit("deg")] = 90.0
+    misalignment_x: Annotated[Quantity, unit("rad")] = 0.0
+    misalignment_y: Annotated[Quantity, unit("rad")] = 0.0
+    moment_x: Annotated[Quantity | None, unit("N m")] = None
+    moment_y: Annotated[Quantity | None, unit("N m")] = None
+    rotating_load: RotatingLoad | None = None
+    displacement: tuple[Quantity | None, Quantity | None, Quantity | None] | None = None
+    lubricant: Lubricant = vg100()
+    effects: Effects = Effects()
+    start: Start = Start()
+    ring: Literal["held", "follows"] = "held"
+    gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
+
+    def __init__(self, bearing: Any = MISSING, **fields: Any) -> None:
+        super().__init__(**fields if bearing is MISSING else {"bearing": bearing, **fields})
+
+    def __hash__(self) -> int:
+        return hash(self.fingerprint)
+
+    @field_validator("displacement", mode="before")
+    @classmethod
+    def _free_entries(cls, given: Any) -> Any:
+        if not isinstance(given, list | tuple):
+            return given
+        return tuple(None if isinstance(entry, str) and entry == "free" else entry for entry in given)
+
+    @property
+    def moments(self) -> tuple[float | History | None, float | History | None]:
+        """Moments about x and y (N m); None where the ring's rotation is prescribed."""
+        return self.moment_x, self.moment_y
+
+    @property
+    def ring_is_placed(self) -> tuple[bool, bool, bool, bool, bool]:
+        """Which coordinates of the ring (x, y, z, rotation about x and y) are prescribed; the others follow from
+        loads.
+        """
+        x, y, z = self.displacement or (None, None, None)
+        return x is not None, y is not None, z is not None, self.moment_x is None, self.moment_y is None
+
+    def ring_quantities(self) -> dict[str, float | History]:
+        """Everything that the ring's equilibrium depends on, but for the load that rotates; by the field's name."""
+        found: dict[str, float | History | None] = {
+            "axial_load": self.axial_load,
+            "radial_load": self.radial_load,
+            "radial_direction_deg": self.radial_direction_deg,
+            "moment_x": self.moment_x,
+            "moment_y": self.moment_y,
+            "misalignment_x": self.misalignment_x,
+            "misalignment_y": self.misalignment_y,
+            **{f"displacement[{axis}]": place for axis, place in enumerate(self.displacement or ())},
+            "speed_rpm": self.speed_rpm,
+        }
+        if self.rotating_load is not None:
+            found["rotating_load.load"] = self.rotating_load.load
+        return {name: quantity for name, quantity in found.items() if quantity is not None}
+
+    def quantities(self) -> dict[str, float | History]:
+        """Everything that may change in time, by the field's name."""
+        return self.ring_quantities() | {f"gravity[{axis}]": part for axis, part in enumerate(self.gravity)}
+
+    def rotating_load_angle(self, time: float) -> float:
+        """Direction of the load that rotates (rad)."""
+        rotating = self.rotating_load
+        if rotating is None:
+            return 0.0
+        first = math.radians(rotating.direction_deg)
+        if rotating.frequency_hz is not None:
+            return first + 2.0 * math.pi * rotating.frequency_hz * (time - self.start.time)
+        return first + rotating.turns * self.shaft_turn(time)
+
+    def shaft_turn(self, time: float) -> float:
+        """Angle that the shaft has turned by since the start (rad)."""
+        start = self.start.time
+        if isinstance(self.speed_rpm, History):
+            return self.speed_rpm.integral(start, time) * math.pi / 30.0
+        return self.speed_rpm * math.pi / 30.0 * (time - start)
+
+    @property
+    def start_shaft_angle(self) -> float:
+        """Angle of the shaft at the start (rad)."""
+        if self.start.kind != "state":
+            return 0.0
+        return -self.shaft_turn(0.0) if self.start.shaft_angle is None else self.start.shaft_angle
+
+    @property
+    def settled(self) -> float:
+        """From when on nothing changes any more but what repeats (s); not before the start."""
+        return settled_time(list(self.quantities().values()), self.start.time)
+
+    @cached_property
+    def period(self) -> float | None:
+        """Common period of everything that repeats (s); None if nothing does.
+
+        Raises
+        ------
+        InputError
+            If two quantities never repeat together.
+        """
+        periods = {
+            name: quantity.times[-1] - quantity.times[0]
+            for name, quantity in self.quantities().items()
+            if isinstance(quantity, History) and quantity.repeats
+        }
+        return common_period({**self._rotation_period(), **periods})
+
+    def _rotation_period(self) -> dict[str, float]:
+        rotating = self.rotating_load
+        if rotating is None or not any(values_of(rotating.load)):
+            return {}
+        if rotating.frequency_hz is not None:
+            return {"rotating_load.frequency_hz": 1.0 / abs(rotating.frequency_hz)} if rotating.frequency_hz else {}
+        speed = self.speed_rpm
+        if isinstance(speed, History) and speed.repeats:
+            span = speed.times[-1] - speed.times[0]
+            turned = rotating.turns * speed.integral(speed.times[0], speed.times[-1]) / 60.0
+            if abs(turned - round(turned)) > 1e-9:
+                limit = (
+                    f"must turn a whole number of times in a period of speed_rpm ({span:g} s), not {turned:.9g} times"
+                )
+                raise InputError.of(("rotating_load", "turns"), rotating.turns, limit)
+            return {}
+        final = speed.values[-1] if isinstance(speed, History) else speed
+        return {"rotating_load": 60.0 / abs(final * rotating.turns)} if final * rotating.turns else {}
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        self._check_motion()
+        self._check_load()
+        self._check_planar()
+        self._check_start()
+        _ = self.period
+        if self.effects.films and self.effects.rolling_resistance and self.lubricant.pressure_coefficient <= 0.0:
+            raise InputError.of(
+                ("lubricant", "pressure_coefficient"),
+                0.0,
+                "must be > 0 for rolling resistance; or switch that off (1/Pa)",
+            )
+        parameter_block(self)
+        return self
+
+    def _check_motion(self) -> None:
+        speed = max(values_of(self.speed_rpm), key=abs)
+        if abs(speed) > MAX_SPEED_RPM:
+            raise InputError.of("speed_rpm", speed, f"must be from {-MAX_SPEED_RPM:g} to {MAX_SPEED_RPM:g} (rpm)")
+        for place, quantity in enumerate(self.gravity):
+            pull = max(values_of(quantity), key=abs)
+            if abs(pull) > MAX_GRAVITY:
+                raise InputError.of(
+                    ("gravity", place), pull, f"must be from {-MAX_GRAVITY:g} to {MAX_GRAVITY:g} (m/s2)"
+                )
+        largest = math.radians(5.0)
+        for axis, moment, turn in (
+            ("x", self.moment_x, self.misalignment_x),
+            ("y", self.moment_y, self.misalignment_y),
+        ):
+            if moment is not None and turn != 0.0:
+                raise InputError.of(
+                    f"moment_{axis}", moment, f"must not be given together with misalignment_{axis} (N m)"
+                )
+            angle = max(values_of(turn), key=abs)
+            if abs(angle) > largest:
+                raise InputError.of(
+                    f"misalignment_{axis}", angle, f"must be from {-largest:.4g} to {largest:.4g} (rad)"
+                )
+        if self.displacement is not None:
+            limit = self.bearing.roller.diameter
+            for place, given in enumerate(self.displacement):
+                shift = 0.0 if given is None else max(values_of(given), key=abs)
+                if abs(shift) > limit:
+                    raise InputError.of(("displacement", place), shift, f"must be from {-limit:g} to {limit:g} (m)")
+
+    def _check_load(self) -> None:
+        loads: list[tuple[str, float | History]] = [("axial_load", self.axial_load), ("radial_load", self.radial_load)]
+        x, y, z, *_ = self.ring_is_placed
+        if self.displacement is not None and not (x or y or z):
+            raise InputError.of("displacement", self.displacement, "must give one entry at least (m)")
+        for name, load in loads:
+            check_sign(name, load)
+        if z and any(values_of(self.axial_load)):
+            raise InputError.of(
+                "axial_load", self.axial_load, "must be 0 where displacement gives the axial position (N)"
+            )
+        turning = self.rotating_load
+        if (x or y) and any(values_of(self.radial_load)):
+            limit = "must be 0 where displacement gives a radial position; set those entries None (N)"
+            raise InputError.of("radial_load", self.radial_load, limit)
+        if (x or y) and turning is not None and any(values_of(turning.load)):
+            limit = "must be 0 where displacement gives a radial position; set those entries None (N)"
+            raise InputError.of(("rotating_load", "load"), turning.load, limit)
+        self._check_held()
+        if not z:
+            self._check_capacity()
+
+    def _check_held(self) -> None:
+        if self.ring != "held" or all(self.ring_is_placed):
+            return
+        if self.rotating_load is not None and any(values_of(self.rotating_load.load)):
+            raise InputError.of("ring", "held", "must be 'follows' with a rotating_load")
+        for name, quantity in self.ring_quantities().items():
+            if name != "speed_rpm" and not is_constant(quantity):
+                field, _, place = name.partition("[")
+                path: Path = (field, int(place[:-1])) if place else (field,)
+                limit = "must be constant where the ring is held at an equilibrium; set ring = 'follows'"
+                raise InputError.of(path, quantity, limit)
+
+    def _check_capacity(self) -> None:
+        slope = math.tan(math.radians(self.bearing.cup_half_angle_deg))
+        turning = 0.0 if self.rotating_load is None else self.rotating_load.load
+        parts = [self.axial_load, self.radial_load, turning]
+        steady = all(is_constant(part) for part in parts)
+        for time in knot_times(parts, self.start.time):
+            axial, radial = value_at(self.axial_load, time), value_at(self.radial_load, time)
+            when = "" if steady else f" at {time:g} s"
+            if axial <= 0.0:
+                raise InputError.of(
+                    "axial_load", axial, f"must be > 0{when}: nothing else holds rollers and rings together (N)"
+                )
+            most = axial / slope
+            if radial >= most:
+                limit = f"must be < {most:.6g}{when}: axial_load / tan(cup half angle), all it can carry (N)"
+                raise InputError.of("radial_load", radial, limit)
+            largest = radial + value_at(turning, time)
+            if largest >= most:
+                limit = (
+                    f"must be < {most - radial:.6g}{when}: with radial_load up to axial_load / tan(cup half angle) (N)"
+                )
+                raise InputError.of(("rotating_load", "load"), largest - radial, limit)
+
+    def _check_planar(self) -> None:
+        """Planar motion freezes axial positions and tilts of the rollers at those of the start."""
+        if not self.effects.planar:
+            return
+        for name in ("misalignment_x", "misalignment_y", "moment_x", "moment_y"):
+            quantity = getattr(self, name)
+            if quantity is not None and any(values_of(quantity)):
+                limit = "must be 0 with effects.planar = true: tilts are frozen, but a tilted ring asks each to change"
+                raise InputError.of(name, quantity, limit)
+        axial = self.axial_load if self.displacement is None else (self.displacement[2] or 0.0)
+        if not is_constant(axial):
+            name = "axial_load" if self.displacement is None else "displacement"
+            limit = "must be constant along z with effects.planar = true: axial positions of the rollers are frozen"
+            raise InputError.of(name, axial, limit)
+
+    def _check_start(self) -> None:
+        if self.start.kind == "whirl" and self.effects.bodies == "rollers":
+            path: Path = ("start", "kind")
+            raise InputError.of(path, "whirl", "needs a cage: effects.bodies = 'rollers_and_cage'")
+        land, play = self.bearing.land, self.bearing.cage.play_radial
+        most = (land.clearance - land.contact_film) / play
+        if self.start.kind == "whirl" and self.effects.guidance != "rollers" and self.start.eccentricity > most:
+            limit = f"must be <= {most:.4g}: bearing.land.clearance less contact_film over bearing.cage.play_radial"
+            raise InputError.of(
+                ("start", "eccentricity"), self.start.eccentricity, f"{limit}, as a land guides the cage (1)"
+            )

@@ -1,0 +1,112 @@
+"""How a run starts."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import model_validator
+
+from trbdyn.base.validation import Model, Number, Whole, unit
+from trbdyn.errors import InputError
+from trbdyn.model.motion import MAX_TIME
+
+
+class Start(Model):
+    """How a run starts; made by `equal`, `unequal`, `whirl` or `state`. Rollers and cage always start in pure rolling.
+
+    Parameters
+    ----------
+    kind : {'equal', 'unequal', 'whirl', 'state'}
+        Equal: rollers equally spaced. Unequal: seeded random spacing. Whirl: the cage off centre and whirling, rollers
+        centred in their pockets. State: a saved state.
+    seed : int
+        Unequal: seed of the random numbers.
+    spread : float
+        Unequal: each roller is off its even place by up to this share of the circumferential play, either way (1).
+    eccentricity : float
+        Whirl: distance of the cage's centre from the bearing axis, in units of the radial play Cpr (1).
+    direction_deg : float
+        Whirl: where the cage's centre starts, from +x towards +y (deg).
+    time : float
+        When the run starts (s). Start state, loads and the ring's place belong to this time, and the shaft's angle is
+        zero then unless the start is from a state.
+    state_vector : sequence of float
+        State: the numbers of the core's state vector.
+    shaft_angle : float, optional
+        State: angle of the shaft at that time (rad); by default what it has turned by since t = 0.
+    """
+
+    kind: Literal["equal", "unequal", "whirl", "state"] = "equal"
+    seed: Annotated[Whole, unit("1", ge=0)] = 0
+    spread: Annotated[Number, unit("1", ge=0, le=1)] = 0.8
+    eccentricity: Annotated[Number, unit("1", ge=0, le=1)] = 0.9
+    direction_deg: Annotated[Number, unit("deg")] = -90.0
+    time: Annotated[Number, unit("s", ge=-MAX_TIME, le=MAX_TIME)] = 0.0
+    state_vector: tuple[Number, ...] = ()
+    shaft_angle: Annotated[Number, unit("rad", ge=-1e9, le=1e9)] | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.kind == "state") != bool(self.state_vector):
+            allowed = (
+                "must be given for a start from a state"
+                if self.kind == "state"
+                else "belongs to a start from a state only"
+            )
+            raise InputError.of("state_vector", self.state_vector, allowed)
+        if self.kind != "state" and self.shaft_angle is not None:
+            raise InputError.of("shaft_angle", self.shaft_angle, "belongs to a start from a state only (rad)")
+        return self
+
+    @classmethod
+    def equal(cls) -> Self:
+        """Rollers equally spaced, the cage at rest on them."""
+        return cls(kind="equal")
+
+    @classmethod
+    def unequal(cls, seed: int, *, spread: float = 0.8) -> Self:
+        """Rollers at random places within their pockets, the cage at rest on them.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of the random numbers.
+        spread : float
+            Largest share of the circumferential play that a roller is off its even place (1).
+        """
+        return cls(kind="unequal", seed=seed, spread=spread)
+
+    @classmethod
+    def whirl(cls, eccentricity: float = 0.9, *, direction_deg: float = -90.0) -> Self:
+        """The cage whirling with its own rotation, rollers centred in their pockets.
+
+        Parameters
+        ----------
+        eccentricity : float
+            Distance of the cage's centre from the bearing axis, in units of Cpr (1).
+        direction_deg : float
+            Direction of the cage's centre from +x towards +y (deg).
+        """
+        return cls(kind="whirl", eccentricity=eccentricity, direction_deg=direction_deg)
+
+    @classmethod
+    def state(cls, vector: ArrayLike, *, time: float = 0.0, shaft_angle: float | None = None) -> Self:
+        """A saved state.
+
+        Parameters
+        ----------
+        vector : array_like, shape (n_state,)
+            The core's state vector, for instance `Simulation.state.vector`.
+        time : float
+            The time it belongs to (s).
+        shaft_angle : float, optional
+            Angle of the shaft at that time (rad), for instance `Simulation.state.shaft_angle`; by default what the
+            shaft has turned by since t = 0. It must be given where the saved run itself did not start at t = 0.
+        """
+        try:
+            numbers = np.asarray(vector, dtype=np.float64).ravel().tolist()
+        except (TypeError, ValueError, OverflowError):
+            raise InputError.of(("start", "state_vector"), vector, "must be a vector of numbers") from None
+        return cls(kind="state", state_vector=tuple(numbers), time=time, shaft_angle=shaft_angle)

@@ -1,0 +1,206 @@
+"""Engineers' pictures of a result: ``trb.plot.cage_locus(result)``.
+
+Every function takes a `Result`, and axes to draw into (``ax=``) unless it needs a whole figure; it gives the axes, or
+the figure, back. The style holds for the new picture only: nothing global is changed, and no window is opened.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from trbdyn.base.own_files import folder_path
+from trbdyn.errors import FileError, InputError, unknown_name
+from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
+from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
+from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
+from trbdyn.plot.energy import energy_audit, power_split, torque_split
+from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
+from trbdyn.plot.style import SAVE_DPI, STYLE
+from trbdyn.plot.whirling import poincare, torque_sources, waterfall
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+__all__ = [
+    "PICTURES",
+    "STYLE",
+    "all",
+    "attitude",
+    "axial_motion",
+    "bearing_drawing",
+    "cage_locus",
+    "conditions",
+    "contact_loads",
+    "contact_map",
+    "energy_audit",
+    "film_map",
+    "film_parameter",
+    "load_zone",
+    "make_folder",
+    "orbit_radius",
+    "pocket_drawing",
+    "pocket_forces",
+    "pocket_polar",
+    "pocket_statistics",
+    "poincare",
+    "power_split",
+    "pressure_map",
+    "save",
+    "spacing_angles",
+    "spectrum",
+    "tilt",
+    "torque_sources",
+    "torque_split",
+    "waterfall",
+    "whirl_map",
+    "whirl_radius",
+]
+
+Picture = Callable[["Result"], Axes | Figure]
+
+PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
+    "cage_locus": (cage_locus, ("cage",)),
+    "orbit_radius": (orbit_radius, ("cage", "rollers")),
+    "axial_motion": (axial_motion, ("cage",)),
+    "tilt": (tilt, ("cage",)),
+    "spectrum": (spectrum, ("cage",)),
+    "spacing_angles": (spacing_angles, ("rollers",)),
+    "pocket_forces": (pocket_forces, ("pocket",)),
+    "pocket_statistics": (pocket_statistics, ("pocket",)),
+    "contact_loads": (contact_loads, ("rollers", "contacts")),
+    "film_parameter": (film_parameter, ("rollers", "contacts")),
+    "torque_split": (torque_split, ("torque",)),
+    "power_split": (power_split, ("power",)),
+    "energy_audit": (energy_audit, ("energy",)),
+    "load_zone": (load_zone, ("rollers", "contacts")),
+    "pressure_map": (pressure_map, ("cage", "rollers")),
+    "film_map": (film_map, ("cage", "rollers")),
+    "attitude": (attitude, ("rollers",)),
+    "pocket_polar": (pocket_polar, ("pocket",)),
+    "poincare": (poincare, ("cage",)),
+    "torque_sources": (torque_sources, ("torque",)),
+}
+"""Pictures of one result, by name, and the groups that each needs."""
+
+_RENAMED: Final = {"whirl_radius": "orbit_radius"}
+
+SPECTRUM_RECORDS: Final = 8
+"""Fewest records of a spectrum."""
+
+
+def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None = None) -> Path:
+    """Save a picture and close its figure.
+
+    Parameters
+    ----------
+    picture : Axes or Figure
+        What a function of this module gave.
+    path : path-like
+        File to write; its ending gives the format.
+    title : str, optional
+        A line under the figure's own title, which names the quantity.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    figure = picture.figure
+    while not isinstance(figure, Figure):
+        figure = figure.figure
+    try:
+        with plt.rc_context(STYLE):
+            if title:
+                quantity = figure.get_suptitle()
+                figure.suptitle(f"{quantity}\n{title}" if quantity else title, fontsize=10)
+            figure.savefig(path, dpi=SAVE_DPI)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: the picture cannot be written: {error}") from error
+    finally:
+        plt.close(figure)
+    return Path(path)
+
+
+def all(
+    result: Result, folder: str | os.PathLike[str], only: Iterable[str] | None = None, title: str | None = None
+) -> list[Path]:
+    """Save every picture that the recorded groups allow, as PNG; those of the cage only if there is one.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+    folder : path-like
+        Folder to write to; made if it is missing.
+    only : iterable of str, optional
+        Names of the pictures to draw, of those in `PICTURES`; all by default.
+    title : str, optional
+        A line under the title of every picture, which names the quantity; by default bearing, speed and loads.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    FileError
+        If the folder or a file cannot be written.
+    InputError
+        If a picture is unknown, or needs a group that was not recorded.
+    """
+    if only is None:
+        there = set(result.groups) - (set() if result.has_cage else {"cage", "pocket"})
+        chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
+    else:
+        chosen = [_RENAMED.get(name, name) for name in only]
+    if only is None and len(result) < SPECTRUM_RECORDS:
+        chosen = [name for name in chosen if name != "spectrum"]
+    for name in chosen:
+        if name not in PICTURES:
+            raise InputError.of("only", name, unknown_name(name, PICTURES))
+    least = SPECTRUM_RECORDS if "spectrum" in chosen else 2
+    if len(result) < least:
+        raise InputError.of("result", len(result), f"must have at least {least} records to draw this")
+    folder = make_folder(folder)
+    heading = conditions(result) if title is None else title
+    return [save(PICTURES[name][0](result), folder / f"{name}.png", heading) for name in chosen]
+
+
+def conditions(result: Result) -> str:
+    """Bearing, speed and loads of a run, for a title."""
+    scene = result.scene
+    parts = [f"{float(abs(result['shaft_speed']).mean()) * 30.0 / math.pi:.4g} rpm"]
+    for load, name in ((scene.axial_load, "$F_a$"), (scene.radial_load, "$F_r$")):
+        if isinstance(load, int | float) and load:
+            parts.append(f"{name} {load:g} N")
+    return f"{scene.bearing.name}: {', '.join(parts)}"
+
+
+def make_folder(folder: str | os.PathLike[str]) -> Path:
+    """A folder, made if it is missing.
+
+    Raises
+    ------
+    FileError
+        If it cannot be made.
+    """
+    folder = folder_path(folder, "folder")
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{folder}: the folder cannot be made: {error.strerror}") from error
+    return Path(folder)

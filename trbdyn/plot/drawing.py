@@ -1,0 +1,178 @@
+"""Drawings from the inputs: the bearing in section with its dimensions, and a pocket with its roller.
+
+Contact surfaces are drawn as they are simulated. What the model does not know (outer surface of the cup, bore of the
+cone, body of the cage) is drawn in usual proportions, dashed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from numpy.typing import NDArray
+
+from trbdyn.errors import InputError
+from trbdyn.model.outlines import cone_outline, cup_outline, profile_drop, rail_bands
+from trbdyn.plot.style import COLOURS, GREY, STYLE, canvas
+
+if TYPE_CHECKING:
+    from trbdyn.model.bearing import Bearing
+
+Array = NDArray[np.float64]
+
+_STEEL, _ROLLER, _CAGE = "#DCE1E6", "#F1F3F5", "#E8CF9B"
+
+
+def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
+    """The bearing in section, with its main dimensions.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> trb.plot.bearing_drawing(trb.cases.rig_30310()).get_ylabel()
+    'radius (mm)'
+    """
+    geometry, roller = bearing.geometry, bearing.roller
+    with canvas(ax, (6.4, 5.6), f"{bearing.name}: section through the bearing") as ax:
+        for outline in (cup_outline(bearing), cone_outline(bearing)):
+            corners = 1e3 * np.array(outline)[:, ::-1]
+            ax.add_patch(Polygon(corners, facecolor=_STEEL, edgecolor="black", linewidth=0.9, hatch="///", alpha=0.9))
+        half = 0.5 * roller.total_length
+        stations = np.linspace(-half, half, 41)
+        radius = (geometry.apex_to_mid + stations) * np.tan(geometry.roller_half_angle) - profile_drop(
+            bearing, stations
+        )
+        upper, lower = (np.stack([stations, side * radius], axis=1) for side in (1.0, -1.0))
+        inside = np.linspace(1.0, -1.0, 15)[1:-1] * radius[-1]
+        end = geometry.sphere_centre - geometry.apex_to_mid + np.sqrt(geometry.sphere_radius**2 - inside**2)
+        outline_of_roller = np.vstack([upper, np.stack([end, inside], axis=1), lower[::-1]])
+        ax.add_patch(
+            Polygon(_placed(bearing, outline_of_roller), facecolor=_ROLLER, edgecolor="black", linewidth=1.0, zorder=3)
+        )
+        for low, high, near, far, _ in rail_bands(bearing):
+            corners = np.array([(near, low), (far, low), (far, high), (near, high)])
+            ax.add_patch(Polygon(_placed(bearing, corners), facecolor=_CAGE, edgecolor=GREY, linestyle="--", zorder=2))
+        axis = _placed(bearing, np.array([(-1.35 * half, 0.0), (1.35 * half, 0.0)]))
+        ax.plot(*axis.T, color=GREY, linewidth=0.8, linestyle=(0, (8, 2, 1, 2)), zorder=4)
+        ax.axhline(0, color=GREY, linewidth=0.8, linestyle=(0, (8, 2, 1, 2)))
+        _dimensions(bearing, ax)
+        ax.set_aspect("equal")
+        outer = 1e3 * max(point[0] for point in cup_outline(bearing))
+        wide = 1.1e3 * max(abs(point[1]) for point in (*cup_outline(bearing), *cone_outline(bearing)))
+        ax.set(xlim=(-wide, max(2.4 * wide, 1.05 * outer - wide)), ylim=(-0.06 * outer, 1.1 * outer))
+        ax.set(xlabel="from the roller-centre plane towards the large ends (mm)", ylabel="radius (mm)")
+        ax.grid(visible=False)
+    return ax
+
+
+def _placed(bearing: Bearing, points: Array) -> Array:
+    """Points (along the roller's axis, outward from it) as (z, r) in mm."""
+    geometry = bearing.geometry
+    cosine, sine = np.cos(geometry.roller_axis_angle), np.sin(geometry.roller_axis_angle)
+    along, outward = points.T
+    r = geometry.apex_to_mid * sine + along * sine + outward * cosine
+    z = along * cosine - outward * sine
+    return 1e3 * np.stack([z, r], axis=1)
+
+
+def _dimensions(bearing: Bearing, ax: Axes) -> None:
+    """Pitch diameter, roller diameter and length, angles."""
+    geometry, roller = bearing.geometry, bearing.roller
+    mid = _placed(bearing, np.array([(0.0, 0.0)]))[0]
+    half, size = 0.5 * roller.effective_length, 0.5 * roller.diameter
+
+    box: dict[str, Any] = {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85}}
+
+    def measure(ends: Array, words: str, shift: tuple[float, float], align: str = "left") -> None:
+        look = {"arrowstyle": "<->", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+        start, stop = ((float(z), float(r)) for z, r in ends)
+        ax.annotate("", stop, start, arrowprops=look, zorder=6)
+        middle = (0.5 * (start[0] + stop[0]), 0.5 * (start[1] + stop[1]))
+        ax.annotate(words, middle, shift, textcoords="offset points", fontsize=9, zorder=7, ha=align, **box)
+
+    diameter = _placed(bearing, np.array([(0.0, -size), (0.0, size)]))
+    measure(diameter, f"Dwe {1e3 * roller.diameter:.4g}", (4, -3))
+    above = 1.35 * size
+    length = _placed(bearing, np.array([(-half, above), (half, above)]))
+    measure(length, f"Lwe {1e3 * roller.effective_length:.4g}", (0, 7), "center")
+    measure(np.array([[mid[0], 0.0], mid]), f"Dpw/2 {5e2 * bearing.pitch_diameter:.5g}", (5, -20))
+    lines = [
+        f"Z = {bearing.n_rollers} rollers",
+        f"cup half angle {bearing.cup_half_angle_deg:.4g}°",
+        f"cone half angle {np.degrees(geometry.cone_half_angle):.4g}°",
+        f"roller half angle {np.degrees(geometry.roller_half_angle):.4g}°",
+        f"rib contact {1e3 * bearing.ribs.contact_height:.3g} mm above the raceway",
+        "lengths in mm",
+    ]
+    ax.annotate(
+        "\n".join(lines), (0.98, 0.3), xycoords="axes fraction", fontsize=8.5, va="center", ha="right", zorder=8
+    )
+
+
+def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
+    """A pocket of the cage with its roller: seen along the roller's axis, and from outside.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        The bearing.
+    pocket : int
+        Number of the pocket, 0 to Z - 1.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        If there is no such pocket.
+    """
+    if not isinstance(pocket, int) or not 0 <= pocket < bearing.n_rollers:
+        raise InputError.of("pocket", pocket, f"must be a whole number from 0 to {bearing.n_rollers - 1}")
+    geometry, roller = bearing.geometry, bearing.roller
+    faces, gaps = bearing.pocket_of(pocket).faces, bearing.pocket_of(pocket).gaps(bearing.geometry)
+    around = np.linspace(0.0, 2.0 * np.pi, 121)
+    half = 0.5e3 * roller.total_length
+    with plt.rc_context(STYLE):
+        figure, (end, top) = plt.subplots(1, 2, figsize=(8.4, 5.0), width_ratios=(1.0, 1.3))
+        size = 0.5e3 * roller.diameter
+        end.plot(size * np.cos(around), size * np.sin(around), color="black", linewidth=1.0)
+        end.plot(0, 0, marker="+", color=GREY)
+        stations = np.linspace(-0.5, 0.5, 3) * roller.total_length
+        radius = 1e3 * (geometry.apex_to_mid + stations) * np.tan(geometry.roller_half_angle)
+        outline = np.concatenate([np.stack([1e3 * stations, radius], 1), np.stack([1e3 * stations, -radius], 1)[::-1]])
+        top.add_patch(Polygon(outline, facecolor=_ROLLER, edgecolor="black", linewidth=1.0))
+        for index, face in enumerate(faces):
+            corners = 1e3 * np.vstack([face.vertices, face.vertices[:1]])
+            look = {"color": COLOURS[index % len(COLOURS)], "linewidth": 1.8}
+            label = f"{face.name.replace('_', ' ')}: gap {1e3 * gaps[face.name]:.3g} mm"
+            end.plot(corners[:, 1], corners[:, 0], label=label, **look)
+            top.plot(corners[:, 2], corners[:, 1], **look)
+        end.set(aspect="equal", xlabel="in the direction of rotation, t (mm)", ylabel="outward, n (mm)")
+        end.set_title("seen along the roller's axis", pad=8)
+        top.set(aspect="equal", xlabel="along the roller, large end to the right (mm)", ylabel="t (mm)")
+        top.set_title("seen from outside")
+        top.set_xlim(-1.35 * half, 1.35 * half)
+        figure.legend(*end.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+        figure.suptitle(
+            f"{bearing.name}, pocket {pocket + 1}, roller centred and its large end touching\n"
+            f"Cpr {1e3 * bearing.cage.play_radial:.3g} mm, Cpc {1e3 * bearing.cage.play_circumferential:.3g} mm",
+            fontsize=10,
+        )
+    return figure

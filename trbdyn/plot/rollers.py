@@ -1,0 +1,251 @@
+"""Pictures of the rollers: spacing, forces on the cage, contact loads and films around the bearing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
+
+from trbdyn.errors import InputError
+from trbdyn.plot.cage import last_turns, need_cage, revolutions
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, STYLE, canvas, legend, line, sequence
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+SIDES = ("outer", "inner", "rib")
+BINS = 72
+STRETCHES = 300
+"""Stretches of time into which a picture of pocket forces is divided."""
+
+
+def spacing_angles(result: Result, ax: Axes | None = None, n: int = 1, rollers: Sequence[int] | None = None) -> Axes:
+    """Spacing of the rollers: the angle from a roller to the n-th after it, over the turns of the shaft.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and rollers.
+    ax : Axes, optional
+        Axes to draw into.
+    n : int
+        Number of adjacent gaps to add up.
+    rollers : sequence of int, optional
+        Rollers to name, the first five by default; the others are drawn in light grey.
+
+    Returns
+    -------
+    Axes
+    """
+    angles = np.degrees(result.spacing_angles(n))
+    count = angles.shape[1]
+    named = range(min(5, count)) if rollers is None else rollers
+    for roller in named:
+        if not 0 <= roller < count:
+            raise InputError.of("rollers", roller, f"must lie between 0 and {count - 1}")
+    with canvas(ax, (6.4, 4.0), "Spacing of the rollers" if n == 1 else f"Spacing of the rollers over {n} gaps") as ax:
+        turned = revolutions(result)
+        for roller in sorted(set(range(count)) - set(named)):
+            line(ax, turned, angles[:, roller], color=LIGHT, linestyle="-", linewidth=0.6, zorder=1)
+        for index, roller in enumerate(named):
+            label = f"{roller + 1}–{(roller + n) % count + 1}"
+            line(ax, turned, angles[:, roller], index, label, zorder=3)
+        ax.axhline(360.0 * n / count, color=GREY, linewidth=0.9, zorder=2)
+        ax.set(xlabel="shaft revolutions", xlim=(turned[0], turned[-1]))
+        ax.set_ylabel("angle between neighbours (deg)" if n == 1 else f"angle over {n} gaps (deg)")
+        legend(
+            ax, ncols=6, title=f"rollers; even spacing is {360.0 * n / count:g} deg", title_fontsize=9, alignment="left"
+        )
+    return ax
+
+
+def _face_name(result: Result, slot: int) -> str:
+    return result.slot_names[slot].replace("_", " ") or f"face {slot}"
+
+
+def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: float | None = 12.0) -> Figure:
+    """Normal forces between rollers and cage over the turns of the shaft: a panel for each face, a row for each pocket.
+
+    The colour is the largest force within a short stretch of time (the colour bar says how long), in a logarithmic scale; of all
+    steps where the group peaks was recorded, else of the records. So an impact of some tens of microseconds is seen as well as a
+    force that lasts. White: not touched.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and pocket.
+    pockets : sequence of int, optional
+        Pockets to show, from 0; all by default.
+    last : float or None
+        Number of last shaft revolutions to show; None shows all.
+
+    Returns
+    -------
+    Figure
+    """
+    need_cage(result)
+    shown = last_turns(result, last)
+    force = shown["pocket_force_peak" if "pocket_force_peak" in shown else "pocket_force"]
+    turned = revolutions(shown)
+    count, slots = force.shape[1:]
+    chosen = list(range(count)) if pockets is None else list(pockets)
+    for pocket in chosen:
+        if not 0 <= pocket < count:
+            raise InputError.of("pockets", pocket, f"must lie between 0 and {count - 1}")
+    edges = np.unique(np.linspace(0, len(turned), min(len(turned), STRETCHES) + 1).astype(int))
+    largest = np.maximum.reduceat(force[:, chosen], edges[:-1], axis=0)
+    touched = [slot for slot in range(slots) if largest[:, :, slot].any()]
+    borders = np.append(turned[edges[:-1]], turned[-1])
+    top = float(largest.max(initial=0.0)) or 1.0
+    with plt.rc_context(STYLE):
+        height = 0.55 + max(0.9, 0.13 * len(chosen))
+        figure, axes = plt.subplots(
+            max(1, len(touched)), 1, figsize=(6.8, 1.2 + height * max(1, len(touched))), sharex=True, squeeze=False
+        )
+        figure.set_label(OWN)
+        figure.suptitle("Normal forces between rollers and cage", fontsize=11)
+        mesh = None
+        for ax, slot in zip(axes.flat, touched, strict=False):
+            mesh = ax.pcolormesh(
+                borders,
+                np.arange(len(chosen) + 1) - 0.5,
+                np.ma.masked_less_equal(largest[:, :, slot].T, 0.0),
+                norm=LogNorm(1e-3 * top, top),
+                cmap=sequence().reversed(),
+                rasterized=True,
+            )
+            ax.set_title(_face_name(result, slot), loc="left", pad=3)
+            rows = np.unique(np.linspace(0, len(chosen) - 1, min(len(chosen), 12)).astype(int))
+            ax.set_yticks(rows, [str(chosen[row] + 1) for row in rows])
+            ax.set_ylabel("pocket")
+            ax.grid(visible=False)
+        axes[-1, 0].set(xlabel="shaft revolutions", xlim=(turned[0], turned[-1]))
+        if mesh is None:
+            axes[0, 0].text(0.5, 0.5, "no pocket was touched", transform=axes[0, 0].transAxes, ha="center")
+        else:
+            long = 1e3 * (shown["time"][-1] - shown["time"][0]) / (len(edges) - 1)
+            bar = figure.colorbar(mesh, ax=axes.ravel().tolist(), shrink=0.9, pad=0.02, extend="min")
+            bar.set_label(f"largest force within {long:.2g} ms (N)")
+    return figure
+
+
+def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float = 0.0) -> Axes:
+    """Force of each pocket and face: 95th percentile while in contact (filled) and peak (open), with the duty of each face.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and pocket.
+    ax : Axes, optional
+        Axes to draw into.
+    threshold : float
+        Force above which a face counts as touched, N.
+
+    Returns
+    -------
+    Axes
+    """
+    need_cage(result)
+    stats = result.pocket_statistics(threshold)
+    touched = np.flatnonzero(stats.peak.max(axis=0) > 0).tolist()
+    with canvas(ax, title="Forces on the pockets: 95 % in contact (filled), peak (open)") as ax:
+        place = np.arange(1, stats.peak.shape[0] + 1)
+        for index, slot in enumerate(touched):
+            shift = 0.16 * (index - 0.5 * (len(touched) - 1))
+            label = f"{_face_name(result, slot)} (touched {100 * stats.duty[:, slot].mean():.2g} % of the time)"
+            look: dict[str, Any] = {
+                "color": COLOURS[index % 7],
+                "marker": MARKERS[index % 7],
+                "linestyle": "none",
+                "markersize": 5,
+            }
+            peak = np.where(stats.peak[:, slot] > threshold, stats.peak[:, slot], np.nan)
+            p95 = np.where(stats.peak[:, slot] > threshold, stats.p95[:, slot], np.nan)
+            ax.vlines(place + shift, p95, peak, color=look["color"], linewidth=0.8)
+            ax.plot(place + shift, p95, label=label, **look)
+            ax.plot(place + shift, peak, markerfacecolor="white", **look)
+        ax.set(xlabel="pocket", ylabel="normal force (N)", xticks=place[:: max(1, place.size // 12)])
+        ax.set_ylim(bottom=0)
+        legend(ax, ncols=1)
+    return ax
+
+
+def _around(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Place (deg), mean, 5 % and 95 % of values in bins of the angle around the bearing; empty bins are left out."""
+    bins = (np.mod(angle, 2 * np.pi) / (2 * np.pi) * BINS).astype(int).ravel() % BINS
+    order = np.argsort(bins, kind="stable")
+    sorted_values, edges = values.ravel()[order], np.searchsorted(bins[order], np.arange(BINS + 1))
+    rows = [
+        ((k + 0.5) * 360.0 / BINS, part.mean(), *np.percentile(part, (5.0, 95.0)))
+        for k in range(BINS)
+        if (part := sorted_values[edges[k] : edges[k + 1]]).size
+    ]
+    place, mean, low, high = np.array(rows).T
+    return place, mean, low, high
+
+
+def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> None:
+    for index, side in enumerate(SIDES):
+        values = result[f"{side}_{quantity}"]
+        if not values.any():
+            continue
+        place, mean, low, high = _around(result["roller_orbit_angle"], values)
+        line(ax, place, mean, index, f"{side} (mean {values.mean():.4g}{unit})")
+        ax.fill_between(place, low, high, color=COLOURS[index], alpha=0.25, linewidth=0)
+    ax.set(xlim=(0, 360), xticks=range(0, 361, 45))
+    ax.set_xlabel("place around the bearing from x towards y (deg)\nline: mean, band: 5 to 95 %")
+
+
+def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
+    """Contact loads around the bearing: mean, and the range from 5 to 95 %.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time, rollers and contacts.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+    """
+    with canvas(ax, title="Contact loads of the rollers around the bearing") as ax:
+        _draw_around(result, ax, "load", " N")
+        ax.set_ylabel("normal load (N)")
+        ax.set_ylim(bottom=0)
+        legend(ax, ncols=3)
+    return ax
+
+
+def film_parameter(result: Result, ax: Axes | None = None) -> Axes:
+    """Film parameter Lambda around the bearing: mean, and the range from 5 to 95 %.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time, rollers and contacts.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+    """
+    with canvas(ax, title="Film parameter around the bearing") as ax:
+        _draw_around(result, ax, "film_parameter")
+        full = result.scene.effects.friction.lambda_full
+        ax.axhline(full, color=GREY, linewidth=0.9)
+        ax.text(358, full, "full film above", ha="right", va="bottom", fontsize=8.5, color=GREY)
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter(LogFormatter())
+        ax.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.5)))
+        ax.set_ylabel(r"film parameter $\Lambda$")
+        legend(ax, ncols=3)
+    return ax

@@ -1,0 +1,337 @@
+"""What follows from recorded fields: the observables of a result, by name."""
+
+from __future__ import annotations
+
+import warnings
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.errors import InputError
+from trbdyn.results import observables
+from trbdyn.results.fields import Field
+from trbdyn.results.peaks import Peaks
+from trbdyn.statics.creep import creep_time
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Clearances:
+    """Plays of the cage against one roller, with the cage centred and the roller's large end touching; one-sided, m.
+
+    Attributes
+    ----------
+    radial, circumferential, axial : float
+        Cpr, Cpc, and the axial play of the pocket.
+    """
+
+    radial: float
+    circumferential: float
+    axial: float
+
+
+def _old_name(old: str, same: str, better: str) -> None:
+    warnings.warn(
+        f"{old} is the old name of {same}, the distance from the bearing axis; {better} tells the whirl",
+        DeprecationWarning,
+        stacklevel=3,
+    )
+
+
+class Derived(ABC):
+    """Observables over recorded fields, each computed when it is asked for; `trbdyn.observables` says how.
+
+    All need their fields recorded and raise `InputError` otherwise.
+    """
+
+    @abstractmethod
+    def __getitem__(self, name: str) -> Array:
+        """A recorded field."""
+
+    @property
+    @abstractmethod
+    def fields(self) -> tuple[Field, ...]:
+        """The recorded fields."""
+
+    @property
+    @abstractmethod
+    def scene(self) -> Scene:
+        """The scene that was run."""
+
+    @property
+    @abstractmethod
+    def geometry(self) -> dict[str, float]:
+        """Derived geometry of the bearing, SI."""
+
+    @property
+    @abstractmethod
+    def peaks(self) -> Peaks:
+        """Extremes, means and impacts of all steps."""
+
+    def settling(self) -> observables.MotionSettling:
+        """Whether the motion has settled, drifts (with its time scale), or cannot be told from this record.
+
+        Judged by the drift of the roller spacing, the cage's orbit radius and its whirl amplitude, each with its
+        error, and by the time that the creep of the rollers takes (see `observables.motion_settling`).
+
+        Returns
+        -------
+        MotionSettling
+            Its ``str`` is the answer in words; ``time`` is where averages may begin.
+        """
+        angle = self["roller_orbit_angle"].mean(axis=1)
+        unit = np.degrees(self.clearances.circumferential / (0.5 * self.scene.bearing.pitch_diameter))
+        spacing = self.spacing_std / unit if unit > 0.0 else self.spacing_std
+        if not self.has_cage or not self.clearances.radial > 0.0:
+            return observables.motion_settling(self["time"], angle, spacing)
+        place = self["cage_position"] / self.clearances.radial
+        return observables.motion_settling(
+            self["time"], angle, spacing, place, self["cage_angle"], creep_time=self.creep_time
+        )
+
+    @property
+    def creep_time(self) -> float:
+        """Time in which creep of the rollers lets the cage's whirl change by its own size, s; nan where it is not
+        known.
+
+        From the traction at tiny slip in the equilibrium at the start (see `trbdyn.statics.creep.creep_time`).
+        """
+        return creep_time(self.scene)
+
+    @property
+    def duration(self) -> float:
+        """Recorded time, s."""
+        time = self["time"]
+        return float(time[-1] - time[0]) if time.size else 0.0
+
+    @property
+    def revolutions(self) -> float:
+        """Turns of the shaft between the first and the last record."""
+        angle = self["shaft_angle"]
+        return float(abs(angle[-1] - angle[0]) / (2.0 * np.pi)) if angle.size else 0.0
+
+    @property
+    def has_cage(self) -> bool:
+        """Whether the scene has a cage; without one, what is recorded of it means nothing."""
+        return self.scene.effects.bodies == "rollers_and_cage"
+
+    def _of_cage(self, name: str) -> Array:
+        """A recorded field of the cage; an error if the scene has none."""
+        if not self.has_cage:
+            raise InputError.of(
+                ("effects", "bodies"), self.scene.effects.bodies, "has no cage: nothing is known of its motion"
+            )
+        return self[name]
+
+    @property
+    def clearances(self) -> Clearances:
+        """Radial, circumferential and axial play of the cage, m."""
+        cage = self.scene.bearing.cage
+        return Clearances(cage.play_radial, cage.play_circumferential, cage.play_axial)
+
+    @property
+    def slot_names(self) -> tuple[str, ...]:
+        """Name of each face of a pocket: the columns of pocket_force and pocket_friction."""
+        return tuple(self.scene.bearing.slot_names)
+
+    def cage_locus(self, plane: Literal["centre", "rail"] = "centre") -> Array:
+        """Locus of the cage's centre, in units of the radial play Cpr, shape (T, 2).
+
+        Parameters
+        ----------
+        plane : {"centre", "rail"}
+            The roller-centre plane, or the plane of the large-end rail, where sensors look.
+        """
+        if plane not in ("centre", "rail"):
+            raise InputError.of("plane", plane, "must be 'centre' or 'rail'")
+        name = "cage_position" if plane == "centre" else "cage_rail_position"
+        return observables.locus(self._of_cage(name), self.clearances.radial)
+
+    @property
+    def axial_motion(self) -> Array:
+        """Axial position of the cage in units of its axial play, shape (T,); zero where large ends touch, nan without
+        play.
+        """
+        return self._of_cage("cage_position")[:, 2] / (self.clearances.axial or np.nan)
+
+    @property
+    def orbit_radius(self) -> Array:
+        """Distance of the cage's centre from the centre of its own orbit (its mean place over this record), m, shape
+        (T,).
+
+        In the roller-centre plane; it tells how far the cage whirls. Its root mean square is
+        ``cage_motion.orbit_over_play``.
+        """
+        return observables.orbit_radius(self._of_cage("cage_position"))
+
+    @property
+    def orbit_radius_over_cpr(self) -> Array:
+        """The orbit radius in units of the radial play, shape (T,)."""
+        return self.orbit_radius / self.clearances.radial
+
+    @property
+    def axis_distance(self) -> Array:
+        """Distance of the cage's centre from the bearing axis in the roller-centre plane, m, shape (T,).
+
+        Not the size of the whirl: a cage that hangs still on its rollers lies far from the axis. See `orbit_radius`.
+        """
+        return observables.axis_distance(self._of_cage("cage_position"))
+
+    @property
+    def axis_distance_over_cpr(self) -> Array:
+        """The distance from the bearing axis in units of the radial play, shape (T,)."""
+        return self.axis_distance / self.clearances.radial
+
+    @property
+    def whirl_radius(self) -> Array:
+        """Old name of `axis_distance`.
+
+        .. deprecated:: 0.1
+            Use `orbit_radius` for the size of the whirl, `axis_distance` for the distance from the bearing axis.
+        """
+        _old_name("whirl_radius", "axis_distance", "orbit_radius")
+        return self.axis_distance
+
+    @property
+    def whirl_radius_over_cpr(self) -> Array:
+        """Old name of `axis_distance_over_cpr`.
+
+        .. deprecated:: 0.1
+            Use `orbit_radius_over_cpr` for the size of the whirl, `axis_distance_over_cpr` for the distance from the
+            axis.
+        """
+        _old_name("whirl_radius_over_cpr", "axis_distance_over_cpr", "orbit_radius_over_cpr")
+        return self.axis_distance_over_cpr
+
+    @property
+    def whirl_frequency(self) -> float:
+        """Frequency at which the cage's centre turns about its mean place, Hz; negative for backward whirl."""
+        return observables.whirl_frequency(self["time"], self._of_cage("cage_position"))
+
+    @property
+    def cage_frequency(self) -> float:
+        """Rotation frequency of the cage, Hz."""
+        return observables.cage_frequency(self["time"], self._of_cage("cage_angle"))
+
+    @property
+    def whirl_ratio(self) -> float:
+        """Whirl frequency over the cage's rotation frequency."""
+        return self.whirl_frequency / self.cage_frequency if self.cage_frequency else float("nan")
+
+    @property
+    def cage_speed_ratio(self) -> float:
+        """Turn of the cage over the turn of the shaft."""
+        return observables.cage_speed_ratio(self._of_cage("cage_angle"), self["shaft_angle"])
+
+    @property
+    def cage_motion(self) -> observables.CageMotion:
+        """Class of the cage's motion: stable, circling or unstable (see `observables.classify`)."""
+        return observables.classify(self._of_cage("cage_position"), self["cage_velocity"], self.clearances.radial)
+
+    def spacing_angles(self, n: int = 1) -> Array:
+        """Angle from each roller to the n-th after it (the sum of n gaps), rad, shape (T, Z)."""
+        return observables.spacing(self["roller_orbit_angle"], n)
+
+    @property
+    def spacing_std(self) -> Array:
+        """Standard deviation of the gaps between neighbours, degrees, shape (T,)."""
+        return observables.spacing_std(self["roller_orbit_angle"])
+
+    @property
+    def roller_slip(self) -> Array:
+        """Slip of each roller's orbit against pure rolling, shape (T, Z); positive when slower."""
+        ratio = self.geometry["cage_speed_ratio"]
+        return observables.kinematic_slip(self["roller_orbit_speed"], self["shaft_speed"], ratio)
+
+    @property
+    def cage_slip(self) -> Array:
+        """Slip of the roller set against pure rolling: mean over the rollers, shape (T,)."""
+        return self.roller_slip.mean(axis=1)
+
+    @property
+    def spin_slip(self) -> Array:
+        """Slip of each roller's spin against pure rolling, shape (T, Z); positive when slower."""
+        ratio = self.geometry["roller_spin_ratio"]
+        return observables.kinematic_slip(np.abs(self["roller_spin_speed"]), np.abs(self["shaft_speed"]), ratio)
+
+    def pocket_statistics(self, threshold: float = 0.0) -> observables.PocketStatistics:
+        """Peak, 95th percentile, mean and duty of the force on each face of each pocket (forces above `threshold`, N).
+
+        With the group 'peaks', peak and mean are those of all steps and not of the records.
+        """
+        found = observables.pocket_statistics(self._of_cage("pocket_force"), threshold)
+        if not any(field.group == "peaks" for field in self.fields):
+            return found
+        return replace(found, peak=self.peaks["pocket_force_peak"], mean=self.peaks["pocket_force_mean"])
+
+    def _starting(self, prefix: str) -> dict[str, Array]:
+        return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}
+
+    def _needs(self, group: str, what: str) -> None:
+        if group not in {field.group for field in self.fields}:
+            raise InputError.of(what, "not saved", f"needs the group '{group}': put it into save_groups")
+
+    @property
+    def torque_split(self) -> dict[str, float]:
+        """Mean torque of each force on the inner ring, N m; together the shaft's friction torque.
+
+        A force that makes torque need not lose power: traction on the inner raceway passes on what rolling resistance
+        takes at the outer one. What is lost where is told by `power_split` and `torque_by_loss`.
+
+        Raises
+        ------
+        InputError
+            If the group 'torque' was not saved.
+        """
+        self._needs("torque", "torque_split")
+        return observables.torque_split(self._starting("inner_torque_"))
+
+    @property
+    def power_split(self) -> dict[str, float]:
+        """Mean power loss of each kind, W: from the energies lost where they were recorded, else from the powers.
+
+        Raises
+        ------
+        InputError
+            If neither of the groups 'energy' and 'power' was saved.
+        """
+        if not any(field.group == "energy" for field in self.fields):
+            self._needs("power", "power_split")
+        return observables.power_split(self["time"], self._starting("loss_"), self._starting("power_"))
+
+    @property
+    def torque_by_loss(self) -> dict[str, float]:
+        """Friction torque of the shaft by what loses it, N m: the power loss of each mechanism over the mean speed of
+        the shaft.
+
+        Unlike `torque_split`, which tells the forces on the inner ring, its shares are those of the power loss. Empty
+        at standstill.
+        """
+        speed = float(np.abs(self["shaft_speed"]).mean())
+        return {name: value / speed for name, value in self.power_split.items()} if speed > 0.0 else {}
+
+    def _energies(self) -> dict[str, Array]:
+        self._needs("energy", "energy_audit")
+        return {field.name: self[field.name] for field in self.fields if field.group == "energy"}
+
+    @property
+    def energy_balance(self) -> dict[str, Array]:
+        """Every term of the energy audit since the first record, and the residual, J, shapes (T,)."""
+        return observables.energy_balance(self._energies())
+
+    @property
+    def energy_audit(self) -> observables.EnergyAudit:
+        """The energy audit between the first and the last record."""
+        return observables.energy_audit(self._energies())
+
+    @property
+    def energy_closure(self) -> float:
+        """Size of the audit's residual over the dissipated work."""
+        return self.energy_audit.closure

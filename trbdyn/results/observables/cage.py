@@ -1,0 +1,328 @@
+"""The cage's motion: locus, orbit and whirl frequency, tilt, speed, and what kind of motion it is.
+
+The orbit radius is the distance of the cage's centre from the centre of its own orbit (its mean place); it tells how far the
+cage whirls. The distance from the bearing axis is another number: a cage that hangs still on its rollers has an orbit radius of
+zero, and lies far from the axis. They agree for a cage that whirls around the axis.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn.results.observables.signals import peak_frequency, spectrum
+
+Array = NDArray[np.float64]
+About = Literal["mean", "axis"]
+
+
+def _planar(position: ArrayLike) -> Array:
+    p = np.asarray(position, dtype=float)
+    if p.ndim != 2 or p.shape[1] < 2:
+        raise ValueError(f"positions must have shape (T, 2) or (T, 3), not {p.shape}")
+    return p[:, :2]
+
+
+def _centred(position: ArrayLike, about: About) -> Array:
+    p = _planar(position)
+    if about == "mean":
+        return p - p.mean(axis=0)
+    if about == "axis":
+        return p
+    raise ValueError(f"about must be 'mean' or 'axis', not {about!r}")
+
+
+def locus(position: ArrayLike, radial_play: float) -> Array:
+    """Locus of the cage's centre in units of the radial play.
+
+    Parameters
+    ----------
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre in any plane, from its centred place, m.
+    radial_play : float
+        Radial play Cpr of the cage, m.
+
+    Returns
+    -------
+    ndarray, shape (T, 2)
+        x/Cpr and y/Cpr.
+    """
+    return _planar(position) / radial_play
+
+
+def axis_distance(position: ArrayLike) -> Array:
+    """Distance of the cage's centre from the bearing axis.
+
+    Parameters
+    ----------
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre, from its centred place, m.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        Distance, m.
+    """
+    p = _planar(position)
+    return np.hypot(p[:, 0], p[:, 1])
+
+
+def whirl_radius(position: ArrayLike) -> Array:
+    """Old name of `axis_distance`: the distance from the bearing axis is no radius of a whirl.
+
+    .. deprecated:: 0.1
+        Use `orbit_radius` for the size of the whirl, `axis_distance` for the distance from the bearing axis.
+    """
+    warnings.warn(
+        "whirl_radius is the old name of axis_distance, the distance from the bearing axis; orbit_radius tells the whirl",
+        DeprecationWarning,
+        stacklevel=2,
+    )
+    return axis_distance(position)
+
+
+def orbit_radius(position: ArrayLike) -> Array:
+    """Distance of the cage's centre from the centre of its own orbit, its mean place.
+
+    Parameters
+    ----------
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre, m, over at least one whole turn of the cage.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        Distance, m.
+    """
+    p = _centred(position, "mean")
+    return np.hypot(p[:, 0], p[:, 1])
+
+
+def whirl_angle(position: ArrayLike, about: About = "mean") -> Array:
+    """Angle of the cage's centre, unwrapped.
+
+    Parameters
+    ----------
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre, m. Samples must be close enough that it turns less than half a revolution between two of them.
+    about : {"mean", "axis"}
+        Centre of the angle: the mean place, or the bearing axis.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        Angle from x towards y, rad.
+    """
+    p = _centred(position, about)
+    return np.unwrap(np.arctan2(p[:, 1], p[:, 0]))
+
+
+def _slope(time: ArrayLike, values: ArrayLike) -> float:
+    """Slope of the least-squares line."""
+    t = np.asarray(time, dtype=float)
+    x = np.asarray(values, dtype=float)
+    if t.size < 2 or t.shape != x.shape:
+        raise ValueError(f"needs at least two times and as many values, not shapes {t.shape} and {x.shape}")
+    t = t - t.mean()
+    return float(t @ (x - x.mean()) / (t @ t))
+
+
+def whirl_frequency(time: ArrayLike, position: ArrayLike, about: About = "mean") -> float:
+    """Whirl frequency from the unwrapped angle: the slope of its least-squares line.
+
+    Parameters
+    ----------
+    time : array_like, shape (T,)
+        Times, s.
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre, m.
+    about : {"mean", "axis"}
+        Centre of the angle. About the mean place, the window should hold at least one whole orbit.
+
+    Returns
+    -------
+    float
+        Frequency, Hz; positive in the direction of positive rotation about z, negative for backward whirl.
+    """
+    return _slope(time, whirl_angle(position, about)) / (2.0 * np.pi)
+
+
+def whirl_frequency_spectral(time: ArrayLike, position: ArrayLike) -> float:
+    """Whirl frequency from the peak of the two-sided spectrum of x + i y.
+
+    Parameters
+    ----------
+    time : array_like, shape (T,)
+        Times, s.
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre, m.
+
+    Returns
+    -------
+    float
+        Frequency, Hz; signed as in `whirl_frequency`. nan for a cage at rest.
+    """
+    p = _planar(position)
+    return peak_frequency(*spectrum(time, p[:, 0] + 1j * p[:, 1]))
+
+
+def cage_frequency(time: ArrayLike, cage_angle: ArrayLike) -> float:
+    """Rotation frequency of the cage, Hz: slope of its angle (rad, shape (T,)) over time (s, shape (T,)) by least squares."""
+    return _slope(time, cage_angle) / (2.0 * np.pi)
+
+
+def cage_speed_ratio(cage_angle: ArrayLike, shaft_angle: ArrayLike) -> float:
+    """Turn of the cage over the turn of the shaft.
+
+    Parameters
+    ----------
+    cage_angle, shaft_angle : array_like, shape (T,)
+        Unwrapped angles, rad.
+
+    Returns
+    -------
+    float
+        Ratio over the whole record; nan if the shaft has not turned.
+    """
+    cage = np.asarray(cage_angle, dtype=float)
+    shaft = np.asarray(shaft_angle, dtype=float)
+    turn = shaft[-1] - shaft[0]
+    return float((cage[-1] - cage[0]) / turn) if turn else float("nan")
+
+
+def lean(position: ArrayLike, tilt: ArrayLike) -> Array:
+    """Tilt of the cage's axis in the direction of the cage's displacement.
+
+    The axis points along (theta_y, -theta_x, 1) for small tilts. Positive lean means that the axis leans, with growing z,
+    to the side to which the cage's centre is displaced; so theta_x < 0 with the centre at +y is positive.
+
+    Parameters
+    ----------
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre from the bearing axis, m.
+    tilt : array_like, shape (T, 2)
+        theta_x, theta_y, rad.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        Lean, rad; zero where the cage is centred.
+    """
+    p = _planar(position)
+    theta = np.asarray(tilt, dtype=float)
+    radius = np.hypot(p[:, 0], p[:, 1])
+    projection = theta[:, 1] * p[:, 0] - theta[:, 0] * p[:, 1]
+    return np.divide(projection, radius, out=np.zeros_like(radius), where=radius > 0)
+
+
+def speed_deviation_ratio(velocity: ArrayLike) -> float:
+    """Standard deviation over mean of the speed of the cage's centre in the x-y plane.
+
+    Zero for a steady circle, sqrt(4/pi - 1) = 0.523 for a random planar velocity.
+
+    Parameters
+    ----------
+    velocity : array_like, shape (T, 2) or (T, 3)
+        Velocity of the cage's centre, m/s.
+
+    Returns
+    -------
+    float
+        Ratio; nan for a cage at rest.
+
+    References
+    ----------
+    Ghaisas, N., Wassgren, C. R., Sadeghi, F., Cage instabilities in cylindrical roller bearings, ASME J. Tribology 126 (2004)
+    681-689.
+    """
+    v = _planar(velocity)
+    speed = np.hypot(v[:, 0], v[:, 1])
+    mean = float(speed.mean())
+    return float(speed.std() / mean) if mean > 0 else float("nan")
+
+
+def whirl_coherence(position: ArrayLike, velocity: ArrayLike) -> float:
+    """How far the motion is a turn in one sense: mean of r x v over the product of the root mean squares of r and v.
+
+    r is the place of the cage's centre from its mean place, v its velocity less its mean, both in the x-y plane. One for a
+    steady circle, minus one for a steady backward circle, 2 a b/(a^2 + b^2) for a harmonic ellipse of semi-axes a and b, zero
+    for motion along a line and for random motion.
+
+    Parameters
+    ----------
+    position, velocity : array_like, shape (T, 2) or (T, 3)
+        Cage centre (m) and its velocity (m/s), over at least one whole turn of the cage.
+
+    Returns
+    -------
+    float
+        Coherence, from -1 to 1; nan for a cage at rest.
+    """
+    r, v = _centred(position, "mean"), _centred(velocity, "mean")
+    size = float(np.sqrt(np.sum(r**2) * np.sum(v**2)))
+    return float(np.sum(r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]) / size) if size > 0 else float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class CageMotion:
+    """What kind of motion the cage makes.
+
+    Attributes
+    ----------
+    kind : {"stable", "circling", "unstable"}
+        Class of the motion.
+    orbit_over_play : float
+        Root mean square distance from the mean place over the radial play.
+    whirl_coherence : float
+        How far the motion is a turn in one sense, see `whirl_coherence`.
+    speed_deviation_ratio : float
+        Standard deviation over mean of the cage centre's speed, the indicator of Ghaisas et al.; for comparison.
+    """
+
+    kind: Literal["stable", "circling", "unstable"]
+    orbit_over_play: float
+    whirl_coherence: float
+    speed_deviation_ratio: float
+
+
+def classify(
+    position: ArrayLike,
+    velocity: ArrayLike,
+    radial_play: float,
+    rest_orbit: float = 0.1,
+    least_coherence: float = 0.5,
+) -> CageMotion:
+    """Classify the cage's motion.
+
+    Stable: the centre stays near one place (root mean square distance from it below `rest_orbit` times the play). Else
+    circling, if it goes round in one sense (`whirl_coherence` at least `least_coherence`, either way), else unstable. The
+    deviation of the speed alone would not do: an orbit that repeats itself but is not round has a large one.
+
+    Parameters
+    ----------
+    position : array_like, shape (T, 2) or (T, 3)
+        Cage centre, m, over at least one whole turn of the cage.
+    velocity : array_like, shape (T, 2) or (T, 3)
+        Its velocity, m/s.
+    radial_play : float
+        Radial play Cpr, m.
+    rest_orbit : float
+        Largest orbit of a stable cage, in units of the play.
+    least_coherence : float
+        Least coherence of a circling cage.
+
+    Returns
+    -------
+    CageMotion
+        The class and the numbers behind it.
+    """
+    orbit = float(np.sqrt(np.mean(orbit_radius(position) ** 2)) / radial_play)
+    coherence, ratio = whirl_coherence(position, velocity), speed_deviation_ratio(velocity)
+    if orbit < rest_orbit:
+        return CageMotion("stable", orbit, coherence, ratio)
+    kind: Literal["circling", "unstable"] = "circling" if abs(coherence) >= least_coherence else "unstable"
+    return CageMotion(kind, orbit, coherence, ratio)

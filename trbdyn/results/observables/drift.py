@@ -1,0 +1,331 @@
+"""Slow change of the cage's motion: by turns of the cage, with the error of its rate, and whether a run has settled
+(docs/theory/whirl.md#when-a-run-has-settled).
+
+Rollers creep slowly when the cage leans on them. So the spacing of the rollers and the whirl of the cage may change over tens of
+seconds, long after everything fast has come to rest. A short record that looks steady proves nothing: whether it has settled is
+told by the rates of change with their errors, and by the time that the creep takes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn.results.observables.signals import settling
+
+Array = NDArray[np.float64]
+Answer = Literal["settled", "drifting", "unknown"]
+
+BLOCKS: Final = 12
+"""Stretches of a record into which turns are gathered, at most: the error of a rate comes from their scatter about the line."""
+LEAST_BLOCKS: Final = 5
+LEAST_TURNS: Final = 10
+"""Turns of the cage after the transient from which a motion can be called settled."""
+CREEP_TIMES: Final = 3.0
+"""Length after the transient, in times of the creep, from which a motion can be called settled."""
+SIGNIFICANT: Final = 0.00135
+"""Chance by which scatter alone would show a drift: that of three standard errors, one-sided."""
+BOUND: Final = 0.0228
+"""Chance that a rate lies above its bound: that of two standard errors, one-sided."""
+LEAST_GROWTH: Final = 0.1
+"""Growth (ln of the whirl amplitude) over the record after the transient from which a whirl counts as growing."""
+LIMITS: Final = {"whirl amplitude": 0.05, "orbit radius": 0.05, "roller spacing": 0.1}
+"""Changes that matter, in units of Cpr, Cpr and the angle Cpc/(Dpw/2)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """Rate of change of a quantity: slope of the least-squares line through the means of blocks of turns.
+
+    Attributes
+    ----------
+    mean : float
+        Mean of the quantity.
+    rate : float
+        Its change in a second.
+    error : float
+        Standard error of the rate, from the scatter of the blocks about the line.
+    freedom : int
+        Degrees of freedom of the error: number of blocks less two.
+    """
+
+    mean: float
+    rate: float
+    error: float
+    freedom: int
+
+    @property
+    def significant(self) -> bool:
+        """Whether the rate stands out of the scatter."""
+        return abs(self.rate) > _factor(SIGNIFICANT, self.freedom) * self.error
+
+    @property
+    def bound(self) -> float:
+        """Largest rate, either way, that the scatter leaves likely."""
+        return abs(self.rate) + _factor(BOUND, self.freedom) * self.error
+
+
+def _factor(chance: float, freedom: int) -> float:
+    from scipy import stats
+
+    return float(stats.t.isf(chance, freedom))
+
+
+@dataclass(frozen=True, slots=True)
+class MotionSettling:
+    """Whether the motion of rollers and cage has settled.
+
+    Attributes
+    ----------
+    answer : {"settled", "drifting", "unknown"}
+        Settled: the record after the transient is long against the creep of the rollers, and no quantity drifts. Drifting: a
+        quantity changes beyond its scatter. Unknown: neither can be told from this record.
+    index : int
+        First record after the transient; the middle of the record at the latest.
+    time : float
+        Its time, s.
+    time_scale : float
+        Drifting: time in which the quantity that drifts fastest would change by its own size, s; else nan.
+    reason : str
+        Why, in words.
+    creep_time : float
+        Time that the creep of the rollers needs to change the cage's whirl, s; nan where it is not known.
+    drifts : dict of str to Drift
+        The rates, by the names of `LIMITS`; empty for records that are too short.
+    """
+
+    answer: Answer
+    index: int
+    time: float
+    time_scale: float
+    reason: str
+    creep_time: float
+    drifts: dict[str, Drift] = field(default_factory=dict)
+
+    @property
+    def settled(self) -> bool:
+        """Whether the answer is "settled"."""
+        return self.answer == "settled"
+
+    def __str__(self) -> str:
+        return {"settled": "yes", "drifting": "no, it drifts: ", "unknown": "cannot be told: "}[
+            self.answer
+        ] + self.reason
+
+
+def by_turns(turned: ArrayLike, values: ArrayLike) -> Array:
+    """Means over whole turns.
+
+    Parameters
+    ----------
+    turned : array_like, shape (T,)
+        Angle turned, rad.
+    values : array_like, shape (T,)
+        Values.
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        Mean of each whole turn since the first record. nan for a turn without a record.
+    """
+    angle = np.asarray(turned, dtype=float)
+    turns = np.abs(angle - angle[0]) / (2.0 * np.pi)
+    whole = int(turns[-1])
+    index = turns.astype(int)
+    kept = index < whole
+    count = np.bincount(index[kept], minlength=whole)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(
+            np.bincount(index[kept], weights=np.asarray(values, dtype=float)[kept], minlength=whole) / count
+        )
+
+
+def whirl_amplitude(
+    time: ArrayLike, position: ArrayLike, cage_angle: ArrayLike
+) -> tuple[Array, NDArray[np.complex128]]:
+    """Complex amplitude of the whirl at the cage's frequency, by turns of the cage.
+
+    A whirl at the cage's frequency stands still in the cage's frame. So its amplitude is the mean, over a turn of the cage, of
+    the centre's place in that frame; a cage that merely hangs aside, or circles faster, has none.
+
+    Parameters
+    ----------
+    time : array_like, shape (T,)
+        Times, s.
+    position : array_like, shape (T, 2) or (T, 3)
+        Place of the cage's centre, m.
+    cage_angle : array_like, shape (T,)
+        Turn of the cage, rad.
+
+    Returns
+    -------
+    time : ndarray, shape (N,)
+        Mean time of each whole turn, s.
+    amplitude : ndarray of complex, shape (N,)
+        Mean place in the cage's frame, x + i y, in the unit of the position.
+    """
+    place, angle = np.asarray(position, dtype=float), np.asarray(cage_angle, dtype=float)
+    fixed = (place[:, 0] + 1j * place[:, 1]) * np.exp(-1j * (angle - angle[0]))
+    return by_turns(angle, time), by_turns(angle, fixed.real) + 1j * by_turns(angle, fixed.imag)
+
+
+def drift(time: ArrayLike, values: ArrayLike) -> Drift:
+    """Rate of change of a quantity, with its error.
+
+    Parameters
+    ----------
+    time : array_like, shape (N,)
+        Times, s: of turns of the cage, so that nothing periodic within a turn is seen.
+    values : array_like, shape (N,)
+        Means of the turns.
+
+    Returns
+    -------
+    Drift
+
+    Raises
+    ------
+    ValueError
+        If there are fewer values than `LEAST_BLOCKS`.
+    """
+    t, x = np.asarray(time, dtype=float), np.asarray(values, dtype=float)
+    if t.size < LEAST_BLOCKS or t.shape != x.shape:
+        raise ValueError(f"needs at least {LEAST_BLOCKS} times and as many values, not shapes {t.shape} and {x.shape}")
+    parts = np.array_split(np.arange(t.size), min(BLOCKS, t.size))
+    times = np.array([t[part].mean() for part in parts])
+    means = np.array([x[part].mean() for part in parts])
+    centred = times - times.mean()
+    size, freedom = float(centred @ centred), len(parts) - 2
+    rate = float(centred @ means) / size
+    left = means - means.mean() - rate * centred
+    return Drift(float(x.mean()), rate, math.sqrt(float(left @ left) / freedom / size), freedom)
+
+
+def motion_settling(
+    time: ArrayLike,
+    roller_angle: ArrayLike,
+    spacing: ArrayLike,
+    position: ArrayLike | None = None,
+    cage_angle: ArrayLike | None = None,
+    creep_time: float = math.nan,
+) -> MotionSettling:
+    """Whether the motion of rollers and cage has settled: settled, drifting, or not to be told from this record.
+
+    The transient is cut off by the marginal standard error rule (`settling`) over turns of the roller set. For the rest, the
+    rates of change of the whirl amplitude, the orbit radius and the spacing are taken from means over turns. It drifts if a rate
+    stands out of its scatter and changes the quantity by more than its limit (`LIMITS`) within the record or three times of
+    the creep, or if the whirl grows exponentially. It has settled if it does not drift, the record after the transient holds
+    ten turns and three times of the creep, and no rate that the scatter leaves likely would change a quantity by more than twice
+    its limit within this record. Else it cannot be told.
+
+    Parameters
+    ----------
+    time : array_like, shape (T,)
+        Increasing times, s.
+    roller_angle : array_like, shape (T,)
+        Mean angle by which the rollers have turned around the bearing, rad.
+    spacing : array_like, shape (T,)
+        Standard deviation of the rollers' spacing in units of the angle Cpc/(Dpw/2).
+    position : array_like, shape (T, 2) or (T, 3), optional
+        Place of the cage's centre in units of Cpr; without a cage None.
+    cage_angle : array_like, shape (T,), optional
+        Turn of the cage, rad.
+    creep_time : float
+        Time that the creep of the rollers needs to change the cage's whirl, s; nan: not known.
+
+    Returns
+    -------
+    MotionSettling
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from trbdyn import observables
+    >>> t = np.linspace(0.0, 1.0, 2001)
+    >>> found = observables.motion_settling(t, 130.0 * t, 0.1 + 0.2 * t, creep_time=4.0)
+    >>> found.answer, round(found.time_scale, 1)
+    ('drifting', 1.2)
+    """
+    t, turned = np.asarray(time, dtype=float), np.asarray(roller_angle, dtype=float)
+    spread = np.asarray(spacing, dtype=float)
+    turns = float(abs(turned[-1] - turned[0])) / (2.0 * np.pi) if t.size else 0.0
+    middle = max(min(t.size // 2, t.size - 2), 0)  # averages need two records
+    if turns < 4.0:
+        return MotionSettling(
+            "unknown", middle, float(t[middle]), math.nan, f"only {turns:.2g} turns of the cage", creep_time
+        )
+    signals = {"roller spacing": spread}
+    centre = None if position is None else np.asarray(position, dtype=float)
+    if centre is not None:
+        signals["orbit radius"] = np.hypot(centre[:, 0] - centre[:, 0].mean(), centre[:, 1] - centre[:, 1].mean())
+    found = settling(t, np.column_stack(list(signals.values())), min(int(turns), 50))
+    rest = slice(found.index, None)
+    when = by_turns(turned[rest], t[rest])
+    means = {"roller spacing": by_turns(turned[rest], spread[rest])}
+    if centre is not None and cage_angle is not None:
+        part, angle = centre[rest], np.asarray(cage_angle, dtype=float)[rest]
+        x, y = by_turns(turned[rest], part[:, 0]), by_turns(turned[rest], part[:, 1])
+        square = by_turns(turned[rest], part[:, 0] ** 2 + part[:, 1] ** 2)
+        means["orbit radius"] = np.sqrt(np.maximum(square - x**2 - y**2, 0.0))
+        means["whirl amplitude"] = np.abs(whirl_amplitude(t[rest], part, angle)[1])
+    count = min(when.size, *map(len, means.values()))  # rollers and cage may end in different turns
+    when, means = when[:count], {name: values[:count] for name, values in means.items()}
+    length = float(t[-1] - found.time)
+
+    def result(
+        answer: Answer, reason: str, scale: float = math.nan, drifts: dict[str, Drift] | None = None
+    ) -> MotionSettling:
+        return MotionSettling(answer, found.index, found.time, scale, reason, creep_time, drifts or {})
+
+    if count < LEAST_BLOCKS or not all(np.isfinite(values).all() for values in means.values()):
+        return result(
+            "unknown", f"only {when.size} turns of the cage after the transient, or too few records in a turn"
+        )
+    drifts = {name: drift(when, values) for name, values in means.items()}
+    horizon = length if math.isnan(creep_time) else max(length, CREEP_TIMES * creep_time)
+    moving = _moving(when, means, drifts, horizon)
+    if moving is not None:
+        name, scale, words = moving
+        return result("drifting", f"the {name} {words}, time scale {scale:.2g} s", scale, drifts)
+    if not math.isnan(creep_time) and length < CREEP_TIMES * creep_time:
+        return result(
+            "unknown",
+            f"the rollers creep within {creep_time:.2g} s, and this takes {CREEP_TIMES:.0f} times as long; "
+            f"after the transient there are {length:.2g} s",
+            drifts=drifts,
+        )
+    if when.size < LEAST_TURNS:
+        return result("unknown", f"only {when.size} turns of the cage after the transient", drifts=drifts)
+    for name, rate in drifts.items():
+        if rate.bound * length > 2.0 * LIMITS[name]:
+            unit = "Cpc" if name == "roller spacing" else "Cpr"
+            size = f"its rate is {rate.rate:.2g} with an error of {rate.error:.1g} {unit} in a second"
+            return result("unknown", f"the {name} scatters too much: {size}", drifts=drifts)
+    return result("settled", "", drifts=drifts)
+
+
+def _moving(
+    when: Array, means: dict[str, Array], drifts: dict[str, Drift], horizon: float
+) -> tuple[str, float, str] | None:
+    """The quantity that drifts fastest: name, time scale (s), words; None if none does."""
+    found: list[tuple[str, float, str]] = []
+    for name, rate in drifts.items():
+        if rate.significant and abs(rate.rate) * horizon > LIMITS[name]:
+            scale = max(abs(rate.mean), LIMITS[name]) / abs(rate.rate)
+            found.append((name, scale, "increases" if rate.rate > 0.0 else "decreases"))
+    if "whirl amplitude" in means:
+        size = means["whirl amplitude"]
+        log = drift(when, np.log(np.maximum(size, 1e-9)))
+        grown = log.rate * float(when[-1] - when[0])
+        if log.significant and grown > LEAST_GROWTH and _matters(float(size[-1]), log.rate, horizon):
+            found.append(("whirl amplitude", 1.0 / log.rate, "grows"))
+    return min(found, key=lambda entry: entry[1], default=None)
+
+
+def _matters(size: float, rate: float, horizon: float) -> bool:
+    """Whether growth at this rate goes beyond its limit within the horizon."""
+    return bool(size * math.expm1(min(rate * horizon, 100.0)) > LIMITS["whirl amplitude"])

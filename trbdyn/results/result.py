@@ -1,0 +1,366 @@
+"""The result of a run: every recorded field by its name, and what engineers read from them."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn.errors import FileError, InputError
+from trbdyn.model.scene import Scene
+from trbdyn.results import fields as field_table
+from trbdyn.results import peaks as peak_table
+from trbdyn.results.derived import Derived
+from trbdyn.results.fields import Field, Layout
+from trbdyn.results.file_format import RunInfo
+from trbdyn.results.peaks import Peaks
+from trbdyn.results.sources import MemorySource, Source, WindowSource, open_run
+from trbdyn.results.summary import summary
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+
+
+class Result(Derived):
+    """What a run gives.
+
+    Every recorded field is an attribute: a read-only float64 array with time as its first axis, in SI units
+    (``result.cage_position`` has shape (T, 3)); ``result.fields`` lists them with their units and texts. A result that
+    was loaded reads a field from its file when it is first asked for.
+
+    Parameters
+    ----------
+    source : Source
+        Where the fields come from.
+    info : RunInfo
+        What is known of the run besides.
+    scene : Scene, optional
+        The scene; by default it is made from ``info.scene`` when first asked for.
+
+    Attributes
+    ----------
+    success : bool
+        Whether the run reached its end.
+    message : str
+        How it ended, in a sentence.
+    stats : dict
+        Solver statistics: steps, rhs_evaluations, wall_s and others.
+    warnings : tuple of str
+        What the watch over the run found: energy that does not add up, steps so small that it makes no progress
+        (`trbdyn.run.watch`).
+    counters : dict of str to int
+        How often the core evaluated each effect; zero for effects that are off.
+    geometry : dict of str to float
+        Derived geometry of the bearing, SI.
+    final_time : float
+        Time of the final state, s.
+    final_state : ndarray or None, shape (n_state,)
+        The integrator's state at the end, from which a run can go on.
+    meta : dict
+        Versions, instruction set and settings of the run.
+    """
+
+    def __init__(self, source: Source, info: RunInfo, scene: Scene | None = None) -> None:
+        self._source = source
+        self._info = info
+        self._scene = scene
+        self._fields = {field.name: field for field in source.fields}
+
+    @classmethod
+    def from_records(
+        cls,
+        records: ArrayLike,
+        layout: Layout,
+        *,
+        scene: Scene,
+        success: bool,
+        message: str,
+        stats: Mapping[str, Any],
+        counters: Mapping[str, int],
+        final_time: float,
+        final_state: ArrayLike | None,
+        geometry: Mapping[str, float],
+        meta: Mapping[str, Any] | None = None,
+        groups: Sequence[str] | None = None,
+        fields: Sequence[Field] | None = None,
+        warnings: Sequence[str] = (),
+        peaks: Mapping[str, Array] | None = None,
+    ) -> Self:
+        """A result from full records in memory.
+
+        Parameters
+        ----------
+        records : array_like, shape (n, record_length)
+            The records.
+        layout : sequence of (name, offset, shape)
+            Places of the fields in a record.
+        scene : Scene
+            The scene that was run.
+        success, message, stats, counters, final_time, final_state, geometry, meta
+            See the class.
+        groups : sequence of str, optional
+            Groups of fields to keep; all by default, and then the arrays are views into `records`.
+        fields : sequence of Field, optional
+            The table that describes the fields; the core's by default.
+        warnings : sequence of str
+            What the watch over the run found.
+        peaks : mapping of str to ndarray, optional
+            Peaks of the whole run.
+
+        Returns
+        -------
+        Result
+
+        Raises
+        ------
+        InputError
+            If a group is unknown or the records are shorter than the layout says.
+        """
+        rows = np.asarray(records, dtype=float)
+        length = max((offset + int(np.prod(shape)) for _, offset, shape in layout), default=0)
+        if rows.ndim != 2 or rows.shape[1] < length:
+            raise InputError.of("records", rows.shape, f"must have the shape (n, {length})")
+        places = {name: (offset, shape) for name, offset, shape in layout}
+        kept = field_table.select(field_table.table() if fields is None else fields, groups)
+        kept = tuple(field for field in kept if field.name in places)
+        arrays: dict[str, Array] = {}
+        for field in kept:
+            offset, shape = places[field.name]
+            values = rows[:, offset : offset + int(np.prod(shape))].reshape(rows.shape[0], *shape)
+            values = values if groups is None else values.copy()
+            values.flags.writeable = False
+            arrays[field.name] = values
+        info = RunInfo(
+            scene=scene.to_dict(),
+            success=bool(success),
+            message=message,
+            stats=dict(stats),
+            counters=dict(counters),
+            warnings=tuple(warnings),
+            final_time=float(final_time),
+            final_state=None if final_state is None else np.array(final_state, dtype=float),
+            geometry=dict(geometry),
+            meta=dict(meta or {}),
+            peaks=dict(peaks or {}),
+        )
+        return cls(MemorySource(kept, rows.shape[0], arrays), info, scene)
+
+    def __getitem__(self, name: str) -> Array:
+        """A field by its name.
+
+        Raises
+        ------
+        InputError
+            If it was not recorded, or does not exist.
+        """
+        if name not in self._fields:
+            raise InputError.of("field", name, self._unknown(name))
+        return self._source.read(name)
+
+    def __getattr__(self, name: str) -> Array:
+        if name.startswith("_") or name not in self._fields:
+            raise AttributeError(f"this result has no {name!r}: {self._unknown(name)}")
+        return self[name]
+
+    def _unknown(self, name: str) -> str:
+        """Why there is no such field: its group was not saved, or what the name may have meant."""
+        every = {field.name: field.group for field in field_table.table()}
+        saved = f"saved groups: {', '.join(self.groups)}"
+        if name in every:
+            return f"was not recorded: it belongs to the group '{every[name]}', which save_groups left out; {saved}"
+        derived = [entry for entry in super().__dir__() if not entry.startswith("_")]
+        near = difflib.get_close_matches(str(name), [*every, *derived], n=3)
+        hint = f"did you mean {' or '.join(repr(entry) for entry in near)}? " if near else ""
+        return f"unknown name; {hint}{saved}; `dir(result)` lists every name"
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._fields
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self._fields})
+
+    def __len__(self) -> int:
+        return self._source.n_records
+
+    def __repr__(self) -> str:
+        state = "success" if self.success else "failed"
+        return f"<Result: {state}, {len(self)} records, groups {', '.join(self.groups)}: {self.message}>"
+
+    @property
+    def success(self) -> bool:
+        return self._info.success
+
+    @property
+    def message(self) -> str:
+        return self._info.message
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        return self._info.stats
+
+    @property
+    def counters(self) -> dict[str, int]:
+        return self._info.counters
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        return self._info.warnings
+
+    @property
+    def geometry(self) -> dict[str, float]:
+        return self._info.geometry
+
+    @property
+    def final_time(self) -> float:
+        return self._info.final_time
+
+    @property
+    def final_state(self) -> Array | None:
+        return self._info.final_state
+
+    @property
+    def meta(self) -> dict[str, Any]:
+        return self._info.meta
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that was run.
+
+        Raises
+        ------
+        FileError
+            If the stored scene cannot be read by this version.
+        """
+        if self._scene is None:
+            try:
+                self._scene = Scene.from_dict(self._info.scene)
+            except InputError as error:
+                raise FileError(f"the stored scene cannot be used: {error}") from error
+        return self._scene
+
+    @property
+    def fields(self) -> tuple[Field, ...]:
+        """The recorded fields: names, groups, units and texts."""
+        return tuple(self._fields.values())
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Names of the recorded groups."""
+        return field_table.groups(self._fields.values())
+
+    def select(self, groups: Iterable[str]) -> Result:
+        """The result with only the fields of some groups (and the times).
+
+        Raises
+        ------
+        InputError
+            If a group was not recorded.
+        """
+        kept = field_table.select(self.fields, groups)
+        return Result(WindowSource(self._source, kept, 0, len(self)), self._info, self._scene)
+
+    def window(self, start: float = -np.inf, stop: float = np.inf) -> Result:
+        """The result between two times (s), both included.
+
+        Raises
+        ------
+        InputError
+            If no record lies between them.
+        """
+        time = self["time"]
+        first, last = np.searchsorted(time, start, "left"), np.searchsorted(time, stop, "right")
+        if last <= first:
+            raise InputError.of(
+                "window", (start, stop), f"must hold a record; the last one is at {self.final_time:g} s"
+            )
+        part = WindowSource(self._source, self.fields, int(first), int(last))
+        return Result(part, replace(self._info, peaks={}), self._scene)
+
+    @property
+    def peaks(self) -> Peaks:
+        """Extremes, means and impacts between the records too: of the whole run, or of a window's records.
+
+        ``result.peaks["pocket_force_peak"]`` is the largest force on each face of each pocket,
+        ``result.pocket_force_peak`` the largest since the record before, at each record.
+
+        Raises
+        ------
+        InputError
+            If the run was made without the group 'peaks'.
+        """
+        if self._info.peaks:
+            return Peaks(self._info.peaks)
+        kept = peak_table.names(self.fields)
+        if not kept or not len(self):
+            raise InputError.of("peaks", "asked for", "were not kept: the run was made without the group 'peaks'")
+        return peak_table.join(self["time"], {name: self[name] for name in kept})
+
+    @property
+    def settled(self) -> Result:
+        """The result after the transient, the second half of the run at least; `settling` says whether it has settled
+        there.
+        """
+        return self.window(self.settling().time)
+
+    @property
+    def n_rollers(self) -> int:
+        """Number of rollers, Z; zero if nothing was recorded of them."""
+        sized = (self[field.name].shape[1] for field in self.fields if field.dims[:1] == ("roller",))
+        return next(sized, 0)
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers an engineer asks for first (see `trbdyn.results.summary`)."""
+        return summary(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Every recorded field in an xarray Dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimensions time, roller, xyz, xy, wxyz and slot; attributes ``units`` and ``long_name`` as xarray's plots
+            use them.
+        """
+        import xarray
+
+        labels = {dim: list(dim) for dim in ("xyz", "xy", "wxyz")}
+        variables = {
+            name: (("time", *field.dims), self[name], {"units": field.unit, "long_name": field.text})
+            for name, field in self._fields.items()
+        }
+        time = variables.pop("time")
+        used = {dim for dims, _, _ in variables.values() for dim in dims}
+        coordinates: dict[str, Any] = {"time": time} | {dim: labels[dim] for dim in labels if dim in used}
+        if "roller" in used:
+            coordinates["roller"] = np.arange(self.n_rollers)
+        attributes = {"success": int(self.success), "message": self.message}
+        return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def load(path: str | os.PathLike[str]) -> Result:
+    """Load a result file.
+
+    Parameters
+    ----------
+    path : path-like
+        A file written by a run; segments that were added by resuming it are joined to it.
+
+    Returns
+    -------
+    Result
+        Its fields are read when they are asked for. If the run was cut off, ``success`` is False and the records up to
+        the last write are there.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, damaged, of another kind or of a later version.
+    """
+    return Result(*open_run(path))

@@ -1,0 +1,382 @@
+"""The numbers of a run that an engineer asks for first: as a dictionary, as JSON, as a table.
+
+Averages are taken over the window after the transient (``window_start`` to ``window_end``), half of the run at least. Whether the
+motion has settled there is told in three answers, in ``settling``: settled, drifting (with its time scale) or unknown, which
+means that it cannot be told from this run (see `Result.settling`). Energies are those of the whole run. Numbers whose fields were
+not recorded, or that do not exist (a whirl ratio at standstill), are None.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import textwrap
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.errors import FileError
+from trbdyn.results import observables
+from trbdyn.results.confidence import confidence
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+LABELS: dict[str, tuple[str, str]] = {
+    "success": ("finished", ""),
+    "message": ("how it ended", ""),
+    "revolutions": ("shaft revolutions", ""),
+    "duration": ("bearing time", "s"),
+    "settled": ("settled", ""),
+    "settling": ("settling: settled, drifting or unknown", ""),
+    "settling_reason": ("why it is not known to have settled", ""),
+    "settling_time_scale": ("time scale of the drift", "s"),
+    "creep_time": ("time of the rollers' creep", "s"),
+    "window_start": ("averages from", "s"),
+    "window_end": ("averages to", "s"),
+    "speed_rpm": ("shaft speed", "rpm"),
+    "cage_speed_ratio": ("cage speed / shaft speed", ""),
+    "cage_speed_ratio_kinematic": ("the same, pure rolling", ""),
+    "cage_slip": ("slip of the roller set", ""),
+    "cage_motion": ("cage motion", ""),
+    "orbit_radius_over_cpr": ("orbit radius of the cage about its mean place, rms / Cpr", ""),
+    "orbit_radius_over_cpr_p05": ("    5 %", ""),
+    "orbit_radius_over_cpr_p95": ("    95 %", ""),
+    "axis_distance_over_cpr": ("distance of the cage from the bearing axis, mean / Cpr", ""),
+    "axis_distance_over_cpr_p05": ("    5 %", ""),
+    "axis_distance_over_cpr_p95": ("    95 %", ""),
+    "whirl_ratio": ("whirl frequency / cage frequency", ""),
+    "whirl_frequency": ("whirl frequency", "Hz"),
+    "whirl_coherence": ("share of turning in the cage centre's motion", ""),
+    "speed_deviation_ratio": ("cage centre speed, deviation / mean", ""),
+    "axial_over_clearance": ("axial position / axial play", ""),
+    "tilt_rms": ("cage tilt, rms", "rad"),
+    "lean_mean": ("tilt to the side of the cage's displacement, mean", "rad"),
+    "spacing_std_deg": ("roller spacing, deviation", "deg"),
+    "pocket_force_p95": ("pocket force, 95 % in contact", "N"),
+    "pocket_force_peak": ("pocket force, largest at any step", "N"),
+    "pocket_impacts": ("impacts in the pockets", ""),
+    "pocket_impulse_peak": ("largest impulse of one impact", "N s"),
+    "land_force_peak": ("force of the land on the cage, largest at any step", "N"),
+    "land_gap_min": ("gap between cage and land, smallest at any step", "m"),
+    "pocket_duty": ("share of time that a pocket is touched", ""),
+    "outer_load_mean": ("load a roller, outer raceway", "N"),
+    "inner_load_mean": ("load a roller, inner raceway", "N"),
+    "rib_load_mean": ("load a roller, back-face rib", "N"),
+    "outer_pressure_max": ("largest pressure at any step, outer raceway", "Pa"),
+    "inner_pressure_max": ("largest pressure at any step, inner raceway", "Pa"),
+    "rib_pressure_max": ("largest pressure at any step, rib", "Pa"),
+    "film_parameter_outer": ("film parameter, outer raceway", ""),
+    "film_parameter_inner": ("film parameter, inner raceway", ""),
+    "film_parameter_rib": ("film parameter, rib", ""),
+    "film_parameter_outer_min": ("smallest film parameter, outer raceway", ""),
+    "film_parameter_inner_min": ("smallest film parameter, inner raceway", ""),
+    "film_parameter_rib_min": ("smallest film parameter, rib", ""),
+    "skew_rms": ("roller skew, rms", "rad"),
+    "torque": ("friction torque of the shaft", "N m"),
+    "torque_outer": ("friction torque on the outer ring", "N m"),
+    "power_loss": ("power loss", "W"),
+    "energy_closure": ("energy audit: residual / dissipated work", ""),
+    "energy_residual": ("energy audit: residual", "J"),
+    "steps": ("steps", ""),
+    "rhs_evaluations": ("evaluations of the equations of motion", ""),
+    "wall_s": ("wall time", "s"),
+    "wall_s_per_revolution": ("wall time a revolution", "s"),
+    "confidence_note": ("About the numbers behind ±", ""),
+    "confidence": ("half width of the 95 % confidence interval", ""),
+    "torque_note": ("Why the torques of the rings differ", ""),
+    "power_split": ("power loss by mechanism", "W"),
+    "torque_by_loss": ("the same as friction torque of the shaft", "N m"),
+    "torque_split": ("forces on the inner ring that make this torque", "N m"),
+    "whirl_radius_over_cpr": ("old name of axis_distance_over_cpr", ""),
+}
+"""Words and units of the summary's entries, in the order of the table.
+
+Cpr is the radial play of the cage, one-sided. A force on the inner ring that makes torque need not lose power: traction passes on
+what rolling resistance takes at the outer raceway. So the shares of ``torque_split`` differ from those of ``torque_by_loss``.
+"""
+
+UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "whirl_radius_over_cpr", "confidence")
+"""Entries that the table leaves out, as another one tells them."""
+
+RINGS_DIFFER: Final = 0.01
+"""Share by which the torques of the two rings may differ without a word."""
+
+
+def summary(result: Result) -> dict[str, Any]:
+    """Summarise a run.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+
+    Returns
+    -------
+    dict
+        Numbers by the names of `LABELS`, SI units; ``torque_split`` and ``power_split`` are dictionaries.
+    """
+    out: dict[str, Any] = {"success": result.success, "message": result.message}
+    out |= {"revolutions": result.revolutions, "duration": result.duration}
+    if len(result) > 1:
+        out |= _motion(result)
+    out |= _cost(result)
+    return {name: clean(out.get(name)) for name in LABELS}
+
+
+def _motion(result: Result) -> dict[str, Any]:
+    groups = set(result.groups)
+    out: dict[str, Any] = {"settled": False, "settling": "unknown"}
+    if {"cage", "rollers"} <= groups:
+        found = result.settling()
+        out |= {"settled": found.settled, "settling": found.answer, "settling_reason": found.reason or None}
+        out |= {"settling_time_scale": found.time_scale, "creep_time": found.creep_time}
+        window = result.window(found.time)
+    else:
+        out["settling_reason"] = "the groups cage and rollers were not recorded"
+        window = result.window(float(result["time"][len(result) // 2]))
+    time = window["time"]
+    out |= {"window_start": float(time[0]), "window_end": float(time[-1])}
+    out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
+    out |= _averages(window)
+    out["confidence"], out["confidence_note"] = confidence(window, _averages)
+    if not result.has_cage:
+        out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
+    if "energy" in groups:
+        audit = result.energy_audit
+        out |= {"energy_closure": audit.closure, "energy_residual": audit.residual}
+    return out
+
+
+def _averages(window: Result) -> dict[str, Any]:
+    parts: dict[str, Callable[[Result], dict[str, Any]]] = {
+        "cage": _cage,
+        "rollers": _rollers,
+        "pocket": _pocket,
+        "contacts": _contacts,
+        "peaks": _peaks,
+        "torque": _torque,
+        "power": _power,
+    }
+    out: dict[str, Any] = {}
+    for group, part in parts.items():
+        if group in window.groups and (window.has_cage or group not in ("cage", "pocket")):
+            out |= part(window)
+    return out
+
+
+def _cage(window: Result) -> dict[str, Any]:
+    orbit, distance, motion = window.orbit_radius_over_cpr, window.axis_distance_over_cpr, window.cage_motion
+    (orbit_low, orbit_high), (low, high) = np.percentile(orbit, (5.0, 95.0)), np.percentile(distance, (5.0, 95.0))
+    return {
+        "cage_speed_ratio": window.cage_speed_ratio,
+        "cage_motion": motion.kind,
+        "orbit_radius_over_cpr": motion.orbit_over_play,
+        "orbit_radius_over_cpr_p05": orbit_low,
+        "orbit_radius_over_cpr_p95": orbit_high,
+        "axis_distance_over_cpr": distance.mean(),
+        "axis_distance_over_cpr_p05": low,
+        "axis_distance_over_cpr_p95": high,
+        "whirl_radius_over_cpr": distance.mean(),
+        "whirl_ratio": window.whirl_ratio,
+        "whirl_frequency": window.whirl_frequency,
+        "whirl_coherence": motion.whirl_coherence,
+        "speed_deviation_ratio": motion.speed_deviation_ratio,
+        "axial_over_clearance": window.axial_motion.mean(),
+        "lean_mean": observables.lean(window["cage_position"], window["cage_tilt"]).mean(),
+        "tilt_rms": np.sqrt(np.mean(np.sum(window["cage_tilt"] ** 2, axis=1))),
+    }
+
+
+def _rollers(window: Result) -> dict[str, Any]:
+    return {
+        "cage_speed_ratio_kinematic": window.geometry.get("cage_speed_ratio"),
+        "cage_slip": window.cage_slip.mean() if "cage_speed_ratio" in window.geometry else None,
+        "spacing_std_deg": window.spacing_std.mean(),
+        "skew_rms": np.sqrt(np.mean(window["roller_skew"] ** 2)),
+    }
+
+
+def _pocket(window: Result) -> dict[str, Any]:
+    force = window["pocket_force"]
+    touched = force[force > 0]
+    return {
+        "pocket_force_p95": np.percentile(touched, 95.0) if touched.size else 0.0,
+        "pocket_duty": (force > 0).any(axis=2).mean(),
+    }
+
+
+def _loaded_mean(values: Any, load: Any) -> float:
+    """Mean weighted by load: the thickness of a film that carries nothing has no meaning."""
+    total = float(load.sum())
+    return float((values * load).sum() / total) if total > 0.0 else 0.0
+
+
+def _contacts(window: Result) -> dict[str, Any]:
+    out: dict[str, Any] = {f"{side}_load_mean": window[f"{side}_load"].mean() for side in ("outer", "inner", "rib")}
+    return out | {
+        f"film_parameter_{side}": _loaded_mean(window[f"{side}_film_parameter"], window[f"{side}_load"])
+        for side in ("outer", "inner", "rib")
+    }
+
+
+def _peaks(window: Result) -> dict[str, Any]:
+    """Extremes at the ends of all steps in the window, and time integrals between them; not those of the records."""
+    peaks, sides = window.peaks, ("outer", "inner", "rib")
+    out: dict[str, Any] = {f"{side}_load_mean": peaks[f"{side}_load_mean"].mean() for side in sides}
+    out |= {f"{side}_pressure_max": peaks[f"{side}_pressure_peak"].max() for side in sides}
+    out |= {f"film_parameter_{side}_min": np.fmin.reduce(peaks[f"{side}_film_parameter_min"]) for side in sides}
+    if window.scene.effects.guidance != "rollers":
+        out |= {name: float(peaks[name]) for name in ("land_force_peak", "land_gap_min")}
+    return out | {
+        "pocket_force_peak": peaks["pocket_force_peak"].max(),
+        "pocket_impacts": int(peaks["pocket_impacts"].sum()),
+        "pocket_impulse_peak": peaks["pocket_impulse_peak"].max(),
+    }
+
+
+def _torque(window: Result) -> dict[str, Any]:
+    inner, outer = shaft_torque(window), float(window["outer_torque"].mean())
+    return {
+        "torque": inner,
+        "torque_outer": outer,
+        "torque_note": torque_note(window, inner, outer),
+        "torque_split": window.torque_split,
+    }
+
+
+def shaft_torque(window: Result) -> float:
+    """Mean friction torque of the shaft (N m): its work over its turn, which records between impacts do not alias.
+
+    The mean of the records where the work was not recorded, or the shaft stands still or turns back.
+    """
+    speed = window["shaft_speed"]
+    one_way = bool(np.all(speed > 0.0) or np.all(speed < 0.0))
+    if "energy" not in window.groups or not one_way or len(window) < 2:
+        return float(window["inner_torque"].mean())
+    turn = window["shaft_angle"][-1] - window["shaft_angle"][0]
+    return float((window["work_shaft"][-1] - window["work_shaft"][0]) / abs(turn))
+
+
+def mean_loss(window: Result) -> float:
+    """Mean power loss (W): energy lost over time, which records between impacts do not alias; of the records without it."""
+    if "energy" not in window.groups or len(window) < 2:
+        return float(window["power_loss"].mean())
+    losses = [field.name for field in window.fields if field.name.startswith("loss_")]
+    time = window["time"]
+    return float(sum(window[name][-1] - window[name][0] for name in losses) / (time[-1] - time[0]))
+
+
+def torque_note(window: Result, inner: float, outer: float) -> str | None:
+    """Why the friction torques on shaft and outer ring (N m) differ, in a sentence; None if they agree."""
+    if abs(outer - inner) <= RINGS_DIFFER * max(abs(inner), abs(outer)):
+        return None
+    effects = window.scene.effects
+    if effects.films and effects.rolling_resistance and not effects.rolling_pressure_force:
+        return (
+            "rolling resistance acts without the film's pressure force on the roller (effects.rolling_pressure_force is off, as "
+            "in the paper), so the moments on a roller balance only if its two raceways carry different torques; "
+            "Effects.standard() has that force, and both rings agree"
+        )
+    return (
+        "rollers and cage speed up or slow down within the window, "
+        "or a moment acts that is neither on the shaft nor on the ring"
+    )
+
+
+def _power(window: Result) -> dict[str, Any]:
+    return {
+        "power_loss": mean_loss(window),
+        "power_split": window.power_split,
+        "torque_by_loss": window.torque_by_loss,
+    }
+
+
+def _cost(result: Result) -> dict[str, Any]:
+    """Cost of the run; wall time per revolution is that of stepping where the statistics tell it."""
+    out = {name: result.stats.get(name) for name in ("steps", "rhs_evaluations", "wall_s", "wall_s_per_revolution")}
+    if out["wall_s_per_revolution"] is None and out["wall_s"] is not None and result.revolutions:
+        out["wall_s_per_revolution"] = out["wall_s"] / result.revolutions
+    return out
+
+
+def clean(value: Any) -> Any:
+    """Plain Python, as strict JSON takes it: numbers that are not finite become None."""
+    if isinstance(value, Mapping):
+        return {name: clean(entry) for name, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [clean(entry) for entry in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def write_json(values: Mapping[str, Any], path: str | os.PathLike[str], *, overwrite: bool = True) -> Path:
+    """Write a summary as JSON.
+
+    Parameters
+    ----------
+    values : mapping
+        What `summary` gave.
+    path : path-like
+        File to write.
+    overwrite : bool
+        Replace a file that is there.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    target = output_path(path, overwrite=overwrite, field="summary")
+    try:
+        write_whole(target, (json.dumps(values, indent=2, allow_nan=False) + "\n").encode(), overwrite=overwrite)
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(f"{path}: the summary cannot be written: {error.strerror or error}") from error
+    return Path(path)
+
+
+def table(values: Mapping[str, Any]) -> str:
+    """A summary as a table for people: words, number, unit; entries that are None are left out, sentences follow the table."""
+    rows: list[tuple[str, str, str]] = []
+    sentences = ""
+    for name, (words, unit) in LABELS.items():
+        value = values.get(name)
+        if value is None or name in UNPRINTED:
+            continue
+        if name == "settling":
+            rows.append(("settled", _settled_words(values), ""))
+        elif name in ("torque_note", "confidence_note"):
+            sentences += "\n\n" + textwrap.fill(f"{words}: {value}", 100)
+        elif isinstance(value, Mapping):
+            rows.append((words, "", ""))
+            rows.extend(
+                (f"    {part.replace('_', ' ')}", _number(entry), unit) for part, entry in value.items() if entry
+            )
+        else:
+            rows.append((words, _number(value, (values.get("confidence") or {}).get(name)), unit))
+    width = max(len(words) for words, _, _ in rows)
+    return "\n".join(f"{words:<{width}}  {number} {unit}".rstrip() for words, number, unit in rows) + sentences
+
+
+def _settled_words(values: Mapping[str, Any]) -> str:
+    reason = values.get("settling_reason") or ""
+    return {"settled": "yes", "drifting": "no, it drifts: "}.get(values["settling"], "cannot be told: ") + reason
+
+
+def _number(value: Any, half_width: float | None = None) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    number = f"{value:.5g}" if isinstance(value, float) else str(value)
+    return number if half_width is None else f"{number} ± {half_width:.2g}"

@@ -1,0 +1,140 @@
+"""A case as commented TOML: every number with its unit and meaning, as it is given in the docstrings of the models."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import textwrap
+from typing import TYPE_CHECKING, Any, Final
+
+from trbdyn.base.validation import Model
+from trbdyn.model.lubricants import OILS
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+    from trbdyn.run.options import RunOptions
+
+WIDTH: Final = 118
+
+_HEADS: Final = {
+    "bearing": "The bearing. Lines marked 'assumed' give what follows from its size; write your own number there.",
+    "lubricant": "The oil at its temperature.",
+    "effects": "What is simulated: switches and choices.",
+    "scene": "Speed, loads, and what the ring does. What changes in time is a table { times = [...], values = [...] }.",
+    "start": "How the run starts.",
+    "run": "How long to run, how accurately, and what to keep.",
+}
+_TABLES: Final = tuple(_HEADS)
+
+
+def case_text(scene: Scene, run: RunOptions, *, title: str = "") -> str:
+    """A complete, commented TOML case.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    run : RunOptions
+        How it is run.
+    title : str
+        First line.
+
+    Returns
+    -------
+    str
+        Text that `load_case` reads back to the same scene and run options.
+    """
+    lines = [f"# {title}"] if title else []
+    lines += ["# Units: m, kg, s, N, Pa; angles in keys ..._deg in degrees.", ""]
+    for name in _TABLES:
+        model = {"scene": scene, "run": run}.get(name) or getattr(scene, name)
+        lines += [f"# {part}" for part in textwrap.wrap(_HEADS[name], WIDTH - 2)]
+        lines += [f"[{name}]", *_table(name, model, scene), ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _table(name: str, model: Model, scene: Scene) -> list[str]:
+    values = model.to_dict()
+    skip = set(_TABLES) if name == "scene" else {"assumed"}
+    assumed = set(values["assumed"]) if name == "bearing" else set()
+    if name == "lubricant" and scene.lubricant.oil is not None:
+        known = {key for key, make in OILS.items() if make().oil == scene.lubricant.oil}
+        if known:
+            values["oil"] = min(known)
+            oils = ", ".join(repr(key) for key in OILS)
+            return [
+                f'oil = "{values["oil"]}"',
+                f"    # one of {oils};",
+                "    # or a table of your own: oil = { name = 'own', nu40 = 68.0, nu100 = 8.7, density = 880.0 }",
+                f"temperature_c = {scene.lubricant.temperature_c!r}",
+                "    # temperature of the oil (C)",
+                *_changed_fields(scene),
+            ]
+    return _lines(model, values, skip, "", assumed)
+
+
+def _changed_fields(scene: Scene) -> list[str]:
+    """Fields of a lubricant that differ from what its oil gives."""
+    oil = scene.lubricant
+    assert oil.oil is not None
+    plain = oil.oil.at(oil.temperature_c).to_dict()
+    changed = {key: value for key, value in oil.to_dict().items() if key != "oil" and plain.get(key) != value}
+    return _lines(oil, changed, {"temperature_c"}, "", set())
+
+
+def _lines(model: Model, values: dict[str, Any], skip: set[str], prefix: str, assumed: set[str]) -> list[str]:
+    texts, lines = _meanings(type(model)), []
+    for key, value in values.items():
+        if key in skip:
+            continue
+        field, path = getattr(model, key, None), f"{prefix}{key}"
+        if isinstance(field, Model) and not _inline(field):
+            lines += _lines(field, value, set(), f"{path}.", assumed)
+            continue
+        text = texts.get(key, "")
+        if path in assumed:
+            lines.append(f"# {path} = {_toml(value)}  # assumed")
+        elif value is None or value == []:
+            lines.append(f"# {path} =")
+        else:
+            lines.append(f"{path} = {_toml(value)}")
+        lines += [f"    # {part}" for part in textwrap.wrap(text, WIDTH - 6)]
+    return lines
+
+
+def _inline(model: Model) -> bool:
+    """Models that are lists of things rather than tables of numbers."""
+    return type(model).__name__ in ("History", "Pocket", "RotatingLoad")
+
+
+def _toml(value: Any) -> str:
+    if value is None:
+        return '"free"'
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, dict):
+        inside = ", ".join(f"{key} = {_toml(entry)}" for key, entry in value.items() if entry is not None)
+        return f"{{ {inside} }}"
+    return f"[{', '.join(_toml(entry) for entry in value)}]"
+
+
+def _meanings(model: type[Model]) -> dict[str, str]:
+    """What each field means, from the numpydoc docstring of its model."""
+    text = inspect.cleandoc(model.__doc__ or "")
+    part = re.search(r"Parameters\n-+\n(.*?)(?:\n\n[A-Z]\w+\n-+\n|\Z)", text, re.DOTALL)
+    found: dict[str, str] = {}
+    names: list[str] = []
+    for line in part[1].splitlines() if part else []:
+        head = re.match(r"(\w[\w, ]*) : (.*)", line)
+        if head and not line.startswith(" "):
+            names = [name.strip() for name in head[1].split(",")]
+            kinds = re.search(r"\{.*\}", head[2])
+            choices = f"One of {kinds[0][1:-1]}." if kinds else ""
+            found |= dict.fromkeys(names, choices)
+        else:
+            found |= {name: f"{found[name]} {line.strip()}".strip() for name in names}
+    return found

@@ -1,0 +1,401 @@
+"""Checkpoints: states from which a run can go on, each in a small file.
+
+A run with a schedule (`checkpoint_every`) starts its integrator again at the first step that ends at or after each multiple of
+that time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps
+as one that was never interrupted: to the last bit, on the same build and instruction set.
+
+The file ``run.h5.checkpoint`` beside ``run.h5``, format version 2: a line that names the format and its version; the SHA-256 of
+all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under another
+name, synchronised to the disk and then renamed; the one before it stays as ``run.h5.checkpoint.previous``. Nothing in it is
+executed.
+
+A checkpoint names its run. Only files that name the same run are replaced or removed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn import _core
+from trbdyn.base.own_files import create_draft, set_aside
+from trbdyn.errors import FileError, InputError
+
+Array = NDArray[np.float64]
+
+MAGIC = b"trbdyn-checkpoint"
+VERSION = 2
+
+LARGEST = 64 << 20
+"""Size of a file beyond which it is no checkpoint (bytes)."""
+
+
+_NUMBERS = ("state", "peaks")
+"""What is written as numbers, after the line of JSON."""
+
+
+def build_digest() -> str:
+    """SHA-256 of the compiled core: results are bit-identical only within one build."""
+    return hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest()
+
+
+def digest_of(values: ArrayLike) -> str:
+    """SHA-256 of an array's numbers."""
+    return hashlib.sha256(np.ascontiguousarray(values, dtype="<f8").tobytes()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """What a run needs to go on.
+
+    Attributes
+    ----------
+    run_id : str
+        Name of the run.
+    scene : dict
+        The scene as plain data.
+    model : str
+        Fingerprint of the scene.
+    options : dict
+        `RunOptions` as plain data.
+    instruction_set : str
+        Kernel variant that was in use.
+    build : str
+        Digest of the compiled core that was in use.
+    motion : str
+        Digest of the prescribed motion of the ring.
+    start, end : float
+        Where the run starts and ends (s).
+    time : float
+        Time of the state (s).
+    done : int
+        Records that the run had made by then.
+    statistics : dict of str to float
+        What the integrator had done by then.
+    counters : dict of str to int
+        Evaluations by then.
+    stepping_s : float
+        Wall time of stepping by then (s).
+    state : ndarray, shape (n_state,)
+        The state vector.
+    peaks : ndarray
+        Peaks so far, as the core saves them; empty if the run keeps none.
+    warnings : list of str
+        What the watch over the run has found by then.
+    """
+
+    run_id: str
+    scene: dict[str, Any]
+    model: str
+    options: dict[str, Any]
+    instruction_set: str
+    build: str
+    motion: str
+    start: float
+    end: float
+    time: float
+    done: int
+    statistics: dict[str, float]
+    counters: dict[str, int]
+    stepping_s: float
+    state: Array = field(repr=False)
+    peaks: Array = field(repr=False)
+    warnings: list[str] = field(default_factory=list)
+
+    def to_bytes(self) -> bytes:
+        """The file's content."""
+        head = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name not in _NUMBERS}
+        head["n_state"] = self.state.size
+        numbers = np.concatenate([self.state, self.peaks]).astype("<f8").tobytes()
+        body = json.dumps(head, allow_nan=False).encode() + b"\n" + numbers
+        return b"%s %d\n%s\n" % (MAGIC, VERSION, hashlib.sha256(body).hexdigest().encode()) + body
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> Self:
+        """The checkpoint that `to_bytes` wrote.
+
+        Raises
+        ------
+        ValueError
+            If the content is anything else; says why.
+        """
+        first, _, rest = data.partition(b"\n")
+        name, _, version = first.partition(b" ")
+        if name != MAGIC:
+            raise ValueError("this is not a checkpoint of trbdyn" if data else "the file is empty")
+        if version != b"%d" % VERSION:
+            raise ValueError(f"written with format version {version[:20].decode(errors='replace')}, not {VERSION}")
+        digest, _, body = rest.partition(b"\n")
+        if hashlib.sha256(body).hexdigest().encode() != digest:
+            raise ValueError("the file is damaged or cut short: its checksum does not fit")
+        head, newline, numbers = body.partition(b"\n")
+        if not newline or len(numbers) % 8:
+            raise ValueError("the state vector is cut short")
+        values = json.loads(head)
+        if not isinstance(values, dict):
+            raise ValueError("its table of values is missing")
+        vector, length = np.frombuffer(numbers, dtype="<f8").astype(np.float64), values.pop("n_state", None)
+        if not isinstance(length, int) or not 0 < length <= vector.size:
+            raise ValueError("the state vector is cut short")
+        values["state"], values["peaks"] = vector[:length], vector[length:]
+        names = {entry.name for entry in fields(cls)}
+        if values.keys() != names:
+            raise ValueError(f"entries missing or unknown: {', '.join(sorted(values.keys() ^ names))}")
+        found = cls(**values)
+        found._check()
+        return found
+
+    def _check(self) -> None:
+        kinds: dict[str, type | tuple[type, ...]] = {
+            **dict.fromkeys(("run_id", "model", "instruction_set", "build", "motion"), str),
+            **dict.fromkeys(("scene", "options", "statistics", "counters"), dict),
+            **dict.fromkeys(("start", "end", "time", "stepping_s"), (int, float)),
+            "done": int,
+        }
+        for name, kind in kinds.items():
+            value = getattr(self, name)
+            if not isinstance(value, kind) or isinstance(value, bool):
+                raise ValueError(f"{name} is not what a checkpoint holds there")
+        for table in (self.statistics, self.counters):
+            if not all(isinstance(value, int | float) and math.isfinite(value) for value in table.values()):
+                raise ValueError("its counts are not numbers")
+        if not (math.isfinite(self.time) and math.isfinite(self.start) and self.start < self.end < math.inf):
+            raise ValueError("its times are not in order")
+        if self.done < 0 or not np.isfinite(self.state).all():
+            raise ValueError("its state is not finite")
+        if not isinstance(self.warnings, list) or not all(isinstance(text, str) for text in self.warnings):
+            raise ValueError("its warnings are not texts")
+        if np.isnan(self.peaks).any():
+            raise ValueError("its peaks are not numbers")
+
+
+def next_time(after: float, every: float | None) -> float:
+    """The first multiple of a time that lies after another time (s); infinite without a schedule."""
+    if every is None:
+        return math.inf
+    count = math.floor(after / every)
+    while count * every <= after:
+        count += 1
+    return count * every
+
+
+def checkpoint_path(output: str | os.PathLike[str]) -> Path:
+    """The checkpoint file of a run that writes to a result file."""
+    path = Path(output)
+    return path.with_name(path.name + ".checkpoint")
+
+
+def previous_path(path: Path) -> Path:
+    """The checkpoint before it."""
+    return path.with_name(path.name + ".previous")
+
+
+def write(path: Path, checkpoint: Checkpoint) -> None:
+    """Write a checkpoint; the one that was there becomes the previous one. Killed at any instant, one of them stays whole.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written, or that of another run lies there; those that were there stay.
+    """
+    older = previous_path(path)
+    try:
+        draft, stream = create_draft(path, checkpoint.run_id)
+        try:
+            with stream:
+                stream.write(checkpoint.to_bytes())
+                stream.flush()
+                os.fsync(stream.fileno())
+            whole = _belongs(path, checkpoint.run_id)
+            # the older one is kept where the newer one is damaged
+            if whole and (_belongs(older, checkpoint.run_id) or not older.exists()):
+                os.replace(path, older)
+            os.replace(draft, path)
+        except BaseException:
+            draft.unlink(missing_ok=True)
+            raise
+        _sync_folder(path.parent)
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(f"{path}: the checkpoint cannot be written: {error.strerror or error}") from error
+
+
+def _belongs(path: Path, run_id: str) -> bool:
+    """Whether a checkpoint of this run is at a path; a damaged file, which says nothing of its run, is moved aside.
+
+    Raises
+    ------
+    FileError
+        If it belongs to another run, or is no file.
+    """
+    if not os.path.lexists(path):
+        return False
+    if path.is_symlink() or not path.is_file():
+        raise FileError(f"{path}: the checkpoint cannot be written: something else has its name")
+    try:
+        found = read(path)
+    except FileError:
+        set_aside(path)
+        return False
+    if found.run_id != run_id:
+        raise FileError(f"{path}: the checkpoint cannot be written: that of another run lies there")
+    return True
+
+
+def check_free(output: Path, replaced: str | None, *, overwrite: bool) -> None:
+    """See that a new run with a schedule may write its checkpoints.
+
+    Parameters
+    ----------
+    output : Path
+        The new run's result file.
+    replaced : str, optional
+        Name of the run whose result it replaces.
+    overwrite : bool
+        Whether checkpoints of other runs may be replaced too.
+
+    Raises
+    ------
+    FileError
+        If a file lies there that must not be replaced.
+    """
+    path = checkpoint_path(output)
+    for place in (path, previous_path(path)):
+        if not os.path.lexists(place):
+            continue
+        regular = place.is_file() and not place.is_symlink()
+        if not regular or place.read_bytes()[: len(MAGIC)] not in (MAGIC, b""):
+            raise FileError(f"{place}: this is not a checkpoint, and a run of that name would replace it")
+        owner = run_id_of(place)
+        if not overwrite and (owner is None or owner != replaced):
+            raise FileError(
+                f"{place}: a checkpoint of another run lies there; resume that run, give another name, or overwrite=True "
+                "(--overwrite on the command line) to replace it"
+            )
+
+
+def run_id_of(path: Path) -> str | None:
+    """Name of the run that a checkpoint belongs to; None if it is missing or damaged."""
+    try:
+        return read(path).run_id
+    except FileError:
+        return None
+
+
+def _sync_folder(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def remove(output: str | os.PathLike[str], run_id: str) -> None:
+    """Remove the checkpoints of a run; those of others, and files that do not say whose they are, stay."""
+    path = checkpoint_path(output)
+    for place in (path, previous_path(path)):
+        if run_id_of(place) == run_id:
+            place.unlink(missing_ok=True)
+
+
+def clear(output: Path) -> None:
+    """Remove every checkpoint that `check_free` has let pass."""
+    path = checkpoint_path(output)
+    for place in (path, previous_path(path)):
+        place.unlink(missing_ok=True)
+
+
+def read(path: Path) -> Checkpoint:
+    """One checkpoint file.
+
+    Raises
+    ------
+    FileError
+        If it is missing, damaged or of another kind; says why.
+    """
+    try:
+        if not path.is_file() and path.exists():
+            raise ValueError("it is not a regular file")
+        with path.open("rb") as stream:
+            data = stream.read(LARGEST + 1)
+        if len(data) > LARGEST:
+            raise ValueError("this is not a checkpoint of trbdyn: the file is too large")
+        return Checkpoint.from_bytes(data)
+    except FileNotFoundError:
+        raise FileError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise FileError(f"{path}: the checkpoint cannot be read: {error.strerror or error}") from error
+    except (ValueError, TypeError, KeyError, RecursionError, OverflowError) as error:
+        raise FileError(f"{path}: the checkpoint cannot be used: {error}") from error
+
+
+def read_last_good(output: str | os.PathLike[str], tell: Callable[[str], None]) -> Checkpoint:
+    """The newest checkpoint of a run that can be used.
+
+    Parameters
+    ----------
+    output : path-like
+        The run's result file.
+    tell : callable
+        Is told, in a sentence, if that is not the newest one.
+
+    Raises
+    ------
+    FileError
+        If there is none; says why of each.
+    """
+    newest = checkpoint_path(output)
+    troubles: list[str] = []
+    for path in (newest, previous_path(newest)):
+        try:
+            found = read(path)
+        except FileError as error:
+            troubles.append(str(error))
+            continue
+        if troubles:
+            tell(f"{troubles[0]}; going on from the one before it, at t = {found.time:.9g} s")
+        return found
+    if not newest.exists() and not previous_path(newest).exists():
+        raise FileError(f"{newest}: there is no such file: the run had no schedule of checkpoints, or is complete")
+    raise FileError("; ".join(troubles))
+
+
+def check_instruction_set(checkpoint: Checkpoint, wanted: str | None, tell: Callable[[str], None]) -> str:
+    """The kernel variant to go on with.
+
+    Parameters
+    ----------
+    checkpoint : Checkpoint
+        Where to go on.
+    wanted : str, optional
+        What the user asks for; by default the one of the checkpoint.
+    tell : callable
+        Is told, in a sentence, if the results will not be bit-identical.
+
+    Raises
+    ------
+    InputError
+        If this machine cannot run it.
+    """
+    here = _core.instruction_sets()
+    was, names = checkpoint.instruction_set, ", ".join(here)
+    if wanted is not None and wanted not in here:
+        raise InputError.of("instruction_set", wanted, f"must be one of those that this machine runs: {names}")
+    if wanted is None and was not in here:
+        allowed = f"this machine runs {names} only; name one of them to go on with results that differ in rounding"
+        raise InputError.of("instruction_set", was, f"was in use when the checkpoint was written; {allowed}")
+    if wanted is not None and wanted != was:
+        tell(
+            f"going on with instruction set {wanted} instead of {was}: results are not bit-identical to the uninterrupted run"
+        )
+    return wanted or was

@@ -1,0 +1,218 @@
+"""How long to run, how accurately, and what to keep."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
+
+from pydantic import Field, model_validator
+
+from trbdyn.base.validation import Model, Number, Whole, unit
+from trbdyn.errors import InputError
+from trbdyn.model.core_table import SETTINGS, setting
+from trbdyn.model.motion import MAX_TIME, History
+
+Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy", "peaks"]
+GROUPS: Final[tuple[Group, ...]] = (
+    "time",
+    "cage",
+    "rollers",
+    "contacts",
+    "pocket",
+    "ring",
+    "torque",
+    "power",
+    "energy",
+    "peaks",
+)
+
+
+class Tolerances(Model):
+    """Error that the integrator allows in a step: relative, and absolute per kind of quantity.
+
+    Parameters
+    ----------
+    rtol : float
+        Relative tolerance (1).
+    atol_position : float
+        Positions (m).
+    atol_angle : float
+        Angles (rad).
+    atol_velocity : float
+        Velocities (m/s).
+    atol_spin : float
+        Angular velocities (rad/s).
+    """
+
+    rtol: Annotated[Number, setting("rtol", "1")]
+    atol_position: Annotated[Number, setting("atol_position", "m")]
+    atol_angle: Annotated[Number, setting("atol_angle", "rad")]
+    atol_velocity: Annotated[Number, setting("atol_velocity", "m/s")]
+    atol_spin: Annotated[Number, setting("atol_spin", "rad/s")]
+
+
+ACCURACY: Final = {
+    "fast": Tolerances(rtol=3e-3, atol_position=3e-9, atol_angle=3e-7, atol_velocity=1e-3, atol_spin=0.1),
+    "standard": Tolerances(**{name: SETTINGS[name].default for name in Tolerances.model_fields}),
+    "reference": Tolerances(rtol=1e-4, atol_position=6e-11, atol_angle=6e-9, atol_velocity=2e-5, atol_spin=2e-3),
+}
+"""Presets, chosen on the front that benchmarks/work_precision.py draws; ``standard`` has the defaults of the core."""
+
+RINGS_SHARE: Final = {"fast": 0.1, "standard": SETTINGS["rings_share"].default, "reference": 0.03}
+"""`RunOptions.rings_share` of the presets: so small that the loss of accuracy cannot be seen."""
+
+IMPACT_SHARE: Final = {"fast": 0.1, "standard": SETTINGS["impact_share"].default, "reference": 0.01}
+"""`RunOptions.impact_share` of the presets."""
+
+
+OF_ONE_RUN: Final = ("revolutions", "duration", "save_every", "save_groups")
+"""Fields of `RunOptions` that belong to one run: how long it is, and what it keeps."""
+
+
+class RunOptions(Model):
+    """How long to run, how accurately, and what to keep.
+
+    Parameters
+    ----------
+    revolutions : float, optional
+        Length of the run in turns of the shaft; not together with `duration`.
+    duration : float, optional
+        Length of the run (s).
+    save_every : float
+        Time between saved records (s).
+    save_groups : sequence of str
+        Groups of quantities to save; 'time' is always among them. With 'peaks' the core looks at all loads at the end of every
+        step and keeps their extremes, means and impacts over each record's interval and the whole run; without it that costs
+        nothing.
+    accuracy : {'fast', 'standard', 'reference'}
+        Preset of the tolerances, `ACCURACY`.
+    integrator : {'bdf', 'erk'}
+        CVODE's BDF, or an explicit Runge-Kutta method of ARKODE for cross-checks.
+    rtol, atol_position, atol_angle, atol_velocity, atol_spin : float, optional
+        Take the place of the preset's tolerances (1, m, rad, m/s, rad/s).
+    max_order : int
+        Largest order of BDF; above 2 the lightly damped vibrations of contacts force it to small steps.
+    max_step, first_step : float
+        Largest and first step (s); 0: chosen by the integrator.
+    rings_share : float, optional
+        Share of a step's tolerance by which forces of raceways and ribs may be wrong (1): between exact evaluations BDF takes
+        them from tangents, one for each roller, whose error is measured at the next exact evaluation. 0: forces are always
+        exact; by default that of the preset, `RINGS_SHARE`.
+    impact_share : float, optional
+        Share of an impact's speed and interference that roller and cage may be off in a step: where they meet gently, their
+        absolute tolerances are so much smaller (1). By default that of the preset, `IMPACT_SHARE`.
+    checkpoint_every : float, optional
+        Bearing time between checkpoints (s): at the first step that ends at or after each multiple of it the integrator is
+        started again, so the schedule is a part of the run as the tolerances are. A run that writes a result file can be resumed
+        from them.
+    when_wrong : {'stop', 'go_on'}
+        What to do with a run whose energy is wrong by more than a tenth, or which makes no progress (`trbdyn.run.watch`): end it
+        with ``success=False``, or go on with a warning.
+    """
+
+    revolutions: Annotated[Number, unit("1", gt=0)] | None = None
+    duration: Annotated[Number, unit("s", gt=0)] | None = None
+    save_every: Annotated[Number, unit("s", gt=0)] = 1e-4
+    save_groups: Annotated[tuple[Group, ...], Field(min_length=1)] = GROUPS
+    accuracy: Literal["fast", "standard", "reference"] = "standard"
+    integrator: Literal["bdf", "erk"] = "bdf"
+    rtol: Annotated[Number, setting("rtol", "1")] | None = None
+    atol_position: Annotated[Number, setting("atol_position", "m")] | None = None
+    atol_angle: Annotated[Number, setting("atol_angle", "rad")] | None = None
+    atol_velocity: Annotated[Number, setting("atol_velocity", "m/s")] | None = None
+    atol_spin: Annotated[Number, setting("atol_spin", "rad/s")] | None = None
+    max_order: Annotated[Whole, setting("max_order", "1")] = int(SETTINGS["max_order"].default)
+    max_step: Annotated[Number, setting("max_step", "s", ge=0)] = 0.0
+    first_step: Annotated[Number, setting("first_step", "s")] = SETTINGS["first_step"].default
+    rings_share: Annotated[Number, setting("rings_share", "1")] | None = None
+    impact_share: Annotated[Number, setting("impact_share", "1")] | None = None
+    checkpoint_every: Annotated[Number, unit("s", ge=1e-9)] | None = None
+    when_wrong: Literal["stop", "go_on"] = "stop"
+
+    _root: ClassVar[str | None] = "run"
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.revolutions is not None and self.duration is not None:
+            raise InputError.of("duration", self.duration, "must not be given together with revolutions (s)")
+        return self
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """The preset's tolerances, with those that are given in their place."""
+        given = {name: getattr(self, name) for name in Tolerances.model_fields}
+        return ACCURACY[self.accuracy].replace(**{name: value for name, value in given.items() if value is not None})
+
+    def settings(self) -> dict[str, float | str]:
+        """Settings of the core's integrator."""
+        chosen = {} if self.max_step == 0.0 else {"max_step": self.max_step}
+        return {
+            "integrator": self.integrator,
+            **self.tolerances.model_dump(),
+            "max_order": float(self.max_order),
+            "first_step": self.first_step,
+            "rings_share": RINGS_SHARE[self.accuracy] if self.rings_share is None else self.rings_share,
+            "impact_share": IMPACT_SHARE[self.accuracy] if self.impact_share is None else self.impact_share,
+            **chosen,
+        }
+
+    def of_simulation(self) -> dict[str, Any]:
+        """What belongs to the simulation and not to one of its runs: the other fields than `OF_ONE_RUN`, as `Simulation` takes
+        them; without those that have their default.
+        """
+        default = type(self)()
+        names = [name for name in type(self).model_fields if name not in OF_ONE_RUN]
+        return {name: getattr(self, name) for name in names if getattr(self, name) != getattr(default, name)}
+
+    def end_time(self, speed_rpm: float | History, start: float = 0.0) -> float:
+        """When the run ends (s).
+
+        Parameters
+        ----------
+        speed_rpm : float or History
+            Speed of the shaft.
+        start : float
+            When it starts (s).
+
+        Raises
+        ------
+        InputError
+            If neither revolutions nor duration is given, the shaft never turns that often, or the run would end too late.
+        """
+        if self.duration is not None:
+            field, value, unit, length = "duration", self.duration, " (s)", self.duration
+        elif self.revolutions is not None:
+            field, value, unit = "revolutions", self.revolutions, ""
+            length = _time_to_turn(self.revolutions, speed_rpm, start)
+        else:
+            raise InputError.of(("run", "revolutions"), None, "must be given, or duration (s)")
+        if not start < start + length <= MAX_TIME:
+            allowed = f"must end the run after its start at {start:g} s, and not later than at {MAX_TIME:g} s{unit}"
+            raise InputError.of(("run", field), value, allowed)
+        return start + length
+
+
+def _time_to_turn(revolutions: float, speed_rpm: float | History, start: float) -> float:
+    """How long the shaft takes for a number of turns, one way or the other (s)."""
+    if not isinstance(speed_rpm, History):
+        if speed_rpm == 0.0:
+            raise InputError.of(("run", "revolutions"), revolutions, "the shaft stands still; give duration (s)")
+        return 60.0 * revolutions / abs(speed_rpm)
+    last = max(speed_rpm.times[-1], start)
+
+    def turns(end: float) -> float:
+        return abs(speed_rpm.integral(start, end)) / 60.0
+
+    if turns(last) < revolutions:
+        end = last + 1.0
+        if turns(end) <= turns(last):
+            raise InputError.of(
+                ("run", "revolutions"), revolutions, "the shaft does not turn that often; give duration (s)"
+            )
+        return last - start + (revolutions - turns(last)) / (turns(end) - turns(last))
+    low, high = start, last
+    while high - low > 1e-15 * max(abs(high), 1e-9):
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        low, high = (middle, high) if turns(middle) < revolutions else (low, middle)
+    return high - start

@@ -1,0 +1,150 @@
+"""Any record of a result, evaluated again by the core: every quantity of every contact, along the rollers too.
+
+A result keeps one number for each contact (its load, its largest pressure). The state of a record follows from the recorded
+motion, and from the state the core gives everything again: pressure, film and slip at every node along a roller.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.errors import InputError
+from trbdyn.run.simulation import Simulation
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+Array = NDArray[np.float64]
+
+NEEDED = ("cage", "rollers")
+"""Groups of fields that a state is made of."""
+
+
+class Replay:
+    """Evaluates records of a result again.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time, cage and rollers.
+
+    Raises
+    ------
+    InputError
+        If a group was not recorded.
+    """
+
+    def __init__(self, result: Result) -> None:
+        for group in NEEDED:
+            if group not in result.groups:
+                raise InputError.of(
+                    "result", f"groups {', '.join(result.groups)}", f"must have the recorded group {group!r}"
+                )
+        self.result = result
+        self._simulation = Simulation(result.scene)
+        geometry = result.scene.bearing.geometry
+        self._geometry = geometry
+        count = result.scene.bearing.n_rollers
+        self._even = 2.0 * np.pi * np.arange(count) / count
+
+    @property
+    def stations(self) -> Array:
+        """Places of the nodes along the effective length, from its middle towards the large end (m), shape (n,)."""
+        effects, length = self.result.scene.effects, self.result.scene.bearing.roller.effective_length
+        if effects.quadrature == "gauss":
+            return 0.5 * length * np.polynomial.legendre.leggauss(effects.n_slices)[0]
+        return length * ((np.arange(effects.n_slices) + 0.5) / effects.n_slices - 0.5)
+
+    def state(self, index: int) -> Array:
+        """The core's state vector at a record, shape (n_state,); spin angles and energies are zero, nothing depends on
+        them.
+
+        Parameters
+        ----------
+        index : int
+            Number of the record.
+        """
+        result, geometry = self.result, self._geometry
+        vector = np.zeros(self._simulation.state.vector.size)
+        view = self._simulation.view(vector)
+        shaft_angle, shaft_speed = float(result["shaft_angle"][index]), float(result["shaft_speed"][index])
+        frame, orbit = geometry.cage_speed_ratio * shaft_angle, geometry.cage_speed_ratio * shaft_speed
+        nominal = geometry.roller_axis_angle
+
+        angle, skew, tilt = (result[f"roller_{name}"][index] for name in ("orbit_angle", "skew", "tilt"))
+        position, velocity = result["roller_position"][index], result["roller_velocity"][index]
+        view["roller_psi"] = angle - frame - self._even
+        view["roller_r"] = np.hypot(position[:, 0], position[:, 1]) - geometry.roller_centre_radius
+        view["roller_z"] = position[:, 2] - geometry.roller_centre_height
+        view["roller_skew"], view["roller_tilt"] = skew, tilt
+        own = _in_orbit(velocity, angle)
+        view["roller_v_r"], view["roller_v_z"] = own[:, 0], own[:, 2]
+        view["roller_v_t"] = own[:, 1] - orbit * geometry.roller_centre_radius
+        spin = _in_frame(_in_orbit(result["roller_angular_velocity"][index], angle), skew, nominal + tilt)
+        view["roller_omega_n"] = spin[:, 0] + orbit * np.sin(nominal)
+        view["roller_omega_t"] = spin[:, 1]
+        view["roller_omega_a"] = spin[:, 2] - (orbit * np.cos(nominal) - geometry.roller_spin_ratio * shaft_speed)
+        if result.has_cage:
+            self._put_cage(view, index, frame, orbit)
+        return vector
+
+    def _put_cage(self, view: object, index: int, frame: float, orbit: float) -> None:
+        result, offset = self.result, self.result.scene.bearing.cage.offset
+        axis = _third_axis(result["cage_orientation"][index])
+        place = result["cage_position"][index] + offset * axis - np.array([0.0, 0.0, offset])
+        turned = np.array([frame])
+        place, axis, velocity, spin = (
+            _in_orbit(vector[None, :], turned)[0]
+            for vector in (place, axis, result["cage_velocity"][index], result["cage_angular_velocity"][index])
+        )
+        skew, tilt = np.arcsin(np.clip(axis[1], -1.0, 1.0)), np.arctan2(axis[0], axis[2])
+        spin = _in_frame(spin[None, :], np.array([skew]), np.array([tilt]))[0]
+        values = {
+            **dict(zip("xyz", place, strict=True)),
+            "skew": skew,
+            "tilt": tilt,
+            "psi": result["cage_angle"][index] - frame,
+            **dict(zip(("v_x", "v_y", "v_z"), velocity, strict=True)),
+            **dict(zip(("omega_n", "omega_t"), spin[:2], strict=True)),
+            "omega_a": spin[2] - orbit,
+        }
+        for name, value in values.items():
+            view[f"cage_{name}"] = value  # type: ignore[index]
+
+    def contacts(self, index: int) -> dict[str, Array]:
+        """Every quantity of every contact at a record; names, shapes and units as in `Simulation.contacts`.
+
+        Parameters
+        ----------
+        index : int
+            Number of the record.
+        """
+        return self._simulation.contacts(self.state(index), float(self.result["time"][index]))
+
+    def record(self, index: int) -> dict[str, Array]:
+        """A record, evaluated again: what was recorded, to rounding, but for spin angles and energies."""
+        return self._simulation.record(self.state(index), float(self.result["time"][index]))
+
+
+def _in_orbit(vectors: Array, angles: Array) -> Array:
+    """Inertial vectors, shape (n, 3), in cylindrical frames at these angles, shape (n,)."""
+    cosine, sine = np.cos(angles), np.sin(angles)
+    x, y, z = vectors.T
+    return np.stack([cosine * x + sine * y, cosine * y - sine * x, np.broadcast_to(z, x.shape)], axis=-1)
+
+
+def _in_frame(vectors: Array, skew: Array, tilt: Array) -> Array:
+    """Vectors, shape (n, 3), along the axes n, t, a of the frames R_y(tilt) R_x(-skew)."""
+    cs, ss, ct, st = np.cos(skew), np.sin(skew), np.cos(tilt), np.sin(tilt)
+    zero = np.zeros_like(ct)
+    axes = np.array([[ct, zero, -st], [-ss * st, cs + zero, -ss * ct], [cs * st, ss + zero, cs * ct]])
+    return np.einsum("ijn,nj->ni", axes, vectors)
+
+
+def _third_axis(quaternion: Array) -> Array:
+    """The z axis turned by a quaternion (w, x, y, z)."""
+    w, x, y, z = quaternion
+    return np.array([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])

@@ -1,0 +1,441 @@
+"""One run of a simulation: its records, callbacks, signals, checkpoints, and how it ends."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import signal
+import threading
+import time as clock
+from collections.abc import Callable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+from trbdyn.errors import FileError, InputError, StepError
+from trbdyn.model.motion import History
+from trbdyn.results import fields as field_table
+from trbdyn.results import peaks as peak_table
+from trbdyn.results.file_format import reason
+from trbdyn.results.result import Result, load
+from trbdyn.results.result_file import ResultWriter
+from trbdyn.results.sources import FileSource, segment_paths
+from trbdyn.run import checkpoint, keeping
+from trbdyn.run.checkpoint import Checkpoint
+from trbdyn.run.options import RunOptions
+from trbdyn.run.watch import Watch
+
+if TYPE_CHECKING:
+    from trbdyn.run.simulation import Simulation
+
+Array = NDArray[np.float64]
+Callback = Callable[["Simulation"], bool | None]
+
+CHUNK_RECORDS = 256
+"""Records between looks at signals, callbacks and the file."""
+MOST_RECORDS = 50_000_000
+"""Most records of a run: their times alone take 400 MB."""
+CHUNK_STEPS = 2000
+"""Steps between looks at signals: about a twentieth of a second."""
+
+_BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"
+
+
+class Run:
+    """One call of `Simulation.run`, or what is left of it when it is resumed."""
+
+    def __init__(
+        self, sim: Simulation, options: RunOptions, times: Array, callback: Callback | None, done: int = 0
+    ) -> None:
+        self.sim = sim
+        self.options = options
+        self.times = times
+        self.callback = callback
+        self.done = done
+        self.notes: list[str] = list(sim.warnings)
+        self.doubts: list[str] = []
+        self.kept: list[Array] = []
+        self.filling: Array | None = None
+        self.writer: ResultWriter | None = None
+        self.output: Path | None = None
+        self.interrupted: list[int] = []
+        self.process = os.getpid()
+        self.began = clock.perf_counter()
+        self.spent = 0.0
+        self.fields = field_table.table()
+        self.layout = list(sim._model.record_layout())
+        self.with_peaks = peak_table.GROUP in options.save_groups
+        if self.with_peaks:
+            self.fields += peak_table.table()
+            self.layout += [
+                (name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()
+            ]
+
+    def _keep_peaks(self, since: float) -> None:
+        """Start to keep peaks from a time of the last step on, if the run asks for them and does not keep them yet."""
+        core = self.sim._core
+        if self.with_peaks and core.row_length == self.sim._model.record_length:
+            core.begin_peaks(since)
+
+    def write_to(self, output: Path, segment: int = 0, run_id: str | None = None, *, overwrite: bool = False) -> None:
+        """Write records to a file, and checkpoints beside it if there is a schedule.
+
+        A run without a name is a new one. If it replaces the file of an older run, it removes that run's segments and
+        checkpoints.
+        """
+        sim = self.sim
+        path = output if segment == 0 else output.with_name(f"{output.stem}.part{segment}{output.suffix}")
+        older = _own_segments(output) if run_id is None and overwrite else None
+        scheduled = self.options.checkpoint_every is not None
+        if run_id is None and scheduled:
+            checkpoint.check_free(output, older[0] if older else None, overwrite=overwrite)
+        self.writer = ResultWriter(
+            path,
+            scene=sim.scene,
+            layout=self.layout,
+            fields=self.fields,
+            groups=self.options.save_groups,
+            meta=self._meta(),
+            geometry=asdict(sim.scene.bearing.geometry),
+            compression=keeping.compression(self.options.save_every),
+            run_id=run_id,
+            segment=segment,
+            first_record=self.done,
+            overwrite=overwrite,
+        )
+        self.output = output
+        if run_id is not None:
+            return
+        try:
+            if older is not None:
+                checkpoint.remove(output, older[0])
+                for place in older[1]:
+                    place.unlink(missing_ok=True)
+            if scheduled:
+                checkpoint.clear(output)
+                if sim._core.time == sim._begun:
+                    self._keep_peaks(float(self.times[0]))
+                    self._write_checkpoint()
+        except OSError as error:
+            sim._core.end_peaks()
+            self.writer.close()
+            raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
+
+    def go(self, *, progress: bool) -> Result:
+        from tqdm import tqdm
+
+        sim = self.sim
+        span = float(self.times[-1] - self.times[0])
+        with tqdm(total=span, disable=not progress, unit="s", bar_format=_BAR) as bar:
+            try:
+                with _interrupts() as self.interrupted:
+                    message = self._loop(bar)
+            except _core.CoreStepError as error:
+                result = self._finish(False, str(error))
+                time, body, quantity = sim.time, *_culprit(str(error))
+                raise StepError(str(error), time=time, body=body, quantity=quantity, result=result) from None
+            except StepError as error:
+                error.result = self._finish(False, str(error))
+                raise
+            except KeyboardInterrupt:
+                if self.process != os.getpid():
+                    raise
+                if self.filling is not None:
+                    self._keep(self.filling[: int(np.count_nonzero(np.isfinite(self.filling[:, 0])))])
+                return self._finish(False, f"stopped by the user at {sim.time:.6g} s")
+            except FileError:
+                self._abandon()
+                raise
+            except BaseException as error:
+                if self.process != os.getpid():
+                    raise
+                self._finish(False, f"ended by {type(error).__name__} at {sim.time:.6g} s: {error}")
+                raise
+        return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
+
+    def _loop(self, bar: Any) -> str | None:
+        """Step until all records are filled; gives the reason if the run ended before, else None."""
+        sim, every = self.sim, self.options.checkpoint_every
+        sim._end = None
+        self._keep_peaks(float(self.times[0]))
+        due = checkpoint.next_time(sim._begun, every)
+        watch = Watch(sim, float(self.times[-1]), self.doubts, going_on=self.options.when_wrong == "go_on")
+        while self.done < self.times.size:
+            chunk = self.times[self.done : self.done + CHUNK_RECORDS]
+            # a signal may come before the core answers: rows that are filled are those with a finite time
+            self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
+            before = clock.perf_counter()
+            try:
+                rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due)
+            except _core.CoreStepError as error:
+                self._keep(records[: getattr(error, "rows", 0)])
+                raise
+            finally:
+                self.spent += clock.perf_counter() - before
+            self.filling = None
+            self._keep(records[:rows])
+            # records up to here need the history that the integrator is about to forget
+            if sim.time >= due and self.done < self.times.size and self.times[self.done] > sim.time:
+                peaks = sim._core.save_peaks()
+                sim._begin_again()
+                if peaks.size:
+                    sim._core.restore_peaks(peaks)
+                due = checkpoint.next_time(sim.time, every)
+                watch.renew()
+                self._write_checkpoint()
+            doubt = watch.look(final=self.done >= self.times.size)
+            bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
+            if sim.scene.effects.bodies == "rollers" and rows:
+                _check_apart(sim, records[:rows])
+            ended = self._call_back()
+            if self.interrupted:
+                raise KeyboardInterrupt
+            if doubt is not None:
+                return doubt
+            if ended:
+                return f"ended by the callback at {sim.time:.6g} s"
+        return None
+
+    def _call_back(self) -> bool:
+        """What the callback answers. It may look at the simulation, but not move it.
+
+        Raises
+        ------
+        FileError
+            In a process that the callback has forked, if it comes back from there: the result file is its parent's.
+        """
+        if self.callback is None:
+            return False
+        self.sim._running = True
+        try:
+            ended = bool(self.callback(self.sim))
+        finally:
+            self.sim._running = False
+        if self.writer is not None and self.process != os.getpid():
+            raise FileError(
+                f"{self.output}: the result file belongs to the process that was forked; this one cannot go on"
+            )
+        return ended
+
+    def _keep(self, records: Array) -> None:
+        if not len(records):
+            return
+        self.done += len(records)
+        self.sim._reached = float(self.times[self.done - 1])
+        if self.writer is None:
+            self.kept.append(records)
+        else:
+            self.writer.append(records)
+
+    def _write_checkpoint(self) -> None:
+        """Write where the run is now; its records are written to the disk first."""
+        if self.writer is None or self.output is None:
+            return
+        sim = self.sim
+        self.writer.sync()
+        found = Checkpoint(
+            run_id=self.writer.run_id,
+            scene=sim.scene.to_dict(),
+            model=sim.scene.fingerprint,
+            options=self.options.to_dict(),
+            instruction_set=sim.instruction_set,
+            build=checkpoint.build_digest(),
+            motion=checkpoint.digest_of(sim._motion.table),
+            start=float(self.times[0]),
+            end=float(self.times[-1]),
+            time=sim.time,
+            done=self.done,
+            statistics=sim._totals,
+            counters=sim._counted,
+            stepping_s=self.spent,
+            state=sim._core.state(),
+            peaks=sim._core.save_peaks(),
+            warnings=list(self.doubts),
+        )
+        checkpoint.write(checkpoint.checkpoint_path(self.output), found)
+
+    def _abandon(self) -> None:
+        """Leave a result file that cannot be written as it is: the records in it can be read, a checkpoint goes on
+        from there.
+        """
+        self.sim._core.end_peaks()
+        if self.writer is not None:
+            with contextlib.suppress(FileError):
+                self.writer.close()
+
+    def _meta(self) -> dict[str, Any]:
+        settings = {name: value for name, value in self.options.to_dict().items() if name not in ("save_groups",)}
+        return {
+            "instruction_set": self.sim.instruction_set,
+            "sundials_version": _core.sundials_version(),
+            "core_version": _core.version(),
+            "settings": settings,
+            "kept": keeping.said(self.options.save_every, self.options.save_groups),
+            "notes": self.notes,
+        }
+
+    def _written(self) -> Result:
+        """The result as it is in the files; that of the last segment alone if the first one cannot be read."""
+        assert self.output is not None
+        assert self.writer is not None
+        if self.writer.path != self.output and _run_id(self.output) != self.writer.run_id:
+            return load(self.writer.path)
+        if _run_id(self.output) != self.writer.run_id:
+            raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
+        return load(self.output)
+
+    def _stats(self) -> dict[str, Any]:
+        """Solver statistics of the whole simulation, and the wall time of this run."""
+        sim = self.sim
+        turned = abs(_turns(sim.scene.speed_rpm, float(self.times[0]), sim._reached))
+        bearing = sim._reached - float(self.times[0])
+        stats: dict[str, Any] = {
+            name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
+            for name, value in sim.statistics.items()
+        }
+        return stats | {
+            "wall_s": clock.perf_counter() - self.began,
+            "stepping_s": self.spent,
+            "bearing_time_s": bearing,
+            "revolutions": turned,
+            "wall_s_per_revolution": self.spent / turned if turned > 0.0 else math.nan,
+            "real_time_factor": bearing / self.spent if self.spent > 0.0 else math.nan,
+            "integrator": self.options.integrator,
+            "instruction_set": sim.instruction_set,
+        }
+
+    def _finish(self, success: bool, message: str) -> Result:
+        sim = self.sim
+        if success:
+            sim._stand_at(float(self.times[-1]))
+        else:
+            # a run that stopped between two records goes on from there
+            sim._reached, sim._end = sim._core.time, None
+        ended = sim.state
+        row = sim._core.whole_peaks(ended.time)
+        peaks = peak_table.from_row(row, sim._model.peak_layout()) if row.size else {}
+        sim._core.end_peaks()
+        how: dict[str, Any] = {
+            "peaks": peaks,
+            "success": success,
+            "message": message,
+            "stats": self._stats(),
+            "counters": sim.counters,
+            "warnings": self.doubts,
+            "final_time": ended.time,
+            "final_state": ended.vector,
+        }
+        if self.writer is not None:
+            assert self.output is not None
+            self.writer.finish(**how)
+            if success:
+                checkpoint.remove(self.output, self.writer.run_id)
+            return self._written()
+        width = max(at + int(np.prod(shape)) for _, at, shape in self.layout)
+        records = np.concatenate(self.kept) if self.kept else np.empty((0, width))
+        return Result.from_records(
+            records,
+            self.layout,
+            fields=self.fields,
+            scene=sim.scene,
+            geometry=asdict(sim.scene.bearing.geometry),
+            meta=self._meta(),
+            groups=self.options.save_groups,
+            **how,
+        )
+
+
+def _own_segments(output: Path) -> tuple[str, list[Path]] | None:
+    """Name of the run whose result lies in a file, and the files of its later segments; None if there is no result."""
+    if not output.exists():
+        return None
+    try:
+        run_id = FileSource(output).run_id
+    except FileError:
+        return None
+    return run_id, [place for place in segment_paths(output).values() if _run_id(place) == run_id]
+
+
+def _run_id(path: Path) -> str | None:
+    try:
+        return FileSource(path).run_id
+    except FileError:
+        return None
+
+
+def output_times(start: float, end: float, every: float) -> Array:
+    """Times of the records (s): every so often, and at the end.
+
+    Raises
+    ------
+    InputError
+        If there would be too many.
+    """
+    if (end - start) / every > MOST_RECORDS:
+        allowed = (
+            f"must be at least {(end - start) / MOST_RECORDS:.3g}, for at most {MOST_RECORDS} records in this run (s)"
+        )
+        raise InputError.of(("run", "save_every"), every, allowed)
+    count = max(math.ceil((end - start) / every - 1e-9), 1)
+    times: Array = np.asarray(start + every * np.arange(count + 1), dtype=np.float64)
+    times[-1] = end
+    return times
+
+
+@contextlib.contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """A list that Ctrl-C adds to, so that it comes between steps and records and never gets lost; a second one comes
+    at once.
+    """
+    caught: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+
+    def catch(number: int, frame: FrameType | None) -> None:
+        caught.append(number)
+        signal.signal(signal.SIGINT, before)
+
+    if threading.current_thread() is not threading.main_thread() or before is not signal.default_int_handler:
+        yield caught
+        return
+    signal.signal(signal.SIGINT, catch)
+    try:
+        yield caught
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _turns(speed_rpm: float | History, start: float, end: float) -> float:
+    if isinstance(speed_rpm, History):
+        return speed_rpm.integral(start, end) / 60.0
+    return speed_rpm * (end - start) / 60.0
+
+
+def _culprit(text: str) -> tuple[str | None, str | None]:
+    """Body and quantity named at the end of the core's message."""
+    _, _, named = text.partition("largest error: ")
+    body, _, quantity = named.partition(", ")
+    return (body or None, quantity or None) if quantity else (None, None)
+
+
+def _check_apart(sim: Simulation, records: Array) -> None:
+    """Rollers without a cage must not touch each other, as nothing in the model keeps them apart."""
+    places = {name: (offset, shape) for name, offset, shape in sim._model.record_layout()}
+    offset, (count,) = places["roller_orbit_angle"]
+    angles = np.sort(np.mod(records[:, offset : offset + count], 2.0 * math.pi), axis=1)
+    gaps = np.diff(np.concatenate([angles, angles[:, :1] + 2.0 * math.pi], axis=1), axis=1)
+    bearing = sim.scene.bearing
+    nearest = bearing.pitch_diameter * np.sin(0.5 * gaps.min(axis=1))
+    if float(nearest.min()) < bearing.roller.diameter:
+        raise StepError(
+            f"two rollers touch before {sim.time:.6g} s: without a cage nothing in the model keeps them apart; "
+            "shorten the run or give effects.bodies = 'rollers_and_cage'",
+            time=sim.time,
+            body="rollers",
+            quantity="spacing",
+        )

@@ -1,0 +1,417 @@
+"""A simulation: a scene, the state it is in, and what steps it on."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from trbdyn import _core
+from trbdyn.base.own_files import output_path
+from trbdyn.base.validation import number_of
+from trbdyn.errors import MISSING, InputError, Problem, StepError
+from trbdyn.model.motion import MAX_TIME
+from trbdyn.model.scene import Scene
+from trbdyn.results.result import Result
+from trbdyn.run.estimate import Estimate, estimate
+from trbdyn.run.keeping import kept_by_default
+from trbdyn.run.options import Group, RunOptions
+from trbdyn.run.running import Callback, Run, output_times
+from trbdyn.statics.cage_start import pressed_rollers
+from trbdyn.statics.core_model import build_model
+from trbdyn.statics.equilibrium import Equilibrium
+from trbdyn.statics.plausible import UnusualInput, unusual
+from trbdyn.statics.ring_motion import ring_motion
+from trbdyn.statics.start import start_state
+from trbdyn.statics.state_view import StateView
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of a simulation: what is needed to go on from it.
+
+    Attributes
+    ----------
+    time : float
+        Time (s).
+    vector : ndarray, shape (n_state,)
+        The core's state vector.
+    shaft_angle : float, optional
+        Angle of the shaft (rad).
+    """
+
+    time: float
+    vector: Array
+    shaft_angle: float | None = None
+
+
+class Simulation:
+    """Steps a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated.
+    accuracy : {'fast', 'standard', 'reference'}
+        Preset of the tolerances.
+    instruction_set : str
+        Kernel variant: 'scalar', 'base', 'avx2', 'avx512'; by default the fastest that this machine runs. Results of
+        two variants differ in rounding.
+    **options
+        Fields of `RunOptions` that set the integrator: integrator, rtol, atol_position, atol_angle, atol_velocity,
+        atol_spin, max_order, max_step, first_step, rings_share, impact_share, checkpoint_every.
+
+    Raises
+    ------
+    InputError
+        If the scene or an option cannot be used.
+    LoadError
+        If the bearing cannot carry the load.
+
+    Warns
+    -----
+    UnusualInput
+        Where numbers are allowed but can hardly be meant; the texts are kept in `warnings` and in the result's notes.
+    """
+
+    def __init__(self, scene: Scene, *, accuracy: str = "standard", instruction_set: str = "", **options: Any) -> None:
+        self.scene = scene
+        self.options = RunOptions(accuracy=accuracy, **options)
+        self._model = build_model(scene, instruction_set)
+        self._motion, self.equilibrium = ring_motion(self._model, scene)
+        vector = start_state(self._model, scene, self._motion, self.equilibrium)
+        pressed = pressed_rollers(self._model, scene, self._motion, vector)
+        self.warnings = (*unusual(scene, self.equilibrium), *([pressed] if pressed else []))
+        for text in self.warnings:
+            warnings.warn(text, UnusualInput, stacklevel=2)
+        self._running = False
+        self._totals: dict[str, float] = {}
+        self._counted: dict[str, int] = {}
+        self._begin(scene.start.time, vector)
+        self._reached = scene.start.time
+
+    equilibrium: Equilibrium
+    warnings: tuple[str, ...]
+    _end: State | None
+    """Where a run has ended, inside the integrator's last step; None where the present state is the end of that
+    step.
+    """
+
+    def _open(self, time: float, vector: Array) -> _core.Simulation:
+        if not abs(time) <= MAX_TIME:
+            raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
+        first = self.scene.start.time
+        if time < first and len(self._motion.table) > 1:
+            raise InputError.of("time", time, f"must be >= {first:g}, the start: histories are known from there on (s)")
+        try:
+            return self._motion.open(self._model, time, vector, self.options.settings())
+        except ValueError as error:
+            raise InputError.of("state", "given", str(error)) from None
+
+    def _begin(self, time: float, vector: Array) -> None:
+        """Make a new integrator, without any history: as in a new process."""
+        self._core = self._open(time, vector)
+        self._begun = time
+        self._end = None
+
+    def _stand_at(self, time: float) -> None:
+        """What a user reads is at an instant of the last step. The integrator stays at that step's end and goes on
+        from there. Where a callback has gone on after that instant, or has set a state, the present state is that one.
+        """
+        self._end = None
+        if time != self._core.time:
+            with contextlib.suppress(_core.CoreInputError):
+                self._end = State(time, self._core.state_at(time))
+
+    def _begin_again(self) -> None:
+        """Start a new integrator at the place of the present one; what was counted is kept."""
+        self._count()
+        self._begin(self._core.time, self._core.state())
+
+    def _count(self) -> None:
+        """Keep what was counted before a new integrator takes the place of the present one."""
+        counted, totals = self.counters, self.statistics
+        self._counted = counted
+        if self._core.statistics()["steps"] > 0:
+            self._totals = totals
+
+    @property
+    def time(self) -> float:
+        """Time of the present state (s): the end of the last run, or of the last step within a run or after `step`.
+
+        The integrator's last step may end later than the run. The present state is that step's solution at the
+        run's end; the next run or step goes on from the step's own end, so that a run in pieces takes the steps of the
+        whole run.
+        """
+        return self._core.time if self._end is None else self._end.time
+
+    @property
+    def instruction_set(self) -> str:
+        """Kernel variant in use."""
+        return self._model.instruction_set
+
+    @property
+    def state(self) -> State:
+        """A copy of the present state, at `time`."""
+        if self._end is not None:
+            time, vector = self._end.time, self._end.vector.copy()
+        else:
+            time, vector = self._core.time, self._core.state()
+        return State(time, vector, self.scene.start_shaft_angle + self.scene.shaft_turn(time))
+
+    def view(self, vector: Array | None = None) -> StateView:
+        """Parts of a state vector by name; of a copy of the present one by default."""
+        return StateView(self._model, self.state.vector if vector is None else vector)
+
+    def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
+        """Go on from another state; the integrator is started again.
+
+        Parameters
+        ----------
+        vector : array_like of shape (n_state,), or State
+            The state.
+        time : float, optional
+            Its time (s); the present one by default.
+
+        Raises
+        ------
+        InputError
+            If it is not finite, not possible, or of the wrong length, or if it is set from the callback of a run.
+        """
+        self._check_not_running("set_state")
+        if isinstance(vector, State):
+            given, when = vector.vector, vector.time
+        else:
+            given, when = _numbers(vector), self.time
+        when = when if time is None else number_of("time", time)
+        core = self._open(when, given)
+        self._count()
+        self._core, self._begun, self._reached, self._end = core, when, when, None
+
+    def copy(self) -> Self:
+        """An independent simulation at the same state; its integrator starts there."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__)
+        other._running = False
+        other._totals, other._counted = {}, {}
+        present = self.state
+        other._begin(present.time, present.vector)
+        other._reached = present.time
+        return other
+
+    def __copy__(self) -> Self:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self.copy()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a simulation cannot be pickled; keep its scene and its state, or use checkpoints")
+
+    def _check_not_running(self, what: str) -> None:
+        if self._running:
+            allowed = "must not be called while a run goes on; end the run first: let the callback give True"
+            raise InputError([Problem((what,), MISSING, allowed)])
+
+    def restart(self) -> None:
+        """Start the integrator again at the present state, as a checkpoint does.
+
+        Raises
+        ------
+        InputError
+            If it is called from the callback of a run.
+        """
+        self._check_not_running("restart")
+        self.set_state(self.state)
+
+    def step(self) -> float:
+        """One step of the integrator, from the end of its last one; gives the new time (s).
+
+        Raises
+        ------
+        StepError
+            If the integrator cannot go on; the state stays the last good one.
+        InputError
+            If it is called from the callback of a run.
+        """
+        self._check_not_running("step")
+        try:
+            self._reached = self._core.step()
+            self._end = None
+        except _core.CoreStepError as error:
+            raise StepError(str(error), time=self._core.time) from None
+        return self._reached
+
+    def estimate(
+        self, *, revolutions: float | None = None, duration: float | None = None, save_every: float | None = None
+    ) -> Estimate:
+        """Expected wall time and error of a run from here, by a short probe of a copy; see
+        `trbdyn.run.estimate.estimate`.
+        """
+        return estimate(self, revolutions=revolutions, duration=duration, save_every=save_every)
+
+    def derivative(self, vector: ArrayLike | None = None, time: float | None = None) -> Array:
+        """Rates of the state, shape (n_state,); at the present state by default."""
+        return self._core.derivative(*self._place(vector, time))
+
+    def record(self, vector: ArrayLike | None = None, time: float | None = None) -> dict[str, Array]:
+        """Every recorded quantity by name; at the present state by default."""
+        row = self._core.observe(*self._place(vector, time))
+        layout = self._model.record_layout()
+        return {name: row[offset : offset + math.prod(shape)].reshape(shape) for name, offset, shape in layout}
+
+    def contacts(self, vector: ArrayLike | None = None, time: float | None = None) -> dict[str, Array]:
+        """Every intermediate quantity of every contact; at the present state by default.
+
+        Returns
+        -------
+        dict of str to ndarray
+            ``raceway_<quantity>``, shape (2, Z, n): outer and inner race, roller, node, for interference, load,
+            pressure, films, film parameter, slide-roll ratio, friction coefficient and others; ``rib_<quantity>`` and
+            ``front_rib_<quantity>``, shape (Z,); ``pocket_load``, ``pocket_friction``, ``pocket_interference``
+            (negative: gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); ``land_<quantity>``,
+            shape (), of the cage on a land; ``hub_cage_force`` and other wrenches on cage, inner and outer ring by pairs
+            without a roller, shape (3,), in axes that turn with the kinematic cage angle; all SI.
+        """
+        return self._core.contacts(*self._place(vector, time))
+
+    def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
+        when = self.time if time is None else number_of("time", time)
+        if vector is None:
+            return when, self.state.vector
+        given = _numbers(vector)
+        if given.shape != (self._model.n_state,):
+            raise InputError.of(
+                "state", f"an array of shape {given.shape}", f"must have the shape ({self._model.n_state},)"
+            )
+        return when, given
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """How often each effect was evaluated; zero for effects that are off."""
+        return {name: value + self._counted.get(name, 0) for name, value in self._core.counters().items()}
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        """What the integrator did."""
+        return _merged(self._totals, self._core.statistics())
+
+    def run(
+        self,
+        *,
+        revolutions: float | None = None,
+        duration: float | None = None,
+        save_every: float | None = None,
+        save_groups: Sequence[Group] | None = None,
+        output: str | Path | None = None,
+        progress: bool = False,
+        callback: Callback | None = None,
+        checkpoint_every: float | None = None,
+        overwrite: bool = False,
+    ) -> Result:
+        """Step on and keep records; output times never change the steps.
+
+        Parameters
+        ----------
+        revolutions : float, optional
+            How far to go, in turns of the shaft.
+        duration : float, optional
+            How far to go (s); one of both must be given.
+        save_every : float, optional
+            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3
+            s, but not longer than a twentieth of a turn of the shaft (`trbdyn.run.keeping`); ``result.meta["kept"]`` says
+            what was kept.
+        save_groups : sequence of str, optional
+            Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
+        output : path-like, optional
+            HDF5 file to write while running; without it records stay in memory.
+        progress : bool
+            Show a progress bar.
+        callback : callable, optional
+            Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run
+            too, after the file is closed. It may look at the simulation, but not step, restart or set it.
+        checkpoint_every : float, optional
+            Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options.
+            Together with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
+        overwrite : bool
+            Replace the file `output` if it is there, together with segments and checkpoints of the run that it holds.
+
+        Returns
+        -------
+        Result
+            Ended by Ctrl-C or the callback it has ``success`` False and says so in ``message``.
+
+        Raises
+        ------
+        InputError
+            If an argument cannot be used.
+        StepError
+            If a step failed; its ``result`` holds everything up to the last good time.
+        FileError
+            If the file cannot be written, or is there already.
+        """
+        self._check_not_running("run")
+        path = None if output is None else output_path(output, overwrite=overwrite)
+        if path is not None:
+            _check_output(path)
+        changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
+        changes |= {} if save_every is None else {"save_every": save_every}
+        changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
+        changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
+        options = self.options.replace(**changes)
+        end = options.end_time(self.scene.speed_rpm, self._reached)
+        kept = kept_by_default(end - self._reached, self.scene.speed_rpm, save_every, save_groups)
+        options = options.replace(**kept)
+        times = output_times(self._reached, end, options.save_every)
+        run = Run(self, options, times, callback)
+        if path is not None:
+            run.write_to(path, overwrite=overwrite)
+        return run.go(progress=progress)
+
+
+_OTHER_FORMATS = frozenset(
+    (".csv", ".txt", ".json", ".toml", ".npy", ".npz", ".mat", ".xlsx", ".parquet", ".png", ".gif", ".nc")
+)
+
+
+def _check_output(path: Path) -> None:
+    """Records are written as HDF5: a name that says something else would mislead."""
+    if path.suffix.lower() in _OTHER_FORMATS:
+        limit = f"must end in .h5 or .hdf5: records are written as HDF5, not as {path.suffix}"
+        raise InputError.of("output", str(path), limit)
+
+
+def _numbers(values: ArrayLike) -> Array:
+    """A state vector as users give it.
+
+    Raises
+    ------
+    InputError
+        If it is no sequence of numbers.
+    """
+    try:
+        return np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError.of("state", "given", f"must be a vector of numbers: {error}") from None
+
+
+_COUNTED_ONCE = ("last_step", "last_order")
+
+
+def _merged(before: dict[str, float], now: dict[str, float]) -> dict[str, float]:
+    """Statistics of one integrator added to those of the ones before it."""
+    if not before:
+        return now
+    merged = {name: value + before.get(name, 0.0) for name, value in now.items()}
+    merged["smallest_step"] = min(before.get("smallest_step", math.inf), now["smallest_step"])
+    stepped = now["steps"] > 0
+    return merged | {name: now[name] if stepped else before.get(name, now[name]) for name in _COUNTED_ONCE}

@@ -1,0 +1,280 @@
+"""Cases as TOML files.
+
+A case has the tables ``[bearing]``, ``[lubricant]``, ``[effects]``, ``[scene]``, ``[start]`` and ``[run]``; their keys
+are the fields of `Bearing`, `Lubricant`, `Effects`, `Scene`, `Start` and `RunOptions`. Some tables may start from
+something known and then change it:
+
+- ``[bearing] case = "30310"``: a bearing that ships with the package;
+- ``[bearing.cage.pocket] shape = "drafted"``: a builder of `trbdyn.pocket_shapes`, its arguments beside it; as well in
+  ``[[bearing.cage.other_pockets]]``;
+- ``[lubricant] oil = "vg100"``: an oil of `trbdyn.lubricants.OILS` at ``temperature_c``, or the table of an `Oil`;
+- ``[effects] preset = "paper"``: a preset of `Effects`.
+
+A quantity that changes in time is a table of ``times`` (s) and ``values``.
+"""
+
+from __future__ import annotations
+
+import inspect
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from trbdyn.base.own_files import file_path, read_text
+from trbdyn.base.shipped import DATA
+from trbdyn.base.validation import Model
+from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
+from trbdyn.errors import Path as FieldPath
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.cases import BEARINGS
+from trbdyn.model.effects import PRESETS, Effects
+from trbdyn.model.lubricants import Lubricant, vg100
+from trbdyn.model.pocket import Pocket
+from trbdyn.model.pocket_shapes import SHAPES
+from trbdyn.model.scene import Scene, Start
+from trbdyn.run.options import RunOptions
+
+Table = dict[str, Any]
+C = TypeVar("C")
+M = TypeVar("M", bound=Model)
+
+TABLES: Final = ("bearing", "lubricant", "effects", "scene", "start", "run")
+DEEPEST: Final = 40
+"""Most levels of tables and lists in a file; a case has eight."""
+_OWN_TABLES: Final = ("bearing", "lubricant", "effects", "start")
+
+
+def shipped_cases() -> tuple[str, ...]:
+    """Names of the cases that ship with the package."""
+    return tuple(sorted(path.stem for path in DATA.glob("*.toml")))
+
+
+def find_case(name: str) -> Path:
+    """The file of a case that ships with the package, by its name with or without ``.toml``.
+
+    Raises
+    ------
+    InputError
+        If there is no such case.
+    """
+    stem = name.removesuffix(".toml")
+    if stem not in shipped_cases():
+        raise InputError.of("case", name, unknown_name(stem, shipped_cases()))
+    return DATA / f"{stem}.toml"
+
+
+def load_case(path: str | Path) -> tuple[Scene, RunOptions]:
+    """Scene and run options of a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; where there is none of this name, a case that ships with the package.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or is no TOML.
+    InputError
+        If a key is unknown or a value not allowed; the message names the full key.
+    """
+    file = file_path(path, "case")
+    if not file.exists() and str(path).removesuffix(".toml") in shipped_cases():
+        file = find_case(str(path))
+    return case_from_dict(read_tables(file, f"; cases that ship with the package: {', '.join(shipped_cases())}"))
+
+
+def read_tables(file: Path, hint: str = "") -> Table:
+    """The tables of a TOML file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is no TOML; where it cannot be opened, `hint` is added to the message.
+    """
+    try:
+        tables = tomllib.loads(read_text(file))
+        if _depth(tables) > DEEPEST:
+            raise RecursionError
+        return tables
+    except OSError as error:
+        raise FileError(f"{file}: {error.strerror or error}{hint}") from None
+    except RecursionError:
+        raise FileError(f"{file}: not a TOML file that can be used: its tables are nested too deeply") from None
+    except ValueError as error:
+        raise FileError(f"{file}: not a TOML file: {error}") from None
+
+
+def _depth(tables: Table) -> int:
+    """How deep tables and lists are nested."""
+    level: list[Any] = [tables]
+    depth = 0
+    while level:
+        depth += 1
+        inside = [entry for place in level for entry in (place.values() if isinstance(place, dict) else place)]
+        level = [entry for entry in inside if isinstance(entry, dict | list)]
+    return depth
+
+
+def case_from_dict(values: Mapping[str, Any]) -> tuple[Scene, RunOptions]:
+    """Scene and run options of the tables of a case.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or a value not allowed; the message names the full key.
+    """
+    _check_names(values, TABLES, ())
+    tables = {name: _table(values, name) for name in TABLES}
+    if "bearing" not in values:
+        raise InputError([Problem(("bearing",), MISSING, "is required; for instance case = '30310'")])
+    run = _build(RunOptions, tables["run"], ("run",))
+    fields = {
+        "bearing": bearing_from_table(tables["bearing"]),
+        "lubricant": _lubricant(tables["lubricant"]) if "lubricant" in values else vg100(),
+        "effects": _effects(tables["effects"]),
+        "start": _build(Start, tables["start"], ("start",)),
+    }
+    _check_names(tables["scene"], set(Scene.model_fields) - set(_OWN_TABLES), ("scene",))
+    try:
+        return Scene(**fields, **tables["scene"]), run
+    except InputError as error:
+        raise InputError([_in_tables(problem) for problem in error.problems]) from None
+
+
+def bearing_from_table(table: Table) -> Bearing:
+    """The bearing of a ``[bearing]`` table.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or a value not allowed; the message names the full key.
+    """
+    path = ("bearing",)
+    _check_names(table, {*Bearing.model_fields, "case"}, path)
+    base = _choose(table, "case", BEARINGS, path)().inputs() if "case" in table else {}
+    values = _merged(base, _without(table, "case"))
+    cage = values.get("cage")
+    if not isinstance(cage, dict) or not _has_shapes(cage):
+        return _build(Bearing, values, path)
+    plain = _build(Bearing, {**values, "cage": _without(cage, "pocket", "other_pockets")}, path)
+    pockets = _pockets(plain, cage, (*path, "cage"))
+    with _located((*path, "cage")):
+        full = plain.cage.replace(**pockets)
+    with _located(path):
+        return plain.replace(cage=full)
+
+
+def _has_shapes(cage: Table) -> bool:
+    """Whether a pocket of the cage is given by a builder's name."""
+    others = cage.get("other_pockets")
+    listed = others if isinstance(others, list) else []
+    return _is_shape(cage.get("pocket")) or any(isinstance(o, dict) and _is_shape(o.get("pocket")) for o in listed)
+
+
+def _pockets(bearing: Bearing, cage: Table, path: FieldPath) -> Table:
+    """The pockets of a cage's table, shapes built for the bearing."""
+    pockets = {name: cage[name] for name in ("pocket", "other_pockets") if cage.get(name) is not None}
+    if _is_shape(pockets.get("pocket")):
+        pockets["pocket"] = _pocket(bearing, pockets["pocket"], (*path, "pocket"))
+    others = pockets.get("other_pockets")
+    if isinstance(others, list):
+        pockets["other_pockets"] = [_other(bearing, o, (*path, "other_pockets", i)) for i, o in enumerate(others)]
+    return pockets
+
+
+def _other(bearing: Bearing, table: object, path: FieldPath) -> object:
+    if isinstance(table, dict) and _is_shape(table.get("pocket")):
+        return {**table, "pocket": _pocket(bearing, table["pocket"], (*path, "pocket"))}
+    return table
+
+
+def _is_shape(table: object) -> bool:
+    return isinstance(table, dict) and "shape" in table
+
+
+def _pocket(bearing: Bearing, table: Table, path: FieldPath) -> Pocket:
+    """The pocket that a builder makes of the arguments in a table."""
+    builder = _choose(table, "shape", SHAPES, path)
+    arguments = _without(table, "shape", "allow_interference")
+    parameters = list(inspect.signature(builder).parameters.values())[1:]
+    _check_names(arguments, {"allow_interference", *(parameter.name for parameter in parameters)}, path)
+    for parameter in parameters:
+        if parameter.default is parameter.empty and parameter.name not in arguments:
+            raise InputError(
+                [Problem((*path, parameter.name), MISSING, f"is required by the shape '{table['shape']}'")]
+            )
+    with _located(path):
+        pocket = builder(bearing, **arguments)
+        return pocket.replace(allow_interference=table.get("allow_interference", False))
+
+
+def _lubricant(table: Table) -> Lubricant:
+    return _build(Lubricant, table, ("lubricant",))
+
+
+def _effects(table: Table) -> Effects:
+    path = ("effects",)
+    _check_names(table, {*Effects.model_fields, "preset"}, path)
+    preset = _choose({"preset": "standard", **table}, "preset", PRESETS, path)
+    return _build(Effects, _merged(preset().to_dict(), _without(table, "preset")), path)
+
+
+def _in_tables(problem: Problem) -> Problem:
+    """A problem of a scene, at the key of the case that it comes from."""
+    path = problem.path if problem.path and problem.path[0] in _OWN_TABLES else ("scene", *problem.path)
+    return Problem(path, problem.value, problem.allowed)
+
+
+def _table(values: Mapping[str, Any], name: str) -> Table:
+    table = values.get(name, {})
+    if not isinstance(table, dict):
+        raise InputError.of(name, table, "must be a table of named values")
+    return table
+
+
+def _check_names(table: Mapping[str, Any], allowed: Iterable[str], path: FieldPath) -> None:
+    names = set(allowed)
+    problems = [
+        Problem((*path, key), value, unknown_name(key, names)) for key, value in table.items() if key not in names
+    ]
+    if problems:
+        raise InputError(problems)
+
+
+def _choose(table: Mapping[str, Any], key: str, choices: Mapping[str, C], path: FieldPath) -> C:
+    """What a key of a table names."""
+    value = table[key]
+    if not isinstance(value, str) or value not in choices:
+        allowed = ", ".join(repr(choice) for choice in choices)
+        raise InputError([Problem((*path, key), value, f"must be one of {allowed}")])
+    return choices[value]
+
+
+def _build(model: type[M], table: Mapping[str, Any], path: FieldPath) -> M:
+    with _located(path):
+        return model(**table)
+
+
+@contextmanager
+def _located(path: FieldPath) -> Iterator[None]:
+    """Problems that arise inside are told with their full key."""
+    try:
+        yield
+    except InputError as error:
+        raise error.under(path) from None
+
+
+def _without(table: Table, *names: str) -> Table:
+    return {key: value for key, value in table.items() if key not in names}
+
+
+def _merged(base: Table, changes: Mapping[str, Any]) -> Table:
+    """A table with the values of another put in, table by table."""
+    result = dict(base)
+    for key, value in changes.items():
+        own = result.get(key)
+        result[key] = _merged(own, value) if isinstance(own, dict) and isinstance(value, dict) else value
+    return result

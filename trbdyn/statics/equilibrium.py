@@ -1,0 +1,190 @@
+"""Static equilibrium of ring and rollers at speed (docs/theory/motion.md#equilibrium-of-the-ring), and why there may be none."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+from trbdyn.errors import LoadError
+from trbdyn.model.flatten import RingLoad, ring_load
+from trbdyn.model.motion import is_constant, value_at
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Static equilibrium of ring and rollers at speed, without friction, gravity and cage.
+
+    Attributes
+    ----------
+    displacement : ndarray, shape (5,)
+        Inner ring: translation x, y, z (m), rotation about x, y (rad).
+    angles : ndarray, shape (Z,)
+        Orbit angles at which the rollers stand (rad).
+    rollers : ndarray, shape (Z, 3)
+        Offsets of each roller: radius, axial position (m), tilt (rad).
+    outer_load, inner_load, rib_load : ndarray, shape (Z,)
+        Normal loads (N).
+    residual : float
+        Largest force left unbalanced (N).
+    iterations : int
+        Steps of Newton's method.
+    """
+
+    displacement: Array
+    angles: Array
+    rollers: Array
+    outer_load: Array
+    inner_load: Array
+    rib_load: Array
+    residual: float
+    iterations: int
+
+
+class EquilibriumSolver:
+    """Solves for the equilibrium of a scene's ring and rollers.
+
+    Parameters
+    ----------
+    model : _core.Model
+        The scene's model.
+    scene : Scene
+        The scene.
+    angles : ndarray, shape (Z,)
+        Orbit angles at which the rollers stand (rad).
+    """
+
+    def __init__(self, model: _core.Model, scene: Scene, angles: Array) -> None:
+        self.model, self.scene, self.angles = model, scene, angles
+
+    def solve(
+        self,
+        time: float,
+        *,
+        guess: Sequence[Equilibrium] | None = None,
+        share: float = 0.0,
+        displacement: Array | None = None,
+    ) -> Equilibrium:
+        """The equilibrium under the load at a time.
+
+        Parameters
+        ----------
+        time : float
+            Time (s).
+        guess : sequence of two Equilibrium, optional
+            Equilibria close by: the search starts from `share` of the way from the first to the second. The loads of
+            what is found are then 0: they are not asked for.
+        share : float
+            See `guess` (1).
+        displacement : ndarray, shape (5,), optional
+            The ring stands here (m, rad), whatever the load is: only the rollers are free.
+
+        Raises
+        ------
+        LoadError
+            If the bearing cannot carry the load.
+        """
+        load = ring_load(self.scene, time)
+        fixed = load.fixed if displacement is None else np.ones(5)
+        place, rollers = load.displacement if displacement is None else displacement, None
+        if guess is not None:
+            first, second = guess
+            near = first.displacement + share * (second.displacement - first.displacement)
+            place = np.where(fixed > 0.0, place, near)
+            rollers = (first.rollers + share * (second.rollers - first.rollers)).ravel()
+        force = np.concatenate([load.force, load.moment])
+        found = None
+        try:
+            found = self.model.equilibrium(force, fixed, place, load.shaft_speed, self.angles, rollers)
+        except _core.CoreLoadError as error:
+            for trial in (load.displacement, self._pushed(load)) if displacement is None else ():
+                with contextlib.suppress(_core.CoreLoadError):
+                    guessed = None if trial is load.displacement else self._along_cup(float(trial[2]))
+                    found = self.model.equilibrium(force, fixed, trial, load.shaft_speed, self.angles, guessed)
+                    break
+            if found is None:
+                raise LoadError(_why_not(self.scene, time, str(error))) from None
+        outer, inner, rib = np.asarray(found["loads"]).T
+        return Equilibrium(
+            displacement=found["displacement"],
+            angles=self.angles,
+            rollers=found["rollers"],
+            outer_load=outer,
+            inner_load=inner,
+            rib_load=rib,
+            residual=found["residual"],
+            iterations=found["iterations"],
+        )
+
+    def _pushed(self, load: RingLoad) -> Array:
+        """A guess of the ring's place: where its axial position is given with play, pushed to the side by its load."""
+        place, push = load.displacement.copy(), float(np.hypot(*load.force[:2]))
+        gap = max(place[2], 0.0) * math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
+        if push > 0.0:
+            place[:2] = np.where(load.fixed[:2] > 0.0, place[:2], gap * load.force[:2] / push)
+        return place
+
+    def _along_cup(self, shift: float) -> Array:
+        """Rollers that went along the cup by this axial distance (m), as a guess."""
+        slope = math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
+        return np.tile([shift * slope, shift, 0.0], self.angles.size)
+
+
+def least_axial_load(scene: Scene, time: float = 0.0) -> float:
+    """Axial load (N) below which rollers that orbit press the ring off, without any other load.
+
+    The centrifugal force Fc of a roller presses it against the cup, whose slope pushes it with Fc tan(alpha_o) towards
+    its large end, and there against the rib, whose normal lies at the angle theta to the bearing axis: the inner
+    raceway carries nothing at Fa = Z Fc tan(alpha_o) / [1 + tan(theta) tan(alpha_o)].
+    """
+    geometry = scene.bearing.geometry
+    orbit = geometry.cage_speed_ratio * value_at(scene.speed_rpm, time) * math.pi / 30.0
+    centrifugal = geometry.roller_mass * orbit**2 * geometry.roller_centre_radius
+    slope = math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    return scene.bearing.n_rollers * centrifugal * slope / (1.0 + math.tan(geometry.rib_normal_angle) * slope)
+
+
+def _why_not(scene: Scene, time: float, said: str) -> str:
+    """Why there is no equilibrium, as far as it can be told."""
+    changes = any(not is_constant(quantity) for quantity in scene.ring_quantities().values())
+    when = f" at {time:.6g} s" if changes or scene.rotating_load is not None else ""
+    load, z = ring_load(scene, time), scene.ring_is_placed[2]
+    axial, radial, speed = -load.force[2], float(np.hypot(*load.force[:2])), value_at(scene.speed_rpm, time)
+    if z:
+        place = load.displacement[2]
+        return (
+            f"no equilibrium{when} with the ring held at z = {place:g} m under a radial load of {radial:g} N: "
+            f"{'move it towards -z, so that rollers and rings touch' if place >= 0.0 else 'the load is too large'}; {said}"
+        )
+    least = least_axial_load(scene, time) if scene.effects.back_rib else 0.0
+    if axial < least:
+        return (
+            f"no equilibrium{when}: axial_load = {axial:g} N is less than the rollers' centrifugal force needs at {speed:g} rpm; "
+            f"axial_load must be at least {least:.4g} N at this speed, or the speed at most "
+            f"{abs(speed) * math.sqrt(axial / least):.4g} rpm"
+        )
+    most = axial / math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    bounds = f"axial_load at least {least:.4g} N at {speed:g} rpm, radial load below {most:.4g} N"
+    if radial > 0.9 * most:
+        return (
+            f"no equilibrium{when}: the radial load of {radial:g} N is too close to all that axial_load = {axial:g} N can hold "
+            f"({bounds}): raise axial_load, or lower radial_load; {said}"
+        )
+    return f"no equilibrium{when} under axial_load = {axial:g} N, radial load {radial:g} N (needed: {bounds}); {said}"
+
+
+def nominal_angles(scene: Scene) -> Array:
+    """Evenly spaced orbit angles (rad), shape (Z,)."""
+    count = scene.bearing.n_rollers
+    return 2.0 * math.pi * np.arange(count) / count

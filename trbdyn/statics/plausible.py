@@ -1,0 +1,86 @@
+"""Inputs that are allowed but can hardly be meant: said in a warning, and kept with the result."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from trbdyn.model.motion import value_at, values_of
+from trbdyn.statics.equilibrium import Equilibrium
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+PERMISSIBLE_PRESSURE: Final = 4e9
+"""Pressure (Pa) at which the most loaded roller keeps a dent of a ten thousandth of its diameter: ISO 76, roller
+bearings.
+"""
+
+LARGEST_PLAY_SHARE: Final = 0.1
+"""Largest usual play of a cage's pocket, in units of the roller's diameter; usual are 0.01 to 0.03."""
+
+
+class UnusualInput(UserWarning):
+    """Input that is allowed but can hardly be meant."""
+
+
+def unusual(scene: Scene, equilibrium: Equilibrium) -> tuple[str, ...]:
+    """What can hardly be meant in a scene: one sentence for each, with the field, its value and what is usual."""
+    return tuple(
+        text for text in (_pressure(scene, equilibrium), *_plays(scene), _gravity(scene), _planar(scene)) if text
+    )
+
+
+def _pressure(scene: Scene, equilibrium: Equilibrium) -> str:
+    """Hertz pressure of the most loaded roller at mid length, its load spread over its effective length."""
+    geometry, roller = scene.bearing.geometry, scene.bearing.roller
+    worst = 0.0
+    for load, radius in (
+        (equilibrium.outer_load, geometry.outer_equivalent_radius),
+        (equilibrium.inner_load, geometry.inner_equivalent_radius),
+    ):
+        line = max(float(np.max(load)), 0.0) / roller.effective_length
+        worst = max(worst, math.sqrt(line * geometry.effective_modulus / (2.0 * math.pi * radius)))
+    if worst <= PERMISSIBLE_PRESSURE:
+        return ""
+    loads = f"axial_load = {value_at(scene.axial_load, scene.start.time):g} N, radial_load = "
+    loads += f"{value_at(scene.radial_load, scene.start.time):g} N"
+    cause = loads if scene.displacement is None else f"displacement = {scene.displacement} m, {loads}"
+    return (
+        f"the most loaded roller has a pressure of {worst / 1e9:.3g} GPa under {cause}: above "
+        f"{PERMISSIBLE_PRESSURE / 1e9:g} GPa (ISO 76) raceways are dented, but contacts are elastic here"
+    )
+
+
+def _plays(scene: Scene) -> list[str]:
+    cage, most = scene.bearing.cage, LARGEST_PLAY_SHARE * scene.bearing.roller.diameter
+    if scene.effects.bodies == "rollers":
+        return []
+    return [
+        f"bearing.cage.{name} = {getattr(cage, name):g} m is more than a tenth of the roller's diameter "
+        f"({scene.bearing.roller.diameter:g} m); usual are 0.01 to 0.03 of it"
+        for name in ("play_radial", "play_circumferential", "play_axial")
+        if getattr(cage, name) > most
+    ]
+
+
+def _gravity(scene: Scene) -> str:
+    size = math.hypot(*(max(values_of(part), key=abs) for part in scene.gravity))
+    if not scene.effects.gravity or abs(size - 1.0) > 1e-6:
+        return ""
+    given = ", ".join(f"{value_at(part, scene.start.time):g}" for part in scene.gravity)
+    return (
+        f"gravity = ({given}) m/s2 is a tenth of the Earth's: it is an acceleration and not a direction; "
+        "(0, -9.80665, 0) is the usual one"
+    )
+
+
+def _planar(scene: Scene) -> str:
+    if not scene.effects.planar or not any(values_of(scene.radial_load)):
+        return ""
+    return (
+        "effects.planar = true with radial_load: axial positions of the rollers stay those of the start as they orbit, so "
+        "that ring forces are off by some per cent"
+    )

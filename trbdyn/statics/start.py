@@ -1,0 +1,78 @@
+"""The state at which a run begins: rollers in equilibrium and in pure rolling, the cage at rest or whirling."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+from trbdyn.errors import InputError
+from trbdyn.model.motion import value_at
+from trbdyn.statics.cage_start import place_cage
+from trbdyn.statics.core_model import build_model
+from trbdyn.statics.equilibrium import Equilibrium, nominal_angles
+from trbdyn.statics.ring_motion import RingMotion, ring_motion
+from trbdyn.statics.state_view import StateView
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibrium: Equilibrium) -> Array:
+    """The state vector at the start, shape (n_state,).
+
+    Raises
+    ------
+    InputError
+        If a saved state does not fit the scene.
+    """
+    if scene.start.kind == "state":
+        vector = np.array(scene.start.state_vector, dtype=np.float64)
+        if vector.size != model.n_state:
+            raise InputError.of(
+                ("start", "state_vector"), f"{vector.size} numbers", f"must have {model.n_state} for this bearing"
+            )
+        return vector
+    vector = np.zeros(model.n_state)
+    state = StateView(model, vector)
+    geometry = scene.bearing.geometry
+    speed = value_at(scene.speed_rpm, scene.start.time) * math.pi / 30.0
+    orbit = geometry.cage_speed_ratio * speed
+    radius, axial, tilt = equilibrium.rollers.T
+    angle = geometry.roller_axis_angle
+    state["roller_r"], state["roller_z"], state["roller_tilt"] = radius, axial, tilt
+    state["roller_psi"] = equilibrium.angles - nominal_angles(scene)
+    # pure rolling: all velocities follow from the orbit, offsets are against the nominal place
+    state["roller_v_t"] = orbit * radius
+    state["roller_omega_n"] = -orbit * (np.sin(angle + tilt) - np.sin(angle))
+    state["roller_omega_a"] = orbit * (np.cos(angle + tilt) - np.cos(angle))
+    if scene.effects.planar:
+        state["roller_omega_n"] = 0.0
+    if scene.effects.bodies == "rollers_and_cage":
+        place_cage(model, scene, motion, vector)
+    return vector
+
+
+def contacts_at_start(scene: Scene) -> dict[str, Array]:
+    """Every intermediate quantity of every contact at the start; names, shapes and units as in `Simulation.contacts`.
+
+    Raises
+    ------
+    InputError
+        If the scene cannot be used.
+    LoadError
+        If the bearing cannot carry the load.
+    """
+    model = build_model(scene)
+    motion, equilibrium = ring_motion(model, scene)
+    vector = start_state(model, scene, motion, equilibrium)
+    try:
+        onlooker = motion.open(model, scene.start.time, vector, {})
+    except ValueError as error:
+        raise InputError.of("state", "given", str(error)) from None
+    return onlooker.contacts(scene.start.time, vector)

@@ -1,0 +1,41 @@
+"""Parts of the core's state vector by name."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+
+Array = NDArray[np.float64]
+
+
+class StateView:
+    """Parts of a state vector by name, as views: ``view["roller_r"]`` has shape (Z,), ``view["cage_x"]`` shape ().
+
+    Parameters
+    ----------
+    model : _core.Model
+        The model whose layout it follows.
+    vector : ndarray, shape (n_state,)
+        The vector; views write through to it.
+    """
+
+    def __init__(self, model: _core.Model, vector: Array) -> None:
+        self._vector = vector
+        self._layout = {name: (offset, shape) for name, offset, shape in model.state_layout()}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parts."""
+        return tuple(self._layout)
+
+    def __getitem__(self, name: str) -> Array:
+        offset, shape = self._layout[name]
+        if len(shape) == 2:
+            count, stride = shape
+            return self._vector[offset : offset + count * stride : stride]
+        return self._vector[offset : offset + (shape[0] if shape else 1)].reshape(shape)
+
+    def __setitem__(self, name: str, value: Array | float) -> None:
+        self[name][...] = value
