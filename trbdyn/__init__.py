@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from trbdyn.model import cases, lubricants, pocket_shapes
     from trbdyn.model.bearing import Bearing, Cage, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.model.effects import Effects
+    from trbdyn.model.land import Land
     from trbdyn.model.lubricants import Lubricant, Oil
     from trbdyn.model.motion import History
     from trbdyn.model.pocket import Face, OtherPocket, Pocket
@@ -58,6 +59,7 @@ _NAMES = {
     "FileError": "trbdyn.errors",
     "History": "trbdyn.model.motion",
     "InputError": "trbdyn.errors",
+    "Land": "trbdyn.model.land",
     "LoadError": "trbdyn.errors",
     "Lubricant": "trbdyn.model.lubricants",
     "Material": "trbdyn.model.bearing",
@@ -95,6 +97,7 @@ __all__ = [
     "FileError",
     "History",
     "InputError",
+    "Land",
     "LoadError",
     "Lubricant",
     "Material",

@@ -107,8 +107,7 @@ static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *
   return TRB_OK;
 }
 
-/* E' = 2/[(1-v1^2)/E1 + (1-v2^2)/E2]; bodies of the same material are taken by themselves, without its rounding. */
-static double composite_modulus(double e1, double v1, double e2, double v2)
+double trb_composite_modulus(double e1, double v1, double e2, double v2)
 {
   const double first = e1 / (1.0 - v1 * v1), second = e2 / (1.0 - v2 * v2);
   return first == second ? first : 2.0 / (1.0 / first + 1.0 / second);
@@ -130,9 +129,9 @@ trb_status trb_geometry_derive(const trb_params *params, trb_geometry *geometry,
   derive_radii(params, g);
   derive_mass(params, g);
   g->effective_modulus =
-      composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->youngs_modulus, params->poisson_ratio);
-  g->pocket_modulus = composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->cage_youngs_modulus,
-                                        params->cage_poisson_ratio);
+      trb_composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->youngs_modulus, params->poisson_ratio);
+  g->pocket_modulus = trb_composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->cage_youngs_modulus,
+                                            params->cage_poisson_ratio);
   g->cage_speed_ratio = sin(g->cone_half_angle) / (sin(g->cone_half_angle) + sin(params->cup_half_angle));
   g->roller_spin_ratio = g->cage_speed_ratio * sin(params->cup_half_angle) / sin(g->roller_half_angle);
   /* neighbours touch where the chord between two axes is shorter than a diameter across it */

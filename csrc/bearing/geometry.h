@@ -62,6 +62,9 @@ enum { TRB_N_GEOMETRY = (int)(sizeof(trb_geometry) / sizeof(double)) };
 
 extern const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY];
 
+/* E' = 2/[(1-v1^2)/E1 + (1-v2^2)/E2]; bodies of the same material are taken by themselves, without its rounding. */
+double trb_composite_modulus(double e1, double v1, double e2, double v2);
+
 trb_status trb_geometry_derive(const trb_params *params, trb_geometry *geometry, trb_message *message);
 
 #endif

@@ -16,7 +16,9 @@
   F(X, front_rib,        TAKES,  "at the front rib") \
   F(X, pocket,           TAKES,  "by friction in the pockets") \
   F(X, damping,          TAKES,  "by normal damping") \
-  F(X, drag,             TAKES,  "by drag of the oil on rollers")
+  F(X, drag,             TAKES,  "by drag of the oil on rollers") \
+  F(X, land_film,        TAKES,  "in the oil film between cage and land") \
+  F(X, land,             TAKES,  "by friction of the cage on the land")
 
 /* Works put in: F(X, name, text), each a quadrature and a field work_*. */
 #define TRB_WORKS(F, X) \
@@ -29,7 +31,8 @@
   F(X, traction,  "raceway sliding friction") \
   F(X, rolling,   "rolling resistance") \
   F(X, rib,       "the back-face rib") \
-  F(X, front_rib, "the front rib")
+  F(X, front_rib, "the front rib") \
+  F(X, land,      "the cage on the inner ring's land")
 
 enum {
   TRB_LOSS_none = -1,
@@ -40,9 +43,11 @@ enum {
 };
 
 enum {
-  /* Those before it have a quadrature in every model, later ones only where their effect is on: a state without them is as long as ever, and
-   * measures that are means over all of its entries stay the same. */
-  TRB_N_USUAL_LOSSES = TRB_LOSS_drag
+  /* Those before it have a quadrature in every model, later ones only up to the last one whose effect is on: a state without them is as long
+   * as ever, and measures that are means over all of its entries stay the same. */
+  TRB_N_USUAL_LOSSES = TRB_LOSS_drag,
+  /* Those of pairs with a roller come first: what a roller does to the right-hand side has no others. */
+  TRB_N_ROLLER_LOSSES = TRB_LOSS_drag + 1
 };
 
 enum {

@@ -11,6 +11,9 @@
 #include "laws/line_contact.h"
 #include "laws/profile.h"
 
+/* Smallest height of a land's film over the clearance: the law of the film keeps eight digits. */
+#define TRB_LEAST_CONTACT_FILM 1e-4
+
 static trb_status check_params(const trb_params *params, trb_message *message)
 {
   const double *values = (const double *)params;
@@ -34,6 +37,10 @@ static trb_status check_params(const trb_params *params, trb_message *message)
   if (!(params->front_rib_high > params->front_rib_low))
     return trb_fail(message, TRB_ERR_INPUT, "front_rib_high = %g m: must be above front_rib_low = %g m", params->front_rib_high,
                     params->front_rib_low);
+  if (!(params->land_contact_film >= TRB_LEAST_CONTACT_FILM * params->land_clearance &&
+        params->land_contact_film <= 0.5 * params->land_clearance))
+    return trb_fail(message, TRB_ERR_INPUT, "land_contact_film = %g m: must be from %g to 0.5 of land_clearance = %g m",
+                    params->land_contact_film, TRB_LEAST_CONTACT_FILM, params->land_clearance);
   return TRB_OK;
 }
 
@@ -187,6 +194,21 @@ static void fill_pockets(trb_model *m)
   }
 }
 
+/* Strips of the cage's guiding surface: Gauss nodes along its width. */
+static void fill_land(trb_model *m)
+{
+  const trb_params *p = &m->params;
+  const double      modulus = trb_composite_modulus(p->cage_youngs_modulus, p->cage_poisson_ratio, p->youngs_modulus, p->poisson_ratio);
+  trb_quadrature(TRB_QUADRATURE_GAUSS, TRB_LAND_STRIPS, m->land_station, m->land_weight);
+  for (int k = 0; k < TRB_LAND_STRIPS; k++) {
+    m->land_station[k] *= 0.5 * p->land_width;
+    m->land_weight[k] *= 0.5 * p->land_width;
+  }
+  m->land_place = p->land_offset - p->cage_offset;
+  m->land_palmgren = exp(trb_line_log_load(0.0, modulus, p->land_width));
+  m->land_film = m->film && p->land_fill > 0.0;
+}
+
 static void fill_constants(trb_model *m)
 {
   const trb_params   *p = &m->params;
@@ -195,7 +217,6 @@ static void fill_constants(trb_model *m)
   m->race[TRB_RACE_OUTER].cosine = cos(p->cup_half_angle);
   m->race[TRB_RACE_INNER].sine = sin(g->cone_half_angle);
   m->race[TRB_RACE_INNER].cosine = cos(g->cone_half_angle);
-  m->n_losses = p->oil_fill > 0.0 ? TRB_N_LOSSES : TRB_N_USUAL_LOSSES;
   m->rib_sine = sin(g->rib_normal_angle);
   m->rib_cosine = cos(g->rib_normal_angle);
   m->log_modulus = log(g->effective_modulus);
@@ -215,6 +236,13 @@ static void fill_constants(trb_model *m)
   m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);
   m->pocket_friction = dry ? p->dry_friction > 0.0 : !(full && p->traction == TRB_TRACTION_NONE);
   m->film = !dry && (p->lubrication != TRB_LUBRICATION_BOUNDARY) && (m->friction || p->rolling_resistance > 0.0);
+}
+
+/* Up to the last one whose effect is on. */
+static int losses_of(const trb_params *p)
+{
+  if (p->guidance != TRB_GUIDANCE_ROLLERS) return TRB_N_LOSSES;
+  return p->oil_fill > 0.0 ? TRB_N_ROLLER_LOSSES : TRB_N_USUAL_LOSSES;
 }
 
 static double *doubles(size_t count) { return trb_zeros(count, sizeof(double)); }
@@ -255,7 +283,9 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   if ((status = fill_nodes(m, message)) != TRB_OK) return status;
   if ((status = fill_front_rib(m, message)) != TRB_OK) return status;
   if ((status = fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
+  m->n_losses = losses_of(&m->params);
   fill_constants(m);
+  fill_land(m);
   fill_pockets(m);
   return TRB_OK;
 }

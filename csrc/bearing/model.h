@@ -13,6 +13,11 @@ enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };
 enum { TRB_LUBRICATION_DRY = 0, TRB_LUBRICATION_BOUNDARY = 1, TRB_LUBRICATION_MIXED = 2, TRB_LUBRICATION_FULL = 3 };
 enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMURA = 2 };
 
+enum { TRB_GUIDANCE_ROLLERS = 0, TRB_GUIDANCE_INNER_LAND = 1, TRB_GUIDANCE_OUTER_LAND = 2 };
+
+/* Strips along the width of the cage's guiding surface. */
+enum { TRB_LAND_STRIPS = 6 };
+
 /* Nodes along one contact are padded to a multiple of this, so that no scalar remainder runs. */
 #define TRB_LANE_PAD 8
 
@@ -62,6 +67,11 @@ typedef struct trb_model {
   double     rib_sine, rib_cosine;          /* of the rib's normal */
   trb_frame *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
   trb_vec3  *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
+  double     land_station[TRB_LAND_STRIPS]; /* of the guiding surface's strips, from its middle, m */
+  double     land_weight[TRB_LAND_STRIPS];  /* their widths, m */
+  double     land_place;                    /* middle of the guiding surface from the cage's centre of mass, m */
+  double     land_palmgren;                 /* load per length of cage and land at d = 1 m */
+  int        land_film;                     /* the land has an oil film */
   double     front_rib_radius[2];           /* radii of the front rib's edges, m */
   double     front_rib_z[2];                /* their axial positions from the apex, m */
   int        friction;                      /* any friction at raceways and ribs at all */

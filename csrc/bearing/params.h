@@ -48,6 +48,14 @@
   X(cage_inertia_transverse,  "kg m2",  1e-12,  1e6,    "moment of inertia about a transverse axis through the cage's centre of mass") \
   X(cage_offset,              "m",      -1,     1,      "axial position of the cage's centre of mass from the roller-centre plane") \
   X(cage_rail_offset,         "m",      -1,     1,      "axial position of the large-end rail (where the sensors look) from the roller-centre plane") \
+  /* land that guides the cage */ \
+  X(land_offset,              "m",      -1,     1,      "axial position of the middle of the cage's guiding surface from the roller-centre plane") \
+  X(land_inner_radius,        "m",      1e-4,   10.0,   "radius of the inner ring's land") \
+  X(land_outer_radius,        "m",      1e-4,   10.0,   "radius of the outer ring's land") \
+  X(land_width,               "m",      1e-5,   1.0,    "width of the cage's guiding surface") \
+  X(land_clearance,           "m",      1e-7,   0.1,    "radial clearance between cage and land") \
+  X(land_contact_film,        "m",      1e-9,   1e-2,   "film height below which cage and land touch") \
+  X(land_fill,                "1",      0,      1,      "share of the guiding surface's width that is filled with oil") \
   /* lubricant */ \
   X(viscosity,                "Pa s",   1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \
   X(pressure_coefficient,     "1/Pa",   0,      1e-6,   "alpha0: pressure-viscosity coefficient, used by the films") \
@@ -94,6 +102,7 @@
   X(pocket_bars,              "choice",      0,      1,      "flank against the pocket's faces") \
   X(pocket_ends,              "choice",      0,      1,      "roller ends against the pocket's faces") \
   X(pocket_edges,             "choice",      0,      1,      "faces end at their outline (0: faces are unbounded planes)") \
+  X(guidance,                 "choice",      0,      2,      "what guides the cage: 0 rollers, 1 land of the inner ring, 2 land of the outer ring") \
   X(damping,                  "choice",      0,      1,      "Hunt-Crossley normal damping")
 
 typedef struct trb_params {

@@ -111,4 +111,5 @@ void trb_detail_clear(const trb_model *m, trb_detail *detail)
   memset(detail->pocket_force, 0, slots * sizeof(double));
   memset(detail->pocket_friction, 0, slots * sizeof(double));
   for (size_t i = 0; i < slots; i++) detail->pocket_interference[i] = -INFINITY;
+  memset(&detail->land, 0, sizeof detail->land);
 }

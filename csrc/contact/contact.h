@@ -1,7 +1,8 @@
 /* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is; contact/pairs.c lists all of them.
  *
  * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
- * the power lost, by kind. It does not depend on time and stores nothing between calls. */
+ * the power lost, by kind. A pair without a roller adds to the loads of the hub, which is made of all other bodies. A pair does not depend
+ * on time and stores nothing between calls. */
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
 
@@ -10,7 +11,7 @@
 
 /* The pairs of bodies that can act on each other, a row each: X(name). Row `name` is trb_pair_<name>, at the end of the pair's file. The
  * rows are evaluated in this order. */
-#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket)
+#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket) X(inner_land) X(outer_land)
 
 enum {
 #define TRB_PAIR_ENUM(name) TRB_PAIR_##name,
@@ -41,6 +42,8 @@ enum {
   X(pocket_culled,        "pocket faces proven not to touch") \
   X(pocket_nodes,         "nodes and points in contact with pocket faces") \
   X(drag_rollers,         "rollers whose drag in the oil was evaluated") \
+  X(land_films,           "strips of the cage's guiding surface whose film was evaluated") \
+  X(land_contacts,        "strips of the cage's guiding surface in contact with the land") \
   X(gravity_bodies,       "bodies on which gravity was evaluated")
 
 typedef struct trb_counters {
@@ -56,7 +59,14 @@ typedef struct trb_counters {
 typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE, TRB_BODY_OIL, TRB_N_BODIES } trb_body;
 
 /* How a pair loses energy. */
-typedef enum trb_mechanism { TRB_BY_SLIDING, TRB_BY_ROLLING, TRB_BY_ROLLING_PRESSURE, TRB_BY_DAMPING, TRB_N_MECHANISMS } trb_mechanism;
+typedef enum trb_mechanism {
+  TRB_BY_SLIDING,
+  TRB_BY_ROLLING,
+  TRB_BY_ROLLING_PRESSURE,
+  TRB_BY_DAMPING,
+  TRB_BY_FILM,
+  TRB_N_MECHANISMS
+} trb_mechanism;
 
 /* What the two bodies of a pair do to each other. Wrenches on a roller and on the rings are in the roller's cylindrical frame, those on the
  * cage and of pairs without a roller in R; moments are about the centre of mass, the inner ring's centre, the apex for the outer ring. */
@@ -110,6 +120,22 @@ typedef struct trb_point_detail {
 #undef TRB_POINT_MEMBER
 } trb_point_detail;
 
+/* The cage on the land of a ring, as users look into it. F(X, name, unit, text) */
+#define TRB_LAND_FIELDS(F, X) \
+  F(X, eccentricity,  "1",   "distance of the cage's axis from the land's at mid width, over the clearance") \
+  F(X, gap,           "m",   "smallest gap between cage and land; negative: so deep is the interference") \
+  F(X, force,         "N",   "normal force of the land on the cage, of film and contact together") \
+  F(X, film_force,    "N",   "force of the land's oil film on the cage") \
+  F(X, contact_force, "N",   "normal force of the land's contact on the cage") \
+  F(X, friction,      "N",   "magnitude of the friction force of the land's contact") \
+  F(X, torque,        "N m", "torque of the land on the cage about the land's axis")
+
+typedef struct trb_land_detail {
+#define TRB_LAND_MEMBER(X, name, unit, text) double name;
+  TRB_LAND_FIELDS(TRB_LAND_MEMBER, 0)
+#undef TRB_LAND_MEMBER
+} trb_land_detail;
+
 struct trb_lanes;
 
 /* Intermediate quantities, stored if a caller wants to look at them; NULL while integrating. */
@@ -120,6 +146,7 @@ typedef struct trb_detail {
   double           *pocket_force;        /* [roller][slot], N */
   double           *pocket_friction;     /* [roller][slot], N */
   double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
+  trb_land_detail   land;
 } trb_detail;
 
 struct trb_pair;
@@ -137,8 +164,10 @@ typedef struct trb_batch {
 typedef struct trb_workspace {
   struct trb_lanes *lanes;                /* scratch of the raceway kernel */
   int               variant;              /* kernel variant, index into trb_kernel_variants */
-  trb_batch         batches[TRB_N_PAIRS]; /* pairs that are on */
+  trb_batch         batches[TRB_N_PAIRS]; /* pairs with a roller that are on */
   int               n_batches;
+  int               hub[TRB_N_PAIRS]; /* rows of the pairs without a roller that are on */
+  int               n_hub;
   trb_counters      counters; /* of this workspace */
 } trb_workspace;
 
@@ -151,6 +180,9 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
 
 /* Zero the chosen rollers' loads and sum the slow pairs only. */
 void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads);
+
+/* Zero the loads of the hub and sum the pairs without a roller; wrenches in R. detail may be NULL. */
+void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
 
 /* Slopes of the wrench on a roller, about its centre of mass, with its motion relative to the other body: one column for a translation
  * along each axis, then one for a turn about each axis, with the other body at rest. That the normal turns at an edge is left out: this

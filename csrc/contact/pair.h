@@ -19,18 +19,20 @@ typedef struct trb_bookings {
   int torque[TRB_N_MECHANISMS]; /* share of the torque on the inner ring */
 } trb_bookings;
 
-#define TRB_NO_TORQUE {TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none}
+#define TRB_NO_TORQUE {TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none}
 /* Of a pair that only slides and damps. */
 #define TRB_LOSES_BY_SLIDING(name) \
   {[TRB_BY_SLIDING] = TRB_LOSS_##name, \
    [TRB_BY_ROLLING] = TRB_LOSS_none, \
    [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_none, \
-   [TRB_BY_DAMPING] = TRB_LOSS_damping}
+   [TRB_BY_DAMPING] = TRB_LOSS_damping, \
+   [TRB_BY_FILM] = TRB_LOSS_none}
 #define TRB_TURNS_BY_SLIDING(name) \
   {[TRB_BY_SLIDING] = TRB_TORQUE_##name, \
    [TRB_BY_ROLLING] = TRB_TORQUE_none, \
    [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none, \
-   [TRB_BY_DAMPING] = TRB_TORQUE_none}
+   [TRB_BY_DAMPING] = TRB_TORQUE_none, \
+   [TRB_BY_FILM] = TRB_TORQUE_none}
 
 /* A roller's contact as records see it: what one contact has, the others leave at zero. */
 typedef struct trb_contact_view {
@@ -59,11 +61,21 @@ typedef void trb_pair_view(const trb_model *m, const trb_detail *detail, int rol
 typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
                                 trb_slopes *slopes, trb_detail *detail);
 
+/* How near the bodies of a pair without a roller are to a contact, and how hard it would be. */
+typedef struct trb_approach {
+  double left;  /* gap, m; not above 0: they touch */
+  double speed; /* at which it changes, m/s */
+  double rise;  /* largest interference of a hit over its speed, s */
+} trb_approach;
+
+/* Load between the bodies of a pair without a roller, evaluated at every instant; wrenches in R. The load is zero before. */
+typedef void trb_pair_between(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail);
+
 typedef struct trb_pair {
   const char *name;
   const char *text;
-  trb_body    a, b; /* the bodies; a is the roller where there is one */
-  trb_pace    pace;
+  trb_body    a, b;  /* the bodies; a is the roller where there is one */
+  trb_pace    pace;  /* of pairs with a roller */
   int         seats; /* 1: under load it holds a roller along the roller's axis */
   int (*is_on)(const trb_model *m);
   trb_pair_evaluate *evaluate;
@@ -79,6 +91,9 @@ typedef struct trb_pair {
   void (*count_clear)(const trb_model *m, int roller, trb_counters *to); /* counts a roller that is proven clear */
   void (*clearance)(const trb_model *m, trb_clearance_arms *arms);       /* TRB_N_GAPS of them */
   double (*stiffness)(const trb_model *m, double depth);                 /* load over interference at an interference, N/m */
+  /* of pairs without a roller, which have nothing of the others */
+  trb_pair_between *between;
+  trb_approach (*approach)(const trb_model *m, const trb_instant *at); /* NULL: they do not touch */
 } trb_pair;
 
 /* Adds what a pair does to the sums. */

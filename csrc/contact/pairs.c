@@ -16,10 +16,14 @@ int trb_pair_is_on(const trb_model *m, int row) { return !(m->pairs_left_out >> 
 /* Neighbouring rows of the same function make a batch. */
 void trb_pairs_choose(const trb_model *m, trb_workspace *work)
 {
-  work->n_batches = 0;
+  work->n_batches = work->n_hub = 0;
   for (int row = 0; row < TRB_N_PAIRS; row++) {
     const trb_pair *pair = trb_pair_table[row];
     if (!trb_pair_is_on(m, row)) continue;
+    if (pair->between != NULL) {
+      work->hub[work->n_hub++] = row;
+      continue;
+    }
     trb_batch *last = work->n_batches > 0 ? &work->batches[work->n_batches - 1] : NULL;
     if (last == NULL || last->pairs[0]->evaluate != pair->evaluate || last->n == TRB_MOST_TOGETHER) {
       last = &work->batches[work->n_batches++];
@@ -61,5 +65,18 @@ void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *
   for (int i = 0; i < work->n_batches; i++) {
     const trb_pair *pair = work->batches[i].pairs[0];
     if (pair->pace == TRB_PACE_SLOW) pair->evaluate(m, at, &work->batches[i], work, loads, NULL);
+  }
+}
+
+void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail)
+{
+  memset(loads, 0, sizeof *loads);
+  for (int i = 0; i < work->n_hub; i++) {
+    const trb_pair *pair = trb_pair_table[work->hub[i]];
+    trb_load        load;
+    if (at->cage == NULL && trb_pair_joins(pair, TRB_BODY_CAGE)) continue;
+    memset(&load, 0, sizeof load);
+    pair->between(m, at, &work->counters, &load, detail);
+    trb_add_load(pair, &load, loads);
   }
 }

@@ -192,7 +192,8 @@ const trb_pair trb_pair_outer = {.name = "outer",
                                  .books = {.loss = {[TRB_BY_SLIDING] = TRB_LOSS_traction_outer,
                                                     [TRB_BY_ROLLING] = TRB_LOSS_rolling,
                                                     [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_rolling_pressure,
-                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping},
+                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping,
+                                                    [TRB_BY_FILM] = TRB_LOSS_none},
                                            .torque = TRB_NO_TORQUE}};
 
 const trb_pair trb_pair_inner = {.name = "inner",
@@ -203,8 +204,10 @@ const trb_pair trb_pair_inner = {.name = "inner",
                                  .books = {.loss = {[TRB_BY_SLIDING] = TRB_LOSS_traction_inner,
                                                     [TRB_BY_ROLLING] = TRB_LOSS_rolling,
                                                     [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_rolling_pressure,
-                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping},
+                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping,
+                                                    [TRB_BY_FILM] = TRB_LOSS_none},
                                            .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_traction,
                                                       [TRB_BY_ROLLING] = TRB_TORQUE_rolling,
                                                       [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none,
-                                                      [TRB_BY_DAMPING] = TRB_TORQUE_none}}};
+                                                      [TRB_BY_DAMPING] = TRB_TORQUE_none,
+                                                      [TRB_BY_FILM] = TRB_TORQUE_none}}};

@@ -4,6 +4,7 @@
 
 #include "laws/film.h"
 #include "laws/hertz.h"
+#include "laws/journal.h"
 #include "laws/line_contact.h"
 #include "laws/profile.h"
 #include "laws/rolling_resistance.h"
@@ -48,6 +49,12 @@
   X(profile_crowned, 2, "station radius", "drop of an arc, m", trb_profile_crowned(x[0], x[1])) \
   X(profile_logarithmic, 7, "station length k1 k2 zm load effective_modulus", "logarithmic drop, m", \
     trb_profile_logarithmic(x[0], x[1], x[2], x[3], x[4], x[5], x[6])) \
+  X(journal_along, 2, "eccentricity_along eccentricity_across", "Short journal bearing with half of its film: force along the velocity over (viscosity radius width^3/clearance^3) and the velocity", \
+    trb_journal_short(x[0], x[1]).along) \
+  X(journal_across, 2, "eccentricity_along eccentricity_across", "Short journal bearing with half of its film: force across the velocity over (viscosity radius width^3/clearance^3) and the velocity", \
+    trb_journal_short(x[0], x[1]).across) \
+  X(journal_shear, 5, "viscosity radius width clearance eccentricity", "Petroff: friction torque of a journal's film over the difference of the angular velocities, N m s", \
+    trb_journal_shear(x[0], x[1], x[2], x[3], x[4])) \
   X(smooth_max, 3, "value low half_width", "largest of value and low, once differentiable", trb_smooth_max(x[0], x[1], x[2]))
 
 static double elliptic(double m, int second)

@@ -11,5 +11,5 @@ double trb_audit_elastic(const trb_dynamics *d)
 {
   double energy = 0.0;
   for (int j = 0; j < d->model->n_rollers; j++) energy += d->loads[j].elastic;
-  return energy;
+  return energy + d->hub.elastic;
 }

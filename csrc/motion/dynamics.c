@@ -96,17 +96,18 @@ void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail)
 {
   const trb_instant at = trb_dynamics_instant(d);
   trb_contact_all(d->model, &at, d->work, d->loads, detail);
+  trb_contact_hub(d->model, &at, d->work, &d->hub, detail);
 }
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow)
 {
   const trb_roller_pose *r = &d->rollers[roller];
   double                *quadratures = flow + TRB_FLOW_quadrature;
-  memset(quadratures, 0, TRB_N_QUADRATURES * sizeof *flow);
+  memset(quadratures, 0, TRB_FLOW_N_QUADRATURES * sizeof *flow);
   quadratures[TRB_Q_work_gravity] = trb_roller_inertia(d->model, &d->drive, r, flow, &flow[TRB_FLOW_spin]);
   d->work->counters.gravity_bodies += trb_has_gravity(&d->drive);
   trb_roller_response(d->model, r, &loads->on[TRB_BODY_ROLLER], flow);
-  for (int k = 0; k < TRB_N_LOSSES; k++) quadratures[TRB_Q_losses + k] += loads->power[k];
+  for (int k = 0; k < TRB_N_ROLLER_LOSSES; k++) quadratures[TRB_Q_losses + k] += loads->power[k];
   const trb_ring_power power = trb_ring_power_of(&d->inner[roller], d->drive.shaft_speed, &loads->on[TRB_BODY_INNER_RING]);
   quadratures[TRB_Q_work_shaft] += power.shaft;
   quadratures[TRB_Q_work_ring] += power.place;
@@ -125,10 +126,11 @@ void trb_dynamics_start(const trb_dynamics *d, double *rates)
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates)
 {
   const trb_model *m = d->model;
+  const int        all = trb_n_quadratures(m), n = all < TRB_FLOW_N_QUADRATURES ? all : TRB_FLOW_N_QUADRATURES;
   double          *q = rates + trb_state_quadrature(m);
   memcpy(rates + trb_state_roller(roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
   rates[trb_state_spin(m) + roller] = flow[TRB_FLOW_spin];
-  for (int k = 0; k < trb_n_quadratures(m); k++) q[k] += flow[TRB_FLOW_quadrature + k];
+  for (int k = 0; k < n; k++) q[k] += flow[TRB_FLOW_quadrature + k];
 }
 
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)
@@ -167,4 +169,18 @@ void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double 
       if (pair->books.loss[by] != TRB_LOSS_none) flow[TRB_FLOW_quadrature + TRB_Q_losses + pair->books.loss[by]] += load.lost[by];
     trb_add_wrench(on_cage, &load.on_b);
   }
+}
+
+void trb_dynamics_add_hub(trb_dynamics *d, trb_wrench *on_cage, double *rates)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  double           *q = rates + trb_state_quadrature(d->model);
+  if (d->work->n_hub == 0) return;
+  trb_contact_hub(d->model, &at, d->work, &d->hub, NULL);
+  trb_add_wrench(on_cage, &d->hub.on[TRB_BODY_CAGE]);
+  for (int k = 0; k < d->model->n_losses; k++) q[TRB_Q_losses + k] += d->hub.power[k];
+  const trb_ring_pose  ring = trb_ring_pose_in_frame(&d->drive.inner, d->drive.cosine, d->drive.sine);
+  const trb_ring_power power = trb_ring_power_of(&ring, d->drive.shaft_speed, &d->hub.on[TRB_BODY_INNER_RING]);
+  q[TRB_Q_work_shaft] += power.shaft;
+  q[TRB_Q_work_ring] += power.place;
 }

@@ -12,7 +12,8 @@
 enum {
   TRB_FLOW_spin = TRB_ROLLER_SIZE,
   TRB_FLOW_quadrature = TRB_ROLLER_SIZE + 1,
-  TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_N_QUADRATURES,
+  TRB_FLOW_N_QUADRATURES = TRB_Q_losses + TRB_N_ROLLER_LOSSES,
+  TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_FLOW_N_QUADRATURES,
   TRB_FLOW_ROOM = (TRB_FLOW_SIZE + 7) / 8 * 8 /* padded, so that loops over it have no remainder */
 };
 
@@ -31,7 +32,8 @@ typedef struct trb_dynamics {
   trb_roller_pose  *rollers; /* at the last state evaluated */
   trb_ring_pose    *inner;   /* the inner ring in each roller's frame */
   trb_cage_pose     cage;
-  trb_loads        *loads;
+  trb_loads        *loads;    /* of every roller */
+  trb_loads         hub;      /* of pairs without a roller, in R; zero where there are none */
   int              *everyone; /* 0, 1, ...: all rollers */
   trb_fast_pair     fast[TRB_N_PAIRS];
   int               n_fast;
@@ -56,7 +58,8 @@ trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
 
-/* A right-hand side is made in three steps: start it, put in the flow of each roller, compute the rates of the cage. */
+/* A right-hand side is made in four steps: start it, put in the flow of each roller, add the pairs without a roller, compute the rates of
+ * the cage. */
 void trb_dynamics_start(const trb_dynamics *d, double *rates);
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
 /* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
@@ -65,5 +68,7 @@ unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
 trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
 /* Adds the loads of the fast pairs in which a roller is near to its flow and to the sum on the cage. */
 void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *on_cage);
+/* Adds the loads of pairs without a roller to the sum on the cage and their powers to the quadratures of the rates. */
+void trb_dynamics_add_hub(trb_dynamics *d, trb_wrench *on_cage, double *rates);
 
 #endif

@@ -6,6 +6,7 @@
 #define TRB_MOTION_FIELDS_H
 
 #include "bearing/losses.h"
+#include "contact/contact.h"
 
 typedef enum trb_field_kind {
   TRB_FIELD_SCALAR,      /* ()        */
@@ -45,6 +46,9 @@ typedef enum trb_field_kind {
 
 #define TRB_FIELD_OF_CONTACT(X, pair, quantity, unit, text) X(pair##_##quantity, contacts, ROLLER, unit, text)
 
+/* Of the cage on the land of a ring (contact/contact.h); zero without one. */
+#define TRB_FIELD_OF_LAND(X, name, unit, text) X(land_##name, cage, SCALAR, unit, text)
+
 /* Of the lists of bearing/losses.h. */
 #define TRB_FIELD_OF_TORQUE(X, name, text) X(inner_torque_##name, torque, SCALAR, "N m", "share of " text " in the shaft's torque")
 #define TRB_FIELD_OF_POWER(X, name, sense, text) X(power_##name, power, SCALAR, "W", "loss " text)
@@ -62,8 +66,9 @@ typedef enum trb_field_kind {
   X(cage_angular_velocity,       cage,     VEC3,        "rad/s", "angular velocity of the cage") \
   X(cage_angle,                  cage,     SCALAR,      "rad",   "turn of the cage about its axis since the start") \
   X(cage_tilt,                   cage,     VEC2,        "rad",   "tilt of the cage's axis: rotations theta_x, theta_y") \
-  X(cage_force,                  cage,     VEC3,        "N",     "sum of pocket forces on the cage") \
-  X(cage_moment,                 cage,     VEC3,        "N m",   "moment of pocket forces about the cage's centre of mass") \
+  X(cage_force,                  cage,     VEC3,        "N",     "sum of the forces of pockets and land on the cage") \
+  X(cage_moment,                 cage,     VEC3,        "N m",   "moment of these forces about the cage's centre of mass") \
+  TRB_LAND_FIELDS(TRB_FIELD_OF_LAND, X) \
   X(roller_position,             rollers,  ROLLER_VEC3, "m",     "centre of mass of each roller, from the apex") \
   X(roller_orientation,          rollers,  ROLLER_QUAT, "1",     "orientation of each roller (w, x, y, z), body z axis along the roller") \
   X(roller_velocity,             rollers,  ROLLER_VEC3, "m/s",   "velocity of each roller's centre of mass") \
@@ -77,8 +82,8 @@ typedef enum trb_field_kind {
   X(pocket_force,                pocket,   POCKET_FACE, "N",     "normal force between roller and each face of its pocket") \
   X(pocket_friction,             pocket,   POCKET_FACE, "N",     "magnitude of the friction force at each face") \
   X(ring_position,               ring,     VEC3,        "m",     "displacement of the inner ring") \
-  X(ring_force,                  ring,     VEC3,        "N",     "force of the rollers on the inner ring") \
-  X(ring_moment,                 ring,     VEC3,        "N m",   "moment of the rollers on the inner ring, about the roller-centre plane") \
+  X(ring_force,                  ring,     VEC3,        "N",     "force of rollers and cage on the inner ring") \
+  X(ring_moment,                 ring,     VEC3,        "N m",   "moment of rollers and cage on the inner ring, about the roller-centre plane") \
   X(inner_torque,                torque,   SCALAR,      "N m",   "friction torque that the shaft overcomes") \
   X(outer_torque,                torque,   SCALAR,      "N m",   "friction torque on the outer ring, in the direction of the shaft's speed") \
   TRB_TORQUES(TRB_FIELD_OF_TORQUE, X) \

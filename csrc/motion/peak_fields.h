@@ -38,7 +38,9 @@ typedef enum trb_peak_take {
   TRB_PEAK_CONTACTS(TRB_PEAK_OF_CONTACT, X) \
   X(skew,                 ROLLER,      MOST) \
   X(spacing_largest,      ROLLER,      MOST) \
-  X(spacing_smallest,     ROLLER,      LEAST)
+  X(spacing_smallest,     ROLLER,      LEAST) \
+  X(land_force,           SCALAR,      MOST) \
+  X(land_gap,             SCALAR,      LEAST)
 
 #define TRB_PEAK_FIELDS(X) \
   X(pocket_force_peak,             pocket_force,         EXTREME, "N",   "largest normal force between roller and each face of its pocket") \
@@ -76,6 +78,10 @@ typedef enum trb_peak_take {
   X(spacing_max,                   spacing_largest,      EXTREME, "rad", "largest angle from each roller to the next one") \
   X(spacing_max_time,              spacing_largest,      TIME,    "s",   "time of spacing_max") \
   X(spacing_min,                   spacing_smallest,     EXTREME, "rad", "smallest angle from each roller to the next one") \
-  X(spacing_min_time,              spacing_smallest,     TIME,    "s",   "time of spacing_min")
+  X(spacing_min_time,              spacing_smallest,     TIME,    "s",   "time of spacing_min") \
+  X(land_force_peak,               land_force,           EXTREME, "N",   "largest normal force of the land on the cage; 0 without a land") \
+  X(land_force_peak_time,          land_force,           TIME,    "s",   "time of land_force_peak") \
+  X(land_gap_min,                  land_gap,             EXTREME, "m",   "smallest gap between cage and land; 0 without a land") \
+  X(land_gap_min_time,             land_gap,             TIME,    "s",   "time of land_gap_min")
 
 #endif

@@ -137,6 +137,15 @@ static void pose(trb_peak_look *p, int j, const double *y)
   p->posed[j] = 1;
 }
 
+/* Pairs without a roller; the cage's pose is kept. */
+static void look_at_hub(trb_peak_look *p, double *values)
+{
+  const trb_instant at = trb_dynamics_instant(p->d);
+  if (p->d->work->n_hub > 0) trb_contact_hub(&p->normal, &at, p->d->work, &p->d->hub, p->detail);
+  *of(p, TRB_PEAK_land_force, values) = p->detail->land.force;
+  *of(p, TRB_PEAK_land_gap, values) = -p->detail->land.gap;
+}
+
 static void look_at_slow(trb_peak_look *p, const double *y, double *values)
 {
   const trb_model *m = &p->normal;
@@ -214,6 +223,7 @@ void trb_peak_look_at(trb_peak_look *look, double time, const double *y, double 
   if (!ring_rests(&before, &look->d->drive)) trb_peak_look_forget(look);
   memset(look->posed, 0, (size_t)look->normal.n_rollers * sizeof *look->posed);
   look_at_fast(look, y, values);
+  look_at_hub(look, values);
   look_at_slow(look, y, values);
   look_at_places(look, y, values);
 }

@@ -109,6 +109,10 @@ static void put_cage(writer *w, const double *y)
     force = trb_add(force, d->loads[j].on[TRB_BODY_CAGE].force);
     moment = trb_add(moment, d->loads[j].on[TRB_BODY_CAGE].moment);
   }
+  if (d->work->n_hub > 0) {
+    force = trb_add(force, d->hub.on[TRB_BODY_CAGE].force);
+    moment = trb_add(moment, d->hub.on[TRB_BODY_CAGE].moment);
+  }
   put3(&PUT(cage_position, 0), trb_sub(trb_axpy(centre, -m->params.cage_offset, axis), plane));
   put3(&PUT(cage_rail_position, 0), trb_sub(trb_axpy(centre, m->params.cage_rail_offset - m->params.cage_offset, axis), rail));
   put3(&PUT(cage_velocity, 0), from_r(drive, c->v));
@@ -161,6 +165,14 @@ static void put_contacts(writer *w, int j)
     w->at[contact_fields[i].field][j] = *(const double *)((const char *)&views[contact_fields[i].pair] + contact_fields[i].from);
 }
 
+/* Of the cage on the land of a ring. */
+static void put_land(writer *w)
+{
+#define PUT_LAND(X, name, unit, text) PUT(land_##name, 0) = w->detail->land.name;
+  TRB_LAND_FIELDS(PUT_LAND, 0)
+#undef PUT_LAND
+}
+
 /* Fields of the lists of bearing/losses.h. */
 #define TORQUE(X, name, text) TRB_FIELD_AT_inner_torque_##name,
 #define POWER(X, name, sense, text) TRB_FIELD_AT_power_##name,
@@ -187,6 +199,15 @@ static void put_ring(writer *w)
     outer += l->on[TRB_BODY_OUTER_RING].moment.z;
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += l->torque[k];
   }
+  if (d->work->n_hub > 0) {
+    const trb_wrench *on_ring = &d->hub.on[TRB_BODY_INNER_RING];
+    const trb_vec3    hub_moment = from_r(&d->drive, on_ring->moment);
+    force = trb_add(force, from_r(&d->drive, on_ring->force));
+    moment = trb_add(moment, hub_moment);
+    all += trb_dot(hub_moment, d->drive.inner.axis);
+    outer += d->hub.on[TRB_BODY_OUTER_RING].moment.z;
+    for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += d->hub.torque[k];
+  }
   const double sign = d->drive.shaft_speed < 0.0 ? -1.0 : 1.0;
   put3(&PUT(ring_position, 0), d->drive.displacement);
   put3(&PUT(ring_force, 0), force);
@@ -203,6 +224,7 @@ static void put_energy(writer *w, const double *quadratures)
   for (int k = 0; k < TRB_N_LOSSES; k++) {
     double power = 0.0;
     for (int j = 0; j < d->model->n_rollers; j++) power += d->loads[j].power[k];
+    power += d->hub.power[k];
     w->at[power_fields[k]][0] = power;
     total += power;
   }
@@ -231,6 +253,7 @@ void trb_record_fill(trb_dynamics *d, double time, const double *y, trb_detail *
   PUT(shaft_angle, 0) = d->drive.shaft_angle;
   PUT(shaft_speed, 0) = d->drive.shaft_speed;
   put_cage(w, y + trb_state_cage(m));
+  put_land(w);
   for (int j = 0; j < m->n_rollers; j++) {
     put_roller(w, j, y + trb_state_roller(j), y[trb_state_spin(m) + j]);
     put_contacts(w, j);

@@ -51,6 +51,8 @@ void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, con
     /* rates of rollers */
     trb_dynamics_put(d, j, d->flows[j], rates);
   }
+  /* pairs without a roller */
+  trb_dynamics_add_hub(d, &on_cage, rates);
   /* rates of the cage */
   trb_cage_rates(m, &d->drive, &d->cage, y + trb_state_cage(m), &on_cage, rates + trb_state_cage(m));
 }

@@ -361,6 +361,36 @@ static int put_loads(const trb_model *m, const trb_loads *loads, PyObject *out)
   return 0;
 }
 
+/* A number, shape (). */
+static int put_scalar(PyObject *out, const char *key, double value)
+{
+  PyObject *array = PyArray_SimpleNew(0, NULL, NPY_DOUBLE);
+  if (array != NULL) *(double *)PyArray_DATA((PyArrayObject *)array) = value;
+  return trb_put(out, key, array);
+}
+
+/* The cage on a land, and wrenches of the pairs without a roller, in R. */
+static int put_hub(const trb_model *m, const trb_detail *detail, trb_loads *hub, PyObject *out)
+{
+#define PUT_LAND(X, name, unit, text) \
+  if (put_scalar(out, "land_" #name, detail->land.name) != 0) return -1;
+  TRB_LAND_FIELDS(PUT_LAND, 0)
+#undef PUT_LAND
+  static const struct {
+    const char *key;
+    trb_body    body;
+  } bodies[] = {{"cage", TRB_BODY_CAGE}, {"ring", TRB_BODY_INNER_RING}, {"outer", TRB_BODY_OUTER_RING}};
+  for (size_t b = 0; b < sizeof bodies / sizeof bodies[0]; b++) {
+    char key[64];
+    (void)PyOS_snprintf(key, sizeof key, "hub_%s_force", bodies[b].key);
+    if (trb_put(out, key, trb_vector(&hub->on[bodies[b].body].force.x, 3)) != 0) return -1;
+    (void)PyOS_snprintf(key, sizeof key, "hub_%s_moment", bodies[b].key);
+    if (trb_put(out, key, trb_vector(&hub->on[bodies[b].body].moment.x, 3)) != 0) return -1;
+  }
+  if (put_scalar(out, "hub_elastic_energy", hub->elastic) != 0) return -1;
+  return trb_put(out, "hub_power", trb_vector(hub->power, m->n_losses));
+}
+
 static PyObject *contacts(PyObject *object, PyObject *args)
 {
   simulation_object *self = (simulation_object *)object;
@@ -372,7 +402,9 @@ static PyObject *contacts(PyObject *object, PyObject *args)
   trb_detail_clear(s->model, s->detail);
   trb_dynamics_loads(s->onlooker, s->detail);
   PyObject *out = PyDict_New();
-  if (out != NULL && (put_detail(s->model, s->detail, out) != 0 || put_loads(s->model, s->onlooker->loads, out) != 0)) Py_CLEAR(out);
+  if (out != NULL && (put_detail(s->model, s->detail, out) != 0 || put_loads(s->model, s->onlooker->loads, out) != 0 ||
+                      put_hub(s->model, s->detail, &s->onlooker->hub, out) != 0))
+    Py_CLEAR(out);
   leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;

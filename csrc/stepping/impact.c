@@ -2,7 +2,8 @@
  * that follows from it, and not beside numbers that are the same for all impacts (docs/theory/numerics.md#impacts). So while a roller
  * may meet its pocket within the next steps, or touches it, the tolerances of roller and cage are multiplied by a factor: a share of
  * that speed over the absolute tolerance of velocities, or of that interference over the absolute tolerance of positions, whichever is
- * less, between a least factor and 1. The speed is the largest since they met, as it passes through zero during contact. */
+ * less, between a least factor and 1. The speed is the largest since they met, as it passes through zero during contact. The same holds
+ * for the cage and a land. */
 #include "stepping/impact.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ static const double ahead = 3.0;
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {
   const size_t n = (size_t)m->n_rollers;
-  impacts->speed = trb_zeros(n, sizeof *impacts->speed);
+  impacts->speed = trb_zeros(n + TRB_N_PAIRS, sizeof *impacts->speed);
   impacts->factor = trb_zeros(n + 1, sizeof *impacts->factor);
   if (impacts->speed == NULL || impacts->factor == NULL) {
     trb_impacts_free(impacts);
@@ -35,7 +36,7 @@ void trb_impacts_free(trb_impacts *impacts)
 
 void trb_impacts_forget(const trb_model *m, trb_impacts *impacts)
 {
-  for (int j = 0; j < m->n_rollers; j++) impacts->speed[j] = INFINITY;
+  for (int j = 0; j < m->n_rollers + TRB_N_PAIRS; j++) impacts->speed[j] = INFINITY;
   for (int j = 0; j <= m->n_rollers; j++) impacts->factor[j] = 1.0;
 }
 
@@ -47,26 +48,38 @@ static double closing_speed(const trb_roller_pose *r, const trb_cage_pose *cage)
   return trb_norm(trb_sub(r->v, trb_turn_z(pocket, r->cosine, -r->sine)));
 }
 
-/* Largest interference of a roller and the cage that meet at a speed: that speed over the natural frequency of both masses on a linear
+/* Largest interference of a roller and the cage that meet, over their speed: one over the natural frequency of both masses on a linear
  * spring, which is as stiff as the contact of a flank is at an interference of 1 um. */
-static double interference_of(const trb_model *m, const trb_pair *pair, double speed)
+static double rise_of(const trb_model *m, const trb_pair *pair)
 {
   const double roller = m->geometry.roller_mass, cage = m->params.cage_mass, stiffness = pair->stiffness(m, 1e-6);
-  return speed * sqrt(roller * cage / ((roller + cage) * stiffness));
+  return sqrt(roller * cage / ((roller + cage) * stiffness));
 }
 
-/* A roller and the cage in a fast pair: the factor of their tolerances. */
-static double factor_of(trb_impacts *impacts, const trb_model *m, const trb_pair *pair, int j, double left, double speed, double step,
-                        const trb_impact_measure *measure)
+/* Factor of the tolerances of two bodies. most: the largest speed since they met, which is kept. */
+static double factor_of(const trb_approach *now, double step, const trb_impact_measure *measure, double *most)
 {
-  if (left > ahead * step * speed) {
-    impacts->speed[j] = INFINITY;
+  if (now->left > ahead * step * now->speed) {
+    *most = INFINITY;
     return 1.0;
   }
-  /* in contact: the largest speed since they met */
-  impacts->speed[j] = left <= 0.0 && isfinite(impacts->speed[j]) ? trb_max(impacts->speed[j], speed) : speed;
-  const double finer = trb_min(impacts->speed[j] / measure->velocity, interference_of(m, pair, impacts->speed[j]) / measure->position);
+  *most = now->left <= 0.0 && isfinite(*most) ? trb_max(*most, now->speed) : now->speed;
+  const double finer = trb_min(*most / measure->velocity, *most * now->rise / measure->position);
   return trb_clamp(measure->share * finer, measure->least, 1.0);
+}
+
+/* Least factor of the pairs without a roller. */
+static double factor_of_hub(trb_impacts *impacts, const trb_dynamics *d, const trb_instant *at, double step,
+                            const trb_impact_measure *measure)
+{
+  double least = 1.0;
+  for (int i = 0; i < d->work->n_hub; i++) {
+    const trb_pair *pair = trb_pair_table[d->work->hub[i]];
+    if (pair->approach == NULL) continue;
+    const trb_approach now = pair->approach(d->model, at);
+    least = trb_min(least, factor_of(&now, step, measure, &impacts->speed[d->model->n_rollers + d->work->hub[i]]));
+  }
+  return least;
 }
 
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
@@ -76,8 +89,9 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
   const double    *y_cage = y + trb_state_cage(m);
   trb_drive        drive;
   trb_cage_pose    cage;
-  double           least = 1.0;
+  double           rise[TRB_N_PAIRS], least = 1.0;
   int              posed = 0;
+  for (int f = 0; f < d->n_fast; f++) rise[f] = rise_of(m, d->fast[f].pair);
   for (int j = 0; j < m->n_rollers; j++) {
     const double *y_roller = y + trb_state_roller(j);
     impacts->factor[j] = 1.0;
@@ -91,10 +105,17 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
       }
       trb_roller_pose r;
       trb_roller_pose_unpack(m, &drive, j, y_roller, &r);
-      const double left = trb_clearance_left(&fast->clearances[j], fast->arms, y_roller, y_cage);
-      impacts->factor[j] = trb_min(impacts->factor[j], factor_of(impacts, m, fast->pair, j, left, closing_speed(&r, &cage), step, measure));
+      const double       left = trb_clearance_left(&fast->clearances[j], fast->arms, y_roller, y_cage);
+      const trb_approach now = {.left = left, .speed = closing_speed(&r, &cage), .rise = rise[f]};
+      impacts->factor[j] = trb_min(impacts->factor[j], factor_of(&now, step, measure, &impacts->speed[j]));
     }
     least = trb_min(least, impacts->factor[j]);
+  }
+  if (d->work->n_hub > 0) {
+    trb_motion_at(motion, m, time, &drive);
+    trb_cage_pose_unpack(m, &drive, y_cage, &cage);
+    const trb_instant at = {.drive = &drive, .cage = &cage};
+    least = trb_min(least, factor_of_hub(impacts, d, &at, step, measure));
   }
   impacts->factor[m->n_rollers] = least;
 }

@@ -72,18 +72,31 @@ static void add_fast(const trb_dynamics *d, int j, const trb_coupling *k, const 
   }
 }
 
-/* The block of the cage, by differences of its rates under a load that itself changes with its coordinates. */
+/* Adds what pairs without a roller do to the cage at the poses kept. */
+static void add_hub(trb_dynamics *d, trb_wrench *on_cage)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  if (d->work->n_hub == 0) return;
+  trb_contact_hub(d->model, &at, d->work, &d->hub, NULL);
+  trb_add_wrench(on_cage, &d->hub.on[TRB_BODY_CAGE]);
+}
+
+/* The block of the cage, by differences of its rates. load: of the fast pairs, which changes with each coordinate as `changes` tells; pairs
+ * without a roller are evaluated again. */
 static void cage_block(trb_jacobian *jac, const double *y, const trb_wrench *load, const cage_loads *changes, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
   double          *y_cage = jac->moved + trb_state_cage(m), base[TRB_NC], rates[TRB_NC];
-  cage_rates(d, y + trb_state_cage(m), load, base);
+  trb_wrench       here = *load;
+  add_hub(d, &here);
+  cage_rates(d, y + trb_state_cage(m), &here, base);
   for (int c = 0; c < TRB_NC; c++) {
     const double was = y_cage[c], h = trb_difference[trb_state_tolerance(m, trb_state_cage(m) + c)], per = 1.0 / h;
     y_cage[c] = was + h;
     trb_cage_pose_unpack(m, &d->drive, y_cage, &d->cage);
-    const trb_wrench moved = {trb_axpy(load->force, h, changes->by[c].force), trb_axpy(load->moment, h, changes->by[c].moment)};
+    trb_wrench moved = {trb_axpy(load->force, h, changes->by[c].force), trb_axpy(load->moment, h, changes->by[c].moment)};
+    add_hub(d, &moved);
     cage_rates(d, y_cage, &moved, rates);
     for (int i = 0; i < TRB_NC; i++) arrow->cage[c][i] = per * (rates[i] - base[i]);
     y_cage[c] = was;

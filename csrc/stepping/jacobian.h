@@ -3,7 +3,8 @@
  * It is the sum of two parts that change at different rates. The part of the slow pairs is what they and inertia do to each roller. It
  * changes slowly and is computed by differences: one evaluation of these pairs for each coordinate, with all rollers moved at once. It is
  * reused until it is old, or until a second Jacobian is asked for within one step. The part of the fast pairs changes with each impact.
- * Only rollers that touch have it, and its slopes are computed in closed form together with the forces. */
+ * Only rollers that touch have it, and its slopes are computed in closed form together with the forces. Pairs without a roller are part of
+ * the block of the cage, by differences. */
 #ifndef TRB_STEPPING_JACOBIAN_H
 #define TRB_STEPPING_JACOBIAN_H
 

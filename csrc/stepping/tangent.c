@@ -26,7 +26,7 @@ static void set_bounds(trb_tangents *t)
   static const trb_sense senses[] = {TRB_LOSSES(SENSE, 0)};
 #undef SENSE
   for (int i = 0; i < TRB_TANGENT_OUT; i++) t->least[i] = t->anything[i] = -INFINITY;
-  for (int k = 0; k < TRB_N_LOSSES; k++)
+  for (int k = 0; k < TRB_N_ROLLER_LOSSES; k++)
     if (senses[k] == TRB_SENSE_TAKES) t->least[TRB_FLOW_quadrature + TRB_Q_losses + k] = 0.0;
 }
 

@@ -124,5 +124,9 @@ int main(void)
   check_scene(&p, 4930.0, INFINITY, 0, 2e-3);
   p = rig_params(), p.planar = 1;
   check_both(&p, 4930.0);
+  p = rig_params(), p.guidance = TRB_GUIDANCE_INNER_LAND, p.damping = 1;
+  check_both(&p, 4930.0);
+  p = rig_params(), p.guidance = TRB_GUIDANCE_OUTER_LAND, p.land_clearance = 0.3e-3, p.land_contact_film = 3e-6;
+  check_both(&p, 4930.0);
   return check_report();
 }

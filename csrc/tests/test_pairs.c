@@ -16,14 +16,18 @@ static unsigned long long seed = 17;
 typedef struct seen {
   double     rates[MOST], record[MOST_FIELDS], peaks[MOST_FIELDS];
   trb_loads *loads;
+  trb_loads  hub;
   trb_arrow *arrow;
   int        bounds; /* pairs that have margins */
 } seen;
 
+/* A cage is guided by one land at most. */
+static int guidance = TRB_GUIDANCE_INNER_LAND;
+
 static trb_params params_of_test(void)
 {
   trb_params p = rig_params();
-  p.damping = 1, p.rolling_pressure_force = 1, p.front_rib_clearance = 5e-6, p.oil_fill = 0.3;
+  p.damping = 1, p.rolling_pressure_force = 1, p.front_rib_clearance = 5e-6, p.oil_fill = 0.3, p.guidance = guidance;
   return p;
 }
 
@@ -60,6 +64,7 @@ static void look(const trb_motion *motion, const double *y, unsigned left_out, s
   trb_rhs(d, NULL, 0.01, y, s->rates);
   trb_record_fill(d, 0.01, y, detail, s->record);
   memcpy(s->loads, d->loads, (size_t)m->n_rollers * sizeof *s->loads);
+  s->hub = d->hub;
   trb_jacobian_fill(jac, 0.01, y, 1, s->arrow);
   trb_peak_look_at(peaks, 0.01, y, s->peaks);
   s->bounds = trb_margin_arms_of(m).n;
@@ -76,8 +81,10 @@ static void forget(seen *s)
   trb_arrow_free(s->arrow);
 }
 
+static int is_hub(int row) { return trb_pair_table[row]->between != NULL; }
+
 /* Whether the bodies of a row touch: only then there is an interference. */
-static int is_contact(int row) { return trb_pair_table[row]->view != NULL || trb_pair_table[row]->touch != NULL; }
+static int is_contact(int row) { return trb_pair_table[row]->view != NULL || trb_pair_table[row]->touch != NULL || is_hub(row); }
 
 /* a - b = c - d within a share of the largest of the four, and how much a pair makes of it. */
 static double check_share(const char *what, double a, double b, double c, double d, double share, double floor)
@@ -95,33 +102,40 @@ static void check_rates(const seen *full, const seen *out, const seen *alone, co
   CHECK(made > 0.0);
 }
 
-static void check_jacobian(const seen *full, const seen *out, const seen *alone, const seen *none, int n)
+/* Entries of a block, a row of the state for each i, a column for each c. */
+#define CHECK_BLOCK(size, entry) \
+  for (int i = 0; i < (size); i++) { \
+    double largest = 0.0; \
+    for (int c = 0; c < (size); c++) largest = fmax(largest, fabs(full->arrow->entry)); \
+    for (int c = 0; c < (size); c++) { \
+      const double with = alone->arrow->entry, without = none->arrow->entry; \
+      (void)check_share("slope", full->arrow->entry, out->arrow->entry, with, without, 1e-3, 1e-5 * largest); \
+      made += fabs(with - without) > 1e-3 * fmax(fabs(with), fabs(without)) + 1e-3; \
+    } \
+  }
+
+static void check_jacobian(int row, const seen *full, const seen *out, const seen *alone, const seen *none, int n)
 {
   double made = 0.0;
-  for (int j = 0; j < n; j++)
-    for (int i = 0; i < TRB_NR; i++) {
-      double largest = 0.0;
-      for (int c = 0; c < TRB_NR; c++) largest = fmax(largest, fabs(full->arrow->rollers[j].own[c][i]));
-      for (int c = 0; c < TRB_NR; c++) {
-        const double with = alone->arrow->rollers[j].own[c][i], without = none->arrow->rollers[j].own[c][i];
-        (void)check_share("slope", full->arrow->rollers[j].own[c][i], out->arrow->rollers[j].own[c][i], with, without, 1e-3,
-                          1e-5 * largest);
-        made += fabs(with - without) > 1e-3 * fmax(fabs(with), fabs(without)) + 1e-3;
-      }
-    }
+  if (is_hub(row)) {
+    CHECK_BLOCK(TRB_NC, cage[c][i])
+  } else {
+    for (int j = 0; j < n; j++) CHECK_BLOCK(TRB_NR, rollers[j].own[c][i])
+  }
   CHECK(made > 0.0);
 }
 
 /* The row's own fields are there with it and zero without it; those of the other rows are as they were. */
 static void check_records(const trb_model *m, int row, const seen *full, const seen *out)
 {
-  const char  *name = trb_pair_table[row]->name;
+  const char  *name = is_hub(row) ? "land" : trb_pair_table[row]->name;
   const size_t length = strlen(name);
   double       made = 0.0;
   for (int f = 0; f < TRB_N_FIELDS; f++) {
     const trb_field_info *field = &trb_field_table[f];
     const int             from = trb_record_offset(m, f), to = trb_record_offset(m, f + 1);
-    const int             contact = strcmp(field->group, "contacts") == 0 || strcmp(field->group, "pocket") == 0;
+    const int             land = strncmp(field->name, "land_", 5) == 0;
+    const int             contact = strcmp(field->group, "contacts") == 0 || strcmp(field->group, "pocket") == 0 || land;
     const int             own = contact && strncmp(field->name, name, length) == 0 && field->name[length] == '_';
     for (int i = from; i < to && contact; i++) {
       made += own ? fabs(full->record[i]) : 0.0;
@@ -149,6 +163,16 @@ static void check_audit(const trb_model *m, const seen *full, const seen *out, c
   CHECK(made > 0.0);
 }
 
+/* Wrenches, elastic energy and powers of all pairs without a roller. */
+static void check_hub(int row, const seen *full, const seen *out, const seen *alone)
+{
+  enum { NUMBERS = sizeof(trb_loads) / sizeof(double) };
+  const double *a = (const double *)&full->hub, *b = (const double *)&out->hub, *c = (const double *)&alone->hub;
+  for (int i = 0; i < NUMBERS; i++) CHECK_NEAR(a[i], b[i] + c[i], 1e-12 * (fabs(b[i]) + fabs(c[i])));
+  CHECK((trb_norm(alone->hub.on[trb_pair_table[row]->b].force) > 1.0) == is_hub(row));
+  CHECK(!is_hub(row) || alone->hub.elastic > 0.0);
+}
+
 static void check_loads(const trb_model *m, int row, const seen *full, const seen *out, const seen *alone)
 {
   double elastic = 0.0, force = 0.0;
@@ -162,7 +186,7 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
     if (trb_pair_table[row]->margin == NULL) continue;
     CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
   }
-  CHECK((elastic > 0.0) == is_contact(row) && force > 1.0);
+  if (!is_hub(row)) CHECK((elastic > 0.0) == is_contact(row) && force > 1.0);
   CHECK(full->bounds == out->bounds + (trb_pair_table[row]->margin != NULL) && alone->bounds == full->bounds - out->bounds);
 }
 
@@ -171,21 +195,22 @@ static void check_peaks(const trb_model *m, int row, const seen *full, const see
 {
   static const struct {
     int row, quantity;
-  } loads[] = {{TRB_PAIR_outer, TRB_PEAK_outer_load},
-               {TRB_PAIR_inner, TRB_PEAK_inner_load},
-               {TRB_PAIR_rib, TRB_PEAK_rib_load},
-               {TRB_PAIR_front_rib, TRB_PEAK_front_rib_load},
-               {TRB_PAIR_pocket, TRB_PEAK_pocket_force}};
+  } loads[] = {{TRB_PAIR_outer, TRB_PEAK_outer_load},     {TRB_PAIR_inner, TRB_PEAK_inner_load},
+               {TRB_PAIR_rib, TRB_PEAK_rib_load},         {TRB_PAIR_front_rib, TRB_PEAK_front_rib_load},
+               {TRB_PAIR_pocket, TRB_PEAK_pocket_force},  {TRB_PAIR_inner_land, TRB_PEAK_land_force},
+               {TRB_PAIR_outer_land, TRB_PEAK_land_force}};
   double made = 0.0;
   for (size_t k = 0; k < sizeof loads / sizeof loads[0]; k++)
     for (int i = trb_peak_look_offset(m, loads[k].quantity); i < trb_peak_look_offset(m, loads[k].quantity + 1); i++) {
-      made += loads[k].row == row ? full->peaks[i] : 0.0;
-      CHECK(out->peaks[i] == (loads[k].row == row ? 0.0 : full->peaks[i]));
+      const int own = is_hub(loads[k].row) ? is_hub(row) : loads[k].row == row;
+      made += own ? full->peaks[i] : 0.0;
+      CHECK(out->peaks[i] == (own ? 0.0 : full->peaks[i]));
     }
   CHECK(made > 0.0 || !is_contact(row));
 }
 
-static void test_rows(void)
+/* Gives the rows that were tried, bit by row. */
+static unsigned test_rows(void)
 {
   double           y[MOST];
   trb_motion      *motion = make_state(y);
@@ -193,19 +218,23 @@ static void test_rows(void)
   trb_model       *m = rig_model(&p);
   static seen      full, none, out, alone;
   const unsigned   all = (1U << TRB_N_PAIRS) - 1U;
+  unsigned         tried = 0;
   look(motion, y, 0, &full);
   look(motion, y, all, &none);
   for (int row = 0; row < TRB_N_PAIRS; row++) {
+    if (!trb_pair_is_on(m, row)) continue;
+    tried |= 1U << row;
     look(motion, y, 1U << row, &out);
     look(motion, y, all & ~(1U << row), &alone);
     check_rates(&full, &out, &alone, &none, trb_state_size(m));
-    check_jacobian(&full, &out, &alone, &none, m->n_rollers);
+    check_jacobian(row, &full, &out, &alone, &none, m->n_rollers);
     check_loads(m, row, &full, &out, &alone);
+    check_hub(row, &full, &out, &alone);
     check_records(m, row, &full, &out);
     check_audit(m, &full, &out, &alone);
     check_peaks(m, row, &full, &out);
     for (int j = 0; j < m->n_rollers; j++)
-      if (trb_pair_joins(trb_pair_table[row], TRB_BODY_CAGE)) CHECK(!out.arrow->borders[j].coupled);
+      if (trb_pair_table[row]->touch != NULL) CHECK(!out.arrow->borders[j].coupled);
     forget(&out);
     forget(&alone);
   }
@@ -213,6 +242,7 @@ static void test_rows(void)
   forget(&none);
   trb_model_free(m);
   trb_motion_free(motion);
+  return tried;
 }
 
 static void run(const trb_params *params, unsigned left_out, const trb_motion *motion, const double *start, double *end)
@@ -267,10 +297,31 @@ static void test_equilibrium(void)
   for (int j = 0; j < 12; j++) CHECK(loads[1][3 * j] > 0.0 && loads[1][3 * j + 2] == 0.0);
 }
 
+/* Without the row of its land a cage that is guided by one ring moves as without the row of one that is guided by the other. */
+static void test_guidance(void)
+{
+  double      y[MOST], inner[MOST] = {0}, outer[MOST] = {0}, guided[MOST] = {0};
+  trb_params  p = params_of_test();
+  trb_motion *motion = make_state(y);
+  p.guidance = TRB_GUIDANCE_INNER_LAND;
+  run(&p, 0, motion, y, guided);
+  run(&p, 1U << TRB_PAIR_inner_land, motion, y, inner);
+  p.guidance = TRB_GUIDANCE_OUTER_LAND;
+  run(&p, 1U << TRB_PAIR_outer_land, motion, y, outer);
+  CHECK(memcmp(inner, outer, sizeof inner) == 0);
+  CHECK(memcmp(inner, guided, sizeof inner) != 0);
+  trb_motion_free(motion);
+}
+
 int main(void)
 {
-  test_rows();
+  unsigned tried = test_rows();
+  guidance = TRB_GUIDANCE_OUTER_LAND;
+  tried |= test_rows();
+  CHECK(tried == (1U << TRB_N_PAIRS) - 1U);
+  guidance = TRB_GUIDANCE_ROLLERS;
   test_switches();
+  test_guidance();
   test_equilibrium();
   return check_report();
 }

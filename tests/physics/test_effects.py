@@ -40,6 +40,12 @@ SWITCHES: dict[str, tuple[dict[str, Any], dict[str, Any], tuple[str, ...]]] = {
     "back_rib": ({"back_rib": True}, {"back_rib": False, "planar": True}, ("rib_tests", "rib_contacts")),
     "front_rib": ({"front_rib": True}, {"front_rib": False}, ("front_rib_tests",)),
     "drag": ({"oil_fill": 0.1}, {"oil_fill": 0.0}, ("drag_rollers",)),
+    "guidance": ({"guidance": "inner_land"}, {"guidance": "rollers"}, ("land_films",)),
+    "guidance_dry": (
+        {"guidance": "outer_land", "lubrication": "dry"},
+        {"guidance": "outer_land", "pocket_bars": False, "gravity": False},
+        ("land_contacts",),
+    ),
     "damping": ({"damping": "hunt_crossley"}, {"damping": "off"}, ("damping_nodes",)),
 }
 

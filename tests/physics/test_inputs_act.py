@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 BASE = Effects.standard().replace(damping="off")
 DRY, BOUNDARY = BASE.replace(lubrication="dry"), BASE.replace(lubrication="boundary")
 WET = BASE.replace(oil_fill=0.3)
+INNER, OUTER = BASE.replace(guidance="inner_land"), BASE.replace(guidance="outer_land")
+DRY_LAND = OUTER.replace(lubrication="dry")
 DAMPED = DRY.replace(damping="hunt_crossley", damping_race=0.01, damping_cage=0.02)
 MOVING = DRY.replace(gravity=False)
 
@@ -92,6 +94,19 @@ def drag(sim: Simulation, vector: Array, found: dict[str, Array]) -> Array:
     return np.asarray(sim.record(vector, 0.0)["power_drag"])
 
 
+def land(name: str) -> Callable[[Simulation, Array, dict[str, Array]], Array]:
+    """Of a cage that moves across a land on whose axis it is."""
+
+    def look_at(sim: Simulation, vector: Array, found: dict[str, Array]) -> Array:
+        centred = vector.copy()
+        state = sim.view(centred)
+        for part in ("x", "y", "skew", "tilt", "v_y", "v_z", "omega_n", "omega_t", "omega_a"):
+            state[f"cage_{part}"] = 0.0
+        return np.asarray(sim.contacts(centred, 0.0)[f"land_{name}"])
+
+    return look_at
+
+
 def power(exponent: float) -> Callable[[float], float]:
     return lambda factor: factor**exponent
 
@@ -124,6 +139,11 @@ LAWS: dict[str, Law] = {
     "oil_fill": Law(drag, power(1.0), WET, 0.7),
     "oil_density": Law(drag, power(1.0), WET),
     "drag_coefficient": Law(drag, power(1.0), WET),
+    "land_inner_radius": Law(land("torque"), power(3.0), INNER),
+    "land_outer_radius": Law(land("torque"), power(3.0), OUTER),
+    "land_width": Law(land("film_force"), power(3.0), OUTER),
+    "land_clearance": Law(land("film_force"), power(-3.0), OUTER),
+    "land_fill": Law(land("film_force"), power(3.0), OUTER, 0.7),
     "roller_density": Law(kinetic, power(1.0), DRY.replace(bodies="rollers")),
 }
 
@@ -278,6 +298,8 @@ def test_clearance_of_the_front_rib(kit: SimpleNamespace) -> None:
 
 
 SHOWS: dict[str, tuple[float, str]] = {
+    "land_offset": (10e-3, "land_gap"),
+    "land_contact_film": (5e-6, "land_contact_force"),
     "cup_half_angle": (13.0, "outer_load"),
     "pitch_diameter": (0.0823891, "outer_load"),
     "roller_diameter": (0.0140005, "outer_load"),
@@ -303,7 +325,7 @@ SHOWS: dict[str, tuple[float, str]] = {
 @pytest.mark.parametrize("name", SHOWS)
 def test_a_number_shows(kit: SimpleNamespace, name: str) -> None:
     value, field = SHOWS[name]
-    scene, vector = prepared(kit, BASE)
+    scene, vector = prepared(kit, DRY_LAND if name.startswith("land_") else BASE)
     if name == "crown_radius":
         roller = scene.bearing.roller.replace(profile=Profile.crowned(100.0))
         scene = scene.replace(bearing=scene.bearing.replace(roller=roller))
@@ -336,6 +358,7 @@ def test_nothing_is_forgotten() -> None:
         "back_rib",
         "front_rib",
         "rib_film",
+        "guidance",
         "pocket_bars",
         "pocket_ends",
         "pocket_edges",

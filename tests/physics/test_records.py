@@ -89,7 +89,29 @@ def bodies(kit: SimpleNamespace, sim: Simulation, vector: Array, shaft: float) -
         energy += 0.5 * (geometry.roller_mass * np.sum(velocity**2) + np.dot(inertia, omega**2))
         for name, value in row.items():
             rollers.setdefault(f"roller_{name}", []).append(value)
-    return out | rollers | {"kinetic_energy": energy}
+    land = {f"land_{name}": value for name, value in guided(kit, sim, vector).items()}
+    return out | rollers | {"kinetic_energy": energy} | land
+
+
+def guided(kit: SimpleNamespace, sim: Simulation, vector: Array) -> dict[str, float]:
+    """How the cage lies in the land, from poses; its forces as the contacts tell them."""
+    land, geometry = sim.scene.bearing.land, sim.scene.bearing.geometry
+    place, found = sim.equilibrium.displacement, sim.contacts(vector, TIME)
+    turn = kit.about_z(kit.frame_angle(sim, vector, TIME)).inv()
+    axis = turn.apply(kit.frame(-place[3], place[4]).apply(AXIS))
+    centre = turn.apply(place[:3]) + np.array([0.0, 0.0, geometry.centre_plane])
+
+    def apart(station: float) -> float:
+        along = land.offset - sim.scene.bearing.cage.offset + station
+        point = kit.cage_place(sim, vector) + along * kit.cage_attitude(sim, vector).apply(AXIS) - centre
+        return float(np.linalg.norm(point - (point @ axis) * axis))
+
+    strips = 0.5 * land.width * np.polynomial.legendre.leggauss(6)[0]
+    names = ("force", "film_force", "contact_force", "friction", "torque")
+    out = {name: float(found[f"land_{name}"]) for name in names}
+    out["eccentricity"] = apart(0.0) / land.clearance
+    out["gap"] = land.clearance - max(apart(station) for station in strips)
+    return out
 
 
 def contacts(
@@ -132,9 +154,11 @@ def sums(kit: SimpleNamespace, sim: Simulation, vector: Array, found: dict[str, 
     ring_axis = kit.frame(-displacement[3], displacement[4]).apply(AXIS)
     turns = [kit.about_z(turn + angle) for angle in kit.orbit_angles(sim, vector)]
     out: dict[str, Any] = {"ring_position": displacement[:3]}
+    in_r = kit.about_z(turn)
     for name in ("force", "moment"):
         out[f"ring_{name}"] = sum(t.apply(v) for t, v in zip(turns, found[f"ring_{name}"], strict=True))
-        out[f"cage_{name}"] = kit.about_z(turn).apply(found[f"cage_{name}"].sum(axis=0))
+        out[f"ring_{name}"] += in_r.apply(found[f"hub_ring_{name}"])
+        out[f"cage_{name}"] = in_r.apply(found[f"cage_{name}"].sum(axis=0) + found[f"hub_cage_{name}"])
     out["inner_torque"] = -sign * out["ring_moment"] @ ring_axis
     out["outer_torque"] = sign * found["outer_moment"][:, 2].sum()
     points, sliding, mean = (vectors(found, letter)[1] for letter in "psm")
@@ -151,10 +175,12 @@ def sums(kit: SimpleNamespace, sim: Simulation, vector: Array, found: dict[str, 
             for t, p, f in zip(turns, points, force, strict=True)
         ]
         out[f"inner_torque_{name}"] = -sign * np.sum(moments, axis=0) @ ring_axis
-    out["elastic_energy"] = found["elastic_energy"].sum()
+    out["inner_torque_land"] = -sign * in_r.apply(found["hub_ring_moment"]) @ ring_axis
+    out["elastic_energy"] = found["elastic_energy"].sum() + found["hub_elastic_energy"]
+    power = found["power"].sum(axis=0) + found["hub_power"]
     for k, name in enumerate(POWERS):
-        out.setdefault(name, found["power"][:, k].sum())
-    out["power_loss"] = found["power"].sum()
+        out.setdefault(name, power[k])
+    out["power_loss"] = power.sum()
     return out
 
 
@@ -163,7 +189,7 @@ def sums(kit: SimpleNamespace, sim: Simulation, vector: Array, found: dict[str, 
 def test_every_field_computed_a_second_time(kit: SimpleNamespace, speed: float, back: float) -> None:
     effects = Effects.standard().replace(damping="hunt_crossley", damping_race=0.05, damping_cage=0.1, front_rib=True)
     # the pressure force's torque on the ring, 1e-6 of all, is in no share
-    effects = effects.replace(rolling_pressure_force=False, oil_fill=0.2)
+    effects = effects.replace(rolling_pressure_force=False, oil_fill=0.2, guidance="inner_land")
     scenery = {"speed_rpm": speed, "radial_load": 1500.0, "misalignment_x": 4e-4, "misalignment_y": -3e-4}
     sim = kit.simulate(effects, scenery=scenery)
     vector = kit.perturbed(sim, 21, back=back)
@@ -202,7 +228,8 @@ def test_every_field_computed_a_second_time(kit: SimpleNamespace, speed: float, 
 def test_quadratures_grow_by_the_recorded_powers(kit: SimpleNamespace) -> None:
     """Each loss by its own power, in the order of the table."""
     effects = Effects.standard().replace(damping="hunt_crossley", damping_race=0.05, damping_cage=0.1, oil_fill=0.2)
-    sim = kit.simulate(effects.replace(rolling_pressure_force=True), scenery={"radial_load": 1500.0})
+    effects = effects.replace(rolling_pressure_force=True, guidance="outer_land")
+    sim = kit.simulate(effects, scenery={"radial_load": 1500.0})
     seen = set()
     for seed, back in ((5, 0.0), (6, 2e-4)):
         vector = kit.perturbed(sim, seed, back=back)

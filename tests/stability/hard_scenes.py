@@ -91,6 +91,12 @@ def cage(**changes: Any) -> trb.Bearing:
     return bearing.replace(cage=bearing.cage.replace(**changes))
 
 
+def guided(land: dict[str, float], **changes: Any) -> trb.Bearing:
+    """A bearing with a land of its own, and another cage."""
+    bearing = cage(**changes)
+    return bearing.replace(land=bearing.land.replace(**land))
+
+
 def roller(**changes: Any) -> trb.Bearing:
     bearing = rig_30310()
     return bearing.replace(roller=bearing.roller.replace(**changes))
@@ -175,6 +181,11 @@ def slipping(share: float) -> Callable[[StateView, trb.Scene], None]:
         state["roller_v_t"] *= 1.0 - share
 
     return change
+
+
+def thrown(state: StateView, scene: trb.Scene) -> None:
+    state["cage_v_x"], state["cage_v_y"] = 0.5, -0.3
+    state["cage_omega_n"] += 20.0
 
 
 def deep(state: StateView, scene: trb.Scene) -> None:
@@ -648,6 +659,32 @@ HARD: tuple[Hard, ...] = (
         duration=20.0,
         slow=True,
         compared=0.2,
+    ),
+    Hard(
+        "drag_flooded",
+        "a flooded bearing at 12 000 rpm under a light load: drag of newtons slows the rollers, and they slip",
+        lambda: S(12000.0, 3000.0, effects=trb.Effects.standard().replace(oil_fill=1.0, drag_coefficient=3.0)),
+        compared=5e-3,
+    ),
+    Hard(
+        "land_thick_oil",
+        "a heavy cage begins with the film of its land nearly closed, in oil of 1 Pa s and a clearance of 30 um",
+        lambda: S(
+            300.0,
+            bearing=guided({"clearance": 30e-6}, mass=2.0, inertia_axial=3.9e-3, inertia_transverse=2.1e-3),
+            lubricant=_vg(viscosity=1.0),
+            effects=trb.Effects.standard().replace(guidance="inner_land"),
+            start=trb.Start.whirl(0.1187),
+        ),
+    ),
+    Hard(
+        "land_without_oil",
+        "a starved cage is thrown at the land of the outer ring and rattles on it with friction, tilting",
+        lambda: from_state(
+            thrown,
+            bearing=guided({"fill": 0.0}),
+            effects=trb.Effects.standard().replace(guidance="outer_land"),
+        ),
     ),
 )
 """Every hard scene."""

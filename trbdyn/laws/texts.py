@@ -10,7 +10,14 @@ ARGUMENTS: Final[dict[str, tuple[str, str]]] = {
     "c": ("1", "constant of Dicke's law, with the pressure"),
     "d": ("1/C", "constant of Dicke's law, with pressure and temperature"),
     "cap": ("1", "largest value of ln(eta/eta0)"),
+    "clearance": ("m", "radial clearance of the journal"),
     "decay": ("1", "decay of the law over the slide-roll ratio, `Friction.boundary_decay`"),
+    "eccentricity": ("1", "distance of the axes over the clearance, below 1"),
+    "eccentricity_across": ("1", "the same across the velocity, positive to its left"),
+    "eccentricity_along": (
+        "1",
+        "distance of the axes along the velocity, over the clearance; positive: the gap closes",
+    ),
     "effective_modulus": ("Pa", "E' = 2/[(1 - v1^2)/E1 + (1 - v2^2)/E2]; 226e9 for steel on steel"),
     "elastic_over_rigid": ("1", "film of the piezoviscous-elastic regime over that of the isoviscous-rigid one"),
     "entrainment_speed": (
@@ -51,6 +58,7 @@ ARGUMENTS: Final[dict[str, tuple[str, str]]] = {
     "value": ("any", "what is bounded"),
     "viscosity": ("Pa s", "eta0: viscosity at no pressure"),
     "W": ("1", "load group w/(E' Re), w the load over the length"),
+    "width": ("m", "width of the journal that is filled with oil"),
     "zm": ("m", "drop at the end of the roller"),
 }
 """Unit and meaning of each argument, by its name."""
@@ -60,6 +68,7 @@ OF_ONE_LAW: Final[dict[tuple[str, str], tuple[str, str]]] = {
     ("film_point_elastic", "U"): ("1", "speed group eta0 u/(E' Rx), u the mean speed of the surfaces"),
     ("film_point_rigid", "W"): ("1", "load group Q/(E' Rx^2), x along rolling"),
     ("film_point_rigid", "U"): ("1", "speed group eta0 u/(E' Rx), u the mean speed of the surfaces"),
+    ("journal_shear", "radius"): ("m", "radius of the journal"),
     ("profile_crowned", "radius"): ("m", "radius of the arc"),
     ("profile_logarithmic", "load"): ("N", "load of the contact for which the profile is designed"),
     ("shear_modulus", "floor"): ("Pa", "smallest modulus that the law gives, reached smoothly"),
@@ -77,6 +86,7 @@ EXAMPLES: Final[dict[str, tuple[dict[str, float], str]]] = {
     "boundary_share": ({"film_parameter": 0.5, "lambda_boundary": 0.01, "lambda_full": 1.5}, "0.09139"),
     "film_line_elastic": ({"W": 7e-5, "U": 1.644e-10, "G": 4460.0}, "0.0001259"),
     "friction_boundary": ({"slide_roll": 0.02, "limit": 0.1, "slope": 22.28, "decay": 181.46}, "0.1092"),
+    "journal_along": ({"eccentricity_along": 0.0, "eccentricity_across": 0.0}, "1.571"),
     "rolling_line": ({"W": 2e-4, "U": 1e-10, "G": 3745.0}, "0.0002461"),
 }
 """Arguments of an example and what it prints, for some laws."""

@@ -41,6 +41,11 @@ RIG: Final[dict[str, float]] = {
     "wall_inner": 1.5e-3,
     "wall_outer": 4.5e-3,
     "wall_half_width": 6e-3,
+    "land_inner_radius": 39.5e-3,
+    "land_outer_radius": 50.5e-3,
+    "land_width": 3e-3,
+    "land_clearance": 0.1e-3,
+    "land_contact_film": 1e-6,
 }
 """Numbers of the 30310 rig (m, kg, kg m2, N, N/m^1.5), to which assumed ones are in proportion."""
 
@@ -54,9 +59,10 @@ _CONSTANT: Final = {
     "cage": ("offset",),
     "material": ("youngs_modulus", "poisson_ratio"),
     "roughness": ("raceway", "rib"),
+    "land": ("fill",),
 }
 """Assumed numbers that do not depend on the size."""
-_SECTIONS: Final = ("roller", "ribs", "cage", "material", "roughness")
+_SECTIONS: Final = ("roller", "ribs", "cage", "material", "roughness", "land")
 
 Values = dict[str, Any]
 
@@ -77,12 +83,12 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     ----------
     size : mapping of str to float
         diameter, effective_length, pitch_diameter (m), cup_half_angle_deg (deg); as far as they are given total_length
-        (m), contact_height (m) and the cage's mass (kg).
+        (m), contact_height (m), the cage's mass (kg) and the land's clearance (m).
 
     Returns
     -------
     dict of str to dict of str to float
-        By section: 'roller', 'roller.profile', 'ribs', 'cage'.
+        By section: 'roller', 'roller.profile', 'ribs', 'cage', 'land'.
     """
     across, along = size["diameter"] / RIG["diameter"], size["effective_length"] / RIG["effective_length"]
     pitch = size["pitch_diameter"] / RIG["pitch_diameter"]
@@ -107,6 +113,15 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
         "wall_inner": min(RIG["wall_inner"] * across, 0.3 * end),
         "wall_outer": min(RIG["wall_outer"] * across, 0.9 * end),
     }
+    clearance = size.get("clearance", RIG["land_clearance"] * across)
+    made["land"] = {
+        "offset": RIG["rail_offset"] * along,
+        "inner_radius": RIG["land_inner_radius"] * pitch,
+        "outer_radius": RIG["land_outer_radius"] * pitch,
+        "width": RIG["land_width"] * along,
+        "clearance": clearance,
+        "contact_film": RIG["land_contact_film"] * (clearance / RIG["land_clearance"]),
+    }
     return made
 
 
@@ -121,7 +136,7 @@ def with_assumed(values: Mapping[str, Any], kinds: Mapping[str, type[Model]]) ->
     values : mapping
         Fields of a bearing.
     kinds : mapping of str to type
-        Model of each section, by its path: 'roller', 'roller.profile', 'ribs', 'cage', 'material', 'roughness'.
+        Model of each section, by its path: 'roller', 'roller.profile', 'ribs', 'cage', 'material', 'roughness', 'land'.
 
     Raises
     ------
@@ -190,6 +205,7 @@ def _size(found: Values, given: Mapping[str, Values]) -> dict[str, float] | None
         "total_length": given["roller"].get("total_length"),
         "contact_height": given["ribs"].get("contact_height"),
         "mass": given["cage"].get("mass"),
+        "clearance": given["land"].get("clearance"),
     }
     size: dict[str, float] = {}
     for name, value in {**wanted, **optional}.items():

@@ -23,12 +23,13 @@ from trbdyn.model.core_table import parameter
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.flatten import bearing_geometry
 from trbdyn.model.geometry import Geometry
+from trbdyn.model.land import Land
 from trbdyn.model.material import Material, Roughness
 from trbdyn.model.pocket import Face, OtherPocket, Pocket
 from trbdyn.model.pocket_shapes import default_pocket
 from trbdyn.model.roller import Profile, Roller, Scatter
 
-__all__ = ["Bearing", "Cage", "Material", "Profile", "Ribs", "Roller", "Roughness", "Scatter"]
+__all__ = ["Bearing", "Cage", "Land", "Material", "Profile", "Ribs", "Roller", "Roughness", "Scatter"]
 
 
 class Ribs(Model):
@@ -163,6 +164,8 @@ class Bearing(Model):
         Elasticity of the rings, and of rollers and cage unless they have their own.
     roughness : Roughness
         Roughness of the contacts.
+    land : Land
+        The land of a ring that guides the cage, where one does.
     name : str
         Name in titles and files.
     estimates : sequence of Estimated
@@ -194,6 +197,7 @@ class Bearing(Model):
     cage: Cage = Cage()
     material: Material = Material()
     roughness: Roughness = Roughness()
+    land: Land = Land()
     name: Annotated[str, Field(min_length=1)] = "bearing"
     estimates: tuple[Estimated, ...] = ()
 
@@ -388,6 +392,10 @@ class Bearing(Model):
             size = f"{self.roller.diameter:g} m overlap on pitch diameter {self.pitch_diameter:g} m"
             limit = f"must be <= {most}: more rollers of {size}"
             raise InputError.of("n_rollers", self.n_rollers, limit)
+        land, thinnest, thickest = self.land, 1e-4 * self.land.clearance, 0.5 * self.land.clearance
+        if not thinnest <= land.contact_film <= thickest:
+            limit = f"must be from {thinnest:g} to {thickest:g}: 1e-4 to 0.5 of land.clearance, {land.clearance:g} (m)"
+            raise InputError.of(("land", "contact_film"), land.contact_film, limit)
         self._check_pockets(self.geometry)
         return self
 
@@ -415,6 +423,7 @@ _SECTIONS: Final[dict[str, type[Model]]] = {
     "cage": Cage,
     "material": Material,
     "roughness": Roughness,
+    "land": Land,
 }
 """Parts of a bearing whose numbers may be assumed, by their paths."""
 

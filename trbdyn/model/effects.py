@@ -97,6 +97,10 @@ class Effects(Model):
         Flank, and ends, of the rollers against the faces of their pockets.
     pocket_edges : bool
         Faces end at their outlines; without it they are unbounded planes.
+    guidance : {'rollers', 'inner_land', 'outer_land'}
+        What guides the cage: its rollers alone, or also a land of the inner or outer ring, whose numbers are `Bearing.land`.
+        The land has an oil film where lubrication is mixed or full film; below a stated height of the film the cage touches
+        it, with the friction of pockets.
     oil_fill : float
         Share of oil in the mixture of oil and air round the rollers, from 0 (no drag) to 1 (a flooded bearing). It is
         known in no bearing: show its effect over a band, 0 to 0.3 (assumed). The mixture rests.
@@ -130,6 +134,7 @@ class Effects(Model):
     pocket_bars: Flag = True
     pocket_ends: Flag = True
     pocket_edges: Flag = True
+    guidance: Literal["rollers", "inner_land", "outer_land"] = "rollers"
     oil_fill: Annotated[Number, parameter("oil_fill")] = 0.0
     drag_coefficient: Annotated[Number, parameter("drag_coefficient")] = 1.0
     damping: Literal["off", "hunt_crossley"] = "hunt_crossley"
@@ -155,6 +160,8 @@ class Effects(Model):
     def _check(self) -> Self:
         if self.rolling_pressure_force and not self.rolling_resistance:
             raise InputError.of("rolling_pressure_force", True, "needs rolling_resistance = True")
+        if self.guidance != "rollers" and self.bodies == "rollers":
+            raise InputError.of("guidance", self.guidance, "needs a cage: bodies = 'rollers_and_cage'")
         if self.n_slices == 1 and not self.back_rib:
             raise InputError.of("n_slices", 1, "must be >= 2 without back_rib: one slice lets rollers tilt freely")
         return self

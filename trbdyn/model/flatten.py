@@ -36,6 +36,7 @@ PRESSURE_LAWS = {"dicke": 0, "roelands": 1, "barus": 2}
 LUBRICATION = {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3}
 TRACTION = {"none": 0, "coulomb": 1, "muraki_kimura": 2}
 RIB_FILMS = {"max": 0, "pe": 1}
+GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
 PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
 
 
@@ -77,6 +78,7 @@ def bearing_entries(bearing: Bearing) -> Entries:
         **named_entries(bearing.ribs, "ribs"),
         **named_entries(cage, "cage"),
         **named_entries(bearing.roughness, "roughness"),
+        **named_entries(bearing.land, "land"),
         "cup_half_angle": Entry(("cup_half_angle_deg",), math.radians(bearing.cup_half_angle_deg)),
         "profile": Entry(("roller", "profile", "kind"), PROFILES[roller.profile.kind]),
         **_material("", ("material",), bearing.material),
@@ -111,6 +113,7 @@ def effects_entries(effects: Effects) -> Entries:
         **named_entries(effects.friction, "friction"),
         "quadrature": Entry(("quadrature",), QUADRATURES[effects.quadrature]),
         "damping": Entry(("damping",), float(effects.damping == "hunt_crossley")),
+        "guidance": Entry(("guidance",), GUIDANCE[effects.guidance]),
         "with_cage": Entry(("bodies",), float(effects.bodies == "rollers_and_cage")),
         "planar": Entry(("planar",), float(effects.planar)),
         "lubrication": Entry(("lubrication",), LUBRICATION[effects.lubrication]),

@@ -334,3 +334,10 @@ class Scene(Model):
         if self.start.kind == "whirl" and self.effects.bodies == "rollers":
             path: Path = ("start", "kind")
             raise InputError.of(path, "whirl", "needs a cage: effects.bodies = 'rollers_and_cage'")
+        land, play = self.bearing.land, self.bearing.cage.play_radial
+        most = (land.clearance - land.contact_film) / play
+        if self.start.kind == "whirl" and self.effects.guidance != "rollers" and self.start.eccentricity > most:
+            limit = f"must be <= {most:.4g}: bearing.land.clearance less contact_film over bearing.cage.play_radial"
+            raise InputError.of(
+                ("start", "eccentricity"), self.start.eccentricity, f"{limit}, as a land guides the cage (1)"
+            )

@@ -41,6 +41,8 @@ MEANINGS: Final[dict[str, str]] = {
     "pocket_force_peak": "The hardest hit on a pocket.",
     "pocket_impacts": "How often a roller began to touch its pocket.",
     "pocket_impulse_peak": "Momentum that the hardest impact passed on.",
+    "land_force_peak": "The hardest push of the land that guides the cage.",
+    "land_gap_min": "How near the cage came to the land; below bearing.land.contact_film they touch.",
     "pocket_duty": "Share of the time for which a pocket is touched.",
     "outer_load_mean": "Mean load of a roller on the outer raceway.",
     "inner_load_mean": "Mean load of a roller on the inner raceway.",

@@ -61,6 +61,8 @@ LABELS: dict[str, tuple[str, str]] = {
     "pocket_force_peak": ("pocket force, largest at any step", "N"),
     "pocket_impacts": ("impacts in the pockets", ""),
     "pocket_impulse_peak": ("largest impulse of one impact", "N s"),
+    "land_force_peak": ("force of the land on the cage, largest at any step", "N"),
+    "land_gap_min": ("gap between cage and land, smallest at any step", "m"),
     "pocket_duty": ("share of time that a pocket is touched", ""),
     "outer_load_mean": ("load a roller, outer raceway", "N"),
     "inner_load_mean": ("load a roller, inner raceway", "N"),
@@ -228,6 +230,8 @@ def _peaks(window: Result) -> dict[str, Any]:
     out: dict[str, Any] = {f"{side}_load_mean": peaks[f"{side}_load_mean"].mean() for side in sides}
     out |= {f"{side}_pressure_max": peaks[f"{side}_pressure_peak"].max() for side in sides}
     out |= {f"film_parameter_{side}_min": np.fmin.reduce(peaks[f"{side}_film_parameter_min"]) for side in sides}
+    if window.scene.effects.guidance != "rollers":
+        out |= {name: float(peaks[name]) for name in ("land_force_peak", "land_gap_min")}
     return out | {
         "pocket_force_peak": peaks["pocket_force_peak"].max(),
         "pocket_impacts": int(peaks["pocket_impacts"].sum()),

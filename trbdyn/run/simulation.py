@@ -278,7 +278,9 @@ class Simulation:
             ``raceway_<quantity>``, shape (2, Z, n): outer and inner race, roller, node, for interference, load,
             pressure, films, film parameter, slide-roll ratio, friction coefficient and others; ``rib_<quantity>`` and
             ``front_rib_<quantity>``, shape (Z,); ``pocket_load``, ``pocket_friction``, ``pocket_interference``
-            (negative: gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); all SI.
+            (negative: gap), shape (Z, slots); ``force``, ``moment`` and other wrenches, shape (Z, 3); ``land_<quantity>``,
+            shape (), of the cage on a land; ``hub_cage_force`` and other wrenches on cage, inner and outer ring by pairs
+            without a roller, shape (3,), in axes that turn with the kinematic cage angle; all SI.
         """
         return self._core.contacts(*self._place(vector, time))
 

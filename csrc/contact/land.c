@@ -1,0 +1,198 @@
+/* The cage on the land of a ring (docs/theory/contacts.md#cage-on-a-rings-land): an oil film, and below a stated height of the film an
+ * elastic contact with friction. The guiding surface of the cage is cut into strips along its width; in each strip the two axes lie
+ * `apart` from each other, across the ring's axis. A film force acts midway between the axes, where the relative velocity is the one that
+ * the law asks for: so the power that both bodies lose is exactly that of the law, tilted or not. */
+#include <math.h>
+
+#include "contact/friction.h"
+#include "contact/pair.h"
+#include "laws/journal.h"
+#include "laws/line_contact.h"
+
+/* Both bodies, and what is summed. */
+typedef struct meeting {
+  const trb_model     *m;
+  const trb_cage_pose *cage;
+  trb_ring_pose        ring;   /* in R; centre: the point about which its moment is taken */
+  int                  inside; /* 1: the cage runs inside the land */
+  double               radius; /* of the land, m */
+  trb_counters        *counters;
+  trb_load            *load;
+  trb_land_detail      seen;
+  trb_vec3             film, contact; /* forces on the cage, N */
+} meeting;
+
+/* A strip: the point on the cage's axis, and how it lies from the ring's axis. */
+typedef struct strip {
+  trb_vec3 x, apart; /* m */
+  double   size;     /* of apart, m */
+} strip;
+
+static strip strip_at(const meeting *w, double station)
+{
+  const trb_vec3 x = trb_axpy(w->cage->x, w->m->land_place + station, w->cage->frame.a), from = trb_sub(x, w->ring.centre);
+  const trb_vec3 apart = trb_axpy(from, -trb_dot(from, w->ring.axis), w->ring.axis);
+  return (strip){x, apart, trb_norm(apart)};
+}
+
+static trb_vec3 cage_velocity(const meeting *w, trb_vec3 at)
+{
+  return trb_add(w->cage->v, trb_cross(w->cage->omega, trb_sub(at, w->cage->x)));
+}
+
+static trb_vec3 ring_velocity(const meeting *w, trb_vec3 at)
+{
+  return trb_add(w->ring.velocity, trb_cross(w->ring.omega, trb_sub(at, w->ring.centre)));
+}
+
+/* A force on the cage at a point and a couple about the ring's axis, with their opposites on the ring. by: of the mechanism that makes torque. */
+static void act(meeting *w, trb_vec3 at, trb_vec3 force, double couple, trb_mechanism by)
+{
+  const trb_vec3 about = trb_scale(couple, w->ring.axis);
+  const trb_vec3 on_cage = trb_add(trb_cross(trb_sub(at, w->cage->x), force), about);
+  const trb_vec3 on_ring = trb_scale(-1.0, trb_add(trb_cross(trb_sub(at, w->ring.centre), force), about));
+  trb_add_wrench(&w->load->on_a, &(trb_wrench){force, on_cage});
+  trb_add_wrench(&w->load->on_b, &(trb_wrench){trb_scale(-1.0, force), on_ring});
+  w->load->torque[by] += trb_dot(on_ring, w->ring.axis);
+  w->seen.torque -= trb_dot(on_ring, w->ring.axis);
+}
+
+/* Largest distance of the axes of a strip at which nothing touches. */
+static double room(const trb_params *p) { return p->land_clearance - p->land_contact_film; }
+
+static void film_on_strip(meeting *w, double station, double width)
+{
+  const trb_params *p = &w->m->params;
+  const strip       s = strip_at(w, station);
+  const double      c = p->land_clearance, held = s.size > room(p) ? room(p) / s.size : 1.0, half = 0.5 * p->land_fill * p->land_width;
+  const trb_vec3    at = trb_axpy(s.x, -0.5, s.apart), apart = trb_scale(held / c, s.apart);
+  const trb_vec3    relative = trb_sub(cage_velocity(w, at), ring_velocity(w, at));
+  const trb_vec3    v = trb_axpy(relative, -trb_dot(relative, w->ring.axis), w->ring.axis), around = trb_cross(w->ring.axis, v);
+  const double      speed = trb_norm(v), turning = trb_dot(trb_sub(w->ring.omega, w->cage->omega), w->ring.axis);
+  const double      shear = trb_journal_shear(p->viscosity, w->radius, width, c, trb_norm(apart));
+  trb_vec3          force = {0, 0, 0};
+  w->counters->land_films++;
+  if (speed > 0.0) {
+    const trb_journal_film film = trb_journal_short(trb_dot(apart, v) / speed, trb_dot(apart, around) / speed);
+    const double           scale = -6.0 * p->viscosity * w->radius * width * (half * half - station * station) / (c * c * c);
+    force = trb_axpy(trb_scale(scale * film.along, v), scale * film.across, around);
+  }
+  act(w, at, force, shear * turning, TRB_BY_FILM);
+  w->load->lost[TRB_BY_FILM] += shear * turning * turning - trb_dot(force, v);
+  w->film = trb_add(w->film, force);
+}
+
+static void contact_on_strip(meeting *w, double station, double width)
+{
+  const trb_model  *m = w->m;
+  const trb_params *p = &m->params;
+  const strip       s = strip_at(w, station);
+  const double      d = s.size - room(p);
+  w->seen.gap = trb_min(w->seen.gap, p->land_clearance - s.size);
+  if (!(d > 0.0)) return;
+  w->counters->land_contacts++;
+  const trb_vec3  normal = trb_scale(1.0 / s.size, s.apart), axis = trb_sub(s.x, s.apart);
+  const trb_vec3  at = trb_axpy(axis, w->inside ? w->radius : -w->radius, normal);
+  const trb_touch touch = trb_touching(cage_velocity(w, at), ring_velocity(w, at), normal);
+  const double    elastic = m->land_palmgren * width * pow(d, TRB_PALMGREN_EXPONENT);
+  const double    q = trb_damped(m, elastic, p->damping_cage, touch.rate);
+  const double    mu = m->pocket_friction ? trb_sliding_coefficient(m, touch.speed) : 0.0, drag = q * mu / touch.speed;
+  act(w, at, trb_axpy(trb_scale(-q, normal), -drag, touch.sliding), 0.0, TRB_BY_SLIDING);
+  w->load->elastic += TRB_PALMGREN_ENERGY * elastic * d;
+  w->load->lost[TRB_BY_SLIDING] += drag * trb_dot(touch.sliding, touch.sliding);
+  w->load->lost[TRB_BY_DAMPING] += (q - elastic) * touch.rate;
+  w->contact = trb_axpy(w->contact, -q, normal);
+  w->seen.friction += q * mu;
+}
+
+static meeting meeting_of(const trb_model *m, const trb_instant *at, int inside)
+{
+  const trb_drive *drive = at->drive;
+  meeting          w = {.m = m, .cage = at->cage, .inside = inside, .seen = {.gap = INFINITY}};
+  w.radius = inside ? m->params.land_outer_radius : m->params.land_inner_radius;
+  if (inside) w.ring.axis = trb_v(0, 0, 1); /* the outer ring rests, its moment is about the apex */
+  else w.ring = trb_ring_pose_in_frame(&drive->inner, drive->cosine, drive->sine);
+  return w;
+}
+
+static void meet(const trb_model *m, const trb_instant *at, int inside, trb_counters *counters, trb_load *load, trb_detail *detail)
+{
+  const trb_params *p = &m->params;
+  meeting           w = meeting_of(m, at, inside);
+  w.counters = counters;
+  w.load = load;
+  for (int k = 0; k < TRB_LAND_STRIPS; k++) {
+    const double station = m->land_station[k], width = m->land_weight[k];
+    if (m->land_film) film_on_strip(&w, p->land_fill * station, p->land_fill * width);
+    contact_on_strip(&w, station, width);
+  }
+  if (detail == NULL) return;
+  w.seen.eccentricity = strip_at(&w, 0.0).size / p->land_clearance;
+  w.seen.film_force = trb_norm(w.film);
+  w.seen.contact_force = trb_norm(w.contact);
+  w.seen.force = trb_norm(trb_add(w.film, w.contact));
+  detail->land = w.seen;
+}
+
+static void evaluate_inner(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail)
+{
+  meet(m, at, 0, counters, load, detail);
+}
+
+static void evaluate_outer(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail)
+{
+  meet(m, at, 1, counters, load, detail);
+}
+
+/* Of the strip that is nearest to the land. A hit deepens as that of the cage's mass on a spring that is as stiff as the contact is at an
+ * interference of 1 um. */
+static trb_approach approach_of(const trb_model *m, const trb_instant *at, int inside)
+{
+  const meeting w = meeting_of(m, at, inside);
+  const double  stiffness = m->land_palmgren * m->params.land_width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
+  trb_approach  found = {.left = INFINITY, .rise = sqrt(m->params.cage_mass / stiffness)};
+  for (int k = 0; k < TRB_LAND_STRIPS; k++) {
+    const strip  s = strip_at(&w, m->land_station[k]);
+    const double left = room(&m->params) - s.size;
+    if (!(left < found.left)) continue;
+    found.left = left;
+    found.speed =
+        fabs(trb_dot(trb_sub(cage_velocity(&w, s.x), ring_velocity(&w, trb_sub(s.x, s.apart))), s.apart)) / trb_max(s.size, 1e-12);
+  }
+  return found;
+}
+
+static trb_approach approach_inner(const trb_model *m, const trb_instant *at) { return approach_of(m, at, 0); }
+static trb_approach approach_outer(const trb_model *m, const trb_instant *at) { return approach_of(m, at, 1); }
+
+static int is_on_inner(const trb_model *m) { return m->params.with_cage > 0.0 && m->params.guidance == TRB_GUIDANCE_INNER_LAND; }
+static int is_on_outer(const trb_model *m) { return m->params.with_cage > 0.0 && m->params.guidance == TRB_GUIDANCE_OUTER_LAND; }
+
+#define LOSSES \
+  .loss = {[TRB_BY_SLIDING] = TRB_LOSS_land, \
+           [TRB_BY_ROLLING] = TRB_LOSS_none, \
+           [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_none, \
+           [TRB_BY_DAMPING] = TRB_LOSS_damping, \
+           [TRB_BY_FILM] = TRB_LOSS_land_film}
+
+const trb_pair trb_pair_inner_land = {.name = "inner_land",
+                                      .text = "cage on a land of the inner ring",
+                                      .a = TRB_BODY_CAGE,
+                                      .b = TRB_BODY_INNER_RING,
+                                      .is_on = is_on_inner,
+                                      .between = evaluate_inner,
+                                      .approach = approach_inner,
+                                      .books = {LOSSES, .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_land,
+                                                                   [TRB_BY_ROLLING] = TRB_TORQUE_none,
+                                                                   [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none,
+                                                                   [TRB_BY_DAMPING] = TRB_TORQUE_none,
+                                                                   [TRB_BY_FILM] = TRB_TORQUE_land}}};
+
+const trb_pair trb_pair_outer_land = {.name = "outer_land",
+                                      .text = "cage in a land of the outer ring",
+                                      .a = TRB_BODY_CAGE,
+                                      .b = TRB_BODY_OUTER_RING,
+                                      .is_on = is_on_outer,
+                                      .between = evaluate_outer,
+                                      .approach = approach_outer,
+                                      .books = {LOSSES, .torque = TRB_NO_TORQUE}};
