@@ -62,7 +62,7 @@ def test_objects_that_were_pickled_by_the_old_names_can_be_read() -> None:
         ring="follows",
     )
     state = Simulation(trb.cases.scene_30310(1000.0, 3080.0)).state
-    text = pickle.dumps((scene, state), protocol=0)
+    text = pickle.dumps((scene, state), protocol=2)  # names as text
     moved = {
         "model.bearing": "bearing", "model.roller": "bearing", "model.material": "bearing", "model.scene": "scene",
         "model.start": "scene", "model.motion": "motion", "model.lubricants.lubricant": "lubricants",
