@@ -142,9 +142,8 @@ class Cage(Model):
 
 
 class Bearing(Model):
-    """A single-row tapered roller bearing. Needed are the number of rollers, their diameter and length, the pitch
-    diameter and the cup's angle; every other number has a default in proportion to the bearing's size, listed by
-    `assumed`.
+    """A single-row tapered roller bearing. Needed are number, diameter and length of the rollers, the pitch diameter and the
+    cup's angle; every other number has a default in proportion to the bearing's size, listed by `assumed`.
 
     Parameters
     ----------
