@@ -275,7 +275,7 @@ def test_displacement_with_loads_as_text() -> None:
 
 def test_new_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "my.toml"
-    assert main(["new", str(path)]) == 0
+    assert main(["new", str(path), "--case", "rig_30310"]) == 0
     assert load_case(path) == load_case("rig_30310")
     # the size is changed, and what was assumed follows
     path.write_text(path.read_text().replace("roller.diameter = 0.014", "roller.diameter = 0.012"))
@@ -303,3 +303,34 @@ def test_names_of_parts_are_exported() -> None:
     ):
         assert name in trb.__all__
         assert getattr(trb, name).__doc__
+
+
+def test_a_new_case_has_the_usual_effects_unless_a_case_is_named(tmp_path: Path) -> None:
+    own, papers = tmp_path / "own.toml", tmp_path / "papers.toml"
+    assert main(["new", str(own)]) == 0
+    assert main(["new", str(papers), "--case", "rig_30310"]) == 0
+    scenes = [trb.load_case(path)[0] for path in (own, papers)]
+    assert scenes[0].effects == trb.Effects.standard()
+    assert scenes[1] == trb.load_case("rig_30310")[0]
+    assert scenes[0].bearing == scenes[1].bearing
+
+
+def test_a_new_case_from_catalogue_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    numbers = ["bore=0.04", "outside=0.08", "width=0.02475", "C=74800", "e=0.37", "name=32208"]
+    path = tmp_path / "32208.toml"
+    assert main(["new", str(path), "--catalogue", *numbers]) == 0
+    scene, _ = trb.load_case(path)
+    bearing = trb.Bearing.from_catalogue(bore=0.04, outside=0.08, width=0.02475, C=74800, e=0.37, name="32208")
+    assert scene.bearing == bearing
+    assert scene.effects == trb.Effects.standard()
+    assert 0.02 * 74800 < scene.axial_load < 0.08 * 74800
+    assert "Speed and load are examples" in path.read_text(encoding="utf-8")
+    for words, said in (
+        (["bore=x"], "must be NAME=VALUE"),
+        (["bor=1"], "must be one of bore"),
+        (["bore=0.04"], "must hold outside, width, C as well"),
+        ([*numbers, "C=-1"], "C = -1"),
+    ):
+        assert main(["new", str(tmp_path / "bad.toml"), "--catalogue", *words]) == 2
+        assert said in capsys.readouterr().err
+    assert not (tmp_path / "bad.toml").exists()

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import math
+import pkgutil
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
 
+import trbdyn
 from trbdyn.cli import main
 from trbdyn.errors import LoadError, StepError
 from trbdyn.results.result import Result, load
@@ -47,10 +49,12 @@ class FakeSimulation:
 @pytest.fixture
 def fake(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, synthetic: Any) -> type[FakeSimulation]:
     monkeypatch.setattr("trbdyn.results.derived.creep_time", lambda scene: math.nan)  # needs a simulation that steps
-    module = ModuleType("trbdyn.run.simulation")
+    # whatever takes the class when it is imported must have taken the real one before
+    for module in pkgutil.walk_packages(trbdyn.__path__, "trbdyn."):
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)
     kind = type("Simulation", (FakeSimulation,), {"run_data": synthetic, "calls": [], "error": None})
-    module.Simulation = kind  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "trbdyn.run.simulation", module)
+    monkeypatch.setattr("trbdyn.run.simulation.Simulation", kind)
     monkeypatch.chdir(tmp_path)
     return kind
 

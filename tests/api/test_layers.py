@@ -20,26 +20,25 @@ import trbdyn as trb
 from trbdyn import _core, former_names
 from trbdyn.base.validation import Model
 from trbdyn.cli import case
-from trbdyn.model.bearing import Bearing, Cage, Ribs
 from trbdyn.model.core_table import PARAMETERS, SETTINGS
-from trbdyn.model.effects import Effects, Friction
 from trbdyn.model.flatten import bearing_entries, effects_entries, lubricant_entries
-from trbdyn.model.lubricants import Dicke, Lubricant
-from trbdyn.model.material import Material, Roughness
-from trbdyn.model.roller import Profile, Roller
 from trbdyn.run.options import ACCURACY, RunOptions, Tolerances
 from trbdyn.run.simulation import Simulation
 
 ROOT = Path(__file__).parents[2]
-MODELS: tuple[type[Model], ...] = (
-    Bearing, Cage, Dicke, Effects, Friction, Lubricant, Material, Profile, Ribs, Roller, Roughness,
-)  # fmt: skip
 
 
 def in_a_new_process(code: str) -> str:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
+
+
+def kinds_of(model: type[Model]) -> list[type[Model]]:
+    """Every input model of the package, below this one."""
+    return [
+        kind for own in model.__subclasses__() for kind in (own, *kinds_of(own)) if own.__module__.startswith("trbdyn.")
+    ]
 
 
 @pytest.mark.parametrize("old", sorted(former_names.MODULES))
@@ -98,7 +97,7 @@ def test_every_parameter_of_the_core_has_an_input() -> None:
     given |= effects_entries(trb.Effects())
     named = {
         extra["parameter"]
-        for model in MODELS
+        for model in kinds_of(Model)
         for field in model.model_fields.values()
         if isinstance(extra := field.json_schema_extra, dict) and "parameter" in extra
     }

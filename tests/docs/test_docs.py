@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 
 import matplotlib
+import matplotlib.pyplot as plt
 import pytest
 
 from trbdyn.cli import make_parser
@@ -49,7 +50,7 @@ def test_code_of_the_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.M
         if "IPython" in code:
             pytest.importorskip("IPython")
         exec(compile(code, f"{page.name}, cell {number + 1}", "exec"), names)
-    matplotlib.pyplot.close("all")
+    plt.close("all")
 
 
 def test_commands_exist() -> None:
@@ -87,7 +88,7 @@ def test_examples_of_docstrings_hold(module: str, tmp_path: Path, monkeypatch: p
     monkeypatch.chdir(tmp_path)
     matplotlib.use("Agg")
     done = doctest.testmod(importlib.import_module(module), optionflags=doctest.NORMALIZE_WHITESPACE)
-    matplotlib.pyplot.close("all")
+    plt.close("all")
     assert done.failed == 0
     assert done.attempted > 0
 

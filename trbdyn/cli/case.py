@@ -77,6 +77,7 @@ def simulate(
     return simulation.run(
         revolutions=run.revolutions,
         duration=run.duration,
+        until=run.until,
         save_every=run.save_every if "save_every" in given else None,
         save_groups=run.save_groups if "save_groups" in given else None,
         progress=not quiet,

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import argparse
+import inspect
+import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.cli.case import case_with_changes
 from trbdyn.cli.outcome import DONE
 from trbdyn.errors import FileError, InputError
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+    from trbdyn.run.options import RunOptions
+
+LOAD_OVER_RATING: Final = 0.04
+"""Axial load of an example over the dynamic load rating: that of the test bearing is 0.046."""
+PITCH_SPEED: Final = 9.0
+"""Speed of an example on the pitch circle (m/s): that of the test bearing at 3000 rpm is 13, gearboxes have 5 to 15."""
 
 
 def add_case_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -> None:
@@ -24,7 +35,19 @@ def add_case_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
         "new", parents=[*common], help="write a case with every number, to change for your own bearing"
     )
     new.add_argument("file", metavar="FILE", help="a TOML file that does not exist yet")
-    new.add_argument("--case", default="rig_30310", metavar="NAME", help="the case to begin with (default: rig_30310)")
+    begin = new.add_mutually_exclusive_group()
+    begin.add_argument(
+        "--case",
+        metavar="NAME",
+        help="the case to begin with (default: the bearing of rig_30310 with the usual effects)",
+    )
+    begin.add_argument(
+        "--catalogue",
+        nargs="+",
+        metavar="NAME=VALUE",
+        help="begin with a bearing from the numbers of a catalogue page, in m and N: "
+        "bore=0.04 outside=0.08 width=0.02475 C=74800 e=0.37 name=32208",
+    )
     new.set_defaults(command=_new)
 
 
@@ -34,7 +57,7 @@ def _new(options: argparse.Namespace) -> int:
     path = Path(options.file)
     if path.suffix != ".toml":
         raise InputError.of("FILE", options.file, "must end in .toml")
-    text = case_text(*case_with_changes(options.case, ()), title=f"Begun from the case {options.case}.")
+    text = case_text(*_first_case(options), title=_title(options))
     try:
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)
@@ -44,6 +67,50 @@ def _new(options: argparse.Namespace) -> int:
         raise FileError(f"{path}: {error.strerror or error}") from None
     print(f"{path} written: change its numbers, then run it with: trbdyn run {path}")
     return DONE
+
+
+def _first_case(options: argparse.Namespace) -> tuple[Scene, RunOptions]:
+    from trbdyn.model.bearing import Bearing
+    from trbdyn.model.effects import Effects
+    from trbdyn.model.scene import Scene
+    from trbdyn.run.options import RunOptions
+
+    if options.case is not None:
+        return case_with_changes(options.case, ())
+    if options.catalogue is None:
+        scene, run = case_with_changes("rig_30310", ())
+        return scene.replace(effects=Effects.standard()), run
+    numbers = dict(map(_number, options.catalogue))
+    allowed = list(inspect.signature(Bearing.from_catalogue).parameters)
+    for name in numbers:
+        if name not in allowed:
+            raise InputError.of("--catalogue", name, f"must be one of {', '.join(allowed)}")
+    missing = [name for name in ("bore", "outside", "width", "C") if name not in numbers]
+    if missing:
+        raise InputError.of("--catalogue", " ".join(options.catalogue), f"must hold {', '.join(missing)} as well")
+    bearing = Bearing.from_catalogue(**numbers)
+    load = float(f"{LOAD_OVER_RATING * numbers['C']:.2g}")
+    speed = float(f"{PITCH_SPEED / (math.pi * bearing.pitch_diameter) * 60.0:.1g}")
+    return Scene(bearing, speed_rpm=speed, axial_load=load), RunOptions(revolutions=10.0)
+
+
+def _number(text: str) -> tuple[str, Any]:
+    name, _, value = text.partition("=")
+    if name == "name":
+        return name, value
+    try:
+        number = float(value)
+    except ValueError:
+        raise InputError.of("--catalogue", text, "must be NAME=VALUE, for instance bore=0.04") from None
+    return name, int(number) if name == "n_rollers" and number.is_integer() else number
+
+
+def _title(options: argparse.Namespace) -> str:
+    if options.case is not None:
+        return f"Begun from the case {options.case}."
+    if options.catalogue is None:
+        return "Begun from the bearing of the case rig_30310, with the usual effects; `--case rig_30310` has those of the paper."
+    return f"Begun from catalogue numbers: {' '.join(options.catalogue)}. Speed and load are examples."
 
 
 def _cases(options: argparse.Namespace) -> int:

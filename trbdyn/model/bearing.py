@@ -142,8 +142,8 @@ class Cage(Model):
 
 
 class Bearing(Model):
-    """A single-row tapered roller bearing. Needed are number, diameter and length of the rollers, the pitch diameter and the
-    cup's angle; every other number has a default in proportion to the bearing's size, listed by `assumed`.
+    """A single-row tapered roller bearing. What is not needed below (rollers, pitch diameter, cup's angle) has a default in
+    proportion to the bearing's size, listed by `assumed`.
 
     Parameters
     ----------

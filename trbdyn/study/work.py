@@ -117,6 +117,7 @@ def _run(task: Task, part: Path | None, stopped: Callable[[], bool]) -> tuple[Re
         result = simulation(scene, run).run(
             revolutions=run.revolutions,
             duration=run.duration,
+            until=run.until,
             save_every=run.save_every,
             save_groups=run.save_groups,
             output=part,
