@@ -62,15 +62,16 @@ def test_objects_that_were_pickled_by_the_old_names_can_be_read() -> None:
         ring="follows",
     )
     state = Simulation(trb.cases.scene_30310(1000.0, 3080.0)).state
-    text = pickle.dumps((scene, state), protocol=0)
+    text = pickle.dumps((scene, state), protocol=2)  # names as text
     moved = {
         "model.bearing": "bearing", "model.roller": "bearing", "model.material": "bearing", "model.scene": "scene",
         "model.start": "scene", "model.motion": "motion", "model.lubricants.lubricant": "lubricants",
         "model.lubricants.viscosity": "lubricants", "model.effects": "effects", "run.simulation": "simulation",
+        "model.geometry": "geometry",
     }  # fmt: skip
     for new, old in moved.items():
         text = text.replace(f"trbdyn.{new}\n".encode(), f"trbdyn.{old}\n".encode())
-    assert b"trbdyn.model" not in text
+    assert b"trbdyn.model" not in text.replace(b"trbdyn.model.land", b"")  # which is younger than the layers
     assert b"trbdyn.run" not in text
     again, state_again = pickle.loads(text)
     assert again == scene
