@@ -26,7 +26,7 @@ TIGHT = {"rtol": 1e-7, "atol_position": 1e-12, "atol_angle": 1e-10, "atol_veloci
 LATE = 10.0
 """Bound of the steps a second after an event, in those of the smooth scene."""
 
-PATIENCE = 60.0
+PATIENCE = 240.0
 """Processor time beyond which a run of a scene that is not slow is given up (s)."""
 
 
