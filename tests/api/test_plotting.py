@@ -181,6 +181,9 @@ def test_whirl_map_marks_every_run(build: Callable[..., tuple[Any, Result]]) -> 
     np.testing.assert_allclose(ax.collections[0].get_array(), [0.4, 0.9], rtol=1e-2)
     assert "orbit" in ax.figure.axes[1].get_ylabel()
     np.testing.assert_allclose(ax.collections[0].get_offsets(), [[3000.0, 4.93]] * 2)
+    # runs at one load and speed do not look as if they differed
+    assert np.ptp(ax.get_ylim()) >= 0.2 * 4.93
+    assert np.ptp(ax.get_xlim()) >= 0.2 * 3000.0
 
 
 def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:

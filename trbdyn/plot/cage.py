@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,6 +21,9 @@ from trbdyn.results import observables
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
+
+LEAST_SPAN: Final = 0.1
+"""Room on both sides of the marks of a map, over the largest value."""
 
 
 def revolutions(result: Result) -> np.ndarray:
@@ -306,5 +309,9 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
             ax.annotate(f"{value:.2f}", (x, y), xytext=(14, 8), textcoords="offset points", fontsize=9)
         ax.figure.colorbar(marks, ax=ax, shrink=0.8, pad=0.02).set_label("orbit radius, rms / $C_{pr}$")
         ax.margins(0.18)
+        # runs at one load or one speed must not look as if they differed
+        for values, limits, set_limits in ((speed, ax.get_xlim(), ax.set_xlim), (load, ax.get_ylim(), ax.set_ylim)):
+            around = LEAST_SPAN * float(np.abs(values).max())
+            set_limits(min(limits[0], float(values.min()) - around), max(limits[1], float(values.max()) + around))
         ax.set(xlabel="shaft speed (rpm)", ylabel="axial load (kN)")
     return ax
