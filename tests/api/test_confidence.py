@@ -15,9 +15,10 @@ from scipy.signal import lfilter
 import trbdyn as trb
 from trbdyn import observables
 from trbdyn.model.cases import scene_30310
-from trbdyn.results.confidence import AVERAGES
+from trbdyn.results.confidence import AVERAGES, confidence
 from trbdyn.results.summary import LABELS, table
 from trbdyn.run.until import Until
+from trbdyn.run.watch import Watch
 
 Array = NDArray[np.float64]
 
@@ -75,6 +76,47 @@ def test_half_width_needs_numbers() -> None:
     assert math.isnan(observables.half_width([1.0, 2.0, 3.0, 4.0]))
     assert math.isnan(observables.half_width([1.0, 2.0, 3.0, 4.0, math.nan]))
     assert observables.half_width([2.0] * 6) == 0.0
+
+
+def test_an_average_that_drifts_has_no_half_width() -> None:
+    """A drift of the batches' means has none; independent ones lose theirs by chance in about 1 of 100 cases."""
+    rng = np.random.default_rng(5)
+    assert math.isnan(observables.half_width(np.linspace(1.0, 2.0, 20)))
+    assert math.isnan(observables.half_width(rng.normal(size=20) + np.linspace(-3.0, 3.0, 20)))
+    for batches in (5, 10, 20):
+        lost = sum(math.isnan(observables.half_width(rng.normal(size=batches))) for _ in range(1000))
+        assert lost <= 25, batches
+
+
+def test_the_summary_says_which_averages_drift() -> None:
+    """Of made-up batches, the torque climbs and the power loss scatters."""
+    time = np.arange(2000) * 1e-3
+    rng = np.random.default_rng(2)
+    made = MadeUp(time, rng.normal(size=2000), 1.0 + 0.05 * time + 0.01 * rng.normal(size=2000))
+    widths, words = confidence(made, MadeUp.averages)  # type: ignore[arg-type]
+    assert widths is not None
+    assert set(widths) == {"power_loss"}
+    assert "none for what drifts from batch to batch: torque;" in words
+
+
+class MadeUp:
+    """A result with only what confidence intervals are computed from."""
+
+    groups = ("power",)
+    has_cage = False
+
+    def __init__(self, time: np.ndarray, power: np.ndarray, torque: np.ndarray) -> None:
+        self.of = {"time": time, "power_loss": power, "torque": torque}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.of[name]
+
+    def window(self, start: float, stop: float) -> MadeUp:
+        inside = (self.of["time"] >= start) & (self.of["time"] <= stop)
+        return MadeUp(*(self.of[name][inside] for name in ("time", "power_loss", "torque")))
+
+    def averages(self) -> dict[str, float]:
+        return {name: float(self.of[name].mean()) for name in ("torque", "power_loss")}
 
 
 def test_the_summary_of_a_run_has_error_bars_that_later_windows_keep() -> None:
@@ -161,6 +203,18 @@ def test_files_and_resuming_change_nothing(enough: trb.Result, tmp_path: Path) -
     assert again.message == whole.message
 
 
+def test_a_run_that_is_wrong_does_not_end_well_because_it_has_what_was_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The look at the energy that a run ends with counts there, too."""
+    look = Watch.look
+    monkeypatch.setattr(Watch, "look", lambda watch, *, final=False: "the energy" if final else look(watch))
+    result = rolling().run(duration=4.0, until=UNTIL)
+    assert result.duration < 3.0
+    assert not result.success
+    assert "the energy" in result.message
+
+
 def test_a_run_that_ends_without_it_says_so() -> None:
     with pytest.warns(trb.RunWarning, match="without the confidence that was asked for: torque"):
         result = rolling().run(duration=0.1, until={"torque": 1e-6})
@@ -176,6 +230,7 @@ def test_a_run_that_ends_without_it_says_so() -> None:
         ({"torque": 2}, "run.until.torque = 2"),
         ({"torque": True}, "must be a number"),
         ({"torque": 0.0}, "must be > 0"),
+        ({"torque": math.nan}, "run.until.torque = nan"),
     ],
 )
 def test_what_cannot_be_asked_for(until: dict[str, float], said: str) -> None:

@@ -81,17 +81,22 @@ def confidence(window: Result, average: Callable[[Result], dict[str, Any]]) -> t
             f"the window of {length:.3g} s is too short for the motion in it, which remembers itself for {long}",
         )
     found = [average(window.window(time[part.start], time[part.stop - 1])) for part in parts]
-    widths = {}
+    widths: dict[str, float] = {}
+    drifting: list[str] = []
     for name in AVERAGES:
         values = [one.get(name) for one in found]
-        if all(value is not None for value in values):
-            width = observables.half_width(np.asarray(values, dtype=float))
-            if math.isfinite(width):
-                widths[name] = width
-    length = float(time[parts[0].stop] - time[parts[0].start]) if len(parts) > 1 else 0.0
+        if any(value is None or not math.isfinite(value) for value in values):
+            continue
+        width = observables.half_width(np.asarray(values, dtype=float))
+        if math.isfinite(width):
+            widths[name] = width
+        else:
+            drifting.append(name)
+    length = float(time[parts[0].stop] - time[parts[0].start])
+    none = f"; none for what drifts from batch to batch: {', '.join(drifting)}" if drifting else ""
     return widths, (
-        f"half widths of 95 % confidence intervals, from {len(parts)} batches of {length:.3g} s; slow drift and errors of the "
-        "model are not in them"
+        f"half widths of 95 % confidence intervals, from {len(parts)} batches of {length:.3g} s{none}; drift slower than the "
+        "window and errors of the model are not in them"
     )
 
 

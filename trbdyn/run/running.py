@@ -72,8 +72,8 @@ class Run:
         self.spent = 0.0
         self.fields = field_table.table()
         self.layout = list(sim._model.record_layout())
-        wanted = check_wanted(options.until, options.save_groups, sim.scene.effects.bodies == "rollers_and_cage")
-        self.until = Until(wanted, times.size)
+        check_wanted(options.until, options.save_groups, sim.scene.effects.bodies == "rollers_and_cage")
+        self.until = Until(options.until, times.size)
         self.enough = ""
         self.with_peaks = peak_table.GROUP in options.save_groups
         if self.with_peaks:
@@ -207,7 +207,9 @@ class Run:
             if rows and self.until.reached(self.done, self._so_far):
                 self.times = self.times[: self.done]
                 self.enough = f"reached {sim._reached:.6g} s, as far as was needed: {self.until.said}"
-                watch.look(final=True)
+                doubt = watch.look(final=True)
+                if doubt is not None:
+                    return doubt
             if ended:
                 return f"ended by the callback at {sim.time:.6g} s"
         return None

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from trbdyn.errors import InputError
 from trbdyn.results.confidence import AVERAGES
@@ -32,14 +32,18 @@ GROUPS_OF: Final = {
     "torque": "torque",
     "power_": "power",
     "film_": "contacts",
+    "outer_load": "contacts",
+    "inner_load": "contacts",
+    "rib_load": "contacts",
+    "cage_slip": "rollers",
     "skew_": "rollers",
     "spacing_": "rollers",
 }
 """Group of records that an average needs, by the beginning of its name; other averages are those of the cage."""
 
 
-def check_wanted(wanted: Mapping[str, Any], groups: tuple[str, ...], has_cage: bool) -> dict[str, float]:
-    """What is asked for, if it can be had.
+def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], has_cage: bool) -> None:
+    """Check that what is asked for can be had.
 
     Parameters
     ----------
@@ -53,19 +57,14 @@ def check_wanted(wanted: Mapping[str, Any], groups: tuple[str, ...], has_cage: b
     Raises
     ------
     InputError
-        If a name is none of an average, a share is not between 0 and 1, or what an average needs is not kept.
+        If a name is none of an average, or what an average needs is not kept or does not exist.
     """
-    found: dict[str, float] = {}
-    for name, share in wanted.items():
+    for name in wanted:
         if name not in AVERAGES:
-            near = get_close_matches(str(name), AVERAGES, 1)
+            near = get_close_matches(name, AVERAGES, 1)
             meant = f"did you mean {near[0]}? " if near else ""
             raise InputError.of(
                 ("run", "until"), name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}"
-            )
-        if isinstance(share, bool) or not isinstance(share, int | float) or not 0.0 < share < 1.0:
-            raise InputError.of(
-                ("run", "until", name), share, "must be a number above 0 and below 1: half width over average (1)"
             )
         needs = {"cage", "rollers", _group_of(name)}
         missing = sorted(needs - set(groups))
@@ -73,15 +72,9 @@ def check_wanted(wanted: Mapping[str, Any], groups: tuple[str, ...], has_cage: b
             raise InputError.of(("run", "save_groups"), groups, f"must hold {', '.join(missing)} for until = {name}")
         if not has_cage and _group_of(name) in ("cage", "pocket"):
             raise InputError.of(("run", "until"), name, "needs a cage: effects.bodies = 'rollers_and_cage'")
-        found[name] = float(share)
-    return found
 
 
 def _group_of(name: str) -> str:
-    if name.endswith("_load_mean"):
-        return "contacts"
-    if name in ("cage_slip",):
-        return "rollers"
     return next((group for start, group in GROUPS_OF.items() if name.startswith(start)), "cage")
 
 
@@ -91,7 +84,7 @@ class Until:
     Parameters
     ----------
     wanted : mapping of str to float
-        As `check_wanted` gives it.
+        Largest half width over the size of the average, by name.
     records : int
         Records of the longest run.
     """

@@ -27,6 +27,8 @@ MOST_BATCHES: Final = 20
 LEAST_BATCHES: Final = 5
 """Batches below which no error is given."""
 CONFIDENCE: Final = 0.95
+ALIKE: Final = 2.326
+"""Standard deviations that only 1 of 100 normal values exceeds."""
 
 
 def correlation_time(time: ArrayLike, values: ArrayLike) -> float:
@@ -120,12 +122,13 @@ def half_width(values: ArrayLike, confidence: float = CONFIDENCE) -> float:
     Returns
     -------
     float
-        In the unit of the values; nan for fewer than five batches, or where one has no value.
+        In the unit of the values; nan for fewer than five batches, where one has no value, or where values that follow each other
+        are more alike than chance makes them: then they are not independent, and their scatter tells too small an error.
 
     Examples
     --------
     >>> from trbdyn import observables
-    >>> round(observables.half_width([1.0, 2.0, 3.0, 4.0, 5.0]), 3)
+    >>> round(observables.half_width([1.0, 4.0, 2.0, 5.0, 3.0]), 3)
     1.963
     """
     from scipy import stats
@@ -133,5 +136,19 @@ def half_width(values: ArrayLike, confidence: float = CONFIDENCE) -> float:
     x = np.asarray(values, dtype=float)
     if x.size < LEAST_BATCHES or not np.isfinite(x).all():
         return math.nan
+    if _follows(x):
+        return math.nan
     factor = float(stats.t.ppf(0.5 + 0.5 * confidence, x.size - 1))
     return factor * float(x.std(ddof=1)) / math.sqrt(x.size)
+
+
+def _follows(x: Array) -> bool:
+    """Whether neighbours are more alike than those of independent values would be in all but 1 of 100 cases: the correlation of
+    neighbours has the mean -1/K and nearly the variance 1/K (Anderson, Ann. Math. Stat. 13 (1942) 1-13).
+    """
+    away = x - x.mean()
+    size = float(np.sum(away**2))
+    if size == 0.0:
+        return False
+    alike = float(np.sum(away[:-1] * away[1:])) / size
+    return alike > ALIKE / math.sqrt(x.size) - 1.0 / x.size
