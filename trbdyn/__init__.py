@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from trbdyn.run.resume import resume
     from trbdyn.run.simulation import Simulation
     from trbdyn.run.toml_case import load_case
+    from trbdyn.study.planning import plan
     from trbdyn.study.what_matters import sensitivity
     from trbdyn.viewer import view
 
@@ -83,6 +84,7 @@ _NAMES = {
     "__version__": "trbdyn.base.version",
     "load": "trbdyn.results.result",
     "load_case": "trbdyn.run.toml_case",
+    "plan": "trbdyn.study.planning",
     "report": "trbdyn.reporting",
     "resume": "trbdyn.run.resume",
     "sensitivity": "trbdyn.study.what_matters",
@@ -127,6 +129,7 @@ __all__ = [
     "load_case",
     "lubricants",
     "observables",
+    "plan",
     "plot",
     "pocket_shapes",
     "report",

@@ -16,6 +16,7 @@ from trbdyn.cli.cases import add_case_parsers
 from trbdyn.cli.demo import add_demo_parser
 from trbdyn.cli.look import add_look_parsers
 from trbdyn.cli.outcome import BAD_INPUT, DONE, FAILED, FAULT, INTERRUPTED, Parser, let_any_name_be_printed, run_command
+from trbdyn.cli.plan import add_plan_parser
 from trbdyn.cli.report import add_report_parser
 from trbdyn.cli.run import add_run_parsers
 from trbdyn.cli.sweep import add_sweep_parser
@@ -60,5 +61,6 @@ def make_parser() -> argparse.ArgumentParser:
     add_report_parser(commands, common)
     add_view_parser(commands, common)
     add_sweep_parser(commands, common)
+    add_plan_parser(commands, common)
     add_case_parsers(commands, common)
     return parser

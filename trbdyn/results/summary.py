@@ -142,8 +142,8 @@ def _motion(result: Result) -> dict[str, Any]:
     time = window["time"]
     out |= {"window_start": float(time[0]), "window_end": float(time[-1])}
     out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
-    out |= _averages(window)
-    out["confidence"], out["confidence_note"] = confidence(window, _averages)
+    out |= averages(window)
+    out["confidence"], out["confidence_note"] = confidence(window, averages)
     if not result.has_cage:
         out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
     if "energy" in groups:
@@ -152,7 +152,7 @@ def _motion(result: Result) -> dict[str, Any]:
     return out
 
 
-def _averages(window: Result) -> dict[str, Any]:
+def averages(window: Result) -> dict[str, Any]:
     parts: dict[str, Callable[[Result], dict[str, Any]]] = {
         "cage": _cage,
         "rollers": _rollers,

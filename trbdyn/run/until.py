@@ -66,16 +66,23 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], has_cage:
             raise InputError.of(
                 ("run", "until"), name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}"
             )
-        needs = {"cage", "rollers", _group_of(name)}
-        missing = sorted(needs - set(groups))
+        missing = sorted(set(groups_for(name)) - set(groups))
         if missing:
             raise InputError.of(("run", "save_groups"), groups, f"must hold {', '.join(missing)} for until = {name}")
-        if not has_cage and _group_of(name) in ("cage", "pocket"):
+        if not has_cage and groups_for(name)[-1] in ("cage", "pocket"):
             raise InputError.of(("run", "until"), name, "needs a cage: effects.bodies = 'rollers_and_cage'")
 
 
-def _group_of(name: str) -> str:
-    return next((group for start, group in GROUPS_OF.items() if name.startswith(start)), "cage")
+def groups_for(name: str) -> tuple[str, str, str]:
+    """Groups of records that an average needs: those that tell whether the motion has settled, and last its own.
+
+    Parameters
+    ----------
+    name : str
+        One of `trbdyn.results.confidence.AVERAGES`.
+    """
+    own = next((group for start, group in GROUPS_OF.items() if name.startswith(start)), "cage")
+    return "cage", "rollers", own
 
 
 class Until:

@@ -1,0 +1,245 @@
+"""Whether plans keep what they promise: `trbdyn.plan` on many scenes, each against a long run with everything on.
+
+The truth of a scene is its own effects with 32 Gauss nodes and the preset 'reference', run much longer than the plan. A promise
+is kept where the difference between the run of the plan and the truth is at most what was promised, beside the statistical error
+of the truth itself; the wish is kept where it is at most what was wanted. Costs are processor times of runs: of the plan, of the
+truth's settings for as exact a run as the plan expects to need with them, and of the scene as given, as long as the plan's.
+"""
+
+from __future__ import annotations
+
+import multiprocessing as mp
+import time
+import warnings
+from concurrent.futures import ProcessPoolExecutor
+from typing import Any
+
+import common
+import numpy as np
+
+import trbdyn as trb
+from trbdyn.results.confidence import confidence
+from trbdyn.results.summary import averages
+from trbdyn.study.planning import Plan
+from trbdyn.study.planning.candidates import TRUE_NODES, numerics
+
+COLUMNS = {
+    "scene": "text: name",
+    "text": "text: what it is",
+    "quantity": "text: average of the summary",
+    "wanted": "1: wanted relative error",
+    "promised": "1: promised relative error",
+    "error": "1: relative difference of the plan's run from the truth",
+    "truth": "unit of the quantity: value of the truth",
+    "truth_half_width": "1: relative half width of the truth's own 95 % confidence interval",
+    "promise_kept": "1: the error is at most what was promised, beside the truth's half width",
+    "wish_kept": "1: the same with what was wanted",
+    "hidden": "1: the plan said that chance hides the error of model and numerics in this average",
+    "reached": "1: the plan said that the wish is within reach",
+    "left_out": "text: effects that the plan leaves out",
+    "nodes": "1: nodes along a contact",
+    "accuracy": "text: preset of the tolerances",
+    "duration": "s: bearing time of the plan's run",
+    "probes_s": "s: processor time of the probes",
+    "plan_s": "s: processor time of the plan's run",
+    "given_s": "s: processor time of the scene as given with the preset standard, as long",
+    "everything_s": "s: expected processor time of a run as exact with everything on, 32 nodes and reference",
+    "truth_s": "s: processor time of the truth",
+    "promises_kept": "1: share of promises kept",
+    "wishes_kept": "1: share of wishes kept, of those that the plan said are within reach",
+    "cost_over_everything": "1: processor time of the plan over that with everything on, geometric mean",
+    "cost_over_given": "1: processor time of the plan over that of the scene as given, geometric mean",
+}
+EFFORT = 15.0
+TRUTH_S = 60.0
+"""Processor time of a truth at most (s)."""
+LONGER = 6.0
+"""Length of the truth's averaging over that of the plan."""
+QUICK = ("rig_30310", "32216", "combined")
+
+
+def scenes() -> dict[str, tuple[str, trb.Scene, dict[str, float]]]:
+    """Name, words, scene and wishes."""
+    usual, paper, whirl = trb.Effects(), trb.Effects.paper(), trb.Start.whirl(0.9)
+    rig = trb.cases.scene_30310
+    torque, cage = {"torque": 0.02}, {"torque": 0.02, "axis_distance_over_cpr": 0.1}
+    bearing = trb.cases.rig_30310()
+    uneven = bearing.replace(
+        roller=bearing.roller.replace(diameter_scatter=trb.Scatter(range=2e-6, seed=1)),
+    )
+    return {
+        "rig_30310": ("the paper's rig, 3000 rpm, 4930 N", rig(3000.0, 4930.0, effects=paper, start=whirl), torque),
+        "paper_light": ("the paper's rig, 3000 rpm, 1230 N", rig(3000.0, 1230.0, effects=paper, start=whirl), cage),
+        "paper_slow": ("the paper's rig, 1000 rpm, 4930 N", rig(1000.0, 4930.0, effects=paper, start=whirl), torque),
+        "usual": ("3000 rpm, 4930 N, usual effects", rig(3000.0, 4930.0, effects=usual, start=whirl), cage),
+        "32216": ("32216, 1500 rpm", trb.cases.scene_32216(1500.0), torque),
+        "combined": (
+            "2000 rpm, 4930 N axial, 5530 N radial",
+            rig(2000.0, 4930.0, effects=usual).replace(radial_load=5530.0),
+            {"torque": 0.02, "pocket_force_p95": 0.3},
+        ),
+        "radial": (
+            "1000 rpm, 3000 N axial, 9000 N radial: rollers without load",
+            rig(1000.0, 3000.0, effects=usual).replace(radial_load=9000.0),
+            torque,
+        ),
+        "light": (
+            "3000 rpm, 1230 N, usual effects",
+            rig(3000.0, 1230.0, effects=usual, start=whirl),
+            {"torque": 0.02, "pocket_duty": 0.2},
+        ),
+        "heavy": ("3000 rpm, 20 kN", rig(3000.0, 20_000.0, effects=usual), {"torque": 0.02, "cage_slip": 0.1}),
+        "fast": ("10 000 rpm, 4930 N", rig(10_000.0, 4930.0, effects=usual, start=whirl), cage),
+        "slow": ("100 rpm, 4930 N", rig(100.0, 4930.0, effects=usual), {"torque": 0.03}),
+        "uneven": (
+            "rollers of unequal diameter, 2 um",
+            rig(3000.0, 4930.0, effects=usual).replace(bearing=uneven),
+            {"torque": 0.02, "orbit_radius_over_cpr": 0.2},
+        ),
+        "misaligned": (
+            "inner ring misaligned by 0.5 mrad",
+            rig(3000.0, 4930.0, effects=usual).replace(misalignment_x=5e-4),
+            torque,
+        ),
+        "drag": (
+            "6000 rpm, a fifth of the space full of oil",
+            rig(6000.0, 4930.0, effects=usual.replace(oil_fill=0.2)),
+            {"torque": 0.03, "cage_slip": 0.1},
+        ),
+        "cold": (
+            "1500 rpm, oil at 20 C",
+            rig(1500.0, 4930.0, effects=usual).replace(lubricant=trb.lubricants.vg100(20.0)),
+            torque,
+        ),
+        "least": (
+            "planar, dry friction (preset minimal)",
+            rig(3000.0, 4930.0, effects=trb.Effects.minimal(), start=trb.Start.equal()),
+            {"torque": 0.05},
+        ),
+    }
+
+
+def proof(name: str) -> list[dict[str, Any]]:
+    """The plan of a scene, its run, and the truth; a row for each wanted average."""
+    text, scene, want = scenes()[name]
+    warnings.simplefilter("ignore")
+    plan = trb.plan(scene, want, effort=EFFORT)
+    plan_s, result = _timed(plan, plan.scene, plan.accuracy, plan.duration)
+    found = plan.averages(result)
+    given_s, _ = _timed(plan, scene, "standard", plan.duration)
+    rate = plan.wall_s_everything / max(plan.duration, 1e-12)
+    everything = scene.replace(effects=scene.effects.replace(**numerics(TRUE_NODES)))
+    length = max(LONGER * (plan.duration - plan.settle) + 2.0 * plan.settle, 2.0 * plan.duration)
+    length = min(length, max(TRUTH_S / rate, plan.duration))
+    truth_s, true = _timed(plan, everything, "reference", length)
+    window = true.window(float(true["time"][0]) + max(plan.settle, 0.25 * length))
+    values, widths = averages(window), confidence(window, averages)[0] or {}
+    rows = []
+    for wanted, wish in want.items():
+        value = float(values[wanted])
+        half = widths.get(wanted, np.nan) / abs(value)
+        error, slack = abs(found[wanted] - value) / abs(value), 0.0 if np.isnan(half) else half
+        rows.append(
+            {
+                "scene": name,
+                "text": text,
+                "quantity": wanted,
+                "wanted": wish,
+                "promised": plan.promised[wanted],
+                "error": error,
+                "truth": value,
+                "truth_half_width": half,
+                "promise_kept": bool(error <= plan.promised[wanted] + slack),
+                "wish_kept": bool(error <= wish + slack),
+                "hidden": any(f"in {wanted} is hidden" in note for note in plan.warnings),
+                "reached": plan.reached,
+                "left_out": ", ".join(plan.left_out),
+                "nodes": plan.scene.effects.n_slices,
+                "accuracy": plan.accuracy,
+                "duration": plan.duration,
+                "probes_s": plan.spent_s,
+                "plan_s": plan_s,
+                "given_s": given_s,
+                "everything_s": plan.wall_s_everything,
+                "truth_s": truth_s,
+            }
+        )
+    return rows
+
+
+def _timed(plan: Plan, scene: trb.Scene, accuracy: str, duration: float) -> tuple[float, trb.Result]:
+    """Processor time of a run with the records of a plan, with its construction, and its result."""
+    began = time.process_time()
+    simulation = trb.Simulation(scene, accuracy=accuracy)
+    result = simulation.run(duration=duration, save_every=plan.save_every, save_groups=plan.save_groups)
+    return time.process_time() - began, result
+
+
+def main() -> None:
+    """Run the benchmark."""
+    parser = common.parser(__doc__)
+    parser.add_argument("--jobs", type=int, default=1, help="scenes at once")
+    parser.add_argument("--scenes", nargs="+", choices=list(scenes()), default=None, help="only these")
+    options = parser.parse_args()
+    report = common.Report("plan_proof", options, COLUMNS)
+    names = options.scenes or (QUICK if options.quick else list(scenes()))
+    report.inputs = {"effort_s": EFFORT, "truth_s": TRUTH_S, "scenes": list(names)}
+    with ProcessPoolExecutor(options.jobs, mp_context=mp.get_context("spawn")) as pool:
+        for rows in pool.map(proof, names):
+            for row in rows:
+                report.add(**row)
+                print({key: row[key] for key in ("scene", "quantity", "promised", "error", "promise_kept")}, flush=True)
+    rows = report.results
+    one = {row["scene"]: row for row in rows}.values()
+    reached = [row for row in rows if row["reached"]]
+    report.summary = {
+        "promises_kept": float(np.mean([row["promise_kept"] for row in rows])),
+        "wishes_kept": float(np.mean([row["wish_kept"] for row in reached])) if reached else None,
+        "cost_over_everything": _mean([row["plan_s"] / row["everything_s"] for row in one]),
+        "cost_over_given": _mean([row["plan_s"] / row["given_s"] for row in one]),
+    }
+    report.readme = _page(rows, report.summary)
+    print(report.readme)
+    report.finish()
+
+
+def _mean(ratios: list[float]) -> float:
+    return float(np.exp(np.mean(np.log(ratios))))
+
+
+def _page(rows: list[dict[str, Any]], summary: dict[str, Any]) -> str:
+    """The tables of the page."""
+    shown = []
+    for row in rows:
+        percent = {key: _percent(row[key]) for key in ("wanted", "promised", "error", "truth_half_width")}
+        shown.append(
+            {
+                "scene": row["text"],
+                "quantity": row["quantity"],
+                "wanted": percent["wanted"],
+                "promised": percent["promised"] + (" (hidden)" if row["hidden"] else ""),
+                "error": f"{percent['error']} ± {percent['truth_half_width']}",
+                "kept": "yes" if row["promise_kept"] else "**no**",
+                "left out": row["left_out"] or "nothing",
+                "nodes, preset": f"{row['nodes']}, {row['accuracy']}",
+                "plan (s)": f"{row['plan_s']:.2g}",
+                "as given (s)": f"{row['given_s']:.2g}",
+                "everything (s)": f"{row['everything_s']:.2g}",
+            }
+        )
+    table = common.table(shown, list(shown[0]))
+    share = 100.0 * summary["promises_kept"]
+    return (
+        f"{share:.0f} % of {len(rows)} promises kept. The runs of the plans take {summary['cost_over_everything']:.2g} of "
+        "the processor time with everything on, and "
+        f"{summary['cost_over_given']:.2g} of that of the scene as given (geometric means).\n\n"
+        f"{table}"
+    )
+
+
+def _percent(share: float) -> str:
+    return "-" if np.isnan(share) else f"{100.0 * share:.2g} %"
+
+
+if __name__ == "__main__":
+    main()

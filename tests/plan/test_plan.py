@@ -1,0 +1,206 @@
+"""Plans of whole scenes: what they promise holds, what is refused, what the command writes."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn.cli import main
+from trbdyn.model.cases import scene_30310
+from trbdyn.model.motion import History
+from trbdyn.study.planning.candidates import SWITCHES, candidates
+from trbdyn.study.planning.probes import Influence, Probe, carried_over, influence
+from trbdyn.study.planning.proposal import Plan, words
+
+WANT = {"torque": 0.05}
+
+
+def rolling(**changes: object) -> trb.Scene:
+    return scene_30310(3000.0, 4930.0, effects=trb.Effects().replace(**changes), start=trb.Start.equal())
+
+
+@pytest.fixture(scope="module")
+def proposal() -> Plan:
+    return trb.plan(rolling(), WANT, effort=3.0)
+
+
+class TestInfluence:
+    """On made-up batches."""
+
+    def of(self, other: list[float], base: list[float]) -> Influence:
+        probes = [Probe({"torque": np.array(values)}, 1.0) for values in (other, base)]
+        return influence(probes[0], probes[1], {"torque": -2.0}, "torque")
+
+    def test_by_hand(self) -> None:
+        base = [2.0, 2.1, 1.9, 2.2, 2.0]
+        found = self.of([2.1, 2.24, 2.0, 2.34, 2.12], base)  # differences .1 .14 .1 .14 .12, over 2
+        assert found.change == pytest.approx(0.06)
+        assert found.half_width == pytest.approx(2.7764 * 0.01 / math.sqrt(5.0), rel=1e-3)
+        assert found.bound == pytest.approx(found.change + found.half_width)
+        assert not found.moving
+
+    def test_a_difference_that_grows_is_bounded_by_twice_its_largest(self) -> None:
+        found = self.of([2.0 + 0.01 * k for k in range(20)], [2.0] * 20)
+        assert found.moving
+        assert found.bound == pytest.approx(2.0 * 0.19 / 2.0)
+
+    def test_what_could_not_be_run_has_no_bound(self) -> None:
+        lost = Probe({}, math.nan, "the rollers fell out")
+        found = influence(lost, Probe({"torque": np.ones(5)}, 1.0), {"torque": 1.0}, "torque")
+        assert math.isinf(found.bound)
+        assert words(found) == "-"
+
+    def test_words(self) -> None:
+        assert words(Influence(-0.9876, 0.0033)) == "-99 ± 0.33 %"
+        assert words(Influence(0.0012, 0.2)) == "+0.12 ± 20 %"
+
+
+class TestCandidates:
+    def test_every_switch_is_an_effect_that_may_be_left_out_or_one_that_is_off(self) -> None:
+        scene = rolling(oil_fill=0.1)
+        kinds = {one.name: one.kind for one in candidates(scene, wants_cage=False)}
+        ours = {switch.name for switch in SWITCHES} - {"land that guides the cage"}
+        assert {name for name, kind in kinds.items() if kind == "effect"} == ours
+        least = scene.replace(effects=trb.Effects.minimal())
+        off = {one.name for one in candidates(least, wants_cage=False) if one.kind == "off"}
+        assert off == {"tilt and axial motion", "front rib", "pocket ends", "damping of contacts"}
+
+    def test_averages_of_the_cage_need_it(self) -> None:
+        assert "cage" not in {one.name for one in candidates(rolling(), wants_cage=True)}
+
+    def test_each_changes_the_scene(self) -> None:
+        scene = rolling(oil_fill=0.1)
+        for one in candidates(scene, wants_cage=False):
+            if one.kind != "tolerances":
+                assert scene.effects.replace(**one.effects) != scene.effects, one.name
+
+    def test_a_state_is_carried_over_to_other_switches(self) -> None:
+        """Also where the state vector has another length: drag has a loss of its own."""
+        with_drag, without = rolling(oil_fill=0.1), rolling()
+        simulation = trb.Simulation(with_drag)
+        simulation.run(duration=1e-3)
+        state = simulation.state
+        start = trb.Start.state(state.vector, time=state.time, shaft_angle=state.shaft_angle)
+        other = trb.Simulation(carried_over(without, start, with_drag))
+        assert other.state.vector.size < state.vector.size
+        assert other.time == state.time
+        for name in ("roller_r", "roller_z", "cage_x"):
+            np.testing.assert_array_equal(other.view()[name], simulation.view()[name])
+
+
+def test_what_is_promised_is_within_the_wish(proposal: Plan) -> None:
+    assert proposal.reached
+    assert 0.0 < proposal.promised["torque"] <= 0.05
+    parts = proposal.parts["torque"]
+    assert sum(parts.values()) == pytest.approx(proposal.promised["torque"])
+    assert proposal.settle < proposal.duration
+    assert proposal.wall_s < proposal.wall_s_everything
+
+
+def test_the_promise_holds(proposal: Plan) -> None:
+    """Against a longer run with everything on."""
+    found = proposal.averages(proposal.run())["torque"]
+    truth = rolling(quadrature="gauss", n_slices=32)
+    result = trb.Simulation(truth, accuracy="reference").run(duration=0.4, save_every=5e-4)
+    true = float(result.window(0.1)["inner_torque"].mean())
+    assert abs(found / true - 1.0) <= proposal.promised["torque"] + 0.003
+    assert abs(proposal.value["torque"] / true - 1.0) < 0.02
+
+
+def test_effects_that_matter_are_kept(proposal: Plan) -> None:
+    rows = {row.name: row for row in proposal.rows}
+    for name in ("rolling resistance", "thermal reduction of films"):
+        assert not rows[name].chosen
+        assert "it matters for torque" in rows[name].decision
+        assert abs(rows[name].influence["torque"].change) > 0.05
+    assert proposal.scene.effects.rolling_resistance
+    for row in proposal.rows:
+        assert row.decision
+        if row.kind == "effect":
+            assert row.chosen == (row.name in proposal.left_out)
+
+
+def test_it_is_ready_to_run(proposal: Plan) -> None:
+    assert proposal.options.duration == proposal.duration
+    simulation = trb.Simulation(proposal.scene, **proposal.options.of_simulation())
+    assert simulation.options.accuracy == proposal.accuracy
+
+
+def test_its_words(proposal: Plan) -> None:
+    text = str(proposal)
+    assert "torque = " in text
+    assert "wanted within 5 %" in text
+    for row in proposal.rows:
+        assert row.decision in text
+    assert "the rollers creep within" in text
+
+
+def test_its_picture_shows_every_row_that_could_be_run(proposal: Plan, tmp_path: Path) -> None:
+    figure = proposal.picture(tmp_path / "plan.png")
+    left, right = figure.axes
+    rows = [row for row in proposal.rows if math.isfinite(row.time_ratio)]
+    assert [bar.get_width() for bar in right.patches] == pytest.approx([row.time_ratio for row in rows][::-1])
+    assert len(left.get_yticklabels()) == len(rows)
+    names = [label.get_text() for label in left.get_yticklabels()][::-1]
+    assert all(row.name in name for row, name in zip(rows, names, strict=True))
+    assert [("✓" in name) for name in names] == [row.chosen for row in rows]
+    assert (tmp_path / "plan.png").stat().st_size > 10_000
+
+
+def test_a_budget_is_kept() -> None:
+    found = trb.plan(rolling(), WANT, budget=0.1, effort=2.0)
+    assert found.wall_s <= 0.11 or not found.reached
+    assert found.budget == 0.1
+
+
+@pytest.mark.parametrize(
+    ("want", "changes", "said"),
+    [
+        ({}, {}, "must name an average"),
+        ({"torqe": 0.1}, {}, "did you mean torque"),
+        ({"torque": 1.5}, {}, "want.torque = 1.5"),
+        ({"torque": math.nan}, {}, "want.torque = nan"),
+        ({"torque": True}, {}, "must be a number"),
+        ({"torque": 0.1}, {"budget": 0.0}, "budget = 0.0"),
+        ({"torque": 0.1}, {"effort": math.inf}, "effort = inf"),
+    ],
+)
+def test_what_cannot_be_wanted(want: dict[str, float], changes: dict[str, float], said: str) -> None:
+    with pytest.raises(trb.InputError, match=said):
+        trb.plan(rolling(), want, **changes)
+
+
+def test_scenes_that_cannot_be_planned() -> None:
+    with pytest.raises(trb.InputError, match="speed_rpm"):
+        trb.plan(rolling().replace(speed_rpm=0.0), WANT)
+    ramp = History.ramp(0.0, 1.0, 100.0, 200.0)
+    with pytest.raises(trb.InputError, match="must be constant"):
+        trb.plan(rolling().replace(speed_rpm=ramp), WANT)
+    with pytest.raises(trb.InputError, match="needs a cage"):
+        trb.plan(rolling(bodies="rollers"), {"pocket_duty": 0.1})
+
+
+def test_the_command_writes_a_case_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = str(tmp_path / "mine")
+    call = ["plan", "rig_30310", "--want", "torque=0.05", "--effort", "2", "-o", name]
+    assert main(call) == 0
+    said = capsys.readouterr().out
+    assert "promised within" in said
+    scene, options = trb.load_case(tmp_path / "mine.toml")
+    assert options.duration is not None
+    assert scene.speed_rpm == 3000.0
+    assert (tmp_path / "mine.png").exists()
+    assert main(call) == 2
+    assert "mine.toml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words_", ["torque", "torque=", "torque=a", "torque=nan", "=0.1", "torqe=0.1", "torque=2"])
+def test_bad_wishes_end_with_one_line(words_: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["plan", "rig_30310", "--want", words_, "-o", str(tmp_path / "x")]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "Traceback" not in said

@@ -1,0 +1,181 @@
+"""What a plan stands on: a run of the scene with everything on, from its start until the motion has settled, as far as the time
+for it reaches. It gives the state that the probes start from, the averages with their scatter, and what is left of settling.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from trbdyn.errors import StepError
+from trbdyn.model.scene import Scene, Start
+from trbdyn.results.confidence import confidence
+from trbdyn.results.summary import averages
+from trbdyn.study.planning.candidates import USUAL_ACCURACY
+from trbdyn.study.planning.probes import Array, Length, in_batches, run_quietly
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+FIRST_TURNS: Final = 2.0
+"""Turns of the shaft of the first look at the computing time."""
+LEAST_TURNS: Final = 20.0
+"""Turns of the shaft below which a note says so."""
+MOST_TURNS: Final = 1000.0
+"""Turns of the shaft after which the run ends, however fast it is."""
+SETTLING_BATCHES: Final = 40
+"""Batches in which the run is looked through for the end of the transient."""
+LEFT_OF_SETTLING: Final = 0.1
+"""Share of the wish that the mean of three batches may be off after settling, beside their scatter."""
+UNKNOWN_SCATTER: Final = 2.0
+"""Factor of the scatter where it is not known from independent batches."""
+
+
+@dataclass(frozen=True)
+class Ground:
+    """A run of a scene with everything on.
+
+    Attributes
+    ----------
+    start : Start
+        The state at its end.
+    value : dict of str to float
+        The averages over its settled part.
+    scatter : ndarray, shape (W,)
+        Half widths of their confidence intervals over their sizes.
+    drift : ndarray, shape (W,)
+        What the averages still change by, over their sizes.
+    window, settle : float
+        Lengths of the settled part, and of the part before it (s).
+    creep_time : float
+        Time of the rollers' creep (s); nan where it is not known.
+    rate : float
+        Processor time for a second of bearing time (s).
+    notes : tuple of str
+        Where it could be wrong.
+    """
+
+    start: Start
+    value: dict[str, float]
+    scatter: Array
+    drift: Array
+    window: float
+    settle: float
+    creep_time: float
+    rate: float
+    notes: tuple[str, ...]
+
+
+def computing_rate(scene: Scene, period: float, length: Length) -> float:
+    """Processor time for a second of bearing time at the scene's start (s).
+
+    Raises
+    ------
+    StepError
+        If the scene cannot be run.
+    """
+    first = Length(FIRST_TURNS * period, length.save_every, length.groups, length.patience)
+    result, rate, failure = run_quietly(scene, USUAL_ACCURACY, first)
+    if result is None or not math.isfinite(rate) or rate > 1e12:
+        raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
+    return rate
+
+
+def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: Length) -> Ground:
+    """Run a scene as long as its share of the time allows.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene with everything on.
+    want : mapping of str to float
+        Wanted relative error by the name of the average.
+    period : float
+        Time of a turn of the shaft (s).
+    length : Length
+        With the longest duration; what to keep.
+
+    Raises
+    ------
+    StepError
+        If the run fails.
+    """
+    result, spent, failure = run_quietly(scene, USUAL_ACCURACY, length)
+    if result is None or (failure and "callback" not in failure):
+        raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
+    names, settling = list(want), result.settling()
+    began, end = float(result["time"][0]), float(result["time"][-1])
+    settled_from = settling.time if settling.settled else 0.5 * (began + end)
+    window = result.window(settled_from)
+    value = {name: _value(averages(window), name) for name in names}
+    scatter, notes = _scatter(window, names, value)
+    notes += [f"the motion is not known to have settled after {end - began:.3g} s: {settling.reason}"] * (
+        not settling.settled
+    )
+    notes += [f"in the run that it stands on: {text}" for text in result.warnings]
+    turns = (end - began) / period
+    if turns < LEAST_TURNS:
+        notes.append(f"only {turns:.2g} turns of the shaft could be looked at; allow more effort")
+    drift = np.zeros(len(names)) if settling.settled else _drift(result, names, value)
+    assert result.final_state is not None
+    angle = scene.start_shaft_angle + scene.shaft_turn(result.final_time)
+    state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle)
+    settle = _settle(result, want, value, settled_from)
+    return Ground(state, value, scatter, drift, end - settled_from, settle, settling.creep_time, spent, tuple(notes))
+
+
+def _settle(result: Result, want: Mapping[str, float], value: Mapping[str, float], latest: float) -> float:
+    """Time after the start from which each wanted average is that of the settled part, but for its scatter (s)."""
+    time = result["time"]
+    batches = in_batches(result, list(want), 0.0, SETTLING_BATCHES)
+    ends = np.linspace(time[0], time[-1], SETTLING_BATCHES + 1)
+    last = int(np.searchsorted(ends, latest))
+    first = 0
+    for name, wish in want.items():
+        values, size = batches[name], abs(value[name])
+        noise = 2.0 * float(np.std(values[last:], ddof=1)) / math.sqrt(3.0)
+        threes = np.array([values[k : k + 3].mean() for k in range(last)])
+        off = np.flatnonzero(~(np.abs(threes - value[name]) <= noise + LEFT_OF_SETTLING * wish * size))
+        first = max(first, int(off[-1]) + 1 if off.size else 0)
+    return min(float(ends[max(first, 1)]), latest) - float(time[0])
+
+
+def _value(found: dict[str, Any], name: str) -> float:
+    value = found.get(name)
+    return math.nan if value is None else float(value)
+
+
+def _scatter(window: Result, names: Sequence[str], value: dict[str, float]) -> tuple[Array, list[str]]:
+    """Half widths over the values: of independent batches, else guessed from ten batches and said so."""
+    widths, _ = confidence(window, averages)
+    known = widths or {}
+    parts = in_batches(window, names, 0.0)
+    notes, found = [], []
+    for name in names:
+        size = abs(value[name])
+        if name in known and size > 0.0:
+            found.append(known[name] / size)
+            continue
+        spread = float(np.std(parts[name], ddof=1)) / math.sqrt(parts[name].size)
+        found.append(UNKNOWN_SCATTER * 2.3 * spread / size if size > 0.0 else math.inf)
+        notes.append(f"the statistical error of {name} is a guess: its batches are too few or not independent")
+    return np.array(found), notes
+
+
+def _drift(result: Result, names: Sequence[str], value: dict[str, float]) -> Array:
+    """Change of the averages from the third to the last quarter of the run, where it is larger than the scatter within them."""
+    time = result["time"]
+    quarter = 0.25 * (time[-1] - time[0])
+    sides = [result.window(time[-1] - 2.0 * quarter, time[-1] - quarter), result.window(time[-1] - quarter)]
+    batches = [in_batches(side, names, 0.0, 5) for side in sides]
+    found = []
+    for name in names:
+        before, after = (part[name] for part in batches)
+        change = abs(float(after.mean() - before.mean()))
+        noise = 2.8 * math.hypot(*(float(part.std(ddof=1)) / math.sqrt(part.size) for part in (before, after)))
+        found.append(change / abs(value[name]) if change > noise and value[name] != 0.0 else 0.0)
+    return np.array(found)

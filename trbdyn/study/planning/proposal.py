@@ -1,0 +1,226 @@
+"""What a plan proposes: a scene and options that are ready to run, and the bill."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from trbdyn.run.options import RunOptions
+from trbdyn.run.simulation import Simulation
+from trbdyn.study.planning.probes import Influence
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from trbdyn.model.scene import Scene
+    from trbdyn.results.result import Result
+
+PRINTED = 118
+
+
+@dataclass(frozen=True)
+class Row:
+    """An effect, or a choice of nodes or tolerances, as a plan saw it.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    kind : {'effect', 'off', 'nodes', 'tolerances', 'as given', 'truth', 'start'}
+        An effect that may be left out; one that the scene leaves out itself; fewer nodes; looser tolerances; nodes and
+        tolerances as the scene has them; the usual nodes and tolerances against the most exact probe. 'start': another start.
+    influence : dict of str to Influence
+        What leaving it out (for an effect that the scene leaves out: putting it in) changes in each wanted average.
+    time_ratio : float
+        Computing time with the change over that without it; nan where it could not be run.
+    decision : str
+        What the plan does with it, and why.
+    chosen : bool
+        Whether the plan makes this simplification.
+    """
+
+    name: str
+    kind: str
+    influence: Mapping[str, Influence]
+    time_ratio: float
+    decision: str
+    chosen: bool = False
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The cheapest simulation of a scene that is as exact as was wanted, as made by `trbdyn.plan`.
+
+    Attributes
+    ----------
+    scene : Scene
+        What to simulate: the scene with the chosen effects and nodes.
+    accuracy : str
+        Preset of the tolerances.
+    duration : float
+        Length of the run (s).
+    settle : float
+        Part of it before the averaging (s).
+    save_every : float
+        Time between records (s).
+    save_groups : tuple of str
+        Groups of records: those that the wanted averages need.
+    want : dict of str to float
+        Wanted relative error of each average.
+    promised : dict of str to float
+        Relative error that is expected not to be exceeded in 95 of 100 cases; as far as `warnings` does not except it.
+    parts : dict of str to dict
+        Where it comes from: of each average, 'model and numerics', 'settling' and 'statistics'.
+    value : dict of str to float
+        The averages with everything on, from the probes.
+    reached : bool
+        Whether every promise is within the wish, and the run within the budget.
+    rows : tuple of Row
+        What each effect and each choice gives and costs.
+    wall_s, wall_s_everything, wall_s_given : float
+        Expected computing time of the run (s); of one that is as exact with all effects, 32 nodes and the preset 'reference';
+        and of one as long as this with the scene as it was given and the preset 'standard'.
+    spent_s : float
+        Computing time that the probes took (s).
+    budget : float or None
+        Most computing time that was allowed for the run (s).
+    warnings : tuple of str
+        Where the answer could be wrong.
+    """
+
+    scene: Scene
+    accuracy: str
+    duration: float
+    settle: float
+    save_every: float
+    save_groups: tuple[Any, ...]
+    want: dict[str, float]
+    promised: dict[str, float]
+    parts: dict[str, dict[str, float]]
+    value: dict[str, float]
+    reached: bool
+    rows: tuple[Row, ...]
+    wall_s: float
+    wall_s_everything: float
+    wall_s_given: float
+    spent_s: float
+    budget: float | None
+    warnings: tuple[str, ...]
+
+    @property
+    def options(self) -> RunOptions:
+        """How to run it."""
+        return RunOptions(
+            accuracy=self.accuracy, duration=self.duration, save_every=self.save_every, save_groups=self.save_groups
+        )
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Effects that the plan leaves out."""
+        return tuple(row.name for row in self.rows if row.chosen and row.kind == "effect")
+
+    def run(self, **arguments: Any) -> Result:
+        """Run it; average over the records after `settle`.
+
+        Parameters
+        ----------
+        **arguments
+            Those of `Simulation.run`, for instance `output`, or `save_groups` to keep more than the plan needs.
+        """
+        kept = {name: getattr(self, name) for name in ("duration", "save_every", "save_groups")}
+        return Simulation(self.scene, accuracy=self.accuracy).run(**kept | arguments)
+
+    def averages(self, result: Result) -> dict[str, float]:
+        """The wanted averages of a run of this plan, over the part that it was made for.
+
+        Parameters
+        ----------
+        result : Result
+            What `run` gave.
+        """
+        from trbdyn.results.summary import averages
+
+        time = result["time"]
+        found = averages(result.window(float(time[0]) + self.settle))
+        return {name: float(found[name]) for name in self.want}
+
+    def picture(self, path: str | Path | None = None) -> Any:
+        """Draw what each effect gives and costs.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            Where to save the picture.
+
+        Returns
+        -------
+        Figure
+            The matplotlib figure.
+        """
+        from trbdyn.study.planning.picture import draw
+
+        return draw(self, path)
+
+    def __str__(self) -> str:
+        lines = []
+        for name, wish in self.want.items():
+            parts = ", ".join(f"{part} {100.0 * size:.2g} %" for part, size in self.parts[name].items())
+            lines.append(
+                f"{name} = {self.value[name]:.4g}: wanted within {100.0 * wish:.3g} %, promised within "
+                f"{100.0 * self.promised[name]:.2g} % ({parts})"
+            )
+        if not self.reached:
+            lines.append(
+                "This is more than was wanted, or dearer than the budget: it is the most exact that was found."
+            )
+        lines += ["", *_run_lines(self), "", *_table(self)]
+        for text in self.warnings:
+            lines += ["", *textwrap.wrap(f"Note: {text}", PRINTED)]
+        return "\n".join(lines)
+
+
+def _run_lines(plan: Plan) -> list[str]:
+    nodes, kind = plan.scene.effects.n_slices, plan.scene.effects.quadrature
+    said = ", ".join(plan.left_out) or "nothing"
+    return [
+        f"run: {plan.duration:.3g} s of bearing time, averages after {plan.settle:.3g} s",
+        f"effects left out: {said}; {nodes} {kind} nodes, tolerances '{plan.accuracy}'",
+        f"computing time: about {plan.wall_s:.2g} s; as long with the scene as given {plan.wall_s_given:.2g} s; "
+        f"as exact with all effects, 32 nodes and 'reference' {plan.wall_s_everything:.2g} s",
+        f"the probes took {plan.spent_s:.2g} s",
+    ]
+
+
+def _table(plan: Plan) -> list[str]:
+    """Influence on each average, time, and what was decided."""
+    head = ["simplification", *plan.want, "time", "decision"]
+    rows = [head]
+    for row in plan.rows:
+        changes = [words(row.influence.get(name)) for name in plan.want]
+        ratio = "-" if math.isnan(row.time_ratio) else f"x {row.time_ratio:.2f}"
+        rows.append([_name(row), *changes, ratio, row.decision])
+    widths = [max(len(row[k]) for row in rows) for k in range(len(head) - 1)]
+    return [
+        "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]) for row in rows
+    ]
+
+
+def _name(row: Row) -> str:
+    return {"effect": f"without {row.name}", "off": f"with {row.name}"}.get(row.kind, row.name)
+
+
+def words(found: Influence | None) -> str:
+    """An influence in percent."""
+    if found is None or not math.isfinite(found.change):
+        return "-"
+    mark = ", still moving" if found.moving else ""
+    return f"{_digits(found.change, '+')} ± {_digits(found.half_width)} %{mark}"
+
+
+def _digits(share: float, sign: str = "") -> str:
+    """A share in percent with two digits, without an exponent."""
+    percent = 100.0 * share
+    return f"{percent:{sign}.0f}" if abs(percent) >= 10.0 else f"{percent:{sign}.2g}"
