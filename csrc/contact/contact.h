@@ -94,6 +94,7 @@ typedef struct trb_instant {
   const trb_cage_pose   *cage;    /* NULL without a cage */
   const int             *chosen;  /* rollers to evaluate, ascending */
   int                    n;       /* how many */
+  const unsigned        *apart;   /* n_rollers: bits of the rows of the table of pairs that are proven not to touch; NULL: none is */
 } trb_instant;
 
 /* A point contact, as users look into it. X(name, unit, text) */

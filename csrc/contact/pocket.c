@@ -320,7 +320,8 @@ void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_bat
                         trb_detail *detail)
 {
   for (int k = 0; k < at->n; k++) {
-    trb_load       load;
+    trb_load load;
+    if (at->apart != NULL && at->apart[at->chosen[k]] >> batch->index[0] & 1U) continue;
     const trb_gaps gaps = trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail);
     if (!trb_gaps_clear(&gaps)) trb_add_load(batch->pairs[0], &load, &loads[at->chosen[k]]);
   }

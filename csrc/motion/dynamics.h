@@ -20,6 +20,7 @@ enum {
 /* A pair that is evaluated at every instant, and what is proven of every roller in it. */
 typedef struct trb_fast_pair {
   const trb_pair    *pair;
+  int                row;        /* of the table of pairs */
   trb_clearance     *clearances; /* n_rollers */
   trb_clearance_arms arms[TRB_N_GAPS];
 } trb_fast_pair;
@@ -40,6 +41,7 @@ typedef struct trb_dynamics {
   double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
   int      *exact;                /* rollers to evaluate exactly */
   unsigned *near;                 /* of every roller: bit by fast pair, those that may touch */
+  unsigned *apart;                /* of every roller: bit by row of the table of pairs, those that are proven not to touch */
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */
@@ -53,6 +55,9 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
 /* All loads at the poses kept; detail may be NULL. */
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
+/* The same at a state y, the poses of which are kept, near the states that other dynamics have evaluated last: pairs that these have
+ * proven not to touch are left out, which changes no bit of the loads. */
+void trb_dynamics_loads_near(trb_dynamics *d, const trb_dynamics *other, const double *y, trb_detail *detail);
 /* What the contacts read. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 

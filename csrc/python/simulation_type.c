@@ -272,7 +272,7 @@ static PyObject *observe(PyObject *object, PyObject *args)
   PyArrayObject     *array = look(self, args, &time);
   if (array == NULL) return NULL;
   PyObject *out = trb_vector(NULL, trb_record_offset(s->model, TRB_N_FIELDS));
-  if (out != NULL) trb_record_fill(s->onlooker, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
+  if (out != NULL) trb_record_fill(s->onlooker, s->onlooker, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
   leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;

@@ -206,7 +206,7 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
     if (status != TRB_OK) return status;
     y = s->between;
   }
-  trb_record_fill(s->onlooker, time, y, s->detail, record);
+  trb_record_fill(s->onlooker, s->dynamics, time, y, s->detail, record);
   if (s->peaks != NULL) trb_peaks_record(s->peaks, time, record + trb_record_offset(s->model, TRB_N_FIELDS));
   return TRB_OK;
 }

@@ -184,3 +184,18 @@ def test_the_roller_of_a_pocket_drawing_is_a_cone() -> None:
     assert {round(x / half) for x, _ in outline} == {-1, 0, 1}
     circle = end.lines[0]
     np.testing.assert_allclose(np.hypot(*circle.get_data()), 0.5e3 * bearing.roller.diameter)
+
+
+def test_the_drawing_of_a_bearing_has_room_for_all_of_it() -> None:
+    """And is not lost in it: the section takes a third of the width at least."""
+    ax = plot.bearing_drawing(trb.cases.rig_30310())
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    points = np.vstack(
+        [patch.get_xy() for patch in ax.patches if hasattr(patch, "get_xy") and len(np.shape(patch.get_xy())) == 2]
+    )
+    assert left < points[:, 0].min()
+    assert points[:, 0].max() < right
+    assert bottom < 0.0 < points[:, 1].min()
+    assert points[:, 1].max() < top < 1.2 * points[:, 1].max()
+    assert np.ptp(points[:, 0]) > (right - left) / 3.0
+    assert left == pytest.approx(-1.1 * np.abs(points[:, 0]).max(), rel=0.02)

@@ -177,3 +177,10 @@ def test_a_measured_alpha_holds_at_its_temperature(base: Any) -> None:
     estimated = Oil(nu40=68.0, nu100=8.7, base=base)
     share = 1.0 if base == "mineral" else 0.75
     assert estimated.at(60.0).pressure_coefficient == pytest.approx(share * wooster(oil.viscosity_at(60.0)))
+
+
+@pytest.mark.parametrize(("nu40", "nu100"), [(2.0, 0.8), (0.9, 0.5), (100.0, 11.2)])
+def test_astm_d341_gives_its_two_points_back(nu40: float, nu100: float) -> None:
+    """Also below 2 mm2/s, where the exponential in Z counts: it is left out above, and its inverse is a fit."""
+    assert astm_d341(40.0, nu40, nu100) == pytest.approx(nu40, rel=2e-3)
+    assert astm_d341(100.0, nu40, nu100) == pytest.approx(nu100, rel=2e-3)

@@ -18,7 +18,7 @@ from trbdyn.model.effects import Effects, Friction
 from trbdyn.model.lubricants import Lubricant, vg100
 from trbdyn.model.motion import History
 from trbdyn.model.pocket import OtherPocket
-from trbdyn.model.scene import Scene, Start
+from trbdyn.model.scene import RotatingLoad, Scene, Start
 from trbdyn.run.options import ACCURACY, RunOptions
 
 
@@ -375,3 +375,28 @@ class TestCases:
         assert scene.lubricant.temperature_c == 50.0
         assert (scene.speed_rpm, scene.axial_load, scene.bearing.n_rollers) == (500.0, 6000.0, 16)
         assert scene.effects == Effects.standard()
+
+
+class TestHarmonic:
+    """A mean with a cosine on it."""
+
+    def test_small_amplitudes_and_late_phases(self) -> None:
+        """An amplitude below 1; a phase of more than a turn is that of the rest."""
+        wave, same = (History.harmonic(2.0, 0.5, frequency_hz=5.0, phase_deg=phase) for phase in (400.0, 40.0))
+        for time in np.linspace(0.0, 1.0, 41):
+            expected = 2.0 + 0.5 * math.cos(2.0 * math.pi * 5.0 * time + math.radians(40.0))
+            assert wave.value(time) == pytest.approx(expected, abs=1e-4)
+            assert wave.value(time) == pytest.approx(same.value(time), abs=1e-12)
+
+    def test_a_negative_amplitude_is_refused(self) -> None:
+        with pytest.raises(InputError, match="amplitude"):
+            History.harmonic(2.0, -0.5, frequency_hz=5.0)
+
+
+def test_a_rotating_load_is_added_in_both_directions(rig: Bearing) -> None:
+    load = RotatingLoad(load=500.0, turns=1.0, direction_deg=30.0)
+    scene = Scene(rig, speed_rpm=600.0, axial_load=4000.0, radial_load=100.0, ring="follows", rotating_load=load)
+    for time in (0.0, 0.013, 0.04):
+        turned = math.radians(30.0) + 2.0 * math.pi * 10.0 * time
+        wanted = [500.0 * math.cos(turned), 100.0 + 500.0 * math.sin(turned), -4000.0]
+        assert flatten.ring_load(scene, time).force == pytest.approx(wanted, abs=1e-9)

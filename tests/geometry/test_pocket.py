@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from trbdyn import Effects, Simulation, cases, pocket_shapes
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.pocket import Face
+from trbdyn.model.pocket import Face, OtherPocket
 
 Array = NDArray[np.float64]
 BARS, LARGE_END, SMALL_END = slice(0, 2), 2, 3
@@ -255,3 +255,16 @@ def test_touching_pushes_apart(sim: Simulation) -> None:
     )
     assert found["cage_force"] == pytest.approx(-turned, abs=1e-9 * np.abs(turned).max())
     assert found["cage_force"].sum(axis=0)[1] < 0.0
+
+
+def test_a_pocket_of_another_shape_is_the_only_one(straight_rig: Bearing) -> None:
+    """Faces of one pocket are in that pocket alone, whichever it is: all others keep their own."""
+    for index in (0, 1, 11):
+        other = pocket_shapes.default_pocket(straight_rig)
+        other = other.replace(faces=other.faces[:-1])
+        cage = straight_rig.cage.replace(other_pockets=(OtherPocket(index=index, pocket=other),))
+        sim = simulate(straight_rig.replace(cage=cage))
+        touched = np.isfinite(gaps(sim, nominal(sim))).sum(axis=1)
+        usual = np.isfinite(gaps(simulate(straight_rig), nominal(sim))).sum(axis=1)
+        assert touched[index] == usual[index] - 1, index
+        assert np.array_equal(np.delete(touched, index), np.delete(usual, index)), index

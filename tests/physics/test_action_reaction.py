@@ -123,3 +123,19 @@ def test_recorded_sums_are_those_of_the_contacts(kit: SimpleNamespace) -> None:
     np.testing.assert_allclose(record["ring_force"], ring, rtol=1e-11, atol=1e-8)
     np.testing.assert_allclose(record["cage_force"], cage, rtol=1e-11, atol=1e-8)
     assert np.linalg.norm(cage) > 1.0
+
+
+def test_friction_of_the_front_rib_is_its_load_times_the_coefficient(kit: SimpleNamespace) -> None:
+    """Of both edges of the end together, and not below zero."""
+    sim = kit.simulate(BARE.replace(**KINDS["front_rib"][0]), scenery=RING)
+    seen = 0
+    for seed in range(4):
+        found = sim.contacts(kit.perturbed(sim, seed, back=2.5e-4), 0.0)
+        load, friction = found["front_rib_load"], found["front_rib_friction"]
+        touching = load > 0.0
+        assert friction[touching] == pytest.approx(
+            load[touching] * found["front_rib_friction_coefficient"][touching], rel=0.3
+        )
+        assert (friction[touching] > 0.0).all()
+        seen += int(touching.sum())
+    assert seen >= 12

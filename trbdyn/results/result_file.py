@@ -35,6 +35,7 @@ from trbdyn.results.file_format import (
     stored,
 )
 from trbdyn.results.hdf5_marks import lock, take_lock
+from trbdyn.results.hdf5_quick import append, describe
 
 Array = NDArray[np.float64]
 
@@ -116,7 +117,8 @@ class ResultWriter:
         self.run_id = run_id or uuid.uuid4().hex
         self.n_written = 0
         self._places = {name: (offset, tuple(shape)) for name, offset, shape in layout}
-        self._fields = [f for f in field_table.select(fields, groups) if f.name in self._places]
+        self.fields = tuple(f for f in field_table.select(fields, groups) if f.name in self._places)
+        self._datasets: dict[str, h5py.h5d.DatasetID] = {}
         self._pending: list[Array] = []
         self._pending_bytes = 0
         self._last_flush = time.monotonic()
@@ -178,7 +180,7 @@ class ResultWriter:
         self._file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
         group = self._file.create_group("fields")
         peaks = self._file.create_group("peaks")
-        for index, entry in enumerate(self._fields):
+        for index, entry in enumerate(self.fields):
             shape = self._places[entry.name][1]
             if entry.group == PEAKS:
                 whole = peaks.create_dataset(entry.name, (0, *shape), "f8", maxshape=(1, *shape), chunks=(1, *shape))
@@ -193,11 +195,12 @@ class ResultWriter:
                 shuffle=compression is not None,
             )
             self._describe(dataset, entry, index)
+            self._datasets[entry.name] = dataset.id
 
     def _describe(self, dataset: h5py.Dataset, entry: Field, index: int) -> None:
         attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
         attributes["dims"] = " ".join(("time", *entry.dims))
-        dataset.attrs.update({name: stored(value) for name, value in attributes.items()} | {"index": index})
+        describe(dataset, attributes | {"index": index})
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:
@@ -245,7 +248,7 @@ class ResultWriter:
         self._pending, self._pending_bytes = [], 0
         with self._guard("cannot be written"):
             if pending:
-                self._reserve(size + len(self._fields) * CHUNK_BYTES + SPARE_BYTES)
+                self._reserve(size + len(self.fields) * CHUNK_BYTES + SPARE_BYTES)
                 self._write(pending[0] if len(pending) == 1 else np.concatenate(pending))
             self._file.flush()
         self._last_flush = time.monotonic()
@@ -302,12 +305,10 @@ class ResultWriter:
 
     def _write(self, rows: Array) -> None:
         start, stop = self.n_written, self.n_written + rows.shape[0]
-        for entry in self._fields:
+        for entry in self.fields:
             offset, shape = self._places[entry.name]
             size = int(np.prod(shape))
-            dataset = self._file["fields"][entry.name]
-            dataset.resize(stop, axis=0)
-            dataset[start:stop] = rows[:, offset : offset + size].reshape(-1, *shape)
+            append(self._datasets[entry.name], start, rows[:, offset : offset + size].reshape(-1, *shape))
         self.n_written = stop
 
     def finish(
@@ -352,9 +353,9 @@ class ResultWriter:
             self._reserve(SPARE_BYTES)
             if final_state is not None:
                 self._put("final_state", np.asarray(final_state, dtype=float))
+            whole = self._file["peaks"]
             for name, values in (peaks or {}).items():
-                self._file["peaks"][name].resize(1, axis=0)
-                self._file["peaks"][name][0] = values
+                append(whole[name].id, 0, np.asarray(values, dtype=float)[np.newaxis])
             ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
             ending |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
             self._put("ending", np.frombuffer(json_text(ending).encode(), dtype="u1"))

@@ -88,6 +88,64 @@ class WindowSource:
         return self.source.read(name)[self.start : self.stop]
 
 
+@contextmanager
+def opened(path: Path) -> Iterator[h5py.File]:
+    """A result file, open to be read; what goes wrong inside is a FileError that names it.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, damaged, of another kind or of a later version.
+    """
+    if not path.is_file():
+        raise FileError(f"{path}: there is no such file")
+    try:
+        with open_to_read(path) as file:
+            _check_schema(path, file)
+            yield file
+    except _READ_ERRORS as error:
+        if isinstance(error, FileError):
+            raise
+        why = reason(error) if isinstance(error, OSError) else f"the file is damaged ({reason(error)})"
+        raise FileError(f"{path}: the result cannot be read: {why}") from error
+
+
+def _check_schema(path: Path, file: h5py.File) -> None:
+    if _text(file.attrs.get("schema", "")) != SCHEMA:
+        raise FileError(f"{path}: this HDF5 file is not a result of trbdyn (no schema {SCHEMA!r})")
+    version = int(file.attrs["schema_version"])
+    if version > SCHEMA_VERSION:
+        raise FileError(f"{path}: written with schema version {version}; this trbdyn reads up to {SCHEMA_VERSION}")
+
+
+def run_id_in(path: Path) -> str | None:
+    """Name of the run whose records are in a file; None where there is no result that can be opened."""
+    try:
+        with opened(path) as file:
+            return _text(file.attrs["run_id"])
+    except FileError:
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What a process knows of the file that it has just written, so that it need not look through it again.
+
+    Attributes
+    ----------
+    fields : tuple of Field
+        The fields in the file, in the order of the record.
+    n_records : int
+        Number of records.
+    peaks : mapping of str to ndarray
+        Peaks of the whole run.
+    """
+
+    fields: tuple[Field, ...]
+    n_records: int
+    peaks: Mapping[str, Array]
+
+
 class FileSource:
     """Reads fields from one file when they are asked for. The file is open only while reading.
 
@@ -95,6 +153,8 @@ class FileSource:
     ----------
     path : path-like
         A file that `ResultWriter` has written.
+    written : Written, optional
+        What is known of it. Without, the file is looked through and checked.
 
     Attributes
     ----------
@@ -117,10 +177,10 @@ class FileSource:
         If the file is missing, damaged, of another kind or of a later version.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, path: str | os.PathLike[str], written: Written | None = None) -> None:
         self.path = file_path(path, "path")
         self._cache: dict[str, Array] = {}
-        with self._open() as file:
+        with opened(self.path) as file:
             self._created = _text(file.attrs["created"])
             self.run_id = _text(file.attrs["run_id"])
             self.first_record = int(file.attrs["first_record"])
@@ -129,53 +189,35 @@ class FileSource:
             ending = _own(file, "ending", h5py.Dataset)[()]
             self.finished = ending.size > 0
             self._ending = json.loads(ending.astype("u1").tobytes()) if self.finished else {}
-            self.fields, lengths = self._read_fields(file)
-            self.n_records = min(lengths, default=0)
-            self.info = self._read_info(file)
-
-    @contextmanager
-    def _open(self) -> Iterator[h5py.File]:
-        if not self.path.is_file():
-            raise FileError(f"{self.path}: there is no such file")
-        try:
-            with open_to_read(self.path) as file:
-                self._check_schema(file)
-                yield file
-        except _READ_ERRORS as error:
-            if isinstance(error, FileError):
-                raise
-            why = reason(error) if isinstance(error, OSError) else f"the file is damaged ({reason(error)})"
-            raise FileError(f"{self.path}: the result cannot be read: {why}") from error
-
-    def _check_schema(self, file: h5py.File) -> None:
-        if _text(file.attrs.get("schema", "")) != SCHEMA:
-            raise FileError(f"{self.path}: this HDF5 file is not a result of trbdyn (no schema {SCHEMA!r})")
-        version = int(file.attrs["schema_version"])
-        if version > SCHEMA_VERSION:
-            raise FileError(
-                f"{self.path}: written with schema version {version}; this trbdyn reads up to {SCHEMA_VERSION}"
-            )
+            if written is None:
+                self.fields, lengths = self._read_fields(file)
+                self.n_records = min(lengths, default=0)
+            else:
+                self.fields, self.n_records = written.fields, written.n_records
+            self.info = self._read_info(file, None if written is None else written.peaks)
 
     def _read_fields(self, file: h5py.File) -> tuple[tuple[Field, ...], list[int]]:
         found: list[tuple[int, Field, int]] = []
-        for name in _own(file, "fields", h5py.Group):
-            dataset = _own(file["fields"], name, h5py.Dataset)
+        group, room = _own(file, "fields", h5py.Group), []
+        for name in group:
+            dataset, storage = _own_stored(group, name, h5py.Dataset)
+            room.append(storage)
             attributes = {key: _text(dataset.attrs[key]) for key in ("group", "kind", "unit", "description")}
             entry = Field(name, attributes["group"], attributes["kind"], attributes["unit"], attributes["description"])
             if dataset.dtype != np.float64 or dataset.ndim != 1 + len(entry.dims):
                 raise FileError(f"{self.path}: the dataset of {name!r} is damaged ({dataset.dtype}, {dataset.shape})")
             found.append((int(dataset.attrs["index"]), entry, int(dataset.shape[0])))
-        _check_stored(str(self.path), "its fields together", *(file["fields"][entry.name] for _, entry, _ in found))
+        _check_stored(group, "its fields together", *room)
         found.sort(key=lambda row: row[0])
         return tuple(entry for _, entry, _ in found), [length for _, _, length in found]
 
-    def _read_info(self, file: h5py.File) -> RunInfo:
+    def _read_info(self, file: h5py.File, known: Mapping[str, Array] | None) -> RunInfo:
         attributes = file.attrs
         geometry, meta = (_table(json.loads(_text(attributes[key]))) for key in JSON_ATTRIBUTES)
         stats, counters = (_table(self._ending.get(key, {})) for key in ("stats", "counters"))
         meta |= {key: _text(attributes[key]) for key in ("trbdyn_version", "created")}
         meta |= {key: int(attributes[key]) for key in ("schema_version", "segment")}
-        peaks = self._read_peaks(file) if self.finished else {}
+        peaks = dict(known) if known is not None else self._read_peaks(file) if self.finished else {}
         message, final_time = str(self._ending.get("message", "")), float(self._ending.get("final_time", np.nan))
         state = np.asarray(_own(file, "final_state", h5py.Dataset)[()], dtype=float)
         if not self.finished:
@@ -203,9 +245,10 @@ class FileSource:
         if "peaks" not in file:
             return found
         group = _own(file, "peaks", h5py.Group)
+        fields = file["fields"]
         for name in (entry.name for entry in self.fields if entry.group == PEAKS):
             dataset = _own(group, name, h5py.Dataset)
-            shape = file["fields"][name].shape[1:]
+            shape = fields[name].shape[1:]
             if dataset.dtype != np.float64 or dataset.shape not in ((0, *shape), (1, *shape)):
                 raise FileError(f"{self.path}: the dataset of {name!r} is damaged ({dataset.dtype}, {dataset.shape})")
             if dataset.shape[0] == 1:
@@ -221,7 +264,7 @@ class FileSource:
             If the file is damaged, or has been replaced since it was opened first.
         """
         if name not in self._cache:
-            with self._open() as file:
+            with opened(self.path) as file:
                 if _text(file.attrs["created"]) != self._created:
                     raise FileError(f"{self.path}: the file has been replaced since it was loaded; load it again")
                 values = np.asarray(_own(file["fields"], name, h5py.Dataset)[: self.n_records], dtype=float)
@@ -325,30 +368,50 @@ def _table(value: Any) -> dict[str, Any]:
 
 def _own(group: h5py.Group, name: str, kind: type) -> Any:
     """A member that lies in this file itself: no links or storage that lead elsewhere."""
-    if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+    return _own_stored(group, name, kind)[0]
+
+
+def _own_stored(group: h5py.Group, name: str, kind: type) -> tuple[Any, _Storage]:
+    """The same, with the room that it takes."""
+    links, key = group.id.links, name.encode()
+    if not links.exists(key) or links.get_info(key).type != h5py.h5l.TYPE_HARD:
         raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
-    member = group[name]
+    member, storage = group[name], _Storage(0, 0, elsewhere=False)
     if not isinstance(member, kind):
         raise FileError(f"{group.file.filename}: {name!r} is not what a result holds there")
-    if isinstance(member, h5py.Dataset) and (member.external or member.is_virtual):
-        raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
     if isinstance(member, h5py.Dataset):
-        _check_stored(group.file.filename, repr(name), member)
-    return member
+        storage = _Storage.of(member)
+        if storage.elsewhere:
+            raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
+        _check_stored(group, repr(name), storage)
+    return member, storage
 
 
-def _check_stored(file: str, name: str, *datasets: h5py.Dataset) -> None:
+@dataclass(frozen=True, slots=True)
+class _Storage:
+    """Bytes that a dataset claims to have and those that it takes in the file, and whether they lie in another file."""
+
+    claimed: int
+    stored: int
+    elsewhere: bool
+
+    @classmethod
+    def of(cls, dataset: h5py.Dataset) -> _Storage:
+        place, made = dataset.id, dataset.id.get_create_plist()
+        layout, size = made.get_layout(), place.get_type().get_size()
+        packed = layout == h5py.h5d.CHUNKED and made.get_nfilters() > 0
+        stored = place.get_num_chunks() * math.prod(made.get_chunk()) * size if packed else place.get_storage_size()
+        elsewhere = layout == h5py.h5d.VIRTUAL or made.get_external_count() > 0
+        return cls(place.get_space().get_simple_extent_npoints() * size, stored, elsewhere)
+
+
+def _check_stored(group: h5py.Group, name: str, *datasets: _Storage) -> None:
     """A file must hold what it claims: values that were never written take no room in it, but much when they are read."""
-    claimed = stored = 0
-    for dataset in datasets:
-        size = dataset.dtype.itemsize
-        claimed += (dataset.size or 0) * size
-        packed = dataset.chunks is not None and dataset.compression is not None
-        stored += (
-            dataset.id.get_num_chunks() * math.prod(dataset.chunks) * size if packed else dataset.id.get_storage_size()
-        )
+    claimed, stored = sum(one.claimed for one in datasets), sum(one.stored for one in datasets)
     if claimed > SMALL + 2 * stored:
-        raise FileError(f"{file}: the file is damaged: {name} claims {claimed} bytes, but holds {stored}")
+        raise FileError(
+            f"{group.file.filename}: the file is damaged: {name} claims {claimed} bytes, but holds {stored}"
+        )
 
 
 def _text(value: Any) -> str:

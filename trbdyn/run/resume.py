@@ -14,7 +14,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.results.file_format import reason
 from trbdyn.results.hdf5_marks import mend, take_lock
 from trbdyn.results.result import Result, load
-from trbdyn.results.sources import FileSource, open_run, segment_paths
+from trbdyn.results.sources import FileSource, open_run, run_id_in, segment_paths
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.options import OF_ONE_RUN, RunOptions
@@ -112,18 +112,11 @@ def resume(
                 lock.close()
             return run_on(None)
         for segment in (output, *segment_paths(output).values()):
-            if _belongs(segment, first.run_id):
+            if run_id_in(segment) == first.run_id:
                 mend(segment)
         if _is_complete(output):
             return load(output)
         return run_on(first)
-
-
-def _belongs(segment: Path, run_id: str) -> bool:
-    try:
-        return FileSource(segment).run_id == run_id
-    except FileError:
-        return False
 
 
 def _is_complete(output: Path) -> bool:

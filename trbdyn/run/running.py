@@ -9,7 +9,7 @@ import signal
 import threading
 import time as clock
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from types import FrameType
@@ -26,7 +26,7 @@ from trbdyn.results import peaks as peak_table
 from trbdyn.results.file_format import reason
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
-from trbdyn.results.sources import FileSource, segment_paths
+from trbdyn.results.sources import FileSource, Written, run_id_in, segment_paths
 from trbdyn.run import checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.options import RunOptions
@@ -306,15 +306,18 @@ class Run:
             "notes": self.notes,
         }
 
-    def _written(self) -> Result:
+    def _written(self, peaks: Mapping[str, Array]) -> Result:
         """The result as it is in the files; that of the last segment alone if the first one cannot be read."""
         assert self.output is not None
         assert self.writer is not None
-        if self.writer.path != self.output and _run_id(self.output) != self.writer.run_id:
+        if self.writer.path != self.output and run_id_in(self.output) != self.writer.run_id:
             return load(self.writer.path)
-        if _run_id(self.output) != self.writer.run_id:
+        if run_id_in(self.output) != self.writer.run_id:
             raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
-        return load(self.output)
+        if self.writer.path != self.output:
+            return load(self.output)
+        source = FileSource(self.output, Written(self.writer.fields, self.writer.n_written, peaks))
+        return Result(source, source.info)
 
     def _say_what_is_missing(self) -> None:
         said = self.until.said or "it was too short for a look"
@@ -370,7 +373,7 @@ class Run:
             self.writer.finish(**how)
             if success:
                 checkpoint.remove(self.output, self.writer.run_id)
-            return self._written()
+            return self._written(peaks)
         return self._from_memory(**how)
 
     def _from_memory(self, **how: Any) -> Result:
@@ -390,20 +393,10 @@ class Run:
 
 def _own_segments(output: Path) -> tuple[str, list[Path]] | None:
     """Name of the run whose result lies in a file, and the files of its later segments; None if there is no result."""
-    if not output.exists():
+    run_id = run_id_in(output)
+    if run_id is None:
         return None
-    try:
-        run_id = FileSource(output).run_id
-    except FileError:
-        return None
-    return run_id, [place for place in segment_paths(output).values() if _run_id(place) == run_id]
-
-
-def _run_id(path: Path) -> str | None:
-    try:
-        return FileSource(path).run_id
-    except FileError:
-        return None
+    return run_id, [place for place in segment_paths(output).values() if run_id_in(place) == run_id]
 
 
 def output_times(start: float, end: float, every: float) -> Array:
