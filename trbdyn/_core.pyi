@@ -107,11 +107,14 @@ class Simulation:
         settings: integrator ('bdf', 'erk') and those of setting_table()."""
     time: float
     row_length: int
-    def run(self, times: Array, records: Array, max_steps: int, stop_after: float = ...) -> tuple[int, int]:
+    def run(
+        self, times: Array, records: Array, max_steps: int, stop_after: float = ..., beside: bool = ...
+    ) -> tuple[int, int]:
         """Integrate until every time in `times` is passed, filling a row of `records` (a record, and after it the peaks since the
         row before, if they are kept) for each; stop after max_steps, or at
         the first step's end at or after `stop_after`, once the records up to there are filled. Gives (rows filled, steps
-        taken). Raises CoreStepError; what was filled stays. Releases the GIL."""
+        taken). With `beside`, a second thread computes records and peaks, to the same bits. Raises CoreStepError; what was filled
+        stays. Releases the GIL."""
     def step(self) -> float:
         """One step of the integrator; gives the new time."""
     def state(self) -> Array: ...

@@ -39,10 +39,9 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
   d->flows = trb_zeros(n, sizeof *d->flows);
   d->exact = calloc(n, sizeof *d->exact);
   d->near = calloc(n, sizeof *d->near);
-  d->apart = calloc(n, sizeof *d->apart);
   trb_status status = TRB_OK;
   if (d->rollers == NULL || d->inner == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
-      d->near == NULL || d->apart == NULL) {
+      d->near == NULL) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   } else {
     for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
@@ -69,7 +68,6 @@ void trb_dynamics_free(trb_dynamics *d)
   free(d->flows);
   free(d->exact);
   free(d->near);
-  free(d->apart);
   free(d);
 }
 
@@ -91,31 +89,30 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
 {
-  return (trb_instant){&d->drive,   d->rollers,         d->inner, d->model->params.with_cage > 0.0 ? &d->cage : NULL,
+  return (trb_instant){&d->drive,   d->rollers,          d->inner, d->model->params.with_cage > 0.0 ? &d->cage : NULL,
                        d->everyone, d->model->n_rollers, NULL};
 }
 
-void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail)
+void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail) { trb_dynamics_loads_of(d, NULL, detail); }
+
+void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *detail)
 {
-  const trb_instant at = trb_dynamics_instant(d);
+  trb_instant at = trb_dynamics_instant(d);
+  at.apart = apart;
   trb_contact_all(d->model, &at, d->work, d->loads, detail);
   trb_contact_hub(d->model, &at, d->work, &d->hub, detail);
 }
 
-void trb_dynamics_loads_near(trb_dynamics *d, const trb_dynamics *other, const double *y, trb_detail *detail)
+void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
 {
   const trb_model *m = d->model;
-  trb_instant      at = trb_dynamics_instant(d);
-  memset(d->apart, 0, (size_t)m->n_rollers * sizeof *d->apart);
-  for (int f = 0; f < other->n_fast; f++) {
-    const trb_fast_pair *fast = &other->fast[f];
+  memset(apart, 0, (size_t)m->n_rollers * sizeof *apart);
+  for (int f = 0; f < d->n_fast; f++) {
+    const trb_fast_pair *fast = &d->fast[f];
     for (int j = 0; j < m->n_rollers; j++)
       if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(j), y + trb_state_cage(m)))
-        d->apart[j] |= 1U << fast->row;
+        apart[j] |= 1U << fast->row;
   }
-  at.apart = d->apart;
-  trb_contact_all(m, &at, d->work, d->loads, detail);
-  trb_contact_hub(m, &at, d->work, &d->hub, detail);
 }
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow)

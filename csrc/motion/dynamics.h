@@ -41,7 +41,6 @@ typedef struct trb_dynamics {
   double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
   int      *exact;                /* rollers to evaluate exactly */
   unsigned *near;                 /* of every roller: bit by fast pair, those that may touch */
-  unsigned *apart;                /* of every roller: bit by row of the table of pairs, those that are proven not to touch */
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */
@@ -55,9 +54,11 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
 /* All loads at the poses kept; detail may be NULL. */
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
-/* The same at a state y, the poses of which are kept, near the states that other dynamics have evaluated last: pairs that these have
- * proven not to touch are left out, which changes no bit of the loads. */
-void trb_dynamics_loads_near(trb_dynamics *d, const trb_dynamics *other, const double *y, trb_detail *detail);
+/* The same without the pairs that are proven not to touch, which changes no bit of the loads; apart: see trb_dynamics_apart, may be NULL. */
+void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *detail);
+/* What is proven of a state y near those that were evaluated last: of every roller, bits of the rows of the table of pairs in which it
+ * touches nothing. */
+void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart);
 /* What the contacts read. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 

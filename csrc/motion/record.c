@@ -234,7 +234,7 @@ static void put_energy(writer *w, const double *quadratures)
   for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = k < trb_n_quadratures(d->model) ? quadratures[k] : 0.0;
 }
 
-void trb_record_fill(trb_dynamics *d, const trb_dynamics *near, double time, const double *y, trb_detail *detail, double *record)
+void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record)
 {
   const trb_model *m = d->model;
   writer           it = {.d = d, .detail = detail}, *w = &it;
@@ -247,7 +247,7 @@ void trb_record_fill(trb_dynamics *d, const trb_dynamics *near, double time, con
   trb_dynamics_pose(d, time, y);
   trb_detail_clear(m, detail);
   const trb_counters keep = d->work->counters;
-  trb_dynamics_loads_near(d, near, y, detail);
+  trb_dynamics_loads_of(d, apart, detail);
   d->work->counters = keep; /* looking is not integrating */
   PUT(time, 0) = time;
   PUT(shaft_angle, 0) = d->drive.shaft_angle;

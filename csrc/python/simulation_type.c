@@ -152,10 +152,10 @@ static PyObject *run(PyObject *object, PyObject *args)
   PyArrayObject     *records;
   long               max_steps, steps = 0;
   double             stop_after = Py_HUGE_VAL;
-  int                rows = 0;
+  int                rows = 0, beside = 0;
   trb_status         status;
   trb_message        message = {TRB_OK, ""};
-  if (!PyArg_ParseTuple(args, "OO!l|d", &times_object, &PyArray_Type, &records, &max_steps, &stop_after)) return NULL;
+  if (!PyArg_ParseTuple(args, "OO!l|dp", &times_object, &PyArray_Type, &records, &max_steps, &stop_after, &beside)) return NULL;
   PyArrayObject *times = trb_array(times_object, 1, "times");
   if (times == NULL) return NULL;
   const int length = trb_simulation_row(self->simulation);
@@ -172,7 +172,7 @@ static PyObject *run(PyObject *object, PyObject *args)
   Py_INCREF((PyObject *)records);
   Py_BEGIN_ALLOW_THREADS
   status = trb_simulation_run(self->simulation, PyArray_DATA(times), (int)PyArray_DIM(times, 0), stop_after, PyArray_DATA(records),
-                              max_steps, &rows, &steps, &message);
+                              max_steps, beside, &rows, &steps, &message);
   Py_END_ALLOW_THREADS
   leave(self, 1);
   Py_DECREF((PyObject *)records);
@@ -272,7 +272,7 @@ static PyObject *observe(PyObject *object, PyObject *args)
   PyArrayObject     *array = look(self, args, &time);
   if (array == NULL) return NULL;
   PyObject *out = trb_vector(NULL, trb_record_offset(s->model, TRB_N_FIELDS));
-  if (out != NULL) trb_record_fill(s->onlooker, s->onlooker, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
+  if (out != NULL) trb_record_fill(s->onlooker, NULL, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
   leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;

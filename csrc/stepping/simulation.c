@@ -68,7 +68,9 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   it->scale = trb_zeros((size_t)it->n, sizeof(double));
   it->relative = trb_zeros((size_t)it->n, sizeof(double));
   s->between = trb_zeros((size_t)it->n, sizeof(double));
-  if (!it->y || !it->scale || !it->relative || !s->between) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  s->apart = calloc((size_t)s->model->n_rollers, sizeof *s->apart);
+  if (!it->y || !it->scale || !it->relative || !s->between || !s->apart)
+    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
   if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->dynamics, message)) != TRB_OK) return status;
   if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->onlooker, message)) != TRB_OK) return status;
   if ((status = trb_detail_create(s->model, &s->detail, message)) != TRB_OK) return status;
@@ -118,6 +120,7 @@ void trb_simulation_free(trb_simulation *s)
   free(s->integrator.scale);
   free(s->integrator.relative);
   free(s->between);
+  free(s->apart);
   trb_detail_free(s->detail);
   trb_dynamics_free(s->dynamics);
   trb_dynamics_free(s->onlooker);
@@ -146,7 +149,8 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
   const trb_status status = it->kind->step(it, message);
   if (status == TRB_OK) {
     s->previous = from;
-    if (s->peaks != NULL) trb_peaks_step(s->peaks, it->time, it->y);
+    if (s->recorder != NULL && s->peaks != NULL) trb_recorder_step(s->recorder, it->time, it->y);
+    else if (s->peaks != NULL) trb_peaks_step(s->peaks, it->time, it->y);
     return TRB_OK;
   }
   trb_message what, cause = *message;
@@ -206,17 +210,20 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
     if (status != TRB_OK) return status;
     y = s->between;
   }
-  trb_record_fill(s->onlooker, s->dynamics, time, y, s->detail, record);
+  if (s->recorder != NULL) {
+    trb_recorder_record(s->recorder, s->dynamics, time, y, record);
+    return TRB_OK;
+  }
+  trb_dynamics_apart(s->dynamics, y, s->apart);
+  trb_record_fill(s->onlooker, s->apart, time, y, s->detail, record);
   if (s->peaks != NULL) trb_peaks_record(s->peaks, time, record + trb_record_offset(s->model, TRB_N_FIELDS));
   return TRB_OK;
 }
 
-trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
-                              long *steps, trb_message *message)
+static trb_status run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
+                      long *steps, trb_message *message)
 {
   const size_t length = (size_t)trb_simulation_row(s);
-  *rows = 0;
-  *steps = 0;
   while (*rows < n) {
     const double time = times[*rows];
     if (time < s->previous)
@@ -233,4 +240,17 @@ trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, dou
     ++*steps;
   }
   return TRB_OK;
+}
+
+trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int beside,
+                              int *rows, long *steps, trb_message *message)
+{
+  const trb_recorder_parts parts = {.model = s->model, .onlooker = s->onlooker, .detail = s->detail, .peaks = s->peaks};
+  *rows = 0;
+  *steps = 0;
+  if (beside) s->recorder = trb_recorder_open(&parts, s->integrator.n);
+  const trb_status status = run(s, times, n, stop_after, records, max_steps, rows, steps, message);
+  trb_recorder_close(s->recorder);
+  s->recorder = NULL;
+  return status;
 }

@@ -5,6 +5,7 @@
 #include "motion/peaks.h"
 #include "motion/record.h"
 #include "stepping/integrator.h"
+#include "stepping/recorder.h"
 
 typedef struct trb_simulation {
   const trb_model  *model;
@@ -16,6 +17,8 @@ typedef struct trb_simulation {
   double           *between;  /* state at an output time */
   double            previous; /* start of the last step, s */
   trb_peaks        *peaks;    /* NULL: not asked for */
+  unsigned         *apart;    /* what is known not to touch at an output time */
+  trb_recorder     *recorder; /* within a run that has one; else NULL */
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */
@@ -43,8 +46,9 @@ trb_status trb_simulation_restore_peaks(trb_simulation *s, const double *saved, 
 int trb_simulation_row(const trb_simulation *s);
 
 /* Steps until all of n increasing times are passed, at most max_steps, and no more after the first step that ends at or after
- * stop_after. Writes one row of records for each time. Output times never change the steps. */
-trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int *rows,
-                              long *steps, trb_message *message);
+ * stop_after. Writes one row of records for each time. Output times never change the steps. beside: whether records and peaks are
+ * computed by a second thread. */
+trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int beside,
+                              int *rows, long *steps, trb_message *message);
 
 #endif

@@ -82,7 +82,7 @@ static void step_on(const trb_model *m, const trial *t, const trb_motion *motion
     const double time = 1e-3;
     int          rows;
     long         steps;
-    (void)trb_simulation_run(s, &time, 1, INFINITY, record, STEPS, &rows, &steps, &message);
+    (void)trb_simulation_run(s, &time, 1, INFINITY, record, STEPS, t->explicit_method > 0.5, &rows, &steps, &message);
     free(record);
   }
   trb_simulation_free(s);

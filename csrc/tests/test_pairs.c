@@ -62,7 +62,7 @@ static void look(const trb_motion *motion, const double *y, unsigned left_out, s
   if (!CHECK(trb_peak_look_create(m, motion, "scalar", &peaks, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_record_offset(m, TRB_N_FIELDS) <= MOST_FIELDS && trb_peak_look_sizes(m).all <= MOST_FIELDS)) exit(1);
   trb_rhs(d, NULL, 0.01, y, s->rates);
-  trb_record_fill(d, d, 0.01, y, detail, s->record);
+  trb_record_fill(d, NULL, 0.01, y, detail, s->record);
   memcpy(s->loads, d->loads, (size_t)m->n_rollers * sizeof *s->loads);
   s->hub = d->hub;
   trb_jacobian_fill(jac, 0.01, y, 1, s->arrow);

@@ -87,7 +87,7 @@ static void test_against_records(void)
   CHECK(trb_simulation_begin_peaks(s, 0.0, NULL) == TRB_OK);
   for (int step = 0; step <= STEPS; step++) {
     if (step > 0) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
-    trb_record_fill(s->onlooker, s->onlooker, s->integrator.time, s->integrator.y, s->detail, record);
+    trb_record_fill(s->onlooker, NULL, s->integrator.time, s->integrator.y, s->detail, record);
     const double *force = record + trb_record_offset(m, TRB_FIELD_AT_pocket_force);
     const double  h = s->integrator.time - last;
     for (int i = 0; i < pockets; i++) {

@@ -80,18 +80,60 @@ static void test_outputs(const char *kind, double *end)
     return;
   for (int i = 0; i < TIMES; i++) times[i] = 1e-6 * i;
   times[TIMES - 1] = last;
-  CHECK(trb_simulation_run(often, times, TIMES, INFINITY, records, 1000000, &rows, &steps, &message) == TRB_OK && rows == TIMES);
+  CHECK(trb_simulation_run(often, times, TIMES, INFINITY, records, 1000000, 0, &rows, &steps, &message) == TRB_OK && rows == TIMES);
   for (int i = 0; i < TIMES; i++) CHECK(records[(size_t)i * (size_t)length + (size_t)trb_record_offset(m, TRB_FIELD_AT_time)] == times[i]);
-  CHECK(trb_simulation_run(once, &last, 1, INFINITY, records, 1000000, &rows, &steps_once, &message) == TRB_OK && rows == 1);
+  CHECK(trb_simulation_run(once, &last, 1, INFINITY, records, 1000000, 0, &rows, &steps_once, &message) == TRB_OK && rows == 1);
   CHECK(steps == steps_once && often->integrator.time == once->integrator.time);
   CHECK(memcmp(often->integrator.y, once->integrator.y, (size_t)n * sizeof(double)) == 0);
-  CHECK(trb_simulation_run(once, times, 1, INFINITY, records, 10, &rows, &steps, &message) == TRB_ERR_INPUT);
+  CHECK(trb_simulation_run(once, times, 1, INFINITY, records, 10, 0, &rows, &steps, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "lies before the last step");
-  CHECK(trb_simulation_run(once, (double[]){1.0}, 1, INFINITY, records, 3, &rows, &steps, &message) == TRB_OK && rows == 0 && steps == 3);
+  CHECK(trb_simulation_run(once, (double[]){1.0}, 1, INFINITY, records, 3, 0, &rows, &steps, &message) == TRB_OK && rows == 0 &&
+        steps == 3);
   memcpy(end, often->integrator.y, (size_t)n * sizeof(double));
   trb_simulation_free(often);
   trb_simulation_free(once);
   free(records);
+}
+
+/* Rows of records and peaks, filled by the thread that steps or beside it, in calls of a few steps each. */
+static double *rows_of(int beside, int with_peaks, const double *times, int n, long at_once, double *end)
+{
+  const trb_settings settings = rig_settings();
+  trb_simulation    *s;
+  if (!CHECK(create("bdf", "scalar", &settings, 0.0, start, &s) == TRB_OK)) return NULL;
+  if (with_peaks) CHECK(trb_simulation_begin_peaks(s, 0.0, &message) == TRB_OK);
+  const size_t length = (size_t)trb_simulation_row(s);
+  double      *records = calloc(length * (size_t)n, sizeof *records);
+  int          done = 0, rows;
+  long         steps;
+  while (records != NULL && done < n) {
+    if (!CHECK(trb_simulation_run(s, times + done, n - done, INFINITY, records + (size_t)done * length, at_once, beside, &rows, &steps,
+                                  &message) == TRB_OK))
+      break;
+    done += rows;
+  }
+  CHECK(s->recorder == NULL);
+  memcpy(end, s->integrator.y, (size_t)trb_state_size(m) * sizeof *end);
+  trb_simulation_free(s);
+  return records;
+}
+
+/* A second thread changes no bit, neither of records and peaks nor of the steps; nor does what is proven not to touch. */
+static void test_beside(void)
+{
+  enum { TIMES = 300 };
+  double times[TIMES], ends[2][512];
+  for (int i = 0; i < TIMES; i++) times[i] = 3e-6 * (i + 1);
+  for (int with_peaks = 0; with_peaks < 2; with_peaks++) {
+    const size_t length = (size_t)trb_record_offset(m, TRB_N_FIELDS) + (with_peaks ? (size_t)trb_peak_offset(m, TRB_N_PEAK_FIELDS) : 0);
+    double      *here = rows_of(0, with_peaks, times, TIMES, 7, ends[0]), *there = rows_of(1, with_peaks, times, TIMES, 1000, ends[1]);
+    if (here != NULL && there != NULL) {
+      CHECK(memcmp(here, there, length * TIMES * sizeof *here) == 0);
+      CHECK(memcmp(ends[0], ends[1], (size_t)trb_state_size(m) * sizeof(double)) == 0);
+    }
+    free(here);
+    free(there);
+  }
 }
 
 /* A smallest step that cannot be kept: an error that names time and body, and the state before. */
@@ -131,6 +173,7 @@ int main(void)
   test_bad_input();
   test_outputs("bdf", bdf);
   test_outputs("erk", erk);
+  test_beside();
   test_failed_step();
   trb_motion_free(motion);
   trb_model_free(m);

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+import os
+import threading
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import tqdm
 
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.model.cases import scene_30310
-from trbdyn.run import checkpoint
+from trbdyn.run import checkpoint, running
 
 
 def test_a_copy_made_in_a_callback_goes_its_own_way() -> None:
@@ -78,3 +81,29 @@ def test_rollers_without_a_cage_must_not_touch() -> None:
     sim.set_state(vector)
     with pytest.raises(StepError, match="two rollers touch before"):
         sim.run(duration=1e-3)
+
+
+@pytest.mark.parametrize("groups", [None, ("cage", "peaks"), ("cage", "pocket")])
+def test_a_second_thread_changes_no_bit(monkeypatch: pytest.MonkeyPatch, groups: tuple[str, ...] | None) -> None:
+    """Records and peaks are computed beside the steps where there is a core for it."""
+    found = []
+    for beside in (False, True):
+        monkeypatch.setattr(running, "has_a_spare_core", lambda answer=beside: answer)
+        scene = scene_30310(3000.0, 1230.0, start=trb.Start.whirl(0.9))
+        found.append(trb.Simulation(scene).run(duration=0.01, save_every=3e-5, save_groups=groups))
+    here, there = found
+    for field in here.fields:
+        np.testing.assert_array_equal(there[field.name], here[field.name])
+    np.testing.assert_array_equal(there.final_state, here.final_state)
+    for name, values in (here.peaks if "peaks" in here.groups else {}).items():
+        np.testing.assert_array_equal(there.peaks[name], values)
+
+
+def test_workers_of_studies_and_threads_compute_alone() -> None:
+    """Their neighbours use the other cores."""
+    answers: list[bool] = []
+    thread = threading.Thread(target=lambda: answers.append(running.has_a_spare_core()))
+    thread.start()
+    thread.join()
+    assert answers == [False]
+    assert running.has_a_spare_core() == (len(os.sched_getaffinity(0)) > 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import multiprocessing
 import os
 import signal
 import threading
@@ -70,6 +71,7 @@ class Run:
         self.process = os.getpid()
         self.began = clock.perf_counter()
         self.spent = 0.0
+        self.beside = has_a_spare_core()
         self.fields = field_table.table()
         self.layout = list(sim._model.record_layout())
         check_wanted(options.until, options.save_groups, sim.scene.effects.bodies == "rollers_and_cage")
@@ -178,7 +180,7 @@ class Run:
             self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
             before = clock.perf_counter()
             try:
-                rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due)
+                rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due, self.beside)
             except _core.CoreStepError as error:
                 self._keep(records[: getattr(error, "rows", 0)])
                 raise
@@ -389,6 +391,13 @@ class Run:
             groups=self.options.save_groups,
             **how,
         )
+
+
+def has_a_spare_core() -> bool:
+    """Whether records and peaks may be computed by a second thread: not in workers of a study, which use all cores already."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    alone = multiprocessing.parent_process() is None and threading.current_thread() is threading.main_thread()
+    return cores > 1 and alone
 
 
 def _own_segments(output: Path) -> tuple[str, list[Path]] | None:
