@@ -12,6 +12,7 @@ import multiprocessing as mp
 import time
 import warnings
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import common
@@ -179,9 +180,15 @@ def main() -> None:
     """Run the benchmark."""
     parser = common.parser(__doc__)
     parser.add_argument("--jobs", type=int, default=1, help="scenes at once")
+    parser.add_argument("--from", dest="taken", type=Path, metavar="FILE", help="take the results of an earlier run")
     parser.add_argument("--scenes", nargs="+", choices=list(scenes()), default=None, help="only these")
     options = parser.parse_args()
     report = common.Report("plan_proof", options, COLUMNS)
+    if options.taken:
+        report.take(options.taken)
+        report.readme = _page(report.results, report.summary)
+        report.finish()
+        return
     names = options.scenes or (QUICK if options.quick else list(scenes()))
     report.inputs = {"effort_s": EFFORT, "truth_s": TRUTH_S, "scenes": list(names)}
     with ProcessPoolExecutor(options.jobs, mp_context=mp.get_context("spawn")) as pool:
@@ -237,8 +244,8 @@ def _page(rows: list[dict[str, Any]], summary: dict[str, Any]) -> str:
     )
 
 
-def _percent(share: float) -> str:
-    return "-" if np.isnan(share) else f"{100.0 * share:.2g} %"
+def _percent(share: float | None) -> str:
+    return "-" if share is None or np.isnan(share) else f"{100.0 * share:.2g} %"
 
 
 if __name__ == "__main__":

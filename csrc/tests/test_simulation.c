@@ -71,13 +71,14 @@ static void test_outputs(const char *kind, double *end)
   const trb_settings settings = rig_settings();
   const int          length = trb_record_offset(m, TRB_N_FIELDS), n = trb_state_size(m);
   enum { TIMES = 101 };
-  double         *records = calloc((size_t)length * TIMES, sizeof *records), times[TIMES], last = 1e-4;
+  double          times[TIMES], last = 1e-4;
   trb_simulation *often, *once;
   int             rows;
   long            steps, steps_once;
   if (!CHECK(create(kind, "scalar", &settings, 0.0, start, &often) == TRB_OK &&
              create(kind, "scalar", &settings, 0.0, start, &once) == TRB_OK))
     return;
+  double *records = calloc((size_t)length * TIMES, sizeof *records);
   for (int i = 0; i < TIMES; i++) times[i] = 1e-6 * i;
   times[TIMES - 1] = last;
   CHECK(trb_simulation_run(often, times, TIMES, INFINITY, records, 1000000, 0, &rows, &steps, &message) == TRB_OK && rows == TIMES);
