@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import common
-from accuracy import measure, states
+from accuracy import measure, states, user
 from accuracy.picture import draw_front
 from accuracy.tables import BIASES, text_of
 
@@ -78,6 +78,10 @@ COLUMNS = {
     },
     **{f"bias_{name}_half_width": "1: half its 95 % confidence interval" for name in OBSERVED},
     "batches": "1: runs that the statistics are over",
+    "wall_s_bare": "s: wall time a revolution of the steps alone, 24 uniform slices, with construction",
+    "wall_s_memory": "s: the same of a user's run: default records of all groups, in memory",
+    "wall_s_file": "s: the same, written to a file",
+    "file_over_bare": "1: wall time of the run with a file over that of the steps alone",
     "energy_closure": "1: residual of the energy audit over the dissipated work; statistics: largest of the batches",
     "warnings": "1: warnings of the watch over the runs of the windows, all states",
     "failure": "text: why there are no figures",
@@ -329,6 +333,14 @@ def run(plan: Plan, report: common.Report) -> None:
         print(f"  {clock.process_time() - began:.0f} s of processor time", flush=True)
     first = cases["collision"]
     report.summary["presets"] = preset_figures(report, first, plan)
+    errors = {
+        row["preset"]: row["error_cage_over_cpr"]
+        for row in report.results
+        if row["sweep"] == "presets" and row["case"] == first.name
+    }
+    turns = user.TURNS if plan is FULL else 10.0 if plan is QUICK else 1.0
+    for row in user.rows_of(first, errors, turns, plan.repeats):
+        report.add(**row)
     slices(report, first if plan is FULL else first.first(1), plan)
 
 

@@ -33,6 +33,10 @@ TITLES = {
     "fast": "fast, 10 000 rpm, 4930 N",
     "scatter": "unequal rollers, 3000 rpm, 4930 N",
 }
+USER = (
+    ("wall_s_file", "v-", "presets: a user's run, with file, default records, 24 slices (wall time)"),
+    ("wall_s_bare", "v:", "presets: the steps of the same alone (wall time)"),
+)
 LEAST_ERROR = 1e-8
 
 
@@ -64,6 +68,12 @@ def _front(axes: Any, rows: list[dict[str, Any]], case: str, speed_rpm: float) -
                 label=f"preset {row['preset']}",
                 zorder=5,
             )
+    for key, mark, text in USER:
+        points = [row for row in rows if row["case"] == case and row["sweep"] == "user"]
+        if points:
+            times = [1e3 * row[key] for row in points]
+            errors = [100.0 * max(row["error_cage_over_cpr"], LEAST_ERROR) for row in points]
+            axes.loglog(times, errors, mark, color="tab:red", ms=5, lw=1.2, label=text)
     real_time = 6e4 / speed_rpm
     axes.axvline(real_time, color="0.5", lw=0.8, ls="--")
     axes.axhline(1.0, color="0.5", lw=0.8, ls="--")

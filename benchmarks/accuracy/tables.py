@@ -87,6 +87,21 @@ def range_rows(report: common.Report) -> list[Row]:
     return out
 
 
+def user_rows(report: common.Report) -> list[Row]:
+    """A row for each preset: the steps alone, a user's run in memory, and with a file."""
+    return [
+        {
+            "preset": row["preset"],
+            "steps alone (ms)": 1e3 * row["wall_s_bare"],
+            "run in memory (ms)": 1e3 * row["wall_s_memory"],
+            "run with file (ms)": 1e3 * row["wall_s_file"],
+            "file over steps": row["file_over_bare"],
+        }
+        for row in report.results
+        if row["sweep"] == "user"
+    ]
+
+
 def _known(value: float | None) -> bool:
     return value is not None and math.isfinite(value)
 
@@ -96,6 +111,10 @@ def text_of(report: common.Report, *, everything: bool = False) -> str:
     ranges, rows = range_rows(report), preset_rows(report)
     parts = ["Range over the scenes:", "", common.table(ranges, ranges[0]) if ranges else "", ""]
     parts += ["Scene by scene:", "", common.table(rows, rows[0]) if rows else "", ""]
+    users = user_rows(report)
+    if users:
+        parts += ["What a user's run takes: default records of all groups, 24 slices, wall time a turn:", ""]
+        parts += [common.table(users, users[0]), ""]
     parts += ["The scenes:", "", _scenes(report), ""]
     failures = [row for row in report.results if row.get("failure")]
     if failures:
