@@ -20,6 +20,9 @@ HEAD = (
     f"{'2 tol.':>8} {'2 meth.':>8}"
 )
 
+MANY = 50.0
+"""Steps over those of the smooth scene from which the reason is told."""
+
 
 def line(verdict: Verdict) -> str:
     numbers = (verdict.closure, verdict.twin, verdict.tolerances, verdict.path)
@@ -50,9 +53,11 @@ def main() -> int:
         print(line(verdict), flush=True)
         for trouble in verdict.broken:
             print(f"    {trouble}", flush=True)
+        if verdict.ratio > MANY:
+            print(f"    more than {MANY:g} times the steps: {hard.reason or 'NO REASON IS KNOWN'}", flush=True)
     if options.json:
         rows = [
-            {"why": hard.why, "duration_s": hard.duration, **asdict(verdict), "wall_s": wall}
+            {"why": hard.why, "reason": hard.reason, "duration_s": hard.duration, **asdict(verdict), "wall_s": wall}
             for hard, verdict, wall in verdicts
         ]
         clean = [
