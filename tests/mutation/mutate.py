@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from faults import AREAS, Fault, draw
-from noticing import FIRST, QUICK_C_TESTS, THEN, Baseline, Notice, preload, run_c_tests, run_tests
+from noticing import FIRST, QUICK_C_TESTS, THEN, Baseline, Notice, near, preload, run_c_tests, run_tests
 from sandbox import PYTHON, TREE, VENV, WORK, Snapshot, compile_c_tests, fingerprint, planted, prepare
 
 OUTCOMES = WORK / "outcomes.jsonl"
@@ -35,6 +35,9 @@ PLANTED = (
     "api/test_cli.py::test_the_module_runs_as_a_program",
 )
 """A fault that only a process can meet that a test starts: file, text, other text, the test that must notice it."""
+
+TURNS = ("first", "near", "then")
+"""Quick tests of the area, tests that look at the source more closely, and wider ones."""
 
 Row = dict[str, Any]
 
@@ -122,7 +125,12 @@ def favourites_of(fault: Fault, outcomes: dict[str, Row], baseline: Baseline) ->
     return [test for test, _ in seen.most_common(6) if test in baseline.seconds]
 
 
-def attempt(fault: Fault, wider: bool, baseline: Baseline, snapshot: Snapshot, liked: list[str]) -> tuple[Notice, str]:
+def tests_of(turn: str, fault: Fault) -> list[str]:
+    """The tests that a turn asks about a fault."""
+    return {"first": FIRST[fault.area], "near": near(fault.file), "then": THEN[fault.area]}[turn]
+
+
+def attempt(fault: Fault, turn: str, baseline: Baseline, snapshot: Snapshot, liked: list[str]) -> tuple[Notice, str]:
     """What notices the fault; or why it does not count; else an empty notice."""
     is_c = fault.file.startswith("csrc")
     with planted(fault, snapshot) as compiles:
@@ -130,10 +138,10 @@ def attempt(fault: Fault, wider: bool, baseline: Baseline, snapshot: Snapshot, l
             return Notice(), "does not compile"
         if is_c and snapshot.same_program():
             return Notice(), "same program"
-        own = FIRST[fault.area]
-        names = THEN[fault.area] if wider else [*own, *(name for name in liked if not covers(own, name))]
+        own, wider = tests_of(turn, fault), turn != "first"
+        names = own if wider else [*own, *(name for name in liked if not covers(own, name))]
         # the programs of all C tests are linked again: where they seldom notice first, that waits
-        notice = _c_tests(fault, wider) if wider else Notice()
+        notice = _c_tests(fault, wider) if turn == "near" else Notice()
         if not notice:
             outcome = run_tests(names, baseline=baseline, longest=LONGEST, favourites=liked)
             # a test that is skipped or fails without the fault proves nothing
@@ -240,10 +248,9 @@ def main() -> int:
     preload()
     snapshot, tests = Snapshot(), fingerprint("tests")
     baseline = Baseline.read(fingerprint("csrc", "trbdyn"))
-    for turn, tests_of in (("first", FIRST), ("then", THEN)):
+    for turn in TURNS:
         left = open_faults(turn, outcomes, options, tests)
-        areas = {fault.area for fault in left}
-        names = list(dict.fromkeys(name for area in AREAS if area in areas for name in tests_of[area]))
+        names = list(dict.fromkeys(name for fault in left for name in tests_of(turn, fault)))
         if not check_baseline([*names, PLANTED[3].split("::")[0]], baseline) or not check_planted(baseline, snapshot):
             print("mend that first: what a fault changes cannot be told from what fails without it")
             return 1
@@ -252,7 +259,7 @@ def main() -> int:
             if not left:
                 break
             fault, began = left[0], time.monotonic()
-            notice, why = attempt(fault, turn == "then", baseline, snapshot, favourites_of(fault, outcomes, baseline))
+            notice, why = attempt(fault, turn, baseline, snapshot, favourites_of(fault, outcomes, baseline))
             seconds = time.monotonic() - began
             write_outcome(outcomes, fault, notice, why=why, turn=turn, tests=tests, seconds=round(seconds, 1))
             said = f"{notice.test} {notice.kind}" if notice else why or "NOT NOTICED"
@@ -273,10 +280,12 @@ def open_faults(turn: str, outcomes: dict[str, Row], options: argparse.Namespace
 
 
 def is_open(turn: str, row: Row | None, tests: str) -> bool:
-    """In the first turn new faults, and those that no test noticed before tests changed; then those that the first turn left."""
+    """In the first turn new faults, and those that no test noticed before tests changed; then those that the turn before left."""
     if row is None or (not row["test"] and not row["why"] and row["tests"] != tests):
         return turn == "first"
-    return turn == "then" and row["turn"] == "first" and not row["test"] and not row["why"]
+    if turn == "first" or row["test"] or row["why"]:
+        return False
+    return row["turn"] == TURNS[TURNS.index(turn) - 1]
 
 
 if __name__ == "__main__":

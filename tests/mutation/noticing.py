@@ -69,6 +69,87 @@ FIRST: dict[str, list[str]] = {
 }
 """The area's own tests, quick ones: most faults end here."""
 
+NEAR: list[tuple[str, list[str]]] = [
+    ("csrc/laws", ["laws", "geometry/test_interference.py", "physics/test_looking.py", "api/test_laws_api.py"]),
+    ("csrc/contact/land", ["physics/test_land.py"]),
+    ("csrc/contact/drag", ["physics/test_drag.py"]),
+    (
+        "csrc/contact",
+        [
+            "physics/test_looking.py",
+            "physics/test_action_reaction.py",
+            "geometry/test_pocket.py",
+            "geometry/test_interference.py",
+            "physics/test_effects.py",
+            "physics/test_audit.py",
+            "laws/test_in_contacts.py",
+        ],
+    ),
+    ("csrc/motion/ring_motion", ["physics/test_ring_path.py", "api/test_simulation.py"]),
+    ("csrc/motion/equilibrium", ["geometry/test_equilibrium.py", "physics/test_start.py"]),
+    ("csrc/motion/peak", ["convergence/test_peaks.py"]),
+    (
+        "csrc/motion",
+        ["physics/test_kinematics.py", "physics/test_audit.py", "physics/test_culling.py", "physics/test_looking.py"],
+    ),
+    (
+        "csrc/stepping",
+        [
+            "physics/test_gradient.py",
+            "api/test_simulation.py",
+            "convergence/test_determinism.py",
+            "convergence/test_tolerance.py",
+            "physics/test_impacts.py",
+        ],
+    ),
+    ("csrc", ["geometry/test_pocket.py", "api/test_pockets.py", "api/test_models.py", "geometry/test_derived.py"]),
+    ("trbdyn/model/lubricants", ["api/test_lubricants.py", "api/test_laws_api.py"]),
+    (
+        "trbdyn/model",
+        [
+            "api/test_models.py",
+            "api/test_flatten.py",
+            "api/test_bearing_inputs.py",
+            "api/test_pockets.py",
+            "api/test_catalogue.py",
+            "api/test_toml.py",
+            "physics/test_ring_path.py",
+        ],
+    ),
+    ("trbdyn/plot", ["api/test_drawn.py", "api/test_drawn_around.py", "api/test_plotting.py", "api/test_pictures.py"]),
+    ("trbdyn/run/checkpoint", ["restart/test_checkpoints.py", "fuzz/test_files.py"]),
+    (
+        "trbdyn/run",
+        [
+            "api/test_running.py",
+            "api/test_simulation.py",
+            "api/test_confidence.py",
+            "api/test_keeping.py",
+            "api/test_watch.py",
+            "restart/test_checkpoints.py",
+        ],
+    ),
+    (
+        "trbdyn",
+        [
+            "api/test_results.py",
+            "api/test_by_hand.py",
+            "api/test_observables.py",
+            "api/test_settling.py",
+            "api/test_confidence.py",
+            "api/test_plotting.py",
+            "convergence/test_peaks.py",
+        ],
+    ),
+]
+"""Tests that look at a source more closely, by the beginning of its name; the first entry that fits counts."""
+
+
+def near(file: str) -> list[str]:
+    """The tests of `NEAR` for a source."""
+    return next(tests for start, tests in NEAR if file.startswith(start))
+
+
 THEN: dict[str, list[str]] = {
     "laws": ["laws", "geometry", "physics/test_torque.py", "physics/test_effects.py", "api/test_laws_api.py"],
     "contacts": [

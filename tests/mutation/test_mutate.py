@@ -111,11 +111,21 @@ def test_what_counts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_survivors_are_tried_again_when_tests_change() -> None:
     assert mutate.is_open("first", None, "t")
-    assert mutate.is_open("then", row(turn="first"), "t")
+    assert mutate.is_open("near", row(turn="first"), "t")
+    assert not mutate.is_open("then", row(turn="first"), "t")
+    assert mutate.is_open("then", row(turn="near"), "t")
+    assert not mutate.is_open("near", row(turn="first", test="tests/a.py::b"), "t")
     assert not mutate.is_open("first", row(), "t")
     assert mutate.is_open("first", row(), "other")
     assert not mutate.is_open("first", row(test="tests/a.py::b"), "other")
     assert not mutate.is_open("first", row(why="same program"), "other")
+
+
+def test_every_source_has_tests_near_it() -> None:
+    """And they are there."""
+    for file in {fault.file for fault in faults.draw(1)}:
+        for name in noticing.near(file):
+            assert (faults.ROOT / "tests" / name).exists(), name
 
 
 def test_judgements_name_faults_that_are_there() -> None:
