@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from trbdyn.cli import main
 from trbdyn.model.cases import scene_30310
 from trbdyn.model.motion import History
 from trbdyn.study.planning.candidates import SWITCHES, candidates
+from trbdyn.study.planning.looking import Seen
 from trbdyn.study.planning.probes import Influence, Probe, carried_over, influence
 from trbdyn.study.planning.proposal import Plan, words
 
@@ -204,3 +207,13 @@ def test_bad_wishes_end_with_one_line(words_: str, capsys: pytest.CaptureFixture
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert "Traceback" not in said
+
+
+def test_a_run_that_warns_where_the_whole_does_not_is_no_simplification() -> None:
+    """Where the run with everything warns as well, a warning tells nothing of the candidate."""
+    quiet, loud = Probe({}, 1.0), Probe({}, 1.0, warned=("rollers vibrate",))
+    seen: Any = SimpleNamespace(probes={"damping": loud, "gravity": quiet}, base=quiet)
+    assert Seen.new_warning(seen, "damping") == "rollers vibrate"
+    assert Seen.new_warning(seen, "gravity") == ""
+    seen.base = loud
+    assert Seen.new_warning(seen, "damping") == ""

@@ -70,11 +70,14 @@ class Probe:
         Processor time for a second of bearing time, with records (s).
     failure : str
         Why it cannot be used; empty if it can.
+    warned : tuple of str
+        What the watch over the run said.
     """
 
     batches: dict[str, Array]
     rate: float
     failure: str = ""
+    warned: tuple[str, ...] = ()
 
 
 def run_quietly(scene: Scene, accuracy: str, length: Length) -> tuple[Result | None, float, str]:
@@ -115,7 +118,7 @@ def probe(scene: Scene, accuracy: str, length: Length, names: Sequence[str]) -> 
     result, rate, failure = run_quietly(scene, accuracy, length)
     if result is None or failure:
         return Probe({}, rate, failure)
-    return Probe(in_batches(result, names, TRANSIENT), rate)
+    return Probe(in_batches(result, names, TRANSIENT), rate, warned=tuple(result.warnings))
 
 
 def carried_over(scene: Scene, state: Start, of: Scene) -> Scene:

@@ -1,0 +1,247 @@
+"""The runs of a plan: one that all stands on, one from another start, and a probe of each simplification alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from trbdyn.errors import InputError, LoadError, StepError
+from trbdyn.model.scene import Start
+from trbdyn.run.until import groups_for
+from trbdyn.study.planning.candidates import (
+    TRUE_ACCURACY,
+    TRUE_NODES,
+    USUAL_ACCURACY,
+    USUAL_NODES,
+    Candidate,
+    candidates,
+    numerics,
+)
+from trbdyn.study.planning.ground import MOST_TURNS, Ground, computing_rate, run_ground
+from trbdyn.study.planning.probes import PATIENCE, Influence, Length, Probe, carried_over, influence, probe
+from trbdyn.study.planning.proposal import Row, words
+from trbdyn.study.planning.wishes import Wishes, changed
+
+OF_GROUND: Final = 0.25
+OF_OTHER_START: Final = 0.15
+OF_PROBES: Final = 0.6
+"""Shares of the effort for the run that all stands on, for one from another start, and for the probes."""
+PROBE_TURNS: Final = 100.0
+"""Most turns of the shaft of a probe."""
+LEAST_AVERAGING: Final = 12.0
+"""Turns of the shaft of an averaging at least."""
+LEAST_RECORDS: Final = 200
+"""Records of a run at least."""
+RECORDS: Final = 40
+"""Records in a turn of the shaft."""
+RECORDS_OF_POCKETS: Final = 200
+"""The same where averages of pocket forces are wanted, which come and go within less than a millisecond."""
+TRUTH_IN_PROBES: Final = 4.0
+"""Computing time of the most exact probe over that of the others, about."""
+LEAST_SAVING: Final = 0.03
+"""Share of the computing time that a simplification must save; more where two runs of one probe took times that differ more."""
+OF_CLOCK: Final = 0.2
+"""Length of the run that the machine is timed with, over that of a probe."""
+BASE: Final = "base"
+AGAIN: Final = "base, again"
+
+
+@dataclass
+class Seen:
+    """What the runs of a plan have shown.
+
+    Attributes
+    ----------
+    ground : Ground
+        The run that all stands on.
+    base, truth : Probe
+        With all effects: the usual nodes and tolerances, and the most exact ones.
+    candidates : list of Candidate
+        What may be simplified.
+    probes : dict of str to Probe
+        Of each candidate alone, by its name.
+    usual_error : dict of str to Influence
+        The usual nodes and tolerances against the most exact ones, by the name of the average.
+    alone : dict of str to dict
+        The same of each candidate against the usual.
+    least_saving : float
+        Share of the time that a simplification must save to be seen.
+    rows : list of Row
+        What was looked at beside the candidates.
+    notes : list of str
+        Where the answer could be wrong.
+    """
+
+    ground: Ground
+    base: Probe
+    truth: Probe
+    candidates: list[Candidate]
+    probes: dict[str, Probe]
+    usual_error: dict[str, Influence]
+    alone: dict[str, dict[str, Influence]]
+    least_saving: float
+    rows: list[Row] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def new_warning(self, name: str) -> str:
+        """What the watch said of a candidate's run, where it said nothing of the run with everything; else empty."""
+        warned = self.probes[name].warned
+        return warned[0] if warned and not self.base.warned else ""
+
+
+class Clock:
+    """Computing times as they would be on a machine that does nothing else: beside each probe a short run, always the same, is
+    timed, and the slower it is the less a probe's time counts.
+
+    Parameters
+    ----------
+    timed : callable
+        Runs it, and gives its processor time for a second of bearing time (s).
+    """
+
+    def __init__(self, timed: Callable[[], float]) -> None:
+        self.timed, self.fastest = timed, math.inf
+
+    def at_rest(self, rate: float) -> float:
+        """A processor time for a second of bearing time over that of the short run now."""
+        now = self.timed()
+        self.fastest = min(self.fastest, now)
+        return rate / now
+
+
+class Looker:
+    """The runs of one plan.
+
+    Parameters
+    ----------
+    wishes : Wishes
+        What is asked for.
+    """
+
+    def __init__(self, wishes: Wishes) -> None:
+        self.wishes, scene, period = wishes, wishes.scene, wishes.period
+        groups = sorted({"cage", "rollers", *(group for name in wishes.names for group in groups_for(name))})
+        pockets = any("pocket" in groups_for(name) for name in wishes.names)
+        every = period / (RECORDS_OF_POCKETS if pockets else RECORDS)
+        self.keep = Length(period, max(every, 1e-6), tuple(groups), wishes.effort)
+        self.usual = scene.replace(effects=scene.effects.replace(**numerics(USUAL_NODES)))
+        self.notes: list[str] = []
+
+    def look(self) -> Seen:
+        """Make all runs but those of whole choices.
+
+        Raises
+        ------
+        InputError
+            If a wanted average is zero, or the effort is not enough.
+        StepError
+            If the scene cannot be run.
+        """
+        wishes = self.wishes
+        rate = computing_rate(self.usual, wishes.period, replace(self.keep, patience=0.1 * wishes.effort))
+        self.ground = run_ground(self.usual, wishes.want, wishes.period, self._length(OF_GROUND, rate, MOST_TURNS))
+        self.notes += self.ground.notes
+        zero = [name for name in wishes.names if not abs(self.ground.value[name]) > 0.0]
+        if zero:
+            allowed = "is zero in this scene, or does not exist; a relative error of it cannot be planned"
+            raise InputError.of("want", zero[0], allowed)
+        other = self._other_start(rate)
+        seen = self._probe_all(candidates(wishes.scene, wants_cage=wishes.of_cage))
+        seen.rows += [other] if other else []
+        seen.notes += self.notes
+        return seen
+
+    def probe(self, effects: Mapping[str, Any], accuracy: str, cost: float = 1.0, share: float = 1.0) -> Probe:
+        """Run the scene with other effects from the state that all probes start from.
+
+        Parameters
+        ----------
+        effects : mapping
+            Fields of `Effects` that are changed.
+        accuracy : str
+            Preset of the tolerances.
+        cost : float
+            Computing time that is expected, over that of the usual probe.
+        share : float
+            Length over that of the other probes.
+        """
+        try:
+            scene = carried_over(changed(self.usual, effects, Start.equal()), self.ground.start, self.usual)
+        except InputError as error:
+            return Probe({}, math.nan, str(error).splitlines()[0])
+        length = replace(self.length, patience=self.length.patience * cost, duration=self.length.duration * share)
+        return probe(scene, accuracy, length, self.wishes.names)
+
+    def influences(self, other: Probe, base: Probe) -> dict[str, Influence]:
+        """What differs between two probes, by the name of the average."""
+        return {name: influence(other, base, self.ground.value, name) for name in self.wishes.names}
+
+    def seconds(self, found: Probe) -> float:
+        """Processor time of a probe for a second of bearing time, as on a machine that does nothing else (s)."""
+        return self.clock.at_rest(found.rate) * self.clock.fastest
+
+    def _length(self, share: float, rate: float, turns: float) -> Length:
+        """How long a run is that may take a share of the effort, and a number of turns of the shaft."""
+        seconds = share * self.wishes.effort
+        duration = min(seconds / rate, turns * self.wishes.period)
+        every = max(min(self.keep.save_every, duration / LEAST_RECORDS), 1e-9)
+        return replace(self.keep, duration=duration, save_every=every, patience=PATIENCE * seconds)
+
+    def _other_start(self, rate: float) -> Row | None:
+        wishes, start = self.wishes, self.wishes.scene.start
+        if start.kind == "state" or wishes.effort * OF_OTHER_START / rate < LEAST_AVERAGING * wishes.period:
+            self.notes.append("no other start was tried: whether the motion depends on its start is not known")
+            return None
+        whirls = start.kind == "whirl" or self.usual.effects.bodies == "rollers"
+        other = self.usual.replace(start=Start.unequal(start.seed + 1) if whirls else Start.whirl(0.9))
+        try:
+            found = run_ground(other, wishes.want, wishes.period, self._length(OF_OTHER_START, rate, MOST_TURNS))
+        except (InputError, LoadError, StepError) as error:
+            self.notes.append(f"a run from another start failed: {str(error).splitlines()[0]}")
+            return None
+        influences = {}
+        for k, name in enumerate(wishes.names):
+            own = self.ground.value[name]
+            change = (found.value[name] - own) / abs(own)
+            half = math.hypot(self.ground.scatter[k], found.scatter[k])
+            influences[name] = Influence(change, half)
+            if abs(change) > max(half + self.ground.drift[k] + found.drift[k], 0.5 * wishes.size[k]):
+                self.notes.append(
+                    f"another start ({other.start.kind}) leads to a {name} that differs by {words(influences[name])}: "
+                    "there may be two motions, or it takes longer to settle; the promise is for the start of the scene"
+                )
+        return Row(
+            f"another start ({other.start.kind})", "start", influences, math.nan, "shown; the start stays as given"
+        )
+
+    def _probe_all(self, found: list[Candidate]) -> Seen:
+        """The usual and the most exact choice, and each candidate alone."""
+        number = (1.0 + OF_CLOCK) * (len(found) + 3) + TRUTH_IN_PROBES
+        self.length = self._length(OF_PROBES / number, self.ground.rate, PROBE_TURNS)
+        self.clock = Clock(lambda: self.probe({}, USUAL_ACCURACY, share=OF_CLOCK).rate)
+        base = self.probe({}, USUAL_ACCURACY)
+        truth = self.probe(numerics(TRUE_NODES), TRUE_ACCURACY, 2.0 * TRUTH_IN_PROBES)
+        exact = self.clock.at_rest(truth.rate)
+        for one, name in ((base, "usual"), (truth, "most exact")):
+            if one.failure:
+                allowed = f"is not enough, or the {name} probe failed: {one.failure} (s)"
+                raise InputError.of("effort", self.wishes.effort, allowed)
+        rates, probes = {BASE: self.clock.at_rest(base.rate)}, {}
+        for candidate in found:
+            probes[candidate.name] = self.probe(candidate.effects, candidate.accuracy)
+            rates[candidate.name] = self.clock.at_rest(probes[candidate.name].rate)
+        rates[AGAIN] = self.clock.at_rest(self.probe({}, USUAL_ACCURACY).rate)
+        fastest = self.clock.fastest
+        base = replace(base, rate=0.5 * (rates[BASE] + rates[AGAIN]) * fastest)
+        return Seen(
+            ground=self.ground,
+            base=base,
+            truth=replace(truth, rate=exact * fastest),
+            candidates=found,
+            probes={name: replace(one, rate=rates[name] * fastest) for name, one in probes.items()},
+            usual_error=self.influences(base, truth),
+            alone={name: self.influences(one, base) for name, one in probes.items()},
+            least_saving=max(LEAST_SAVING, abs(rates[AGAIN] / rates[BASE] - 1.0)),
+        )

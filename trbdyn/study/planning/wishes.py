@@ -1,0 +1,118 @@
+"""What is asked of a plan: checked, and put in the units of the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any, Final
+
+import numpy as np
+
+from trbdyn.errors import InputError
+from trbdyn.model.motion import History
+from trbdyn.model.scene import Scene, Start
+from trbdyn.results.confidence import AVERAGES
+from trbdyn.run.until import groups_for
+from trbdyn.study.planning.probes import Array
+
+TOLD_APART: Final = 0.3
+"""Half width of an influence over the wish, up to which it counts as told apart from chance."""
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What is asked of a plan.
+
+    Attributes
+    ----------
+    scene : Scene
+        What is simulated.
+    want : dict of str to float
+        Wanted relative error by the name of the average.
+    budget : float or None
+        Most computing time of the run (s).
+    effort : float
+        Computing time for the probes, about (s).
+    """
+
+    scene: Scene
+    want: dict[str, float]
+    budget: float | None
+    effort: float
+
+    @property
+    def names(self) -> list[str]:
+        """The averages."""
+        return list(self.want)
+
+    @property
+    def size(self) -> Array:
+        """The wanted errors, in their order."""
+        return np.array(list(self.want.values()))
+
+    @property
+    def period(self) -> float:
+        """Time of a turn of the shaft (s)."""
+        assert isinstance(self.scene.speed_rpm, float)
+        return 60.0 / abs(self.scene.speed_rpm)
+
+    @property
+    def of_cage(self) -> bool:
+        """Whether an average is one of the cage."""
+        return any(map(of_cage, self.want))
+
+
+def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effort: float) -> Wishes:
+    """What is asked for, if it can be planned.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated.
+    want : mapping of str to float
+        Wanted relative error by the name of the average.
+    budget, effort : float
+        Computing time of the run at most, and of the probes (s).
+
+    Raises
+    ------
+    InputError
+        If a name or number cannot be used, or the scene has no constant speed and loads.
+    """
+    if not want:
+        raise InputError.of("want", dict(want), "must name an average with its error, for instance torque = 0.02")
+    for name, wish in want.items():
+        if name not in AVERAGES:
+            near = get_close_matches(str(name), AVERAGES, 1)
+            meant = f"did you mean {near[0]}? " if near else ""
+            raise InputError.of("want", name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}")
+        if isinstance(wish, bool) or not isinstance(wish, int | float) or not 0.0 < wish < 1.0:
+            raise InputError.of(("want", name), wish, "must be a number above 0 and below 1: error over average (1)")
+        if of_cage(name) and scene.effects.bodies == "rollers":
+            raise InputError.of("want", name, "needs a cage: effects.bodies = 'rollers_and_cage'")
+    for field, value in (("budget", budget), ("effort", effort)):
+        if value is not None and not (isinstance(value, int | float) and 0.0 < value < 1e7):
+            raise InputError.of(field, value, "must be > 0 and < 1e7 (s)")
+    for field in type(scene).model_fields:
+        quantity = getattr(scene, field)
+        parts = quantity if isinstance(quantity, tuple) else (quantity,)
+        if any(isinstance(part, History) for part in parts):
+            raise InputError.of(field, "a history", "must be constant: averages of a changing motion cannot be planned")
+    if scene.speed_rpm == 0.0:
+        raise InputError.of(
+            "speed_rpm", 0.0, "must not be 0: averages of a bearing that stands still cannot be planned (rpm)"
+        )
+    return Wishes(scene, {name: float(wish) for name, wish in want.items()}, budget, effort)
+
+
+def of_cage(name: str) -> bool:
+    """Whether an average is one of the cage."""
+    return groups_for(name)[-1] in ("cage", "pocket")
+
+
+def changed(scene: Scene, effects: Mapping[str, Any], start: Start) -> Scene:
+    """A scene with other effects, and its start; without a cage none of the cage's starts is left."""
+    new = scene.effects.replace(**effects)
+    own = Start.equal() if start.kind == "whirl" and new.bodies == "rollers" else start
+    return scene.replace(effects=new, start=own)
