@@ -14,6 +14,7 @@
 #include <numpy/arrayobject.h>
 
 #include "bearing/model.h"
+#include "contact/contact.h"
 #include "base/status.h"
 
 typedef struct model_object {
@@ -39,5 +40,7 @@ PyArrayObject *trb_array(PyObject *object, int ndim, const char *name);
 PyObject *trb_vector(const double *values, npy_intp n);
 /* Put a new reference under a key and give it up; -1 on error. */
 int trb_put(PyObject *dictionary, const char *key, PyObject *value);
+/* Put everything that is known of the contacts at a state into a dictionary, by name; -1 on error. */
+int trb_put_contacts(const trb_model *m, const trb_detail *detail, const trb_loads *loads, const trb_loads *hub, PyObject *out);
 
 #endif

@@ -6,9 +6,9 @@
 
 /* Speeds at which rollers met their pockets, and the cage its land. */
 typedef struct trb_impacts {
-  double
-      *speed; /* of each roller relative to its pocket: when they met, or now if they are about to, m/s; INFINITY: they are apart. Then the
-                   * same for each row of the table of pairs, of those without a roller */
+  /* of each roller relative to its pocket: when they met, or now if they are about to, m/s; INFINITY: they are apart. Then the same for
+   * each row of the table of pairs, of those without a roller */
+  double *speed;
   double *factor; /* of the tolerances: one for each roller, then that of the cage */
 } trb_impacts;
 

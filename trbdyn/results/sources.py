@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,8 +19,8 @@ from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError
 from trbdyn.results.fields import Field
 from trbdyn.results.file_format import JSON_ATTRIBUTES, PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason
+from trbdyn.results.hdf5_checks import check_stored, own, own_stored
 from trbdyn.results.hdf5_marks import open_to_read
-from trbdyn.results.result_file import FLUSH_BYTES
 
 Array = NDArray[np.float64]
 
@@ -36,9 +35,6 @@ _READ_ERRORS = (
     MemoryError,
     RecursionError,
 )
-
-SMALL = 2 * FLUSH_BYTES
-"""Bytes that a file may claim beyond what it holds: a writer makes room for its records, then writes them."""
 
 
 class Source(Protocol):
@@ -186,7 +182,7 @@ class FileSource:
             self.first_record = int(file.attrs["first_record"])
             if self.first_record < 0:
                 raise FileError(f"{self.path}: the file is damaged (first_record = {self.first_record})")
-            ending = _own(file, "ending", h5py.Dataset)[()]
+            ending = own(file, "ending", h5py.Dataset)[()]
             self.finished = ending.size > 0
             self._ending = json.loads(ending.astype("u1").tobytes()) if self.finished else {}
             if written is None:
@@ -198,16 +194,16 @@ class FileSource:
 
     def _read_fields(self, file: h5py.File) -> tuple[tuple[Field, ...], list[int]]:
         found: list[tuple[int, Field, int]] = []
-        group, room = _own(file, "fields", h5py.Group), []
+        group, room = own(file, "fields", h5py.Group), []
         for name in group:
-            dataset, storage = _own_stored(group, name, h5py.Dataset)
+            dataset, storage = own_stored(group, name, h5py.Dataset)
             room.append(storage)
             attributes = {key: _text(dataset.attrs[key]) for key in ("group", "kind", "unit", "description")}
             entry = Field(name, attributes["group"], attributes["kind"], attributes["unit"], attributes["description"])
             if dataset.dtype != np.float64 or dataset.ndim != 1 + len(entry.dims):
                 raise FileError(f"{self.path}: the dataset of {name!r} is damaged ({dataset.dtype}, {dataset.shape})")
             found.append((int(dataset.attrs["index"]), entry, int(dataset.shape[0])))
-        _check_stored(group, "its fields together", *room)
+        check_stored(group, "its fields together", *room)
         found.sort(key=lambda row: row[0])
         return tuple(entry for _, entry, _ in found), [length for _, _, length in found]
 
@@ -219,14 +215,14 @@ class FileSource:
         meta |= {key: int(attributes[key]) for key in ("schema_version", "segment")}
         peaks = dict(known) if known is not None else self._read_peaks(file) if self.finished else {}
         message, final_time = str(self._ending.get("message", "")), float(self._ending.get("final_time", np.nan))
-        state = np.asarray(_own(file, "final_state", h5py.Dataset)[()], dtype=float)
+        state = np.asarray(own(file, "final_state", h5py.Dataset)[()], dtype=float)
         if not self.finished:
             message = "the run was cut off before its end; the records up to the last write are here"
             if self.n_records and "time" in file["fields"]:
                 final_time = float(file["fields"]["time"][self.n_records - 1])
                 message = f"the run was cut off before its end; its last record is at t = {final_time:.6g} s"
         return RunInfo(
-            scene=_table(json.loads(_text(_own(file, "scene", h5py.Dataset)[()]))),
+            scene=_table(json.loads(_text(own(file, "scene", h5py.Dataset)[()]))),
             success=self._ending.get("success") is True,
             message=message,
             stats=stats,
@@ -244,10 +240,10 @@ class FileSource:
         found: dict[str, Array] = {}
         if "peaks" not in file:
             return found
-        group = _own(file, "peaks", h5py.Group)
+        group = own(file, "peaks", h5py.Group)
         fields = file["fields"]
         for name in (entry.name for entry in self.fields if entry.group == PEAKS):
-            dataset = _own(group, name, h5py.Dataset)
+            dataset = own(group, name, h5py.Dataset)
             shape = fields[name].shape[1:]
             if dataset.dtype != np.float64 or dataset.shape not in ((0, *shape), (1, *shape)):
                 raise FileError(f"{self.path}: the dataset of {name!r} is damaged ({dataset.dtype}, {dataset.shape})")
@@ -267,7 +263,7 @@ class FileSource:
             with opened(self.path) as file:
                 if _text(file.attrs["created"]) != self._created:
                     raise FileError(f"{self.path}: the file has been replaced since it was loaded; load it again")
-                values = np.asarray(_own(file["fields"], name, h5py.Dataset)[: self.n_records], dtype=float)
+                values = np.asarray(own(file["fields"], name, h5py.Dataset)[: self.n_records], dtype=float)
             values.flags.writeable = False
             self._cache[name] = values
         return self._cache[name]
@@ -364,54 +360,6 @@ def _table(value: Any) -> dict[str, Any]:
     if not isinstance(value, dict):
         raise ValueError("a table of named values is missing")
     return value
-
-
-def _own(group: h5py.Group, name: str, kind: type) -> Any:
-    """A member that lies in this file itself: no links or storage that lead elsewhere."""
-    return _own_stored(group, name, kind)[0]
-
-
-def _own_stored(group: h5py.Group, name: str, kind: type) -> tuple[Any, _Storage]:
-    """The same, with the room that it takes."""
-    links, key = group.id.links, name.encode()
-    if not links.exists(key) or links.get_info(key).type != h5py.h5l.TYPE_HARD:
-        raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
-    member, storage = group[name], _Storage(0, 0, elsewhere=False)
-    if not isinstance(member, kind):
-        raise FileError(f"{group.file.filename}: {name!r} is not what a result holds there")
-    if isinstance(member, h5py.Dataset):
-        storage = _Storage.of(member)
-        if storage.elsewhere:
-            raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
-        _check_stored(group, repr(name), storage)
-    return member, storage
-
-
-@dataclass(frozen=True, slots=True)
-class _Storage:
-    """Bytes that a dataset claims to have and those that it takes in the file, and whether they lie in another file."""
-
-    claimed: int
-    stored: int
-    elsewhere: bool
-
-    @classmethod
-    def of(cls, dataset: h5py.Dataset) -> _Storage:
-        place, made = dataset.id, dataset.id.get_create_plist()
-        layout, size = made.get_layout(), place.get_type().get_size()
-        packed = layout == h5py.h5d.CHUNKED and made.get_nfilters() > 0
-        stored = place.get_num_chunks() * math.prod(made.get_chunk()) * size if packed else place.get_storage_size()
-        elsewhere = layout == h5py.h5d.VIRTUAL or made.get_external_count() > 0
-        return cls(place.get_space().get_simple_extent_npoints() * size, stored, elsewhere)
-
-
-def _check_stored(group: h5py.Group, name: str, *datasets: _Storage) -> None:
-    """A file must hold what it claims: values that were never written take no room in it, but much when they are read."""
-    claimed, stored = sum(one.claimed for one in datasets), sum(one.stored for one in datasets)
-    if claimed > SMALL + 2 * stored:
-        raise FileError(
-            f"{group.file.filename}: the file is damaged: {name} claims {claimed} bytes, but holds {stored}"
-        )
 
 
 def _text(value: Any) -> str:

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import math
-import multiprocessing
 import os
-import signal
-import threading
 import time as clock
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +25,7 @@ from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
 from trbdyn.results.sources import FileSource, Written, run_id_in, segment_paths
 from trbdyn.run import checkpoint, keeping
+from trbdyn.run.beside import check_apart, culprit, has_a_spare_core, interrupts
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.options import RunOptions
 from trbdyn.run.until import Until, check_wanted
@@ -141,11 +138,11 @@ class Run:
         span = float(self.times[-1] - self.times[0])
         with tqdm(total=span, disable=not progress, unit="s", bar_format=_BAR) as bar:
             try:
-                with _interrupts() as self.interrupted:
+                with interrupts() as self.interrupted:
                     message = self._loop(bar)
             except _core.CoreStepError as error:
                 result = self._finish(False, str(error))
-                time, body, quantity = sim.time, *_culprit(str(error))
+                time, body, quantity = sim.time, *culprit(str(error))
                 raise StepError(str(error), time=time, body=body, quantity=quantity, result=result) from None
             except StepError as error:
                 error.result = self._finish(False, str(error))
@@ -200,7 +197,7 @@ class Run:
             doubt = watch.look(final=self.done >= self.times.size)
             bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
             if sim.scene.effects.bodies == "rollers" and rows:
-                _check_apart(sim, records[:rows])
+                check_apart(sim, records[:rows])
             ended = self._call_back()
             if self.interrupted:
                 raise KeyboardInterrupt
@@ -393,13 +390,6 @@ class Run:
         )
 
 
-def has_a_spare_core() -> bool:
-    """Whether records and peaks may be computed by a second thread: not in workers of a study, which use all cores already."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    alone = multiprocessing.parent_process() is None and threading.current_thread() is threading.main_thread()
-    return cores > 1 and alone
-
-
 def _own_segments(output: Path) -> tuple[str, list[Path]] | None:
     """Name of the run whose result lies in a file, and the files of its later segments; None if there is no result."""
     run_id = run_id_in(output)
@@ -427,54 +417,7 @@ def output_times(start: float, end: float, every: float) -> Array:
     return times
 
 
-@contextlib.contextmanager
-def _interrupts() -> Iterator[list[int]]:
-    """A list that Ctrl-C adds to, so that it comes between steps and records and never gets lost; a second one comes
-    at once.
-    """
-    caught: list[int] = []
-    before = signal.getsignal(signal.SIGINT)
-
-    def catch(number: int, frame: FrameType | None) -> None:
-        caught.append(number)
-        signal.signal(signal.SIGINT, before)
-
-    if threading.current_thread() is not threading.main_thread() or before is not signal.default_int_handler:
-        yield caught
-        return
-    signal.signal(signal.SIGINT, catch)
-    try:
-        yield caught
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
 def _turns(speed_rpm: float | History, start: float, end: float) -> float:
     if isinstance(speed_rpm, History):
         return speed_rpm.integral(start, end) / 60.0
     return speed_rpm * (end - start) / 60.0
-
-
-def _culprit(text: str) -> tuple[str | None, str | None]:
-    """Body and quantity named at the end of the core's message."""
-    _, _, named = text.partition("largest error: ")
-    body, _, quantity = named.partition(", ")
-    return (body or None, quantity or None) if quantity else (None, None)
-
-
-def _check_apart(sim: Simulation, records: Array) -> None:
-    """Rollers without a cage must not touch each other, as nothing in the model keeps them apart."""
-    places = {name: (offset, shape) for name, offset, shape in sim._model.record_layout()}
-    offset, (count,) = places["roller_orbit_angle"]
-    angles = np.sort(np.mod(records[:, offset : offset + count], 2.0 * math.pi), axis=1)
-    gaps = np.diff(np.concatenate([angles, angles[:, :1] + 2.0 * math.pi], axis=1), axis=1)
-    bearing = sim.scene.bearing
-    nearest = bearing.pitch_diameter * np.sin(0.5 * gaps.min(axis=1))
-    if float(nearest.min()) < bearing.roller.diameter:
-        raise StepError(
-            f"two rollers touch before {sim.time:.6g} s: without a cage nothing in the model keeps them apart; "
-            "shorten the run or give effects.bodies = 'rollers_and_cage'",
-            time=sim.time,
-            body="rollers",
-            quantity="spacing",
-        )
