@@ -245,3 +245,8 @@ def test_what_is_not_kept_cannot_be_asked_for() -> None:
     alone = trb.Simulation(scene_30310(3000.0, 4930.0, effects=effects))
     with pytest.raises(trb.InputError, match="needs a cage"):
         alone.run(duration=0.1, until={"pocket_duty": 0.1})
+
+
+def test_a_run_too_short_for_a_look_says_so() -> None:
+    with pytest.warns(trb.RunWarning, match="it was too short for a look"):
+        rolling().run(duration=2e-3, until={"torque": 0.1})

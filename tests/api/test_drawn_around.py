@@ -198,4 +198,21 @@ def test_the_drawing_of_a_bearing_has_room_for_all_of_it() -> None:
     assert bottom < 0.0 < points[:, 1].min()
     assert points[:, 1].max() < top < 1.2 * points[:, 1].max()
     assert np.ptp(points[:, 0]) > (right - left) / 3.0
-    assert left == pytest.approx(-1.1 * np.abs(points[:, 0]).max(), rel=0.02)
+    wide = 1.1 * np.abs(points[:, 0]).max()
+    assert left == pytest.approx(-wide, rel=0.02)
+    # room for the dimensions beside the section, and no picture that is higher than wide
+    assert right == pytest.approx(max(2.4 * wide, 1.05 * points[:, 1].max() - wide), rel=0.02)
+
+
+def test_the_faces_of_a_pocket_are_drawn_in_both_views() -> None:
+    bearing = trb.cases.rig_30310()
+    end, top = plot.pocket_drawing(bearing, 2).axes[:2]
+    faces = bearing.pocket_of(2).faces
+    for view, columns in ((end, (1, 0)), (top, (2, 1))):
+        drawn = [np.column_stack(line.get_data()) for line in view.lines]
+        for face in faces:
+            corners = 1e3 * face.vertices[:, columns]
+            closed = np.vstack([corners, corners[:1]])
+            assert any(one.shape == closed.shape and np.allclose(one, closed) for one in drawn), face.name
+    half = 0.5e3 * bearing.roller.total_length
+    assert top.get_xlim() == pytest.approx((-1.35 * half, 1.35 * half))

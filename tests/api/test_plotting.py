@@ -15,6 +15,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
 from PIL import Image
 
 from trbdyn import animation, plot
@@ -242,3 +244,26 @@ def test_animation_moves_and_saves(tmp_path: Path, whirling: Result) -> None:
         assert np.abs(np.asarray(image.convert("L"), dtype=float) - first).max() > 50
     with pytest.raises(InputError, match="frames"):
         animation.animate(whirling, frames=0)
+
+
+def test_animation_draws_the_cage_as_a_circle_and_marks_on_the_rollers(whirling: Result) -> None:
+    moving = animation.animate(whirling, last=2.0, frames=4)
+    for frame in (0, 3):
+        drawn = moving._func(frame)
+        ring = next(one for one in drawn if isinstance(one, Line2D) and len(one.get_xdata()) > 20)
+        hub = next(one for one in drawn if isinstance(one, Line2D) and one.get_marker() == "+")
+        x, y = (np.asarray(values) for values in ring.get_data())
+        assert (x[0], y[0]) == pytest.approx((x[-1], y[-1]))
+        radius = np.hypot(x - hub.get_xdata()[0], y - hub.get_ydata()[0])
+        geometry = whirling.geometry
+        assert radius == pytest.approx(500.0 * (geometry["outer_race_radius"] + geometry["inner_race_radius"]))
+        turned = np.unwrap(np.arctan2(y - hub.get_ydata()[0], x - hub.get_xdata()[0]))
+        assert turned[-1] - turned[0] == pytest.approx(2.0 * np.pi)
+        rollers = [one for one in drawn if isinstance(one, Circle)]
+        marks = [one for one in drawn if isinstance(one, Line2D) and len(one.get_xdata()) == 2]
+        assert len(marks) == len(rollers) > 0
+        for roller, mark in zip(rollers, marks, strict=True):
+            (x0, x1), (y0, y1) = mark.get_data()
+            assert (x0, y0) == pytest.approx(roller.center)
+            assert np.hypot(x1 - x0, y1 - y0) == pytest.approx(roller.radius)
+    plt.close(moving._fig)

@@ -17,6 +17,7 @@ import h5py
 import numpy as np
 import pytest
 
+import trbdyn as trb
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
 from trbdyn.results.result import Result, load
@@ -503,3 +504,11 @@ def test_the_package_gives_its_names_lazily() -> None:
     assert "Simulation" in dir(trbdyn)
     with pytest.raises(AttributeError, match="wheels"):
         trbdyn.wheels  # noqa: B018
+
+
+def test_fields_of_a_file_cannot_be_changed_by_mistake(tmp_path: Path) -> None:
+    scene = trb.cases.scene_30310(3000.0, 4930.0)
+    result = trb.Simulation(scene).run(duration=1e-3, output=tmp_path / "run.h5")
+    for one in (result, trb.load(tmp_path / "run.h5")):
+        with pytest.raises(ValueError, match="read-only"):
+            one["cage_position"][0] = 0.0

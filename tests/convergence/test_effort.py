@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 import trbdyn as trb
@@ -87,3 +88,14 @@ def test_a_run_costs_what_it_did(name: str) -> None:
     assert counters["tangent_rollers"] / rollers == pytest.approx(wanted["tangents"], abs=0.04)
     assert stats["nonlinear_failures"] <= 0.02 * stats["steps"]
     assert counters["force_evaluations"] == stats["rhs_evaluations"]
+
+
+@pytest.mark.parametrize("integrator", ["bdf", "erk"])
+def test_the_smallest_step_is_the_smallest(integrator: str) -> None:
+    scene = trb.cases.scene_30310(3000.0, 4930.0, effects=trb.Effects.paper().replace(n_slices=4))
+    simulation = trb.Simulation(scene, integrator=integrator, first_step=1e-10)
+    times = [0.0, *(simulation.step() for _ in range(60))]
+    steps = np.diff(times)
+    assert simulation.statistics["smallest_step"] == pytest.approx(steps.min(), rel=1e-6)
+    assert simulation.statistics["last_step"] == pytest.approx(steps[-1], rel=1e-6)
+    assert steps.min() < 0.1 * steps.max()

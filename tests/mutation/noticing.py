@@ -81,6 +81,7 @@ NEAR: list[tuple[str, list[str]]] = [
             "geometry/test_pocket.py",
             "geometry/test_interference.py",
             "physics/test_effects.py",
+            "physics/test_culling.py",
             "physics/test_audit.py",
             "laws/test_in_contacts.py",
         ],

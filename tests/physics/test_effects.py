@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import trbdyn as trb
 from trbdyn import Effects, InputError
 from trbdyn.model.scene import Start
 
@@ -183,3 +184,15 @@ def test_edges_bound_the_faces(kit: SimpleNamespace) -> None:
     near, far = (sim.contacts(vector)["pocket_interference"] for sim in (bounded, planes))
     assert np.all(far >= near - 1e-15)
     assert np.any(far > near + 1e-6)
+
+
+def test_pockets_that_are_clear_are_counted_as_such() -> None:
+    """Without gravity the cage floats between rollers that it does not touch: every face that is tested is proven clear."""
+    scene = trb.cases.scene_30310(3000.0, 4930.0, effects=Effects.paper().replace(gravity=False, n_slices=4))
+    simulation = trb.Simulation(scene.replace(start=trb.Start.equal()))
+    for _ in range(30):
+        simulation.step()
+    assert not (simulation.record()["pocket_force"] > 0.0).any()
+    count = simulation.counters
+    faces = 12 * len(scene.bearing.pocket_of(0).faces)
+    assert count["pocket_tests"] == count["pocket_culled"] >= faces * count["force_evaluations"]
