@@ -44,11 +44,11 @@ static void *work(void *recorder)
   for (;;) {
     while (r->taken == r->put && !r->closing) pthread_cond_wait(&r->has_work, &r->lock);
     if (r->taken == r->put) break;
-    const unsigned long end = r->put;
+    const place *next = &r->queue[r->taken % PLACES];
     pthread_mutex_unlock(&r->lock);
-    for (unsigned long i = r->taken; i < end; i++) compute(r, &r->queue[i % PLACES]);
+    compute(r, next);
     pthread_mutex_lock(&r->lock);
-    r->taken = end;
+    r->taken++; /* one at a time, so that the stepping need not wait for the whole queue */
     pthread_cond_signal(&r->has_room);
   }
   pthread_mutex_unlock(&r->lock);
