@@ -152,7 +152,8 @@ def test_the_damping_that_the_warning_names_makes_presets_agree():
         result = trb.Simulation(scene, accuracy=accuracy).run(duration=0.03, save_every=1e-3)
         names = [field.name for field in result.fields if field.name.startswith("loss_")]
         losses.append(sum(float(result[name][-1] - result[name][10]) for name in names))
-    assert losses[0] == pytest.approx(losses[1], rel=0.1)
+    # other roundings (instruction sets, -O1) give 1 to 15 %; without damping the presets differ by 37 to 41 %
+    assert losses[0] == pytest.approx(losses[1], rel=0.25)
 
 
 @pytest.mark.parametrize("loads", [(1230.0, 0.0), (4930.0, 12_000.0)], ids=["light", "combined"])

@@ -126,7 +126,6 @@ NEAR: list[tuple[str, list[str]]] = [
             "api/test_simulation.py",
             "api/test_confidence.py",
             "api/test_keeping.py",
-            "api/test_watch.py",
             "restart/test_checkpoints.py",
         ],
     ),
