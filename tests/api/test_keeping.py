@@ -66,3 +66,13 @@ def test_a_long_run_is_small_and_says_what_it_kept(tmp_path: Path, monkeypatch: 
     assert not {"contacts", "pocket"} & set(bare.groups)
     assert "without the groups contacts, pocket" in bare.meta["kept"]
     assert sim.estimate(duration=0.2).records == 201
+
+
+def test_the_groups_that_are_asked_for_are_kept_and_no_others(tmp_path: Path) -> None:
+    scene = trb.cases.scene_30310(3000.0, 4930.0)
+    groups = ("cage", "torque")
+    in_memory = trb.Simulation(scene).run(duration=1e-3, save_groups=groups)
+    to_file = trb.Simulation(scene).run(duration=1e-3, save_groups=groups, output=tmp_path / "run.h5")
+    for result in (in_memory, to_file, trb.load(tmp_path / "run.h5")):
+        assert set(result.groups) == {"time", *groups}
+        assert {field.group for field in result.fields} == {"time", *groups}
