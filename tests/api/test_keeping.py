@@ -76,3 +76,9 @@ def test_the_groups_that_are_asked_for_are_kept_and_no_others(tmp_path: Path) ->
     for result in (in_memory, to_file, trb.load(tmp_path / "run.h5")):
         assert set(result.groups) == {"time", *groups}
         assert {field.group for field in result.fields} == {"time", *groups}
+
+
+@pytest.mark.parametrize("groups", [3, "cage", ["cagee"], [], {"cage": 1, "x": 2}, [1], [None]])
+def test_groups_that_are_none_are_refused(groups: Any) -> None:
+    with pytest.raises(trb.InputError, match="save_groups"):
+        trb.Simulation(scene_30310()).run(duration=1e-3, save_groups=groups)

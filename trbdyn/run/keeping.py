@@ -9,7 +9,7 @@ group peaks. What is given explicitly is kept as it is given.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 from trbdyn.model.motion import History, values_of
@@ -60,7 +60,9 @@ def kept_by_default(
     """
     every = interval(length, speed_rpm) if save_every is None else save_every
     if save_groups is not None:
-        return {"save_every": every, "save_groups": tuple(save_groups)}
+        # what is no sequence is refused where options are checked
+        groups = tuple(save_groups) if isinstance(save_groups, Iterable) else save_groups
+        return {"save_every": every, "save_groups": groups}
     many = save_every is None and length / every > MANY * (1.0 + 1e-9)
     return {"save_every": every, "save_groups": tuple(group for group in GROUPS if not (many and group in DETAILS))}
 

@@ -370,8 +370,6 @@ class Simulation:
             _check_output(path)
         changes: dict[str, Any] = {"revolutions": revolutions, "duration": duration}
         changes |= {} if until is None else {"until": dict(until)}
-        changes |= {} if save_every is None else {"save_every": save_every}
-        changes |= {} if save_groups is None else {"save_groups": tuple(save_groups)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
         end = options.end_time(self.scene.speed_rpm, self._reached)
