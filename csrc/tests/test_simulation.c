@@ -137,6 +137,27 @@ static void test_beside(void)
   }
 }
 
+/* Iterations of Newton's method for one step of the same length. */
+static double iterations_of(double newton_share)
+{
+  trb_settings    settings = rig_settings();
+  trb_statistics  found = {0};
+  trb_simulation *s;
+  settings.newton_share = newton_share;
+  if (!CHECK(create("bdf", "scalar", &settings, 0.0, start, &s) == TRB_OK)) return 0.0;
+  for (int i = 0; i < 200; i++) CHECK(trb_simulation_step(s, &message) == TRB_OK);
+  s->integrator.kind->statistics(&s->integrator, &found);
+  trb_simulation_free(s);
+  return found.nonlinear_iterations / found.steps;
+}
+
+/* The equations of a step hold to the share that is asked for: a smaller one takes more iterations. */
+static void test_newton_share(void)
+{
+  const double usual = iterations_of(0.1), finer = iterations_of(1e-4);
+  CHECK(usual >= 1.0 && finer > 1.2 * usual);
+}
+
 /* A smallest step that cannot be kept: an error that names time and body, and the state before. */
 static void test_failed_step(void)
 {
@@ -174,6 +195,7 @@ int main(void)
   test_bad_input();
   test_outputs("bdf", bdf);
   test_outputs("erk", erk);
+  test_newton_share();
   test_beside();
   test_failed_step();
   trb_motion_free(motion);
