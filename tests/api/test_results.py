@@ -512,3 +512,12 @@ def test_fields_of_a_file_cannot_be_changed_by_mistake(tmp_path: Path) -> None:
     for one in (result, trb.load(tmp_path / "run.h5")):
         with pytest.raises(ValueError, match="read-only"):
             one["cage_position"][0] = 0.0
+
+
+def test_power_split_needs_the_powers_or_the_energies() -> None:
+    scene = trb.cases.scene_30310(3000.0, 4930.0)
+    for group in ("power", "energy"):
+        found = trb.Simulation(scene).run(duration=2e-3, save_groups=("cage", group)).power_split
+        assert found["rolling"] > 0.0
+    with pytest.raises(InputError, match="power"):
+        _ = trb.Simulation(scene).run(duration=2e-3, save_groups=("cage",)).power_split
