@@ -59,6 +59,13 @@ def test_a_run_that_is_short_against_the_creep_cannot_be_told() -> None:
     assert judged(3.0, creep_time=0.9).settled
 
 
+def test_a_drift_that_matters_within_the_creep_is_a_drift() -> None:
+    """2 % a second: 6 % within the record, which may pass, and 27 % within three times the creep, which may not."""
+    slow = {"duration": 3.0, "radius": lambda t: 0.5 * (1.0 + 0.02 * t)}
+    assert judged(**slow).answer == "settled"
+    assert judged(**slow, creep_time=4.5).answer == "drifting"
+
+
 def test_few_turns_cannot_be_told() -> None:
     assert "only 2.1 turns" in str(judged(0.1))
     assert judged(0.3, creep_time=0.01).answer == "unknown"
