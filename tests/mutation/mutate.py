@@ -249,6 +249,8 @@ def main() -> int:
     snapshot, tests = Snapshot(), fingerprint("tests")
     baseline = Baseline.read(fingerprint("csrc", "trbdyn"))
     for turn in TURNS:
+        if time.monotonic() >= end:
+            break
         left = open_faults(turn, outcomes, options, tests)
         names = list(dict.fromkeys(name for fault in left for name in tests_of(turn, fault)))
         if not check_baseline([*names, PLANTED[3].split("::")[0]], baseline) or not check_planted(baseline, snapshot):
