@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from trbdyn.results.summary import averages
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
 from trbdyn.study.planning.probes import Influence
@@ -141,8 +142,6 @@ class Plan:
         result : Result
             What `run` gave.
         """
-        from trbdyn.results.summary import averages
-
         time = result["time"]
         found = averages(result.window(float(time[0]) + self.settle))
         return {name: float(found[name]) for name in self.want}
