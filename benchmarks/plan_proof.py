@@ -128,7 +128,7 @@ def proof(name: str) -> list[dict[str, Any]]:
     plan_s, result = _timed(plan, plan.scene, plan.accuracy, plan.duration)
     found = plan.averages(result)
     given_s, _ = _timed(plan, scene, "standard", plan.duration)
-    rate = plan.wall_s_everything / max(plan.duration, 1e-12)
+    rate = plan.computing_s_everything / max(plan.duration, 1e-12)
     everything = scene.replace(effects=scene.effects.replace(**numerics(TRUE_NODES)))
     length = max(LONGER * (plan.duration - plan.settle) + 2.0 * plan.settle, 2.0 * plan.duration)
     length = min(length, max(TRUTH_S / rate, plan.duration))
@@ -161,7 +161,7 @@ def proof(name: str) -> list[dict[str, Any]]:
                 "probes_s": plan.spent_s,
                 "plan_s": plan_s,
                 "given_s": given_s,
-                "everything_s": plan.wall_s_everything,
+                "everything_s": plan.computing_s_everything,
                 "truth_s": truth_s,
             }
         )

@@ -11,13 +11,24 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn import observables
 from trbdyn.cli import main
 from trbdyn.model.cases import scene_30310
 from trbdyn.model.motion import History
 from trbdyn.study.planning.candidates import SWITCHES, candidates
 from trbdyn.study.planning.looking import Seen
-from trbdyn.study.planning.probes import Influence, Probe, carried_over, influence
+from trbdyn.study.planning.probes import (
+    TOO_LONG,
+    Influence,
+    Length,
+    Probe,
+    carried_over,
+    in_batches,
+    influence,
+    run_quietly,
+)
 from trbdyn.study.planning.proposal import Plan, words
+from trbdyn.study.planning.wishes import changed
 
 WANT = {"torque": 0.05}
 
@@ -101,7 +112,7 @@ def test_what_is_promised_is_within_the_wish(proposal: Plan) -> None:
     parts = proposal.parts["torque"]
     assert sum(parts.values()) == pytest.approx(proposal.promised["torque"])
     assert proposal.settle < proposal.duration
-    assert proposal.wall_s < proposal.wall_s_everything
+    assert proposal.computing_s < proposal.computing_s_everything
 
 
 def test_the_promise_holds(proposal: Plan) -> None:
@@ -109,8 +120,10 @@ def test_the_promise_holds(proposal: Plan) -> None:
     found = proposal.averages(proposal.run())["torque"]
     truth = rolling(quadrature="gauss", n_slices=32)
     result = trb.Simulation(truth, accuracy="reference").run(duration=0.4, save_every=5e-4)
-    true = float(result.window(0.1)["inner_torque"].mean())
-    assert abs(found / true - 1.0) <= proposal.promised["torque"] + 0.003
+    window = result.window(0.1)
+    true = float(window["inner_torque"].mean())
+    own = observables.half_width(in_batches(window, ["torque"], 0.0)["torque"]) / true
+    assert abs(found / true - 1.0) <= proposal.promised["torque"] + own
     assert abs(proposal.value["torque"] / true - 1.0) < 0.02
 
 
@@ -156,7 +169,7 @@ def test_its_picture_shows_every_row_that_could_be_run(proposal: Plan, tmp_path:
 
 def test_a_budget_is_kept() -> None:
     found = trb.plan(rolling(), WANT, budget=0.1, effort=2.0)
-    assert found.wall_s <= 0.11 or not found.reached
+    assert found.computing_s <= 0.11 or not found.reached
     assert found.budget == 0.1
 
 
@@ -168,6 +181,8 @@ def test_a_budget_is_kept() -> None:
         ({"torque": 1.5}, {}, "want.torque = 1.5"),
         ({"torque": math.nan}, {}, "want.torque = nan"),
         ({"torque": True}, {}, "must be a number"),
+        ({"torque": "0.1"}, {}, "must be a number"),
+        ({"torque": 0.1}, {"budget": True}, "budget = True"),
         ({"torque": 0.1}, {"budget": 0.0}, "budget = 0.0"),
         ({"torque": 0.1}, {"effort": math.inf}, "effort = inf"),
     ],
@@ -217,3 +232,39 @@ def test_a_run_that_warns_where_the_whole_does_not_is_no_simplification() -> Non
     assert Seen.new_warning(seen, "gravity") == ""
     seen.base = loud
     assert Seen.new_warning(seen, "damping") == ""
+
+
+def test_a_proposed_scene_that_starts_from_a_state_can_be_simulated() -> None:
+    """The state belongs to the scene with everything on; without drag there is a loss less in it, without a cage no whirl."""
+    scene = rolling(oil_fill=0.1)
+    simulation = trb.Simulation(scene)
+    simulation.run(duration=1e-3)
+    state = simulation.state
+    begun = scene.replace(start=trb.Start.state(state.vector, time=state.time, shaft_angle=state.shaft_angle))
+    for effects in ({"oil_fill": 0.0}, {"bodies": "rollers"}, {"planar": True, "oil_fill": 0.0}):
+        other = trb.Simulation(changed(begun, effects, begun.start))
+        assert other.time == state.time
+        np.testing.assert_array_equal(other.view()["roller_r"], simulation.view()["roller_r"])
+        other.run(duration=1e-4)
+    whirling = scene.replace(start=trb.Start.whirl(0.9))
+    assert changed(whirling, {"bodies": "rollers"}, whirling.start).start.kind == "equal"
+
+
+def test_a_probe_that_takes_too_long_is_told_from_one_that_failed() -> None:
+    hurried = Length(1.0, 1e-3, ("cage", "rollers", "torque"), patience=1e-3)
+    result, rate, failure = run_quietly(rolling(), "standard", hurried)
+    assert failure == TOO_LONG
+    assert result is not None
+    assert 0.0 < rate < 1e3
+    assert 0.0 < result.duration < 1.0
+
+
+def test_an_average_is_wanted_once_and_the_folder_is_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Both are told before any probe is run."""
+    twice = ["plan", "rig_30310", "--want", "torque=0.02", "--want", "torque=0.5", "-o", str(tmp_path / "x")]
+    assert main(twice) == 2
+    assert "was given before" in capsys.readouterr().err
+    assert main(["plan", "rig_30310", "--want", "torque=0.02", "-o", str(tmp_path / "no" / "x")]) == 2
+    said = capsys.readouterr().err
+    assert "there is no" in said
+    assert said.count("\n") == 1

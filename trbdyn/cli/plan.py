@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.outcome import DONE, FAILED
 from trbdyn.errors import InputError
-
-DONE, FAILED = 0, 1
 
 
 def add_plan_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
@@ -47,10 +46,12 @@ def _plan(options: argparse.Namespace) -> int:
     from trbdyn.run.case_text import case_text
     from trbdyn.study.planning import plan
 
-    want = dict(map(_wish, options.want))
+    want = _wishes(options.want)
     scene, _ = case_with_changes(options.case, options.changes)
     name = options.output or f"{Path(options.case).stem}_plan"
     files = [output_path(f"{name}{ending}", overwrite=options.overwrite) for ending in (".toml", ".png")]
+    if not files[0].parent.is_dir():
+        raise InputError.of("--output", name, f"must lie in a folder that is there: there is no {files[0].parent}")
     effort = {} if options.effort is None else {"effort": options.effort}
     found = plan(scene, want, budget=options.budget, **effort)
     print(found)
@@ -58,9 +59,22 @@ def _plan(options: argparse.Namespace) -> int:
     write_whole(files[0], text.encode(), overwrite=options.overwrite)
     found.picture(files[1])
     print(f"\n{files[0]}\n{files[1]}\npython -m trbdyn run {files[0]}")
+    print(
+        "(The promise is for the averages from the end of the settling on; the summary of a run averages over its second half.)"
+    )
     if not found.reached:
         print("trbdyn: what was wanted is not within reach; see above for what is", file=sys.stderr)
     return DONE if found.reached else FAILED
+
+
+def _wishes(texts: Sequence[str]) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for text in texts:
+        name, share = _wish(text)
+        if name in found:
+            raise InputError.of("--want", text, f"must name an average once: {name} was given before")
+        found[name] = share
+    return found
 
 
 def _wish(text: str) -> tuple[str, float]:

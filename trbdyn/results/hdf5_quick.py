@@ -7,11 +7,12 @@ its type several times.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
+
+from trbdyn.results.file_format import stored
 
 _ONE = h5py.h5s.create(h5py.h5s.SCALAR)
 
@@ -27,14 +28,9 @@ def describe(dataset: h5py.Dataset, attributes: Mapping[str, str | int]) -> None
         Their values by name.
     """
     for name, value in attributes.items():
-        data = _fixed(value) if isinstance(value, str) else np.array(value, dtype=np.int64)
+        data = np.asarray(stored(value))
         place = h5py.h5a.create(dataset.id, name.encode(), h5py.h5t.py_create(data.dtype), _ONE)
         place.write(data)
-
-
-def _fixed(text: str) -> NDArray[Any]:
-    data = text.encode()
-    return np.array(data, dtype=f"S{max(len(data), 1)}")
 
 
 def append(dataset: h5py.h5d.DatasetID, start: int, rows: NDArray[np.float64]) -> None:

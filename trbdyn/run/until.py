@@ -60,17 +60,33 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], has_cage:
         If a name is none of an average, or what an average needs is not kept or does not exist.
     """
     for name in wanted:
-        if name not in AVERAGES:
-            near = get_close_matches(name, AVERAGES, 1)
-            meant = f"did you mean {near[0]}? " if near else ""
-            raise InputError.of(
-                ("run", "until"), name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}"
-            )
+        check_average(name, "run", "until")
         missing = sorted(set(groups_for(name)) - set(groups))
         if missing:
             raise InputError.of(("run", "save_groups"), groups, f"must hold {', '.join(missing)} for until = {name}")
         if not has_cage and groups_for(name)[-1] in ("cage", "pocket"):
             raise InputError.of(("run", "until"), name, "needs a cage: effects.bodies = 'rollers_and_cage'")
+
+
+def check_average(name: str, *field: str) -> None:
+    """Check that a name is one of an average of the summary.
+
+    Parameters
+    ----------
+    name : str
+        What was given.
+    *field : str
+        Where it was given.
+
+    Raises
+    ------
+    InputError
+        If it is none; the message has the name that is nearest to it.
+    """
+    if name not in AVERAGES:
+        near = get_close_matches(str(name), AVERAGES, 1)
+        meant = f"did you mean {near[0]}? " if near else ""
+        raise InputError.of(field, name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}")
 
 
 def groups_for(name: str) -> tuple[str, str, str]:

@@ -16,7 +16,7 @@ from trbdyn.model.scene import Scene, Start
 from trbdyn.results.confidence import confidence
 from trbdyn.results.summary import averages
 from trbdyn.study.planning.candidates import USUAL_ACCURACY
-from trbdyn.study.planning.probes import Array, Length, in_batches, run_quietly
+from trbdyn.study.planning.probes import TOO_LONG, Array, Length, in_batches, run_quietly
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -31,8 +31,10 @@ SETTLING_BATCHES: Final = 40
 """Batches in which the run is looked through for the end of the transient."""
 LEFT_OF_SETTLING: Final = 0.1
 """Share of the wish that the mean of three batches may be off after settling, beside their scatter."""
-UNKNOWN_SCATTER: Final = 2.0
-"""Factor of the scatter where it is not known from independent batches."""
+UNKNOWN_SCATTER: Final = 2.0 * 2.3
+"""Half width over the standard error of ten batches (Student's t: 2.26), twice as large as they may not be independent."""
+TOLD_FROM_SCATTER: Final = 2.8
+"""Difference of two means of five batches each over its standard error (Student's t: 2.78) from which it is a drift."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,7 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
         If the run fails.
     """
     result, spent, failure = run_quietly(scene, USUAL_ACCURACY, length)
-    if result is None or (failure and "callback" not in failure):
+    if result is None or failure not in ("", TOO_LONG):
         raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
     names, settling = list(want), result.settling()
     began, end = float(result["time"][0]), float(result["time"][-1])
@@ -161,7 +163,7 @@ def _scatter(window: Result, names: Sequence[str], value: dict[str, float]) -> t
             found.append(known[name] / size)
             continue
         spread = float(np.std(parts[name], ddof=1)) / math.sqrt(parts[name].size)
-        found.append(UNKNOWN_SCATTER * 2.3 * spread / size if size > 0.0 else math.inf)
+        found.append(UNKNOWN_SCATTER * spread / size if size > 0.0 else math.inf)
         notes.append(f"the statistical error of {name} is a guess: its batches are too few or not independent")
     return np.array(found), notes
 
@@ -176,6 +178,8 @@ def _drift(result: Result, names: Sequence[str], value: dict[str, float]) -> Arr
     for name in names:
         before, after = (part[name] for part in batches)
         change = abs(float(after.mean() - before.mean()))
-        noise = 2.8 * math.hypot(*(float(part.std(ddof=1)) / math.sqrt(part.size) for part in (before, after)))
+        noise = TOLD_FROM_SCATTER * math.hypot(
+            *(float(part.std(ddof=1)) / math.sqrt(part.size) for part in (before, after))
+        )
         found.append(change / abs(value[name]) if change > noise and value[name] != 0.0 else 0.0)
     return np.array(found)

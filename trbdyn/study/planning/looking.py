@@ -20,7 +20,7 @@ from trbdyn.study.planning.candidates import (
     numerics,
 )
 from trbdyn.study.planning.ground import MOST_TURNS, Ground, computing_rate, run_ground
-from trbdyn.study.planning.probes import PATIENCE, Influence, Length, Probe, carried_over, influence, probe
+from trbdyn.study.planning.probes import PATIENCE, Influence, Length, Probe, influence, probe
 from trbdyn.study.planning.proposal import Row, words
 from trbdyn.study.planning.wishes import Wishes, changed
 
@@ -168,7 +168,7 @@ class Looker:
             Length over that of the other probes.
         """
         try:
-            scene = carried_over(changed(self.usual, effects, Start.equal()), self.ground.start, self.usual)
+            scene = changed(self.usual, effects, self.ground.start)
         except InputError as error:
             return Probe({}, math.nan, str(error).splitlines()[0])
         length = replace(self.length, patience=self.length.patience * cost, duration=self.length.duration * share)

@@ -43,9 +43,9 @@ def plan(scene: Scene, want: Mapping[str, float], *, budget: float | None = None
     want : mapping of str to float
         Wanted relative error by the name of an average of the summary, for instance ``{"torque": 0.02}`` for 2 %.
     budget : float, optional
-        Most computing time of the run (s): then the most exact choice within it is made. Errors are weighed by `want`.
+        Most computing time of the run (processor time, s): the most exact choice within it is made, errors weighed by `want`.
     effort : float
-        Computing time for the probes, about (s). More effort tells smaller influences apart.
+        Computing time for the probes, about (processor time, s). More effort tells smaller influences apart.
 
     Returns
     -------
@@ -110,9 +110,9 @@ def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, no
         value=dict(ground.value),
         reached=choice.within,
         rows=tuple(rows),
-        wall_s=choice.cost,
-        wall_s_everything=exact.cost,
-        wall_s_given=given * length if math.isfinite(given) else math.nan,
+        computing_s=choice.cost,
+        computing_s_everything=exact.cost,
+        computing_s_given=given * length if math.isfinite(given) else math.nan,
         spent_s=clock.process_time() - began,
         budget=wishes.budget,
         warnings=tuple(dict.fromkeys(notes)),

@@ -80,8 +80,19 @@ class Probe:
     warned: tuple[str, ...] = ()
 
 
+TOO_LONG: Final = "it took much longer than was expected"
+"""Failure of a run whose patience was at its end."""
+
+
 def run_quietly(scene: Scene, accuracy: str, length: Length) -> tuple[Result | None, float, str]:
     """A run with its processor time for a second of bearing time, and why it cannot be used."""
+    impatient = False
+
+    def look(_: Simulation) -> bool:
+        nonlocal impatient
+        impatient = clock.process_time() - began > length.patience
+        return impatient
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         try:
@@ -91,13 +102,13 @@ def run_quietly(scene: Scene, accuracy: str, length: Length) -> tuple[Result | N
                 duration=length.duration,
                 save_every=length.save_every,
                 save_groups=length.groups,
-                callback=lambda _: clock.process_time() - began > length.patience,
+                callback=look,
             )
             spent = clock.process_time() - began
         except (InputError, LoadError, StepError) as error:
             return None, math.nan, str(error).splitlines()[0]
     bearing = max(float(result["time"][-1] - result["time"][0]), 1e-300)
-    failure = "" if result.success else result.message
+    failure = "" if result.success else TOO_LONG if impatient else result.message
     return result, spent / bearing, failure
 
 

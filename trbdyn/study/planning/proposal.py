@@ -81,13 +81,13 @@ class Plan:
         Whether every promise is within the wish, and the run within the budget.
     rows : tuple of Row
         What each effect and each choice gives and costs.
-    wall_s, wall_s_everything, wall_s_given : float
-        Expected computing time of the run (s); of one that is as exact with all effects, 32 nodes and the preset 'reference';
+    computing_s, computing_s_everything, computing_s_given : float
+        Expected processor time of the run (s); of one that is as exact with all effects, 32 nodes and the preset 'reference';
         and of one as long as this with the scene as it was given and the preset 'standard'.
     spent_s : float
-        Computing time that the probes took (s).
+        Processor time that the probes took (s).
     budget : float or None
-        Most computing time that was allowed for the run (s).
+        Most processor time that was allowed for the run (s).
     warnings : tuple of str
         Where the answer could be wrong.
     """
@@ -104,9 +104,9 @@ class Plan:
     value: dict[str, float]
     reached: bool
     rows: tuple[Row, ...]
-    wall_s: float
-    wall_s_everything: float
-    wall_s_given: float
+    computing_s: float
+    computing_s_everything: float
+    computing_s_given: float
     spent_s: float
     budget: float | None
     warnings: tuple[str, ...]
@@ -187,8 +187,8 @@ def _run_lines(plan: Plan) -> list[str]:
     return [
         f"run: {plan.duration:.3g} s of bearing time, averages after {plan.settle:.3g} s",
         f"effects left out: {said}; {nodes} {kind} nodes, tolerances '{plan.accuracy}'",
-        f"computing time: about {plan.wall_s:.2g} s; as long with the scene as given {plan.wall_s_given:.2g} s; "
-        f"as exact with all effects, 32 nodes and 'reference' {plan.wall_s_everything:.2g} s",
+        f"computing time: about {plan.computing_s:.2g} s; as long with the scene as given {plan.computing_s_given:.2g} s; "
+        f"as exact with all effects, 32 nodes and 'reference' {plan.computing_s_everything:.2g} s",
         f"the probes took {plan.spent_s:.2g} s",
     ]
 

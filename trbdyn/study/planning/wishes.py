@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any, Final
 
 import numpy as np
 
+from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.motion import History
 from trbdyn.model.scene import Scene, Start
-from trbdyn.results.confidence import AVERAGES
-from trbdyn.run.until import groups_for
-from trbdyn.study.planning.probes import Array
+from trbdyn.run.until import check_average, groups_for
+from trbdyn.study.planning.probes import Array, carried_over
 
 TOLD_APART: Final = 0.3
 """Half width of an influence over the wish, up to which it counts as told apart from chance."""
@@ -83,16 +82,13 @@ def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effor
     if not want:
         raise InputError.of("want", dict(want), "must name an average with its error, for instance torque = 0.02")
     for name, wish in want.items():
-        if name not in AVERAGES:
-            near = get_close_matches(str(name), AVERAGES, 1)
-            meant = f"did you mean {near[0]}? " if near else ""
-            raise InputError.of("want", name, f"{meant}must name averages of the summary: {', '.join(AVERAGES)}")
-        if isinstance(wish, bool) or not isinstance(wish, int | float) or not 0.0 < wish < 1.0:
+        check_average(name, "want")
+        if not 0.0 < number_of(f"want.{name}", wish) < 1.0:
             raise InputError.of(("want", name), wish, "must be a number above 0 and below 1: error over average (1)")
         if of_cage(name) and scene.effects.bodies == "rollers":
             raise InputError.of("want", name, "needs a cage: effects.bodies = 'rollers_and_cage'")
     for field, value in (("budget", budget), ("effort", effort)):
-        if value is not None and not (isinstance(value, int | float) and 0.0 < value < 1e7):
+        if value is not None and not 0.0 < number_of(field, value) < 1e7:
             raise InputError.of(field, value, "must be > 0 and < 1e7 (s)")
     for field in type(scene).model_fields:
         quantity = getattr(scene, field)
@@ -103,7 +99,7 @@ def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effor
         raise InputError.of(
             "speed_rpm", 0.0, "must not be 0: averages of a bearing that stands still cannot be planned (rpm)"
         )
-    return Wishes(scene, {name: float(wish) for name, wish in want.items()}, budget, effort)
+    return Wishes(scene, {name: float(wish) for name, wish in want.items()}, budget, float(effort))
 
 
 def of_cage(name: str) -> bool:
@@ -112,7 +108,27 @@ def of_cage(name: str) -> bool:
 
 
 def changed(scene: Scene, effects: Mapping[str, Any], start: Start) -> Scene:
-    """A scene with other effects, and its start; without a cage none of the cage's starts is left."""
+    """A scene with other effects that starts as is given.
+
+    Without a cage it cannot start with a whirl of the cage: the rollers are then equally spaced. A state is carried over to the
+    other effects.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; `start` fits to it.
+    effects : mapping
+        Fields of `Effects` that are changed.
+    start : Start
+        How it starts.
+
+    Raises
+    ------
+    InputError
+        If the effects cannot be used.
+    """
     new = scene.effects.replace(**effects)
+    if start.kind == "state":
+        return carried_over(scene.replace(effects=new, start=Start.equal()), start, scene)
     own = Start.equal() if start.kind == "whirl" and new.bodies == "rollers" else start
     return scene.replace(effects=new, start=own)
