@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import common
@@ -87,19 +88,23 @@ def range_rows(report: common.Report) -> list[Row]:
     return out
 
 
-def user_rows(report: common.Report) -> list[Row]:
-    """A row for each preset: the steps alone, a user's run in memory, and with a file."""
-    return [
+def user_table(rows: Sequence[Mapping[str, Any]]) -> str:
+    """A row for each preset: the steps alone, a user's run in memory, and with a file; empty without rows."""
+    if not rows:
+        return ""
+    found: list[Row] = [
         {
             "preset": row["preset"],
             "steps alone (ms)": 1e3 * row["wall_s_bare"],
             "run in memory (ms)": 1e3 * row["wall_s_memory"],
             "run with file (ms)": 1e3 * row["wall_s_file"],
+            "memory over steps": row["memory_over_bare"],
             "file over steps": row["file_over_bare"],
         }
-        for row in report.results
-        if row["sweep"] == "user"
+        for row in rows
     ]
+    text = "What a user's run takes: default records of all groups, 24 slices, wall time a turn:"
+    return "\n".join((text, "", common.table(found, found[0])))
 
 
 def _known(value: float | None) -> bool:
@@ -111,10 +116,8 @@ def text_of(report: common.Report, *, everything: bool = False) -> str:
     ranges, rows = range_rows(report), preset_rows(report)
     parts = ["Range over the scenes:", "", common.table(ranges, ranges[0]) if ranges else "", ""]
     parts += ["Scene by scene:", "", common.table(rows, rows[0]) if rows else "", ""]
-    users = user_rows(report)
-    if users:
-        parts += ["What a user's run takes: default records of all groups, 24 slices, wall time a turn:", ""]
-        parts += [common.table(users, users[0]), ""]
+    users = user_table([row for row in report.results if row["sweep"] == "user"])
+    parts += [users, ""] if users else []
     parts += ["The scenes:", "", _scenes(report), ""]
     failures = [row for row in report.results if row.get("failure")]
     if failures:

@@ -16,6 +16,14 @@ SLICES: Final = 24
 TURNS: Final = 50.0
 """Turns of the shaft of a user's run, those of ``make demo``."""
 
+COLUMNS: Final = {
+    "wall_s_bare": "s: wall time a revolution of the steps alone, 24 uniform slices, with construction",
+    "wall_s_memory": "s: the same of a user's run: default records of all groups, in memory",
+    "wall_s_file": "s: the same, written to a file",
+    "memory_over_bare": "1: wall time of the run in memory over that of the steps alone",
+    "file_over_bare": "1: wall time of the run with a file over that of the steps alone",
+}
+
 
 def scene_of(case: Case) -> Scene:
     """The case as a user runs it, from its first state."""
@@ -63,24 +71,20 @@ def times_of(case: Case, accuracy: str, turns: float, repeats: int) -> dict[str,
     return {name: min(walls) for name, walls in found.items()}
 
 
+def columns_of(walls: dict[str, float]) -> dict[str, float]:
+    """The entries of a row of results, which `COLUMNS` describes, for what `times_of` gave."""
+    named = {f"wall_s_{name}": value for name, value in walls.items()}
+    return named | {
+        "memory_over_bare": walls["memory"] / walls["bare"],
+        "file_over_bare": walls["file"] / walls["bare"],
+    }
+
+
 def rows_of(case: Case, presets: dict[str, float], turns: float, repeats: int) -> list[dict[str, Any]]:
     """A row for each preset; presets: the error of the cage's centre of each."""
-    rows = []
+    rows: list[dict[str, Any]] = []
     for name, error in presets.items():
-        walls = times_of(case, name, turns, repeats)
-        rows.append(
-            {
-                "sweep": "user",
-                "case": case.name,
-                "name": f"user {name}",
-                "preset": name,
-                "n_slices": SLICES,
-                "quadrature": "uniform",
-                "error_cage_over_cpr": error,
-                "wall_s_bare": walls["bare"],
-                "wall_s_memory": walls["memory"],
-                "wall_s_file": walls["file"],
-                "file_over_bare": walls["file"] / walls["bare"],
-            }
-        )
+        row = {"sweep": "user", "case": case.name, "name": f"user {name}", "preset": name}
+        row |= {"n_slices": SLICES, "quadrature": "uniform", "error_cage_over_cpr": error}
+        rows.append(row | columns_of(times_of(case, name, turns, repeats)))
     return rows

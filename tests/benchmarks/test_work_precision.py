@@ -21,10 +21,10 @@ BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 PRESET_FIGURES = {"wall_s_per_revolution", "real_time_factor", "error_cage_over_cpr", "error_cage_over_cpr_worst"}
 
 
-def smoke(name: str, folder: Path, *more: str) -> dict[str, Any]:
+def smoke(name: str, folder: Path, *more: str, least: str = "--smoke") -> dict[str, Any]:
     """What a script writes when it does the least."""
     path = folder / f"{name}.json"
-    command = [sys.executable, str(BENCHMARKS / f"{name}.py"), "--smoke", "--no-picture", "--json", str(path), *more]
+    command = [sys.executable, str(BENCHMARKS / f"{name}.py"), least, "--no-picture", "--json", str(path), *more]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=_environment())
     assert done.returncode == 0, done.stderr
     found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
@@ -111,6 +111,16 @@ def test_biases_of_presets_are_measured(work_precision: dict[str, Any]) -> None:
 def test_short_table_has_every_scene_and_preset(work_precision: dict[str, Any]) -> None:
     found = {(row["case"], row["preset"]) for row in work_precision["results"] if row["sweep"] == "presets"}
     assert found == {(case, preset) for case in work_precision["summary"]["scenes"] for preset in ACCURACY}
+
+
+def test_a_users_run_is_measured_beside_its_steps(tmp_path: Path) -> None:
+    found = smoke("user_run", tmp_path, "--turns", "0.2", least="--quick")
+    assert [row["preset"] for row in found["results"]] == list(ACCURACY)
+    for row in found["results"]:
+        assert set(row) <= set(found["columns"])
+        assert 0.0 < row["wall_s_bare"]
+        assert row["file_over_bare"] == pytest.approx(row["wall_s_file"] / row["wall_s_bare"])
+        assert row["memory_over_bare"] == pytest.approx(row["wall_s_memory"] / row["wall_s_bare"])
 
 
 def test_what_was_measured_is_written_when_it_ends_early(tmp_path: Path) -> None:

@@ -25,9 +25,10 @@ from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
 from trbdyn.results.sources import FileSource, Written, run_id_in, segment_paths
 from trbdyn.run import checkpoint, keeping
-from trbdyn.run.beside import check_apart, culprit, has_a_spare_core, interrupts
 from trbdyn.run.checkpoint import Checkpoint
+from trbdyn.run.faults import check_apart, culprit
 from trbdyn.run.options import RunOptions
+from trbdyn.run.process import has_a_spare_core, interrupts
 from trbdyn.run.until import Until, check_wanted
 from trbdyn.run.watch import Watch
 
