@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import threading
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import tqdm
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.model.cases import scene_30310
-from trbdyn.run import checkpoint, running
+from trbdyn.run import checkpoint, memory, running
 
 
 def test_a_copy_made_in_a_callback_goes_its_own_way() -> None:
@@ -107,3 +108,40 @@ def test_workers_of_studies_and_threads_compute_alone() -> None:
     thread.join()
     assert answers == [False]
     assert running.has_a_spare_core() == (len(os.sched_getaffinity(0)) > 1)
+
+
+def test_a_run_in_memory_ends_before_the_memory_is_full(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With all records so far, and the simulation can go on."""
+    free = iter([1 << 40, memory.RESERVE])
+    monkeypatch.setattr(memory, "LOOK_EVERY", 1)
+    monkeypatch.setattr(memory, "available", lambda: next(free))
+    sim = trb.Simulation(trb.cases.scene_30310(3000.0))
+    result = sim.run(duration=10.0, save_every=1e-5)
+    assert not result.success
+    assert re.search(r"memory is nearly full at .* s: .* GB; write them to a file \(output=", result.message)
+    assert len(result) == 2 * running.CHUNK_RECORDS
+    monkeypatch.setattr(memory, "available", lambda: None)
+    short = trb.Simulation(trb.cases.scene_30310(3000.0)).run(duration=len(result) * 1e-5, save_every=1e-5)
+    assert np.array_equal(result["cage_position"], short["cage_position"][: len(result)])
+    assert sim.run(duration=1e-4).success
+
+
+def test_free_memory_is_what_the_system_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    free = memory.available()
+    if free is not None:
+        assert 1 << 20 < free < os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    monkeypatch.setattr(memory, "_MEMINFO", tmp_path / "nothing")
+    assert memory.available() is None
+
+
+def test_pieces_are_joined_in_their_order() -> None:
+    kept = memory.Kept(3)
+    assert kept.joined().shape == (0, 3)
+    kept = memory.Kept(3)
+    pieces = [np.full((n, 3), float(n)) for n in (2, 1, 4)]
+    for piece in pieces:
+        kept.append(piece)
+    assert kept.size == 7 * 3 * 8
+    assert np.array_equal(kept.joined(), np.concatenate(pieces))
+    kept.append(np.zeros((1, 3)))
+    assert np.array_equal(kept.joined()[:7], np.concatenate(pieces))

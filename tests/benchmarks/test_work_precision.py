@@ -118,7 +118,7 @@ def test_a_users_run_is_measured_beside_its_steps(tmp_path: Path) -> None:
     assert [row["preset"] for row in found["results"]] == list(ACCURACY)
     for row in found["results"]:
         assert set(row) <= set(found["columns"])
-        assert 0.0 < row["wall_s_bare"]
+        assert row["wall_s_bare"] > 0.0
         assert row["file_over_bare"] == pytest.approx(row["wall_s_file"] / row["wall_s_bare"])
         assert row["memory_over_bare"] == pytest.approx(row["wall_s_memory"] / row["wall_s_bare"])
 

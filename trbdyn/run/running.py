@@ -27,6 +27,7 @@ from trbdyn.results.sources import FileSource, Written, run_id_in, segment_paths
 from trbdyn.run import checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.faults import check_apart, culprit
+from trbdyn.run.memory import Kept
 from trbdyn.run.options import RunOptions
 from trbdyn.run.process import has_a_spare_core, interrupts
 from trbdyn.run.until import Until, check_wanted
@@ -61,7 +62,6 @@ class Run:
         self.done = done
         self.notes: list[str] = list(sim.warnings)
         self.doubts: list[str] = []
-        self.kept: list[Array] = []
         self.filling: Array | None = None
         self.writer: ResultWriter | None = None
         self.output: Path | None = None
@@ -81,6 +81,7 @@ class Run:
             self.layout += [
                 (name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()
             ]
+        self.kept = Kept(max(at + int(np.prod(shape)) for _, at, shape in self.layout))
 
     def _keep_peaks(self, since: float) -> None:
         """Start to keep peaks from a time of the last step on, if the run asks for them and does not keep them yet."""
@@ -204,6 +205,8 @@ class Run:
                 raise KeyboardInterrupt
             if doubt is not None:
                 return doubt
+            if self.kept.is_full():
+                return self.kept.said(sim.time)
             if rows and self.until.reached(self.done, self._so_far):
                 self.times = self.times[: self.done]
                 self.enough = f"reached {sim._reached:.6g} s, as far as was needed: {self.until.said}"
@@ -377,10 +380,8 @@ class Run:
         return self._from_memory(**how)
 
     def _from_memory(self, **how: Any) -> Result:
-        width = max(at + int(np.prod(shape)) for _, at, shape in self.layout)
-        records = np.concatenate(self.kept) if self.kept else np.empty((0, width))
         return Result.from_records(
-            records,
+            self.kept.joined(),
             self.layout,
             fields=self.fields,
             scene=self.sim.scene,
