@@ -55,7 +55,7 @@ wheels: install
 
 test: install $(VENV)/.test
 	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
-	$(PY) -m pytest tests notebooks --nbmake -n $(JOBS) --dist loadfile --max-worker-restart 0 $(if $(SLOW),-m "slow or not slow") $(PYTEST)
+	$(PY) -m pytest tests notebooks --nbmake -n $(JOBS) --dist loadfile --no-loadscope-reorder --max-worker-restart 0 $(if $(SLOW),-m "slow or not slow") $(PYTEST)
 
 lint: $(VENV)/.lint build/.package
 	$(PY) -m ruff check .

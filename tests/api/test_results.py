@@ -20,6 +20,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
+from trbdyn.results import sources
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
 
@@ -521,3 +522,24 @@ def test_power_split_needs_the_powers_or_the_energies() -> None:
         assert found["rolling"] > 0.0
     with pytest.raises(InputError, match="power"):
         _ = trb.Simulation(scene).run(duration=2e-3, save_groups=("cage",)).power_split
+
+
+def test_a_summary_opens_the_file_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Records of many fields are read with the file opened once; the answers are those of records in memory."""
+    path = tmp_path / "run.h5"
+    scene = trb.cases.scene_30310(3000.0)
+    in_memory = trb.Simulation(scene).run(duration=2e-3, save_every=1e-4)
+    trb.Simulation(scene).run(duration=2e-3, save_every=1e-4, output=path)
+    result, opens = trb.load(path), []
+    ordinary = sources.open_to_read
+    monkeypatch.setattr(sources, "open_to_read", lambda place: opens.append(place) or ordinary(place))
+    found, wanted = result.summary(), in_memory.summary()
+    assert len(opens) == 1
+    for name in ("torque", "whirl_radius_over_cpr", "cage_speed_ratio"):
+        assert found[name] == wanted[name]
+    with pytest.raises(KeyError, match="mine"), sources.held_open(result._source):
+        raise KeyError("mine")
+    again = trb.load(path)
+    path.unlink()
+    with pytest.raises(FileError, match="there is no such file"):
+        again.summary()

@@ -173,29 +173,33 @@ import gc, os, statistics
 from pathlib import Path
 import trbdyn as trb
 
-def median_of_five():
+def median_of_three():
     # a large block comes and goes
     looks = []
-    for _ in range(5):
-        for _ in range(50):
+    for _ in range(3):
+        for _ in range(40):
             trb.Simulation(scene).run(duration=1e-4)
         gc.collect()
         looks.append(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
     return statistics.median(looks)
 
 scene = trb.cases.scene_30310(1000.0, 4930.0, start=trb.Start.unequal(0))
-before = median_of_five()
-for _ in range(250):
+before = median_of_three()
+for _ in range(260):
     trb.Simulation(scene).run(duration=1e-4)
-print(median_of_five() - before)
+print(median_of_three() - before)
 """
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
 def test_models_and_equilibria_do_not_leak() -> None:
-    """What 500 leave behind is less than 2 kB each, in a process of its own, whose memory nothing else touches."""
+    """What 300 leave behind is less than 3.4 kB each, in a process of its own, whose memory nothing else touches. Its threads share
+    one heap: else it depends on chance which of several heaps keeps what was freed.
+    """
     words = [sys.executable, "-P", "-c", MADE_AND_FREED]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        words, capture_output=True, text=True, check=False, env={**os.environ, "MALLOC_ARENA_MAX": "1"}
+    )
     assert done.returncode == 0, done.stderr
     assert float(done.stdout) < 1_000_000
 

@@ -423,7 +423,7 @@ def run_tests(
 def run_c_tests(names: Sequence[str] = ()) -> Notice:
     """The first C test that fails, of those named or of all."""
     which = ["-R", "|".join(f"^{name}$" for name in names)] if names else []
-    words = [str(TOOLS / "ctest"), "--test-dir", str(BUILD), "--timeout", "60", "--stop-on-failure", *which]
+    words = [str(TOOLS / "ctest"), "--test-dir", str(BUILD), "--timeout", "180", "--stop-on-failure", *which]
     began = time.monotonic()
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     failed = re.findall(r"Test +#\d+: (\w+) .*?\*\*\*(\w+)", done.stdout)

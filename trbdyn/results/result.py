@@ -6,6 +6,7 @@ import difflib
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -19,7 +20,7 @@ from trbdyn.results.derived import Derived
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
-from trbdyn.results.sources import MemorySource, Source, WindowSource, open_run
+from trbdyn.results.sources import FileSource, MemorySource, Source, WindowSource, held_open, open_run
 from trbdyn.results.summary import summary
 
 if TYPE_CHECKING:
@@ -317,7 +318,8 @@ class Result(Derived):
 
     def summary(self) -> dict[str, Any]:
         """The numbers an engineer asks for first (see `trbdyn.results.summary`)."""
-        return summary(self)
+        with held_open(self._source):
+            return summary(self)
 
     def to_xarray(self) -> xarray.Dataset:
         """Every recorded field in an xarray Dataset.
@@ -331,10 +333,11 @@ class Result(Derived):
         import xarray
 
         labels = {dim: list(dim) for dim in ("xyz", "xy", "wxyz")}
-        variables = {
-            name: (("time", *field.dims), self[name], {"units": field.unit, "long_name": field.text})
-            for name, field in self._fields.items()
-        }
+        with held_open(self._source):
+            variables = {
+                name: (("time", *field.dims), self[name], {"units": field.unit, "long_name": field.text})
+                for name, field in self._fields.items()
+            }
         time = variables.pop("time")
         used = {dim for dims, _, _ in variables.values() for dim in dims}
         coordinates: dict[str, Any] = {"time": time} | {dim: labels[dim] for dim in labels if dim in used}
@@ -342,6 +345,23 @@ class Result(Derived):
             coordinates["roller"] = np.arange(self.n_rollers)
         attributes = {"success": int(self.success), "message": self.message}
         return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def moved(result: Result, path: Path) -> Result:
+    """The result of a run whose file has another name now; nothing is read again.
+
+    Parameters
+    ----------
+    result : Result
+        As `Simulation.run` gave it.
+    path : Path
+        Where its file is now.
+    """
+    source = result._source
+    if not isinstance(source, FileSource):
+        return load(path)
+    source.path = path
+    return result
 
 
 def load(path: str | os.PathLike[str]) -> Result:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import os
 import re
+import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
@@ -95,10 +96,16 @@ def opened(path: Path) -> Iterator[h5py.File]:
     """
     if not path.is_file():
         raise FileError(f"{path}: there is no such file")
+    with _said(path), open_to_read(path) as file:
+        _check_schema(path, file)
+        yield file
+
+
+@contextmanager
+def _said(path: Path) -> Iterator[None]:
+    """What goes wrong while a result file is read is a FileError that names it."""
     try:
-        with open_to_read(path) as file:
-            _check_schema(path, file)
-            yield file
+        yield
     except _READ_ERRORS as error:
         if isinstance(error, FileError):
             raise
@@ -176,6 +183,7 @@ class FileSource:
     def __init__(self, path: str | os.PathLike[str], written: Written | None = None) -> None:
         self.path = file_path(path, "path")
         self._cache: dict[str, Array] = {}
+        self._held: dict[int, h5py.File] = {}
         with opened(self.path) as file:
             self._created = _text(file.attrs["created"])
             self.run_id = _text(file.attrs["run_id"])
@@ -260,13 +268,39 @@ class FileSource:
             If the file is damaged, or has been replaced since it was opened first.
         """
         if name not in self._cache:
-            with opened(self.path) as file:
-                if _text(file.attrs["created"]) != self._created:
-                    raise FileError(f"{self.path}: the file has been replaced since it was loaded; load it again")
-                values = np.asarray(own(file["fields"], name, h5py.Dataset)[: self.n_records], dtype=float)
+            held = self._held.get(threading.get_ident())
+            if held is not None:
+                with _said(self.path):
+                    values = self._values(held, name)
+            else:
+                with opened(self.path) as file:
+                    values = self._values(file, name)
             values.flags.writeable = False
             self._cache[name] = values
         return self._cache[name]
+
+    def _values(self, file: h5py.File, name: str) -> Array:
+        if _text(file.attrs["created"]) != self._created:
+            raise FileError(f"{self.path}: the file has been replaced since it was loaded; load it again")
+        return np.asarray(own(file["fields"], name, h5py.Dataset)[: self.n_records], dtype=float)
+
+    @contextmanager
+    def held_open(self) -> Iterator[None]:
+        """Opens the file once for all that this thread reads inside. What goes wrong inside comes out as it is."""
+        me = threading.get_ident()
+        if me in self._held or not self.path.is_file():
+            yield
+            return
+        with _said(self.path):
+            file = open_to_read(self.path)
+        try:
+            with _said(self.path):
+                _check_schema(self.path, file)
+            self._held[me] = file
+            yield
+        finally:
+            self._held.pop(me, None)
+            file.close()
 
 
 class JoinedSource:
@@ -281,6 +315,8 @@ class JoinedSource:
     ----------
     missing : int
         Records that no segment holds.
+    segments : list of FileSource
+        The segments, in order.
     """
 
     def __init__(self, segments: Sequence[FileSource]) -> None:
@@ -295,6 +331,7 @@ class JoinedSource:
                 self.missing += max(limit - segment.first_record - held, 0)
             self._parts.insert(0, (segment, held))
             limit = segment.first_record if limit is None else min(limit, segment.first_record)
+        self.segments = list(segments)
         if any(segment.fields != self.fields for segment in segments):
             raise FileError(f"{segments[-1].path}: holds other fields than the segments before it")
         self.n_records = sum(held for _, held in self._parts)
@@ -304,6 +341,23 @@ class JoinedSource:
         values = np.concatenate([segment.read(name)[:held] for segment, held in self._parts])
         values.flags.writeable = False
         return values
+
+
+@contextmanager
+def held_open(source: Source) -> Iterator[None]:
+    """Opens the files of a source once for all that is read inside, whatever kind of source it is."""
+    with ExitStack() as stack:
+        for file in _files_of(source):
+            stack.enter_context(file.held_open())
+        yield
+
+
+def _files_of(source: Source) -> list[FileSource]:
+    if isinstance(source, WindowSource):
+        return _files_of(source.source)
+    if isinstance(source, JoinedSource):
+        return source.segments
+    return [source] if isinstance(source, FileSource) else []
 
 
 def segment_paths(path: str | os.PathLike[str]) -> dict[int, Path]:

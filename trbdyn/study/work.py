@@ -14,7 +14,7 @@ import numpy as np
 
 from trbdyn.errors import StepError, TrbError
 from trbdyn.model.scene import Scene
-from trbdyn.results.result import Result, load
+from trbdyn.results.result import Result, moved
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
 
@@ -102,7 +102,7 @@ def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
         part.replace(kept)
         file = kept.name
         if result is not None:
-            result = load(kept)
+            result = moved(result, kept)
     values: dict[str, Any] = {}
     if result is not None and report.status == "done":
         values, mistakes = observe(result, task.observables)

@@ -1,0 +1,45 @@
+"""The order of the test files: those that take longest come first, so that several processes end at about the same time."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pytest
+
+LONGEST: Final = (
+    "readme/test_readme.py",
+    "accuracy_and_cost.ipynb",
+    "parameter_study.ipynb",
+    "paper_figures.ipynb",
+    "api/test_study.py",
+    "physics/test_audit.py",
+    "restart/test_checkpoints.py",
+    "fuzz/test_process.py",
+    "fuzz/test_errors.py",
+    "physics/test_conservation.py",
+    "fuzz/test_files.py",
+    "docs/test_docs.py",
+    "benchmarks/test_work_precision.py",
+    "restart/test_kills.py",
+    "api/test_plotting.py",
+    "fuzz/test_command_line.py",
+    "paper/test_points.py",
+    "report/test_report.py",
+    "fuzz/test_bad_input.py",
+    "mutation/test_mutate.py",
+    "api/test_simulation.py",
+    "plan/test_plan.py",
+    "adversary/test_adversary.py",
+    "report/test_demo.py",
+    "api/test_results.py",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Within a file the order stays."""
+
+    def place(item: pytest.Item) -> int:
+        name = item.path.as_posix()
+        return next((rank for rank, end in enumerate(LONGEST) if name.endswith(end)), len(LONGEST))
+
+    items.sort(key=place)
