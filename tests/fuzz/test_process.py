@@ -193,8 +193,8 @@ print(median_of_three() - before)
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
 def test_models_and_equilibria_do_not_leak() -> None:
-    """What 300 leave behind is less than 3.4 kB each, in a process of its own, whose memory nothing else touches. Its threads share
-    one heap: else it depends on chance which of several heaps keeps what was freed.
+    """What 300 leave behind is less than 3.4 kB each, in a process of its own, whose memory nothing else touches. Its threads
+    share one heap: else it depends on chance which of several heaps keeps what was freed.
     """
     words = [sys.executable, "-P", "-c", MADE_AND_FREED]
     done = subprocess.run(
