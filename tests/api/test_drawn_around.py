@@ -216,3 +216,10 @@ def test_the_faces_of_a_pocket_are_drawn_in_both_views() -> None:
             assert any(one.shape == closed.shape and np.allclose(one, closed) for one in drawn), face.name
     half = 0.5e3 * bearing.roller.total_length
     assert top.get_xlim() == pytest.approx((-1.35 * half, 1.35 * half))
+
+
+@pytest.mark.parametrize(("radius", "wanted"), [(0.9, 1.08), (1.5, 1.62)])
+def test_a_section_shows_the_circle_of_the_play_or_the_whole_path(build: Any, radius: float, wanted: float) -> None:
+    """Eight per cent of room around the farther one."""
+    ax = plot.poincare(build(radius=radius * 0.25e-3)[1])
+    assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((-wanted, wanted) * 2, rel=1e-3)
