@@ -201,7 +201,7 @@ def test_the_drawing_of_a_bearing_has_room_for_all_of_it(case: str) -> None:
     assert np.ptp(points[:, 0]) > (right - left) / 3.0
     wide = 1.1 * np.abs(points[:, 0]).max()
     assert left == pytest.approx(-wide, rel=0.02)
-    # room for the dimensions beside the section, as wide as its larger half at least, and no picture that is much higher than wide
+    # room for the dimensions beside the section, as wide as its larger half at least; hardly higher than wide
     assert right > 2.3 * wide
     assert right - left > 0.9 * (top - bottom)
 
