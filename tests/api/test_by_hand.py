@@ -215,6 +215,9 @@ def test_slip_and_spacing_by_hand() -> None:
     angle = np.radians([[0.0, 100.0, 230.0], [10.0, 110.0, 240.0]])
     np.testing.assert_allclose(np.degrees(observables.spacing(angle)), [[100.0, 130.0, 130.0]] * 2)
     np.testing.assert_allclose(np.degrees(observables.spacing(angle, 2)), [[230.0, 260.0, 230.0]] * 2)
+    # gaps of 80, 80 and 200 deg: two in a row are less than half a turn, or nearly a whole one
+    wide = np.radians([[0.0, 80.0, 160.0]])
+    np.testing.assert_allclose(np.degrees(observables.spacing(wide, 2)), [[160.0, 280.0, 280.0]])
     np.testing.assert_allclose(observables.spacing_std(angle), [math.sqrt(200.0)] * 2)
 
 
@@ -288,3 +291,13 @@ def test_torque_and_loss_are_those_of_the_run_and_not_of_its_records() -> None:
     coarse, fine = (trb.Simulation(scene).run(revolutions=2, save_every=every).summary() for every in (1e-3, 1e-4))
     for name in ("torque", "power_loss"):
         assert coarse[name] == pytest.approx(fine[name], rel=1e-9)
+
+
+def test_turns_are_those_of_all_rollers_and_not_of_the_fastest(build: Callable[..., tuple[Any, Result]]) -> None:
+    """0.18 s at 20.831 turns a second are 3.75 turns; one roller of twelve that gains half a turn adds a twenty-fourth."""
+    run, _ = build(n=1801, duration=0.18)
+    run.column("roller_orbit_angle")[:, 11] += np.pi * run.column("time") / 0.18
+    from_records, scene = Result.from_records, build()[1].scene
+    about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
+    found = from_records(run.records, run.layout, **about).settling()
+    assert (found.answer, found.reason) == ("unknown", "only 3.8 turns of the cage")

@@ -122,6 +122,12 @@ def test_pocket_forces(uneven: Result, pockets: list[int] | None) -> None:
         assert [label.get_text() for label in ax.get_yticklabels()] == [str(pocket + 1) for pocket in chosen]
 
 
+def test_the_scale_of_pocket_forces_says_how_long_a_stretch_is(build: Any) -> None:
+    """Five records of 200 ms in all, a stretch each."""
+    figure = plot.pocket_forces(build(n=5, duration=0.2)[1], last=None)
+    assert figure.axes[-1].get_ylabel() == "largest force within 40 ms (N)"
+
+
 def test_pocket_statistics(uneven: Result) -> None:
     ax, force = plot.pocket_statistics(uneven), uneven.pocket_force
     marks = [line for line in ax.lines if len(line.get_xdata()) == 12]

@@ -186,9 +186,10 @@ def test_the_roller_of_a_pocket_drawing_is_a_cone() -> None:
     np.testing.assert_allclose(np.hypot(*circle.get_data()), 0.5e3 * bearing.roller.diameter)
 
 
-def test_the_drawing_of_a_bearing_has_room_for_all_of_it() -> None:
+@pytest.mark.parametrize("case", ["scene_30310", "scene_32216"])
+def test_the_drawing_of_a_bearing_has_room_for_all_of_it(case: str) -> None:
     """And is not lost in it: the section takes a third of the width at least."""
-    ax = plot.bearing_drawing(trb.cases.rig_30310())
+    ax = plot.bearing_drawing(getattr(trb.cases, case)().bearing)
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     points = np.vstack(
         [patch.get_xy() for patch in ax.patches if hasattr(patch, "get_xy") and len(np.shape(patch.get_xy())) == 2]
@@ -200,8 +201,9 @@ def test_the_drawing_of_a_bearing_has_room_for_all_of_it() -> None:
     assert np.ptp(points[:, 0]) > (right - left) / 3.0
     wide = 1.1 * np.abs(points[:, 0]).max()
     assert left == pytest.approx(-wide, rel=0.02)
-    # room for the dimensions beside the section, and no picture that is higher than wide
-    assert right == pytest.approx(max(2.4 * wide, 1.05 * points[:, 1].max() - wide), rel=0.02)
+    # room for the dimensions beside the section, as wide as its larger half at least; hardly higher than wide
+    assert right > 2.3 * wide
+    assert right - left > 0.9 * (top - bottom)
 
 
 def test_the_faces_of_a_pocket_are_drawn_in_both_views() -> None:
@@ -216,3 +218,10 @@ def test_the_faces_of_a_pocket_are_drawn_in_both_views() -> None:
             assert any(one.shape == closed.shape and np.allclose(one, closed) for one in drawn), face.name
     half = 0.5e3 * bearing.roller.total_length
     assert top.get_xlim() == pytest.approx((-1.35 * half, 1.35 * half))
+
+
+@pytest.mark.parametrize(("radius", "wanted"), [(0.9, 1.08), (1.5, 1.62)])
+def test_a_section_shows_the_circle_of_the_play_or_the_whole_path(build: Any, radius: float, wanted: float) -> None:
+    """Eight per cent of room around the farther one."""
+    ax = plot.poincare(build(radius=radius * 0.25e-3)[1])
+    assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((-wanted, wanted) * 2, rel=1e-3)

@@ -250,3 +250,23 @@ def test_what_users_read_after_a_run_is_at_its_end(kit: SimpleNamespace) -> None
     sim.run(duration=1e-4)
     sim.restart()
     assert sim._core.time == sim.time
+
+
+def test_peaks_of_another_instant_or_length_are_refused() -> None:
+    sim = Simulation(whirling())
+    sim._core.begin_peaks(0.0)
+    for _ in range(3):
+        sim.step()
+    saved = sim._core.save_peaks()
+    later = saved.copy()
+    later[0] += 1e-6
+    for wrong, says in (
+        (later, f"peaks: of t = {later[0]:.9g} s, not of {sim.time:.9g} s"),
+        (saved[:-1], f"peaks: {saved.size} values needed, {saved.size - 1} given"),
+    ):
+        with pytest.raises(trb._core.CoreInputError) as caught:
+            sim._core.restore_peaks(wrong)
+        assert says in str(caught.value)
+        assert sim._core.save_peaks().size == 0
+    sim._core.restore_peaks(saved)
+    np.testing.assert_array_equal(sim._core.save_peaks(), saved)

@@ -212,6 +212,13 @@ class TestMoments:
         other = simulate(rig, 0.0, 4930.0, moment_y=10.0).equilibrium
         assert other.displacement[4] == pytest.approx(found.displacement[3], rel=1e-6)
 
+    @pytest.mark.parametrize("moment", [1.0, 20.0])
+    def test_a_free_ring_takes_hardly_more_steps_than_a_held_one(self, rig: Bearing, moment: float) -> None:
+        """Rotations are damped as little as places are, on the way to the equilibrium."""
+        held = simulate(rig, 0.0, 4930.0).equilibrium
+        free = simulate(rig, 0.0, 4930.0, moment_x=moment, moment_y=0.0).equilibrium
+        assert free.iterations <= held.iterations + 2
+
     def test_prescribed_place(self, rig: Bearing) -> None:
         """A ring placed where a load would put it carries that load."""
         loaded = simulate(rig, 0.0, 4930.0, 2780.0)

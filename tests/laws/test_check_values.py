@@ -270,6 +270,23 @@ def test_viscosity_under_pressure() -> None:
     assert oil.viscosity * math.exp(laws.viscosity_barus(6e8, 1.97e-8, 25.0)) == pytest.approx(4703.0, abs=0.5)
 
 
+def test_viscosity_of_roelands() -> None:
+    """Digits of the formula in 30-digit arithmetic; the cap is far away, then in reach."""
+    pressure = np.array([1e8, 6e8, 2e9])
+    wanted = [1.811055059199494, 8.574307425569679, 21.40783884973915]
+    assert laws.viscosity_roelands(pressure, 1.97e-8, 0.0346, 60.0) == pytest.approx(wanted, rel=1e-13)
+    # the cap rounds off from one below it to one above it: exponent - (exponent - cap + 1)^2/4
+    capped = wanted[1] - 0.25 * (wanted[1] - 8.8 + 1.0) ** 2
+    assert laws.viscosity_roelands(6e8, 1.97e-8, 0.0346, 8.8) == pytest.approx(capped, rel=1e-13)
+    assert laws.viscosity_roelands(2e9, 1.97e-8, 0.0346, 8.8) == pytest.approx(8.8, rel=1e-13)
+
+
+def test_film_of_an_ellipse_that_is_narrow_across_rolling() -> None:
+    """Digits of Chittenden's formula in 30-digit arithmetic, where side leakage takes half of the film."""
+    film = laws.film_point_elastic(2e-6, 3e-11, 4460.0, 0.5)
+    assert film == pytest.approx(2.59950626270688e-5, rel=1e-13, abs=0.0)
+
+
 def test_shear_modulus() -> None:
     # the floor of 10 MPa is reached at the pressure of 1230 N: 456 N on the inner raceway
     mean = math.pi / 4 * 0.377e9

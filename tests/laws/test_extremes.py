@@ -86,6 +86,12 @@ def test_logarithmic_profile_at_its_end() -> None:
     assert drop == pytest.approx(10e-6, rel=1e-12)
 
 
+@pytest.mark.parametrize(("zm", "load"), [(0.0, 1833.0), (-1e-6, 1833.0), (10e-6, 0.0), (10e-6, -5.0)])
+@pytest.mark.parametrize("station", [7e-3, 9.9e-3])
+def test_logarithmic_profile_without_a_drop_or_a_load_is_straight(zm: float, load: float, station: float) -> None:
+    assert laws.profile_logarithmic(station, 19.8e-3, 1.5, 0.4, zm, load, 226.37e9) == 0.0
+
+
 def test_rib_above_the_roller() -> None:
     rig = cases.rig_30310()
     with pytest.raises(InputError):

@@ -193,3 +193,14 @@ def test_logarithmic_profile_with_any_drop_at_its_end(zm_over_amplitude: float) 
         wanted = -amplitude * np.log(1.0 - (1.0 - np.exp(-zm_over_amplitude)) * x**2)
         for side in (y, -y):
             assert laws.profile_logarithmic(side, length, k1, k2, zm, load, MODULUS) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_logarithmic_profile_where_it_begins() -> None:
+    """A (1 - exp(-zm/A)) x^2 [1 + (1 - exp(-zm/A)) x^2/2] to the last digits: 1 - x^2 is not subtracted from one on the way."""
+    length, k1, k2, load = 2.0, 1.5, 0.5, 2000.0  # powers of two, so that x is exact; 1 - x^2 is not
+    amplitude = 2.0 * k1 * load / (np.pi * length * MODULUS)
+    share = 1.0 - np.exp(-2.0)
+    for x in (1001 * 2.0**-26, 1001 * 2.0**-30, 1001 * 2.0**-34):
+        square = share * x**2
+        drop = laws.profile_logarithmic(0.5 + 0.5 * x, length, k1, k2, 2.0 * amplitude, load, MODULUS)
+        assert drop == pytest.approx(amplitude * square * (1.0 + 0.5 * square), rel=1e-11, abs=0.0)

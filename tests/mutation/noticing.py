@@ -84,6 +84,7 @@ NEAR: list[tuple[str, list[str]]] = [
             "physics/test_culling.py",
             "physics/test_audit.py",
             "laws/test_in_contacts.py",
+            "convergence/test_peaks.py::test_step_by_step",
         ],
     ),
     ("csrc/motion/ring_motion", ["physics/test_ring_path.py", "api/test_simulation.py"]),
@@ -101,6 +102,7 @@ NEAR: list[tuple[str, list[str]]] = [
             "convergence/test_determinism.py",
             "convergence/test_tolerance.py",
             "physics/test_impacts.py",
+            "convergence/test_peaks.py::test_peaks_of_another_instant_or_length_are_refused",
         ],
     ),
     ("csrc", ["geometry/test_pocket.py", "api/test_pockets.py", "api/test_models.py", "geometry/test_derived.py"]),
@@ -117,6 +119,7 @@ NEAR: list[tuple[str, list[str]]] = [
             "physics/test_ring_path.py",
         ],
     ),
+    ("trbdyn/statics", ["physics/test_ring_path.py", "geometry/test_equilibrium.py", "physics/test_start.py"]),
     ("trbdyn/plot", ["api/test_drawn.py", "api/test_drawn_around.py", "api/test_plotting.py", "api/test_pictures.py"]),
     ("trbdyn/run/checkpoint", ["restart/test_checkpoints.py", "fuzz/test_files.py"]),
     (
@@ -214,8 +217,10 @@ THEN: dict[str, list[str]] = {
 
 QUICK_C_TESTS = {
     "contacts": ("test_tangent", "test_kernels"),
-    "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent"),
+    "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent", "test_simulation", "test_jacobian"),
     "records": ("test_peaks", "test_motion"),
+    "motion": ("test_motion",),
+    "laws": ("test_laws",),
 }
 """C tests of an area, which come with its first tests; all C tests come with the wider tests."""
 NOT_HERE = (

@@ -43,14 +43,21 @@ def test_a_seed_gives_the_same_faults_again() -> None:
     assert len({fault.key for fault in first}) == len(first)
 
 
+def is_there(name: str) -> bool:
+    """A file or folder of tests, or a test in a file."""
+    file, _, test = name.partition("::")
+    path = faults.ROOT / "tests" / file
+    return path.exists() and (not test or f"def {test}(" in path.read_text(encoding="utf-8"))
+
+
 def test_every_area_has_its_share_and_its_tests() -> None:
     drawn = Counter(fault.area for fault in faults.draw(1)[:250])
     for area, (share, _) in faults.AREAS.items():
         assert abs(drawn[area] - 250 * share) < 2.0, area
         for name in (*noticing.FIRST[area], *noticing.THEN[area]):
-            file, _, test = name.partition("::")
-            assert (faults.ROOT / "tests" / file).exists(), name
-            assert not test or f"def {test}(" in (faults.ROOT / "tests" / file).read_text(encoding="utf-8"), name
+            assert is_there(name), name
+        for name in noticing.QUICK_C_TESTS.get(area, ()):
+            assert (faults.ROOT / "csrc" / "tests" / f"{name}.c").exists(), name
     assert sum(share for share, _ in faults.AREAS.values()) == pytest.approx(1.0)
 
 
@@ -125,7 +132,7 @@ def test_every_source_has_tests_near_it() -> None:
     """And they are there."""
     for file in {fault.file for fault in faults.draw(1)}:
         for name in noticing.near(file):
-            assert (faults.ROOT / "tests" / name).exists(), name
+            assert is_there(name), name
 
 
 def test_judgements_name_faults_that_are_there() -> None:

@@ -118,6 +118,8 @@ def test_every_run_that_ended_early_goes_on(broken: Path, reference: trb.Result)
     assert result.stats["steps"] == reference.stats["steps"]
     assert [path.name for path in sorted(broken.parent.iterdir())] == ["run.h5", "run.part1.h5"]
     same(trb.resume(broken), reference)
+    with pytest.raises(ValueError, match="read-only"):
+        result["cage_position"][0] = 0.0
 
 
 def test_a_run_resumed_and_broken_again(broken: Path, reference: trb.Result) -> None:
