@@ -10,6 +10,7 @@
 #include "laws/film.h"
 #include "laws/line_contact.h"
 #include "laws/profile.h"
+#include "surface/sphere.h"
 
 /* Smallest height of a land's film over the clearance: the law of the film keeps eight digits. */
 #define TRB_LEAST_CONTACT_FILM 1e-4
@@ -84,8 +85,9 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
       const double radius = nominal + 0.5 * m->diameter_deviation[j] - profile_drop(m, station);
       if (!(radius > 0.0))
         return trb_fail(message, TRB_ERR_GEOMETRY, "roller %d: profile and diameter deviation leave no radius at station %g m", j, station);
-      m->centre[j * m->n_lanes + k] = station + radius * tan(nu) - g->roller_mass_offset;
-      m->sphere[j * m->n_lanes + k] = radius / cos(nu);
+      const trb_sphere sphere = trb_sphere_inscribed(station, radius, tan(nu), cos(nu));
+      m->centre[j * m->n_lanes + k] = sphere.place - g->roller_mass_offset;
+      m->sphere[j * m->n_lanes + k] = sphere.radius;
     }
   }
   return TRB_OK;
@@ -99,8 +101,8 @@ static trb_status fill_front_rib(trb_model *m, trb_message *message)
   const double        along = g->apex_to_mid + g->small_end_station - m->params.front_rib_clearance;
   for (int i = 0; i < 2; i++) {
     const double below = (along * sin(g->roller_half_angle) - heights[i]) / cos(g->roller_half_angle);
-    m->front_rib_radius[i] = along * sin(g->roller_axis_angle) - below * cos(g->roller_axis_angle);
-    m->front_rib_z[i] = along * cos(g->roller_axis_angle) + below * sin(g->roller_axis_angle);
+    m->front_rib[i].radius = along * sin(g->roller_axis_angle) - below * cos(g->roller_axis_angle);
+    m->front_rib[i].place = along * cos(g->roller_axis_angle) + below * sin(g->roller_axis_angle);
     if (m->params.front_rib > 0.0 && !(below > -g->small_end_radius))
       return trb_fail(message, TRB_ERR_GEOMETRY, "front_rib_high = %g m: the rib would stand beyond the roller's small end (radius %g m)",
                       heights[i], g->small_end_radius);
@@ -151,6 +153,17 @@ static int face_is_on(const trb_model *m, const trb_face *f)
   return m->params.with_cage > 0.0 && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
 }
 
+static trb_polygon surface_of(const trb_face *f)
+{
+  trb_polygon p = {.origin = trb_v(f->origin[0], f->origin[1], f->origin[2]),
+                   .u = trb_v(f->u[0], f->u[1], f->u[2]),
+                   .v = trb_v(f->v[0], f->v[1], f->v[2]),
+                   .n = (int)f->n_vertices[0]};
+  p.normal = trb_cross(p.u, p.v);
+  memcpy(p.outline, f->outline, sizeof p.outline);
+  return p;
+}
+
 static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, trb_message *message)
 {
   size_t total = 0;
@@ -171,11 +184,11 @@ static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, t
       const trb_face *f = &faces[i];
       if (!face_in_pocket(f, pocket) || !face_is_on(m, f)) continue;
       trb_pocket_face *to = &m->faces[count++];
-      to->face = *f;
-      to->normal = trb_cross(trb_v(f->u[0], f->u[1], f->u[2]), trb_v(f->v[0], f->v[1], f->v[2]));
+      to->surface = surface_of(f);
+      to->stiffness_factor = f->stiffness_factor[0];
+      to->friction_factor = f->friction_factor[0];
       to->part = (int)f->part[0];
       to->slot = (int)f->slot[0];
-      to->n = (int)f->n_vertices[0];
     }
   }
   m->first_face[m->n_rollers] = count;

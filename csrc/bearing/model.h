@@ -7,6 +7,8 @@
 #include "base/vec3.h"
 #include "bearing/geometry.h"
 #include "bearing/params.h"
+#include "surface/circle.h"
+#include "surface/polygon.h"
 
 enum { TRB_RACE_OUTER = 0, TRB_RACE_INNER = 1, TRB_N_RACES = 2 };
 enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };
@@ -31,11 +33,11 @@ typedef struct trb_race_nodes {
 } trb_race_nodes;
 
 typedef struct trb_pocket_face {
-  trb_face face;   /* as given */
-  trb_vec3 normal; /* u x v, towards the roller */
-  int      part;   /* TRB_PART_* */
-  int      slot;   /* column in results */
-  int      n;      /* number of vertices */
+  trb_polygon surface;          /* in the frame of its pocket; its normal points towards the roller */
+  double      stiffness_factor; /* of the contact's stiffness */
+  double      friction_factor;  /* of the contact's friction coefficient */
+  int         part;             /* TRB_PART_* */
+  int         slot;             /* column in results */
 } trb_pocket_face;
 
 typedef struct trb_model {
@@ -72,8 +74,7 @@ typedef struct trb_model {
   double     land_place;                    /* middle of the guiding surface from the cage's centre of mass, m */
   double     land_palmgren;                 /* load per length of cage and land at d = 1 m */
   int        land_film;                     /* the land has an oil film */
-  double     front_rib_radius[2];           /* radii of the front rib's edges, m */
-  double     front_rib_z[2];                /* their axial positions from the apex, m */
+  trb_circle front_rib[2];                  /* edges of the front rib about the inner ring's axis, from its apex */
   int        friction;                      /* any friction at raceways and ribs at all */
   int        pocket_friction;               /* any friction in the pockets */
   int        film;                          /* films are needed */

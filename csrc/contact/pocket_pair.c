@@ -9,10 +9,10 @@ static double pocket_size(const trb_model *m, int flanks)
 {
   double size = 0.0;
   for (int i = 0; i < m->first_face[m->n_rollers]; i++) {
-    const trb_face *f = &m->faces[i].face;
-    const double    origin = sqrt(f->origin[0] * f->origin[0] + f->origin[1] * f->origin[1] + f->origin[2] * f->origin[2]);
+    const trb_polygon *f = &m->faces[i].surface;
+    const double       origin = trb_norm(f->origin);
     if ((m->faces[i].part == TRB_PART_FLANK) != flanks) continue;
-    for (int k = 0; k < m->faces[i].n; k++) size = fmax(size, origin + hypot(f->outline[2 * k], f->outline[2 * k + 1]));
+    for (int k = 0; k < f->n; k++) size = fmax(size, origin + hypot(f->outline[2 * k], f->outline[2 * k + 1]));
   }
   return size;
 }
