@@ -12,12 +12,12 @@
 static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_batch *batch,
                         trb_counters *counters, trb_loads *to, trb_point_detail *c)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_vec3      a = r->frame.a, end = trb_axpy(r->x, g->small_end_station - g->roller_mass_offset, a);
-  const trb_circle    circle = m->front_rib[edge];
+  const trb_vec3   a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
+  const trb_circle circle = m->surfaces.front_rib[edge];
 
-  const trb_circle_meeting meeting = trb_circle_on_plane(trb_axpy(ring->apex, circle.place, ring->axis), ring->axis, circle.radius, end, a);
-  const double             d = meeting.depth;
+  const trb_circle_meeting meeting =
+      trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
+  const double d = meeting.depth;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
   to->margin[batch->index[0]] = trb_min(to->margin[batch->index[0]], fabs(d));

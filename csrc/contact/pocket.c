@@ -157,11 +157,7 @@ static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_v
   }
 }
 
-static trb_vec3 end_sphere(const trb_model *m, const pocket_view *p)
-{
-  const trb_geometry *g = &m->geometry;
-  return trb_axpy(p->x, g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, p->a);
-}
+static trb_vec3 end_sphere(const trb_model *m, const pocket_view *p) { return trb_axpy(p->x, m->surfaces.large_end.place, p->a); }
 
 static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int exact, trb_counters *counters,
                               trb_load *load, pocket_sums *sums)
@@ -178,10 +174,7 @@ static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
   push(m, f, p, &touch, counters, load, sums);
 }
 
-static trb_vec3 small_end(const trb_model *m, const pocket_view *p)
-{
-  return trb_axpy(p->x, m->geometry.small_end_station - m->geometry.roller_mass_offset, p->a);
-}
+static trb_vec3 small_end(const trb_model *m, const pocket_view *p) { return trb_axpy(p->x, m->surfaces.small_end, p->a); }
 
 static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_counters *counters, trb_load *load,
                               pocket_sums *sums)
@@ -205,13 +198,13 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
 static double flank_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double  tangent = m->roller_tangent, cosine = m->roller_cosine, deviation = 0.5 * m->diameter_deviation[roller];
+  const double  deviation = 0.5 * m->diameter_deviation[roller];
   const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal);
   double        gap = INFINITY, of_nodes = INFINITY;
   for (int end = -1; end <= 1; end += 2) {
-    const double     station = 0.5 * end * m->params.effective_length, radius = (m->geometry.apex_to_mid + station) * tangent + deviation;
-    const trb_sphere last = trb_sphere_inscribed(station, radius, tangent, cosine);
-    gap = trb_min(gap, middle + (last.place - m->geometry.roller_mass_offset) * along - last.radius);
+    const double     station = 0.5 * end * m->params.effective_length;
+    const trb_sphere last = trb_sphere_inscribed(&m->surfaces.flank, station, trb_cone_radius(&m->surfaces.flank, station) + deviation);
+    gap = trb_min(gap, middle + last.place * along - last.radius);
   }
   if (gap > 0.0) return gap;
   for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k]);

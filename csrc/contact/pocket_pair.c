@@ -45,7 +45,7 @@ static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
   const trb_geometry *g = &m->geometry;
   const double        offset = fabs(g->roller_mass_offset), chain = chain_length(m);
   const double        length = fmax(fabs(g->small_end_station), fabs(g->large_end_station)) + offset;
-  const double        sphere = fabs(g->sphere_centre - g->apex_to_mid) + offset;
+  const double        sphere = fabs(m->surfaces.large_end.place);
   const double flanks = pocket_size(m, 1) + offset + trb_clearance_play(m), ends = pocket_size(m, 0) + offset + trb_clearance_play(m);
   arms[TRB_GAP_FLANK] = arms_from(m, chain, flanks, fmax(chain, flanks));
   arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));

@@ -7,6 +7,7 @@
 #ifndef TRB_SURFACE_SPHERE_H
 #define TRB_SURFACE_SPHERE_H
 
+#include "surface/cone.h"
 #include "surface/polygon.h"
 
 /* A sphere whose centre lies on the axis of its body. */
@@ -15,11 +16,11 @@ typedef struct trb_sphere {
   double radius; /* m */
 } trb_sphere;
 
-/* The sphere that touches a flank from within at a station along the axis, where the flank has a radius. tangent and cosine: of its half
- * angle. */
-static inline trb_sphere trb_sphere_inscribed(double station, double radius, double tangent, double cosine)
+/* The sphere that touches a flank from within at a station from its reference plane, where it has a radius: that of its cone, or a little
+ * else by a profile. */
+static inline trb_sphere trb_sphere_inscribed(const trb_cone *flank, double station, double radius)
 {
-  return (trb_sphere){station + radius * tangent, radius / cosine};
+  return (trb_sphere){flank->place + station + radius * (flank->sine / flank->cosine), radius / fabs(flank->cosine)};
 }
 
 /* From the centre to the point of contact along the normal: midway in the overlap, which is as deep as the interference d. */
