@@ -17,8 +17,8 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
   const trb_roller_pose *r = in->roller;
   const trb_ring_pose   *g = in->ring;
   const trb_cone         race = *in->cone;
-  const trb_vec3         a = r->frame.a, v = r->v, w = r->omega, k = g->axis, b = g->centre, rv = g->velocity, rw = g->omega;
-  const trb_vec3         reference = trb_cone_point(&race, b, k), start = trb_sub(r->x, reference);
+  const trb_vec3         x = r->x, a = r->frame.a, v = r->v, w = r->omega, k = g->axis, b = g->centre, rv = g->velocity, rw = g->omega;
+  const trb_vec3         start = trb_sub(x, trb_cone_point(&race, b, k));
   const double           orbit = r->orbit_speed;
   double                 largest = -INFINITY;
   TRB_PADDED(n);
@@ -30,7 +30,7 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
     const double        d = rho + foot.beyond, reach = trb_sphere_reach(rho, d), nx = foot.normal.x, ny = foot.normal.y, nz = foot.normal.z;
     /* the contact point, from the roller's centre of mass and from the origin */
     const double qx = centre.x + reach * nx, qy = centre.y + reach * ny, qz = centre.z + reach * nz;
-    const double px = r->x.x + qx, py = r->x.y + qy, pz = r->x.z + qz, tx = px - b.x, ty = py - b.y, tz = pz - b.z;
+    const double px = x.x + qx, py = x.y + qy, pz = x.z + qz, tx = px - b.x, ty = py - b.y, tz = pz - b.z;
     /* velocities of both surfaces at the contact point; the contact itself orbits */
     const double ux = v.x + w.y * qz - w.z * qy, uy = v.y + w.z * qx - w.x * qz, uz = v.z + w.x * qy - w.y * qx;
     const double gx = rv.x + rw.y * tz - rw.z * ty, gy = rv.y + rw.z * tx - rw.x * tz, gz = rv.z + rw.x * ty - rw.y * tx;
