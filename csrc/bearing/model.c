@@ -94,6 +94,21 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
   return TRB_OK;
 }
 
+/* Where the front rib acts, its edges lie on the roller's small end, seen from there below the far side of its rim. */
+static trb_status check_front_rib(const trb_model *m, trb_message *message)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        heights[2] = {m->params.front_rib_low, m->params.front_rib_high};
+  if (m->params.front_rib <= 0.0) return TRB_OK;
+  for (int i = 0; i < 2; i++) {
+    const double rim = trb_cone_radius(&m->surfaces.flank, g->small_end_station - m->params.front_rib_clearance);
+    if (!(rim - heights[i] / cos(g->roller_half_angle) > -g->small_end_radius))
+      return trb_fail(message, TRB_ERR_GEOMETRY, "front_rib_high = %g m: the rib would stand beyond the roller's small end (radius %g m)",
+                      heights[i], g->small_end_radius);
+  }
+  return TRB_OK;
+}
+
 static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_message *message)
 {
   const double *row = (const double *)f;
@@ -259,7 +274,8 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
 {
   trb_status status = trb_geometry_derive(&m->params, &m->geometry, message);
   if (status != TRB_OK) return status;
-  if ((status = trb_surfaces_build(&m->params, &m->geometry, &m->surfaces, message)) != TRB_OK) return status;
+  trb_surfaces_build(&m->params, &m->geometry, &m->surfaces);
+  if ((status = check_front_rib(m, message)) != TRB_OK) return status;
   m->n_rollers = (int)m->params.n_rollers;
   m->n_nodes = (int)m->params.n_slices;
   m->n_lanes = (m->n_nodes + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;

@@ -24,7 +24,7 @@ static trb_cone rib_face(const trb_geometry *g)
 }
 
 /* Edges of the front rib: circles about the inner ring's axis on the face that is parallel to the nominal roller's small end. */
-static trb_status front_rib(const trb_params *p, const trb_geometry *g, trb_surfaces *s, trb_message *message)
+static void place_front_rib(const trb_params *p, const trb_geometry *g, trb_surfaces *s)
 {
   const double heights[2] = {p->front_rib_low, p->front_rib_high}, am = g->roller_axis_angle;
   const double along = g->small_end_station - p->front_rib_clearance; /* of the face, from mid length */
@@ -32,14 +32,10 @@ static trb_status front_rib(const trb_params *p, const trb_geometry *g, trb_surf
     const double below = trb_cone_radius(&s->flank, along) - heights[i] / cos(g->roller_half_angle); /* the roller's axis */
     s->front_rib[i].radius = 0.5 * p->pitch_diameter + along * sin(am) - below * cos(am);
     s->front_rib[i].place = along * cos(am) + below * sin(am);
-    if (p->front_rib > 0.0 && !(below > -g->small_end_radius))
-      return trb_fail(message, TRB_ERR_GEOMETRY, "front_rib_high = %g m: the rib would stand beyond the roller's small end (radius %g m)",
-                      heights[i], g->small_end_radius);
   }
-  return TRB_OK;
 }
 
-trb_status trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, trb_surfaces *surfaces, trb_message *message)
+void trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, trb_surfaces *surfaces)
 {
   const trb_geometry *g = geometry;
   surfaces->race[TRB_RACE_OUTER] = trb_raceway_cone(params, g, TRB_RACE_OUTER, g->centre_plane);
@@ -48,5 +44,5 @@ trb_status trb_surfaces_build(const trb_params *params, const trb_geometry *geom
   surfaces->flank = trb_cone_of(-g->roller_mass_offset, 0.5 * params->roller_diameter, g->roller_half_angle, -1.0);
   surfaces->large_end = (trb_sphere){g->large_end_station - g->sphere_radius - g->roller_mass_offset, g->sphere_radius};
   surfaces->small_end = g->small_end_station - g->roller_mass_offset;
-  return front_rib(params, g, surfaces, message);
+  place_front_rib(params, g, surfaces);
 }

@@ -24,6 +24,6 @@ typedef struct trb_surfaces {
 /* The cones of outer and inner raceway, with the reference plane through the rollers' mid length, at a place along their axis. */
 trb_cone trb_raceway_cone(const trb_params *params, const trb_geometry *geometry, int race, double place);
 
-trb_status trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, trb_surfaces *surfaces, trb_message *message);
+void trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, trb_surfaces *surfaces);
 
 #endif
