@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CSRC = ROOT / "csrc"
-ORDER = ["base", "laws", "bearing", "body", "contact", "motion", "stepping", "python"]
+ORDER = ["base", "laws", "surface", "bearing", "body", "contact", "motion", "stepping", "python"]
 SUNDIALS_HEADERS = re.compile(r"(sundials|cvodes?|arkode|kinsol|idas?|nvector|sunmatrix|sunlinsol|sunnonlinsol)/")
 CALLS = "v?f?printf|f?puts|putchar|perror|exit|_Exit|_exit|quick_exit|abort|system"
 FORBIDDEN = re.compile(rf"\b((?:{CALLS})\s*\(|(?:stdout|stderr)\b)")

@@ -12,16 +12,18 @@ const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY] = {
 #undef TRB_GEOMETRY_INFO
 };
 
-/* Cones (docs/theory/geometry.md#cones-and-rollers): tan(nu) = (Dwe/2)/Rc, Rc = (Dpw/2)/sin(alpha_o - nu); two equations for nu, solved
- * by fixed-point steps. */
+/* Cones (docs/theory/geometry.md#cones-and-rollers): with the apex distance Rc, tan(nu) = (Dwe/2)/Rc and sin(alpha_o - nu) = (Dpw/2)/Rc.
+ * Their ratio gives nu, by Newton's method. Everything but the distances from the apex is written with radii at mid length, which a cylinder
+ * (alpha_o = 0) has too. */
 static void derive_cones(const trb_params *p, trb_geometry *g)
 {
-  double nu = 0.0;
-  for (int i = 0; i < 200; i++) {
-    const double rc = 0.5 * p->pitch_diameter / sin(p->cup_half_angle - nu), next = atan2(0.5 * p->roller_diameter, rc);
-    const double change = fabs(next - nu);
-    nu = next;
-    if (change < 1e-16) break;
+  const double ratio = p->roller_diameter / p->pitch_diameter;
+  double       nu = 0.0;
+  for (int i = 0; i < 50; i++) {
+    const double cosine = cos(nu), left = p->cup_half_angle - nu;
+    const double change = (ratio * sin(left) - tan(nu)) / (1.0 / (cosine * cosine) + ratio * cos(left));
+    nu += change;
+    if (fabs(change) < 1e-16) break;
   }
   g->roller_half_angle = nu;
   g->roller_axis_angle = p->cup_half_angle - nu;
@@ -33,18 +35,18 @@ static void derive_cones(const trb_params *p, trb_geometry *g)
 
 static void derive_radii(const trb_params *p, trb_geometry *g)
 {
-  const double along = g->apex_to_mid / cos(g->roller_half_angle); /* apex to mid contact, along the raceway */
+  const double across = 0.5 * p->roller_diameter * cos(g->roller_axis_angle); /* mid length to mid contact, across the bearing axis */
   const double roller = 0.5 * p->roller_diameter / cos(g->roller_half_angle);
-  g->outer_race_radius = along * sin(p->cup_half_angle);
-  g->inner_race_radius = along * sin(g->cone_half_angle);
+  g->outer_race_radius = 0.5 * p->pitch_diameter + across;
+  g->inner_race_radius = 0.5 * p->pitch_diameter - across;
   g->outer_equivalent_radius = 1.0 / (1.0 / roller - cos(p->cup_half_angle) / g->outer_race_radius);
   g->inner_equivalent_radius = 1.0 / (1.0 / roller + cos(g->cone_half_angle) / g->inner_race_radius);
   const double slope = 2.0 * tan(g->roller_half_angle);
-  g->large_end_diameter = slope * g->apex_to_large_end;
-  g->small_end_diameter = slope * (g->apex_to_mid - 0.5 * p->effective_length);
+  g->large_end_diameter = p->roller_diameter + 0.5 * slope * p->effective_length;
+  g->small_end_diameter = p->roller_diameter - 0.5 * slope * p->effective_length;
   g->large_end_station = 0.5 * p->total_length;
   g->small_end_station = -0.5 * p->total_length;
-  g->small_end_radius = 0.5 * slope * (g->apex_to_mid + g->small_end_station);
+  g->small_end_radius = 0.5 * (p->roller_diameter + slope * g->small_end_station);
 }
 
 /* Frustum of a cone between its ends, by Gauss nodes exact for the polynomials R^2, s R^2, s^2 R^2, R^4. */
@@ -54,7 +56,8 @@ static void derive_mass(const trb_params *p, trb_geometry *g)
   const double        half = 0.5 * p->total_length, slope = tan(g->roller_half_angle);
   double              m0 = 0.0, m1 = 0.0, m2 = 0.0, axial = 0.0;
   for (int i = 0; i < 3; i++) {
-    const double s = half * node[i], r2 = pow(slope * (g->apex_to_mid + s), 2.0), slab = p->roller_density * TRB_PI * r2 * half * weight[i];
+    const double s = half * node[i], r2 = pow(0.5 * p->roller_diameter + slope * s, 2.0),
+                 slab = p->roller_density * TRB_PI * r2 * half * weight[i];
     m0 += slab;
     m1 += slab * s;
     m2 += slab * s * s;
@@ -64,9 +67,8 @@ static void derive_mass(const trb_params *p, trb_geometry *g)
   g->roller_mass_offset = m1 / m0;
   g->roller_inertia_axial = axial;
   g->roller_inertia_transverse = 0.5 * axial + m2 - m1 * m1 / m0;
-  const double centre = g->apex_to_mid + g->roller_mass_offset;
-  g->roller_centre_radius = centre * sin(g->roller_axis_angle);
-  g->roller_centre_height = centre * cos(g->roller_axis_angle);
+  g->roller_centre_radius = 0.5 * p->pitch_diameter + g->roller_mass_offset * sin(g->roller_axis_angle);
+  g->roller_centre_height = g->centre_plane + g->roller_mass_offset * cos(g->roller_axis_angle);
 }
 
 /* Rib: the nominal sphere just touches a cone face at the given height above the inner raceway
@@ -76,18 +78,20 @@ static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *
   const double pole = g->apex_to_mid + g->large_end_station, ai = g->cone_half_angle;
   g->sphere_radius = p->sphere_ratio * pole;
   g->sphere_centre = pole - g->sphere_radius;
-  const double sr = g->sphere_centre * sin(g->roller_axis_angle), sz = g->sphere_centre * cos(g->roller_axis_angle);
+  const double sphere = g->large_end_station - g->sphere_radius; /* its centre, from mid length */
+  /* and above the inner raceway, to which mid length is nearest by the roller's radius there */
+  const double height = 0.5 * p->roller_diameter * cos(g->roller_half_angle) + sphere * sin(g->roller_half_angle);
   if (!(p->rib_contact_height < g->large_end_diameter))
     return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: must be below the roller's large-end diameter, %g m",
                     p->rib_contact_height, g->large_end_diameter);
-  const double sine = (p->rib_contact_height - (sr * cos(ai) - sz * sin(ai))) / g->sphere_radius;
+  const double sine = (p->rib_contact_height - height) / g->sphere_radius;
   if (!(fabs(sine) < 1.0))
     return trb_fail(message, TRB_ERR_GEOMETRY,
                     "rib_contact_height = %g m: the large end's sphere (radius %g m) does not touch the rib there", p->rib_contact_height,
                     g->sphere_radius);
   g->rib_normal_angle = ai + asin(sine);
-  g->rib_contact_radius = sr + g->sphere_radius * sin(g->rib_normal_angle);
-  g->rib_contact_z = sz + g->sphere_radius * cos(g->rib_normal_angle);
+  g->rib_contact_radius = 0.5 * p->pitch_diameter + sphere * sin(g->roller_axis_angle) + g->sphere_radius * sin(g->rib_normal_angle);
+  g->rib_contact_z = g->centre_plane + sphere * cos(g->roller_axis_angle) + g->sphere_radius * cos(g->rib_normal_angle);
   if (!(g->rib_normal_angle > 0.0 && g->rib_normal_angle < 1.5))
     return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the rib's face would not close towards the roller",
                     p->rib_contact_height);
@@ -124,16 +128,17 @@ trb_status trb_geometry_derive(const trb_params *params, trb_geometry *geometry,
   if (params->total_length < params->effective_length)
     return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: must be at least the effective length, %g m", params->total_length,
                     params->effective_length);
-  if (!(g->apex_to_mid > 0.5 * params->total_length))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: the roller would extend beyond the apex", params->total_length);
   derive_radii(params, g);
+  if (!(g->small_end_radius > 0.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: the roller would extend beyond the apex", params->total_length);
   derive_mass(params, g);
   g->effective_modulus =
       trb_composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->youngs_modulus, params->poisson_ratio);
   g->pocket_modulus = trb_composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->cage_youngs_modulus,
                                             params->cage_poisson_ratio);
-  g->cage_speed_ratio = sin(g->cone_half_angle) / (sin(g->cone_half_angle) + sin(params->cup_half_angle));
-  g->roller_spin_ratio = g->cage_speed_ratio * sin(params->cup_half_angle) / sin(g->roller_half_angle);
+  /* of cones with one apex and of cylinders: radii at one place of the contact are in the ratio of radii at any other */
+  g->cage_speed_ratio = g->inner_race_radius / (g->inner_race_radius + g->outer_race_radius);
+  g->roller_spin_ratio = g->cage_speed_ratio * g->outer_race_radius / (0.5 * params->roller_diameter);
   /* neighbours touch where the chord between two axes is shorter than a diameter across it */
   const double chord = params->pitch_diameter * sin(TRB_PI / params->n_rollers);
   if (!(chord > params->roller_diameter))

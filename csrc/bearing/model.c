@@ -62,6 +62,7 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
 {
   const trb_params   *p = &m->params;
   const trb_geometry *g = &m->geometry;
+  const trb_cone     *flank = &m->surfaces.flank;
   const double        nu = g->roller_half_angle, half = 0.5 * p->effective_length;
   double              node[TRB_MAX_NODES], weight[TRB_MAX_NODES];
   if (m->n_nodes < 1 || m->n_nodes > TRB_MAX_NODES)
@@ -69,11 +70,12 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
   trb_quadrature((int)p->quadrature, m->n_nodes, node, weight);
   for (int k = 0; k < m->n_lanes; k++) {
     const int    used = k < m->n_nodes ? k : m->n_nodes - 1;
-    const double station = half * node[used], nominal = (g->apex_to_mid + station) * tan(nu), along = (g->apex_to_mid + station) / cos(nu);
+    const double station = half * node[used], nominal = trb_cone_radius(flank, station);
+    const double middle = 0.5 * p->pitch_diameter + station * sin(g->roller_axis_angle); /* the roller's axis from the bearing's */
     m->station[k] = station;
     for (int race = 0; race < TRB_N_RACES; race++) {
-      const double angle = race == TRB_RACE_OUTER ? p->cup_half_angle : g->cone_half_angle, sign = race == TRB_RACE_OUTER ? -1.0 : 1.0;
-      const double roller_curvature = cos(nu) / nominal, race_curvature = sign * cos(angle) / (along * sin(angle));
+      const double cosine = m->surfaces.race[race].cosine, side = race == TRB_RACE_OUTER ? 1.0 : -1.0;
+      const double roller_curvature = cos(nu) / nominal, race_curvature = -cosine / (middle + side * nominal * cos(g->roller_axis_angle));
       const double radius = 1.0 / (roller_curvature + race_curvature);
       m->race[race].weight[k] = k < m->n_nodes ? half * weight[used] : 0.0;
       m->race[race].radius[k] = radius;
@@ -84,24 +86,23 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
       const double radius = nominal + 0.5 * m->diameter_deviation[j] - profile_drop(m, station);
       if (!(radius > 0.0))
         return trb_fail(message, TRB_ERR_GEOMETRY, "roller %d: profile and diameter deviation leave no radius at station %g m", j, station);
-      m->centre[j * m->n_lanes + k] = station + radius * tan(nu) - g->roller_mass_offset;
-      m->sphere[j * m->n_lanes + k] = radius / cos(nu);
+      const trb_sphere sphere = trb_sphere_inscribed(flank, station, radius);
+      m->centre[j * m->n_lanes + k] = sphere.place;
+      m->sphere[j * m->n_lanes + k] = sphere.radius;
     }
   }
   return TRB_OK;
 }
 
-/* Edges of the front rib: circles about the inner ring's axis on the face that is parallel to the nominal roller's small end. */
-static trb_status fill_front_rib(trb_model *m, trb_message *message)
+/* Where the front rib acts, its edges lie on the roller's small end, seen from there below the far side of its rim. */
+static trb_status check_front_rib(const trb_model *m, trb_message *message)
 {
   const trb_geometry *g = &m->geometry;
   const double        heights[2] = {m->params.front_rib_low, m->params.front_rib_high};
-  const double        along = g->apex_to_mid + g->small_end_station - m->params.front_rib_clearance;
+  if (m->params.front_rib <= 0.0) return TRB_OK;
   for (int i = 0; i < 2; i++) {
-    const double below = (along * sin(g->roller_half_angle) - heights[i]) / cos(g->roller_half_angle);
-    m->front_rib_radius[i] = along * sin(g->roller_axis_angle) - below * cos(g->roller_axis_angle);
-    m->front_rib_z[i] = along * cos(g->roller_axis_angle) + below * sin(g->roller_axis_angle);
-    if (m->params.front_rib > 0.0 && !(below > -g->small_end_radius))
+    const double rim = trb_cone_radius(&m->surfaces.flank, g->small_end_station - m->params.front_rib_clearance);
+    if (!(rim - heights[i] / cos(g->roller_half_angle) > -g->small_end_radius))
       return trb_fail(message, TRB_ERR_GEOMETRY, "front_rib_high = %g m: the rib would stand beyond the roller's small end (radius %g m)",
                       heights[i], g->small_end_radius);
   }
@@ -151,6 +152,17 @@ static int face_is_on(const trb_model *m, const trb_face *f)
   return m->params.with_cage > 0.0 && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
 }
 
+static trb_polygon surface_of(const trb_face *f)
+{
+  trb_polygon p = {.origin = trb_v(f->origin[0], f->origin[1], f->origin[2]),
+                   .u = trb_v(f->u[0], f->u[1], f->u[2]),
+                   .v = trb_v(f->v[0], f->v[1], f->v[2]),
+                   .n = (int)f->n_vertices[0]};
+  p.normal = trb_cross(p.u, p.v);
+  memcpy(p.outline, f->outline, sizeof p.outline);
+  return p;
+}
+
 static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, trb_message *message)
 {
   size_t total = 0;
@@ -171,11 +183,11 @@ static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, t
       const trb_face *f = &faces[i];
       if (!face_in_pocket(f, pocket) || !face_is_on(m, f)) continue;
       trb_pocket_face *to = &m->faces[count++];
-      to->face = *f;
-      to->normal = trb_cross(trb_v(f->u[0], f->u[1], f->u[2]), trb_v(f->v[0], f->v[1], f->v[2]));
+      to->surface = surface_of(f);
+      to->stiffness_factor = f->stiffness_factor[0];
+      to->friction_factor = f->friction_factor[0];
       to->part = (int)f->part[0];
       to->slot = (int)f->slot[0];
-      to->n = (int)f->n_vertices[0];
     }
   }
   m->first_face[m->n_rollers] = count;
@@ -186,7 +198,7 @@ static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, t
 static void fill_pockets(trb_model *m)
 {
   const trb_geometry *g = &m->geometry;
-  const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = g->apex_to_mid * sm;
+  const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = 0.5 * m->params.pitch_diameter;
   for (int j = 0; j < m->n_rollers; j++) {
     const double angle = 2.0 * TRB_PI * j / m->n_rollers, cosine = cos(angle), sine = sin(angle);
     m->pocket_axes[j] = (trb_frame){{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
@@ -213,18 +225,10 @@ static void fill_constants(trb_model *m)
 {
   const trb_params   *p = &m->params;
   const trb_geometry *g = &m->geometry;
-  m->race[TRB_RACE_OUTER].sine = sin(p->cup_half_angle);
-  m->race[TRB_RACE_OUTER].cosine = cos(p->cup_half_angle);
-  m->race[TRB_RACE_INNER].sine = sin(g->cone_half_angle);
-  m->race[TRB_RACE_INNER].cosine = cos(g->cone_half_angle);
-  m->rib_sine = sin(g->rib_normal_angle);
-  m->rib_cosine = cos(g->rib_normal_angle);
   m->log_modulus = log(g->effective_modulus);
   m->log_palmgren = trb_line_log_load(0.0, g->effective_modulus, p->effective_length);
   m->pocket_palmgren = exp(trb_line_log_load(0.0, g->pocket_modulus, p->effective_length));
   m->wall_stiffness = p->end_stiffness * (g->pocket_modulus / g->effective_modulus);
-  m->roller_tangent = tan(g->roller_half_angle);
-  m->roller_cosine = cos(g->roller_half_angle);
   m->axis_sine = sin(g->roller_axis_angle);
   m->axis_cosine = cos(g->roller_axis_angle);
   m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
@@ -270,6 +274,8 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
 {
   trb_status status = trb_geometry_derive(&m->params, &m->geometry, message);
   if (status != TRB_OK) return status;
+  trb_surfaces_build(&m->params, &m->geometry, &m->surfaces);
+  if ((status = check_front_rib(m, message)) != TRB_OK) return status;
   m->n_rollers = (int)m->params.n_rollers;
   m->n_nodes = (int)m->params.n_slices;
   m->n_lanes = (m->n_nodes + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
@@ -281,7 +287,6 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
     m->diameter_deviation[j] = deviation[j];
   }
   if ((status = fill_nodes(m, message)) != TRB_OK) return status;
-  if ((status = fill_front_rib(m, message)) != TRB_OK) return status;
   if ((status = fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
   m->n_losses = losses_of(&m->params);
   fill_constants(m);

@@ -7,8 +7,9 @@
 #include "base/vec3.h"
 #include "bearing/geometry.h"
 #include "bearing/params.h"
+#include "bearing/surfaces.h"
+#include "surface/polygon.h"
 
-enum { TRB_RACE_OUTER = 0, TRB_RACE_INNER = 1, TRB_N_RACES = 2 };
 enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };
 enum { TRB_LUBRICATION_DRY = 0, TRB_LUBRICATION_BOUNDARY = 1, TRB_LUBRICATION_MIXED = 2, TRB_LUBRICATION_FULL = 3 };
 enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMURA = 2 };
@@ -27,20 +28,20 @@ typedef struct trb_race_nodes {
   double *log_radius;   /* ln Re */
   double *radius;       /* Re, m */
   double *roller_share; /* Re/R1: share of the roller in the pair's curvature */
-  double  sine, cosine; /* of the race's half angle */
 } trb_race_nodes;
 
 typedef struct trb_pocket_face {
-  trb_face face;   /* as given */
-  trb_vec3 normal; /* u x v, towards the roller */
-  int      part;   /* TRB_PART_* */
-  int      slot;   /* column in results */
-  int      n;      /* number of vertices */
+  trb_polygon surface;          /* in the frame of its pocket; its normal points towards the roller */
+  double      stiffness_factor; /* of the contact's stiffness */
+  double      friction_factor;  /* of the contact's friction coefficient */
+  int         part;             /* TRB_PART_* */
+  int         slot;             /* column in results */
 } trb_pocket_face;
 
 typedef struct trb_model {
   trb_params       params;             /* as given, checked */
   trb_geometry     geometry;           /* derived */
+  trb_surfaces     surfaces;           /* of rings and rollers */
   int              n_rollers;          /* Z */
   int              n_nodes;            /* nodes along a contact line */
   int              n_lanes;            /* the same, padded */
@@ -57,14 +58,12 @@ typedef struct trb_model {
   double     log_palmgren;                  /* ln of the load per length of roller and ring at d = 1 m */
   double     pocket_palmgren;               /* load per length of roller and cage at d = 1 m */
   double     wall_stiffness;                /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
-  double     roller_tangent, roller_cosine; /* of nu */
   double     axis_sine, axis_cosine;        /* of the roller axis' angle */
   double     log_g;                         /* ln G */
   double     log_viscosity;                 /* ln eta0 */
   double     log_thermal;                   /* ln(eta0 beta/k') */
   double     rib_film_shape;                /* factor of eq. 12 */
   double     rib_film_rigid;                /* factor of eq. 13 */
-  double     rib_sine, rib_cosine;          /* of the rib's normal */
   trb_frame *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
   trb_vec3  *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
   double     land_station[TRB_LAND_STRIPS]; /* of the guiding surface's strips, from its middle, m */
@@ -72,8 +71,6 @@ typedef struct trb_model {
   double     land_place;                    /* middle of the guiding surface from the cage's centre of mass, m */
   double     land_palmgren;                 /* load per length of cage and land at d = 1 m */
   int        land_film;                     /* the land has an oil film */
-  double     front_rib_radius[2];           /* radii of the front rib's edges, m */
-  double     front_rib_z[2];                /* their axial positions from the apex, m */
   int        friction;                      /* any friction at raceways and ribs at all */
   int        pocket_friction;               /* any friction in the pockets */
   int        film;                          /* films are needed */

@@ -8,6 +8,8 @@
 
 #include <stddef.h>
 
+#include "surface/polygon.h"
+
 #define TRB_PARAMS(X) \
   /* bearing geometry */ \
   X(n_rollers,                "count",      3,      200,    "number of rollers Z") \
@@ -124,7 +126,6 @@ enum { TRB_N_PARAMS = (int)(sizeof(trb_params) / sizeof(double)) };
 /* What a pocket face is: a row of doubles, one column per entry. A face is a convex polygon in the frame of its pocket: origin
  * at the nominal roller's mid length, axes n (outward, perpendicular to the roller axis), t (direction of rotation), a (roller axis,
  * towards the large end). normal points from the face to the roller. Columns u, v span the plane; the outline is given in (u, v). */
-#define TRB_MAX_VERTICES 12
 #define TRB_FACE_COLUMNS(X) \
   X(pocket,           1, "1",  "pocket the face belongs to; -1: every pocket") \
   X(slot,             1, "1",  "number of the face in its pocket, 0..: the column of its forces in results") \

@@ -15,14 +15,12 @@ void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity
   drive->ring_omega = trb_cross(axis, axis_rate);
   drive->inner.axis = axis;
   drive->inner.centre = trb_add(displacement, centre);
-  drive->inner.apex = trb_axpy(drive->inner.centre, -m->geometry.centre_plane, axis);
   drive->inner.velocity = velocity;
   drive->inner.omega = trb_axpy(drive->ring_omega, shaft_speed, axis);
 }
 
 trb_ring_pose trb_ring_pose_in_frame(const trb_ring_pose *ring, double cosine, double sine)
 {
-  return (trb_ring_pose){trb_turn_z(ring->apex, cosine, -sine), trb_turn_z(ring->axis, cosine, -sine),
-                         trb_turn_z(ring->centre, cosine, -sine), trb_turn_z(ring->velocity, cosine, -sine),
-                         trb_turn_z(ring->omega, cosine, -sine)};
+  return (trb_ring_pose){trb_turn_z(ring->axis, cosine, -sine), trb_turn_z(ring->centre, cosine, -sine),
+                         trb_turn_z(ring->velocity, cosine, -sine), trb_turn_z(ring->omega, cosine, -sine)};
 }

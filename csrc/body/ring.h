@@ -7,9 +7,8 @@
 
 /* A rigid surface that turns: position, axis and velocity field v(p) = velocity + omega x (p - centre). */
 typedef struct trb_ring_pose {
-  trb_vec3 apex;     /* apex of the raceway cone, m */
   trb_vec3 axis;     /* unit vector */
-  trb_vec3 centre;   /* reference point of the motion, on the axis in the roller-centre plane, m */
+  trb_vec3 centre;   /* reference point, on the axis: of the motion, of moments and of the ring's surfaces, m */
   trb_vec3 velocity; /* of the centre, m/s */
   trb_vec3 omega;    /* angular velocity, rad/s */
 } trb_ring_pose;

@@ -7,23 +7,23 @@
 
 #include "contact/friction.h"
 #include "contact/pair.h"
+#include "surface/circle.h"
 
 static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_batch *batch,
                         trb_counters *counters, trb_loads *to, trb_point_detail *c)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_vec3      a = r->frame.a, end = trb_axpy(r->x, g->small_end_station - g->roller_mass_offset, a);
-  const trb_vec3      centre = trb_axpy(ring->apex, m->front_rib_z[edge], ring->axis);
-  const trb_vec3      across = trb_axpy(a, -trb_dot(a, ring->axis), ring->axis);
-  const double        lean = trb_norm(across);
-  const double        d = trb_dot(trb_sub(centre, end), a) + m->front_rib_radius[edge] * lean;
+  const trb_vec3   a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
+  const trb_circle circle = m->surfaces.front_rib[edge];
+
+  const trb_circle_meeting meeting =
+      trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
+  const double d = meeting.depth;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
   to->margin[batch->index[0]] = trb_min(to->margin[batch->index[0]], fabs(d));
   if (!(d > 0.0)) return;
   counters->front_rib_contacts++;
-  const trb_vec3  point = trb_axpy(centre, m->front_rib_radius[edge] / lean, across), arm = trb_sub(point, r->x),
-                  ring_arm = trb_sub(point, ring->centre);
+  const trb_vec3  point = trb_circle_deepest(&meeting, circle.radius), arm = trb_sub(point, r->x), ring_arm = trb_sub(point, ring->centre);
   const trb_vec3  normal = trb_scale(-1.0, a);
   const trb_touch touch =
       trb_touching(trb_add(r->v, trb_cross(r->omega, arm)), trb_add(ring->velocity, trb_cross(ring->omega, ring_arm)), normal);

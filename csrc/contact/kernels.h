@@ -74,11 +74,10 @@ static inline const double *trb_detail_lane(const trb_model *m, const trb_detail
 typedef struct trb_race_input {
   const trb_roller_pose *roller;
   const trb_ring_pose   *ring;   /* in the roller's frame */
+  const trb_cone        *cone;   /* the race, about the ring's axis */
   const double          *centre; /* spheres of this roller, per lane */
   const double          *sphere;
   const trb_race_nodes  *nodes;
-  double                 sine, cosine; /* of the race's half angle */
-  double                 sign;         /* +1 outer, -1 inner: normal away from the bearing axis or towards it */
 } trb_race_input;
 
 typedef struct trb_race_output {

@@ -8,6 +8,7 @@
 #include "contact/pair.h"
 #include "laws/journal.h"
 #include "laws/line_contact.h"
+#include "surface/land.h"
 
 /* Both bodies, and what is summed. */
 typedef struct meeting {
@@ -22,17 +23,9 @@ typedef struct meeting {
   trb_vec3             film, contact; /* forces on the cage, N */
 } meeting;
 
-/* A strip: the point on the cage's axis, and how it lies from the ring's axis. */
-typedef struct strip {
-  trb_vec3 x, apart; /* m */
-  double   size;     /* of apart, m */
-} strip;
-
-static strip strip_at(const meeting *w, double station)
+static trb_land_strip strip_at(const meeting *w, double station)
 {
-  const trb_vec3 x = trb_axpy(w->cage->x, w->m->land_place + station, w->cage->frame.a), from = trb_sub(x, w->ring.centre);
-  const trb_vec3 apart = trb_axpy(from, -trb_dot(from, w->ring.axis), w->ring.axis);
-  return (strip){x, apart, trb_norm(apart)};
+  return trb_land_strip_at(trb_axpy(w->cage->x, w->m->land_place + station, w->cage->frame.a), w->ring.centre, w->ring.axis);
 }
 
 static trb_vec3 cage_velocity(const meeting *w, trb_vec3 at)
@@ -62,15 +55,15 @@ static double room(const trb_params *p) { return p->land_clearance - p->land_con
 
 static void film_on_strip(meeting *w, double station, double width)
 {
-  const trb_params *p = &w->m->params;
-  const strip       s = strip_at(w, station);
-  const double      c = p->land_clearance, held = s.size > room(p) ? room(p) / s.size : 1.0, half = 0.5 * p->land_fill * p->land_width;
-  const trb_vec3    at = trb_axpy(s.x, -0.5, s.apart), apart = trb_scale(held / c, s.apart);
-  const trb_vec3    relative = trb_sub(cage_velocity(w, at), ring_velocity(w, at));
-  const trb_vec3    v = trb_axpy(relative, -trb_dot(relative, w->ring.axis), w->ring.axis), around = trb_cross(w->ring.axis, v);
-  const double      speed = trb_norm(v), turning = trb_dot(trb_sub(w->ring.omega, w->cage->omega), w->ring.axis);
-  const double      shear = trb_journal_shear(p->viscosity, w->radius, width, c, trb_norm(apart));
-  trb_vec3          force = {0, 0, 0};
+  const trb_params    *p = &w->m->params;
+  const trb_land_strip s = strip_at(w, station);
+  const double         c = p->land_clearance, held = s.size > room(p) ? room(p) / s.size : 1.0, half = 0.5 * p->land_fill * p->land_width;
+  const trb_vec3       at = trb_axpy(s.x, -0.5, s.apart), apart = trb_scale(held / c, s.apart);
+  const trb_vec3       relative = trb_sub(cage_velocity(w, at), ring_velocity(w, at));
+  const trb_vec3       v = trb_axpy(relative, -trb_dot(relative, w->ring.axis), w->ring.axis), around = trb_cross(w->ring.axis, v);
+  const double         speed = trb_norm(v), turning = trb_dot(trb_sub(w->ring.omega, w->cage->omega), w->ring.axis);
+  const double         shear = trb_journal_shear(p->viscosity, w->radius, width, c, trb_norm(apart));
+  trb_vec3             force = {0, 0, 0};
   w->counters->land_films++;
   if (speed > 0.0) {
     const trb_journal_film film = trb_journal_short(trb_dot(apart, v) / speed, trb_dot(apart, around) / speed);
@@ -84,15 +77,14 @@ static void film_on_strip(meeting *w, double station, double width)
 
 static void contact_on_strip(meeting *w, double station, double width)
 {
-  const trb_model  *m = w->m;
-  const trb_params *p = &m->params;
-  const strip       s = strip_at(w, station);
-  const double      d = s.size - room(p);
+  const trb_model     *m = w->m;
+  const trb_params    *p = &m->params;
+  const trb_land_strip s = strip_at(w, station);
+  const double         d = s.size - room(p);
   w->seen.gap = trb_min(w->seen.gap, p->land_clearance - s.size);
   if (!(d > 0.0)) return;
   w->counters->land_contacts++;
-  const trb_vec3  normal = trb_scale(1.0 / s.size, s.apart), axis = trb_sub(s.x, s.apart);
-  const trb_vec3  at = trb_axpy(axis, w->inside ? w->radius : -w->radius, normal);
+  const trb_vec3  normal = trb_scale(1.0 / s.size, s.apart), at = trb_land_nearest(&s, normal, w->radius, w->inside);
   const trb_touch touch = trb_touching(cage_velocity(w, at), ring_velocity(w, at), normal);
   const double    elastic = m->land_palmgren * width * pow(d, TRB_PALMGREN_EXPONENT);
   const double    q = trb_damped(m, elastic, p->damping_cage, touch.rate);
@@ -152,8 +144,8 @@ static trb_approach approach_of(const trb_model *m, const trb_instant *at, int i
   const double  stiffness = m->land_palmgren * m->params.land_width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
   trb_approach  found = {.left = INFINITY, .rise = sqrt(m->params.cage_mass / stiffness)};
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
-    const strip  s = strip_at(&w, m->land_station[k]);
-    const double left = room(&m->params) - s.size;
+    const trb_land_strip s = strip_at(&w, m->land_station[k]);
+    const double         left = room(&m->params) - s.size;
     if (!(left < found.left)) continue;
     found.left = left;
     found.speed =

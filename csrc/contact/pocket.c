@@ -8,8 +8,8 @@
 
 #include "contact/friction.h"
 #include "contact/pair.h"
-#include "laws/interference.h"
 #include "laws/line_contact.h"
+#include "surface/sphere.h"
 
 /* Roller and cage in the frame of the pocket. Velocities and sums are filled only where they may touch. */
 typedef struct pocket_view {
@@ -32,8 +32,6 @@ typedef struct pocket_sums {
 
 /* Exponent of the interference in a point contact's load. */
 #define TRB_POINT_EXPONENT 1.5
-
-static trb_vec3 array_vector(const double *v) { return trb_v(v[0], v[1], v[2]); }
 
 static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_cage_pose *cage, int roller, pocket_view *p)
 {
@@ -111,7 +109,7 @@ static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, c
   const trb_vec3  arm = trb_sub(c->point, p->x), cage_arm = trb_sub(c->point, p->cage);
   const trb_touch touch =
       trb_touching(trb_add(p->v, trb_cross(p->omega, arm)), trb_add(p->cage_v, trb_cross(p->cage_omega, cage_arm)), c->normal);
-  const double q = trb_damped(m, c->elastic, m->params.damping_cage, touch.rate), factor = f->face.friction_factor[0];
+  const double q = trb_damped(m, c->elastic, m->params.damping_cage, touch.rate), factor = f->friction_factor;
   double       mu = 0.0;
   if (m->pocket_friction) mu = factor * trb_sliding_coefficient(m, touch.speed);
   const double   drag = q * mu / touch.speed;
@@ -129,33 +127,21 @@ static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, c
   if (p->slopes != NULL) add_slopes(m, c, &touch, arm, q, factor, p->slopes);
 }
 
-/* Interference of a sphere with a bounded face, its centre h above the plane; the normal points from the centre to the nearest point.
- * Without contact it is the plane's, which is no less, unless it is wanted exactly. */
+/* Interference of a sphere with a face, its centre h above the plane, and the normal from the centre to the nearest point. Without contact
+ * it is the plane's, which is no less, unless it is wanted exactly. */
 static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_vec3 centre, double h, double radius, int exact,
                              trb_vec3 *normal)
 {
-  if (m->params.pocket_edges <= 0.0 || (h >= radius && !exact)) {
-    *normal = trb_scale(-1.0, f->normal);
-    return radius - h;
-  }
-  const trb_vec3 u = array_vector(f->face.u), v = array_vector(f->face.v), from = trb_sub(centre, array_vector(f->face.origin));
-  const double   cu = trb_dot(from, u), cv = trb_dot(from, v);
-  double         nu, nv;
-  trb_nearest_in_polygon(f->face.outline, f->n, cu, cv, &nu, &nv);
-  const trb_vec3 to = trb_axpy(trb_axpy(trb_scale(-h, f->normal), nu - cu, u), nv - cv, v);
-  const double   distance = trb_norm(to);
-  *normal = trb_scale(1.0 / trb_max(distance, 1e-12), to);
-  return radius - distance;
+  if (m->params.pocket_edges <= 0.0 || (h >= radius && !exact)) return trb_sphere_on_plane(f->surface.normal, h, radius, normal);
+  return trb_sphere_on_polygon(&f->surface, centre, h, radius, normal);
 }
-
-static double height(const trb_pocket_face *f, trb_vec3 point) { return trb_dot(trb_sub(point, array_vector(f->face.origin)), f->normal); }
 
 static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
                           trb_load *load, pocket_sums *sums)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double  stiffness = m->pocket_palmgren * f->face.stiffness_factor[0], *weight = m->race[TRB_RACE_OUTER].weight;
-  const double  middle = height(f, p->x), along = trb_dot(p->a, f->normal);
+  const double  stiffness = m->pocket_palmgren * f->stiffness_factor, *weight = m->race[TRB_RACE_OUTER].weight;
+  const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal);
   for (int k = 0; k < m->n_nodes; k++) {
     const double h = middle + centre[k] * along;
     if (h >= sphere[k] && !exact) continue;
@@ -165,16 +151,13 @@ static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_v
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > 0.0)) continue;
     const double       q = stiffness * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
-    const pocket_touch touch = {trb_axpy(c, sphere[k] - 0.5 * d, normal), normal, d, q, TRB_PALMGREN_EXPONENT, trb_sub(c, p->x), 0};
+    const pocket_touch touch = {
+        trb_axpy(c, trb_sphere_reach(sphere[k], d), normal), normal, d, q, TRB_PALMGREN_EXPONENT, trb_sub(c, p->x), 0};
     push(m, f, p, &touch, counters, load, sums);
   }
 }
 
-static trb_vec3 end_sphere(const trb_model *m, const pocket_view *p)
-{
-  const trb_geometry *g = &m->geometry;
-  return trb_axpy(p->x, g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, p->a);
-}
+static trb_vec3 end_sphere(const trb_model *m, const pocket_view *p) { return trb_axpy(p->x, m->surfaces.large_end.place, p->a); }
 
 static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int exact, trb_counters *counters,
                               trb_load *load, pocket_sums *sums)
@@ -182,32 +165,24 @@ static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
   const trb_geometry *g = &m->geometry;
   const trb_vec3      c = end_sphere(m, p);
   trb_vec3            normal;
-  const double        d = sphere_on_face(m, f, c, height(f, c), g->sphere_radius, exact, &normal);
+  const double        d = sphere_on_face(m, f, c, trb_polygon_height(&f->surface, c), g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
-  const double       q = m->wall_stiffness * f->face.stiffness_factor[0] * d * sqrt(d);
-  const pocket_touch touch = {trb_axpy(c, g->sphere_radius - 0.5 * d, normal), normal, d, q, TRB_POINT_EXPONENT, trb_sub(c, p->x), 0};
+  const double       q = m->wall_stiffness * f->stiffness_factor * d * sqrt(d);
+  const pocket_touch touch = {
+      trb_axpy(c, trb_sphere_reach(g->sphere_radius, d), normal), normal, d, q, TRB_POINT_EXPONENT, trb_sub(c, p->x), 0};
   push(m, f, p, &touch, counters, load, sums);
 }
 
-static trb_vec3 small_end(const trb_model *m, const pocket_view *p)
-{
-  return trb_axpy(p->x, m->geometry.small_end_station - m->geometry.roller_mass_offset, p->a);
-}
-
-static trb_vec3 vertex_of(const trb_pocket_face *f, int i)
-{
-  const double *vertex = f->face.outline + 2 * i;
-  return trb_axpy(trb_axpy(array_vector(f->face.origin), vertex[0], array_vector(f->face.u)), vertex[1], array_vector(f->face.v));
-}
+static trb_vec3 small_end(const trb_model *m, const pocket_view *p) { return trb_axpy(p->x, m->surfaces.small_end, p->a); }
 
 static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_counters *counters, trb_load *load,
                               pocket_sums *sums)
 {
   const trb_vec3 end = small_end(m, p), normal = trb_scale(-1.0, p->a);
-  const double   stiffness = m->wall_stiffness * f->face.stiffness_factor[0] / f->n;
-  for (int i = 0; i < f->n; i++) {
-    const trb_vec3 point = vertex_of(f, i);
+  const double   stiffness = m->wall_stiffness * f->stiffness_factor / f->surface.n;
+  for (int i = 0; i < f->surface.n; i++) {
+    const trb_vec3 point = trb_polygon_vertex(&f->surface, i);
     const double   d = trb_dot(trb_sub(point, end), p->a);
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > 0.0)) continue;
@@ -223,12 +198,13 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
 static double flank_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double  tangent = m->roller_tangent, cosine = m->roller_cosine, deviation = 0.5 * m->diameter_deviation[roller];
-  const double  middle = height(f, p->x), along = trb_dot(p->a, f->normal);
+  const double  deviation = 0.5 * m->diameter_deviation[roller];
+  const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal);
   double        gap = INFINITY, of_nodes = INFINITY;
   for (int end = -1; end <= 1; end += 2) {
-    const double station = 0.5 * end * m->params.effective_length, radius = (m->geometry.apex_to_mid + station) * tangent + deviation;
-    gap = trb_min(gap, middle + (station + radius * tangent - m->geometry.roller_mass_offset) * along - radius / cosine);
+    const double     station = 0.5 * end * m->params.effective_length;
+    const trb_sphere last = trb_sphere_inscribed(&m->surfaces.flank, station, trb_cone_radius(&m->surfaces.flank, station) + deviation);
+    gap = trb_min(gap, middle + last.place * along - last.radius);
   }
   if (gap > 0.0) return gap;
   for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k]);
@@ -239,7 +215,7 @@ static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const 
 {
   const trb_vec3 end = small_end(m, p);
   double         gap = INFINITY;
-  for (int i = 0; i < f->n; i++) gap = trb_min(gap, trb_dot(trb_sub(end, vertex_of(f, i)), p->a));
+  for (int i = 0; i < f->surface.n; i++) gap = trb_min(gap, trb_dot(trb_sub(end, trb_polygon_vertex(&f->surface, i)), p->a));
   return gap;
 }
 
@@ -247,7 +223,7 @@ static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const 
 static double face_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
 {
   if (f->part == TRB_PART_FLANK) return flank_gap(m, f, p, roller);
-  if (f->part == TRB_PART_LARGE_END) return height(f, end_sphere(m, p)) - m->geometry.sphere_radius;
+  if (f->part == TRB_PART_LARGE_END) return trb_polygon_height(&f->surface, end_sphere(m, p)) - m->geometry.sphere_radius;
   return small_end_gap(m, f, p);
 }
 

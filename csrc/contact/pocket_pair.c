@@ -9,10 +9,10 @@ static double pocket_size(const trb_model *m, int flanks)
 {
   double size = 0.0;
   for (int i = 0; i < m->first_face[m->n_rollers]; i++) {
-    const trb_face *f = &m->faces[i].face;
-    const double    origin = sqrt(f->origin[0] * f->origin[0] + f->origin[1] * f->origin[1] + f->origin[2] * f->origin[2]);
+    const trb_polygon *f = &m->faces[i].surface;
+    const double       origin = trb_norm(f->origin);
     if ((m->faces[i].part == TRB_PART_FLANK) != flanks) continue;
-    for (int k = 0; k < m->faces[i].n; k++) size = fmax(size, origin + hypot(f->outline[2 * k], f->outline[2 * k + 1]));
+    for (int k = 0; k < f->n; k++) size = fmax(size, origin + hypot(f->outline[2 * k], f->outline[2 * k + 1]));
   }
   return size;
 }
@@ -45,7 +45,7 @@ static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
   const trb_geometry *g = &m->geometry;
   const double        offset = fabs(g->roller_mass_offset), chain = chain_length(m);
   const double        length = fmax(fabs(g->small_end_station), fabs(g->large_end_station)) + offset;
-  const double        sphere = fabs(g->sphere_centre - g->apex_to_mid) + offset;
+  const double        sphere = fabs(m->surfaces.large_end.place);
   const double flanks = pocket_size(m, 1) + offset + trb_clearance_play(m), ends = pocket_size(m, 0) + offset + trb_clearance_play(m);
   arms[TRB_GAP_FLANK] = arms_from(m, chain, flanks, fmax(chain, flanks));
   arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));

@@ -6,7 +6,7 @@
 #include "contact/pair.h"
 #include "laws/line_contact.h"
 
-static const trb_ring_pose fixed_ring = {{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+static const trb_ring_pose fixed_ring = {.axis = {0, 0, 1}};
 
 static int race_of(const trb_pair *pair) { return pair->b == TRB_BODY_OUTER_RING ? TRB_RACE_OUTER : TRB_RACE_INNER; }
 
@@ -15,12 +15,10 @@ static trb_race_input race_input(const trb_model *m, const trb_instant *at, int 
   const int outer = race == TRB_RACE_OUTER;
   return (trb_race_input){&at->rollers[roller],
                           outer ? &fixed_ring : &at->inner[roller],
+                          &m->surfaces.race[race],
                           m->centre + (size_t)roller * (size_t)m->n_lanes,
                           m->sphere + (size_t)roller * (size_t)m->n_lanes,
-                          &m->race[race],
-                          m->race[race].sine,
-                          m->race[race].cosine,
-                          outer ? 1.0 : -1.0};
+                          &m->race[race]};
 }
 
 static void add_output(const trb_race_output *out, const trb_pair *pair, int row, trb_loads *loads)
@@ -100,14 +98,10 @@ static trb_margin_arm margin_of(const trb_model *m)
 /* Of both races. */
 static trb_hold_arms hold_of(const trb_model *m)
 {
-  const double          chain = chain_length(m);
-  const trb_race_nodes *outer = &m->race[TRB_RACE_OUTER], *inner = &m->race[TRB_RACE_INNER];
-  return (trb_hold_arms){fmax(outer->cosine, inner->cosine),
-                         fmax(outer->sine, inner->sine),
-                         chain,
-                         chain,
-                         m->params.total_length + m->params.roller_diameter,
-                         0.5 * m->geometry.roller_centre_radius};
+  const double    chain = chain_length(m);
+  const trb_cone *outer = &m->surfaces.race[TRB_RACE_OUTER], *inner = &m->surfaces.race[TRB_RACE_INNER];
+  return (trb_hold_arms){fmax(fabs(outer->cosine), fabs(inner->cosine)),     fmax(fabs(outer->sine), fabs(inner->sine)), chain, chain,
+                         m->params.total_length + m->params.roller_diameter, 0.5 * m->geometry.roller_centre_radius};
 }
 
 static void look_at_race(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, double share,

@@ -7,6 +7,7 @@
 
 #include "contact/passes.h"
 #include "laws/rolling_resistance.h"
+#include "surface/sphere.h"
 
 #define TRB_KERNEL_NAME TRB_JOIN(trb_raceway_kernel_, TRB_KERNEL_VARIANT)
 
@@ -15,23 +16,22 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
 {
   const trb_roller_pose *r = in->roller;
   const trb_ring_pose   *g = in->ring;
-  const trb_vec3 x = r->x, a = r->frame.a, v = r->v, w = r->omega, k = g->axis, o = g->apex, b = g->centre, rv = g->velocity, rw = g->omega;
-  const double   sine = in->sine, cosine = in->cosine, sign = in->sign, orbit = r->orbit_speed;
-  double         largest = -INFINITY;
+  const trb_cone         race = *in->cone;
+  const trb_vec3         x = r->x, a = r->frame.a, v = r->v, w = r->omega, k = g->axis, b = g->centre, rv = g->velocity, rw = g->omega;
+  const trb_vec3         start = trb_sub(x, trb_cone_point(&race, b, k));
+  const double           orbit = r->orbit_speed;
+  double                 largest = -INFINITY;
   TRB_PADDED(n);
   for (int i = 0; i < n; i++) {
-    const double s = in->centre[i], rho = in->sphere[i];
-    const double cx = x.x + s * a.x - o.x, cy = x.y + s * a.y - o.y, cz = x.z + s * a.z - o.z;
-    const double along = cx * k.x + cy * k.y + cz * k.z;
-    const double ex = cx - along * k.x, ey = cy - along * k.y, ez = cz - along * k.z;
-    const double off = sqrt(ex * ex + ey * ey + ez * ez);
-    /* the sphere's centre against the race's cone */
-    const double d = rho + sign * (off * cosine - along * sine), radial = sign * cosine / off;
-    const double nx = radial * ex - sign * sine * k.x, ny = radial * ey - sign * sine * k.y, nz = radial * ez - sign * sine * k.z;
-    const double reach = rho - 0.5 * d;
-    const double px = cx + o.x + reach * nx, py = cy + o.y + reach * ny, pz = cz + o.z + reach * nz;
+    /* the sphere's centre, from the roller's centre of mass, against the race's cone */
+    const double        rho = in->sphere[i];
+    const trb_vec3      centre = trb_scale(in->centre[i], a);
+    const trb_cone_foot foot = trb_cone_at(&race, k, trb_add(start, centre));
+    const double        d = rho + foot.beyond, reach = trb_sphere_reach(rho, d), nx = foot.normal.x, ny = foot.normal.y, nz = foot.normal.z;
+    /* the contact point, from the roller's centre of mass and from the origin */
+    const double qx = centre.x + reach * nx, qy = centre.y + reach * ny, qz = centre.z + reach * nz;
+    const double px = x.x + qx, py = x.y + qy, pz = x.z + qz, tx = px - b.x, ty = py - b.y, tz = pz - b.z;
     /* velocities of both surfaces at the contact point; the contact itself orbits */
-    const double qx = px - x.x, qy = py - x.y, qz = pz - x.z, tx = px - b.x, ty = py - b.y, tz = pz - b.z;
     const double ux = v.x + w.y * qz - w.z * qy, uy = v.y + w.z * qx - w.x * qz, uz = v.z + w.x * qy - w.y * qx;
     const double gx = rv.x + rw.y * tz - rw.z * ty, gy = rv.y + rw.z * tx - rw.x * tz, gz = rv.z + rw.x * ty - rw.y * tx;
     const double dx = ux - gx, dy = uy - gy, dz = uz - gz;

@@ -9,9 +9,8 @@
 /* Height of a contact point above the inner raceway. */
 static double height_of(const trb_model *m, const trb_ring_pose *ring, trb_vec3 point)
 {
-  const trb_vec3 from = trb_sub(point, ring->apex);
-  const double   along = trb_dot(from, ring->axis), radius = trb_norm(trb_axpy(from, -along, ring->axis));
-  return radius * cos(m->geometry.cone_half_angle) - along * sin(m->geometry.cone_half_angle);
+  const trb_cone *race = &m->surfaces.race[TRB_RACE_INNER];
+  return -trb_cone_at(race, ring->axis, trb_sub(point, trb_cone_point(race, ring->centre, ring->axis))).beyond;
 }
 
 /* Share of the ellipse's axis across rolling that lies below the rib's lower or above its upper edge. */
@@ -68,23 +67,25 @@ static int is_on(const trb_model *m) { return m->params.back_rib > 0.0; }
 static trb_margin_arm margin_of(const trb_model *m)
 {
   const trb_geometry *g = &m->geometry;
-  const double        arm = fabs(g->sphere_centre - g->apex_to_mid) + fabs(g->roller_mass_offset);
+  const trb_sphere   *end = &m->surfaces.large_end;
+  const double        arm = fabs(end->place);
   return (trb_margin_arm){.arm = arm,
                           .ring = arm + g->outer_race_radius + m->params.total_length,
                           .on_end = 1,
-                          .normal_sine = fabs(m->rib_sine),
+                          .normal_sine = fabs(m->surfaces.rib.cosine),
                           .normal_lean = fabs(sin(g->rib_normal_angle - g->roller_axis_angle)),
-                          .sphere_offset = fabs(g->sphere_centre) * sin(g->roller_axis_angle)};
+                          .sphere_offset = fabs(g->roller_centre_radius + end->place * m->axis_sine)};
 }
 
 /* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
 static trb_hold_arms hold_of(const trb_model *m)
 {
   const trb_geometry *g = &m->geometry;
-  const double        station = g->sphere_centre - g->apex_to_mid - g->roller_mass_offset;
-  const double        lean = fabs(m->rib_sine * m->axis_cosine - m->rib_cosine * m->axis_sine);
-  return (trb_hold_arms){fabs(m->rib_sine),
-                         fabs(m->rib_cosine),
+  const trb_cone     *face = &m->surfaces.rib;
+  const double        station = m->surfaces.large_end.place;
+  const double        lean = fabs(face->cosine * m->axis_cosine + face->sine * m->axis_sine);
+  return (trb_hold_arms){fabs(face->cosine),
+                         fabs(face->sine),
                          lean * fabs(station),
                          fabs(station),
                          m->params.total_length + m->params.roller_diameter,

@@ -6,24 +6,18 @@
 
 #define TRB_KERNEL_NAME TRB_JOIN(trb_rib_kernel_, TRB_KERNEL_VARIANT)
 
-/* Keeps the direction of a sphere's centre on the bearing axis finite, m. */
-#define TRB_AXIS_GUARD 1e-9
-
 /* Deepest point of the end's sphere in the rib's cone, and the velocities there. */
 static void pass_geometry(const trb_model *m, const trb_instant *at, trb_lanes *l)
 {
-  const trb_geometry *g = &m->geometry;
-  const double        station = g->sphere_centre - g->apex_to_mid - g->roller_mass_offset, sine = m->rib_sine, cosine = m->rib_cosine;
+  const trb_cone   face = m->surfaces.rib;
+  const trb_sphere end = m->surfaces.large_end;
   for (int j = 0; j < at->n; j++) {
     const trb_roller_pose *r = &at->rollers[at->chosen[j]];
     const trb_ring_pose   *ring = &at->inner[at->chosen[j]];
-    const trb_vec3         centre = trb_axpy(r->x, station, r->frame.a), from = trb_sub(centre, ring->apex);
-    const double           along = trb_dot(from, ring->axis);
-    const trb_vec3         across = trb_axpy(from, -along, ring->axis);
-    const double           off = sqrt(trb_dot(across, across) + TRB_AXIS_GUARD * TRB_AXIS_GUARD);
-    const double           d = g->sphere_radius + sine * (off - g->rib_contact_radius) + cosine * (along - g->rib_contact_z);
-    const trb_vec3         normal = trb_add(trb_scale(sine / off, across), trb_scale(cosine, ring->axis));
-    const trb_vec3         point = trb_axpy(centre, g->sphere_radius - 0.5 * d, normal);
+    const trb_vec3         centre = trb_axpy(r->x, end.place, r->frame.a);
+    const trb_cone_foot    foot = trb_cone_at(&face, ring->axis, trb_sub(centre, trb_cone_point(&face, ring->centre, ring->axis)));
+    const double           d = end.radius + foot.beyond;
+    const trb_vec3         normal = foot.normal, point = trb_axpy(centre, trb_sphere_reach(end.radius, d), normal);
     const trb_vec3         v1 = trb_add(r->v, trb_cross(r->omega, trb_sub(point, r->x)));
     const trb_vec3         v2 = trb_add(ring->velocity, trb_cross(ring->omega, trb_sub(point, ring->centre)));
     const trb_vec3         relative = trb_sub(v1, v2), orbit = trb_v(-r->orbit_speed * point.y, r->orbit_speed * point.x, 0.0);

@@ -212,7 +212,7 @@ static int same(trb_vec3 a, trb_vec3 b) { return a.x == b.x && a.y == b.y && a.z
 /* Whether the ring stands where it stood at the look before, and turns as fast. */
 static int ring_rests(const trb_drive *a, const trb_drive *b)
 {
-  return same(a->inner.apex, b->inner.apex) && same(a->inner.axis, b->inner.axis) && same(a->inner.velocity, b->inner.velocity) &&
+  return same(a->inner.centre, b->inner.centre) && same(a->inner.axis, b->inner.axis) && same(a->inner.velocity, b->inner.velocity) &&
          same(a->inner.omega, b->inner.omega);
 }
 

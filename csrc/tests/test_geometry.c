@@ -1,6 +1,8 @@
 /* Derived geometry of the rig; what does not fit together. */
 #include "bearing/geometry.h"
 
+#include "bearing/surfaces.h"
+
 #include "check.h"
 #include "rig.h"
 
@@ -75,6 +77,23 @@ static void test_what_does_not_fit(void)
   fails(p, "rib_contact_height");
 }
 
+/* Geometry and surfaces do not read what is not the bearing's own: oil and effects are not even numbers here. */
+static void test_without_oil(void)
+{
+  const trb_params given = rig_params();
+  trb_params       p = given;
+  trb_geometry     g, bare;
+  trb_surfaces     s, of_bare;
+  for (double *value = &p.viscosity; value < (double *)(&p + 1); value++) *value = NAN;
+  CHECK(isfinite(p.cage_mass) && isnan(p.oil_fill) && isnan(p.front_rib) && isnan(p.temperature));
+  memset(&s, 0, sizeof s), memset(&of_bare, 0, sizeof of_bare);
+  CHECK(trb_geometry_derive(&given, &g, NULL) == TRB_OK && trb_geometry_derive(&p, &bare, NULL) == TRB_OK);
+  trb_surfaces_build(&given, &g, &s);
+  trb_surfaces_build(&p, &bare, &of_bare);
+  CHECK(memcmp(&g, &bare, sizeof g) == 0 && memcmp(&s, &of_bare, sizeof s) == 0);
+  CHECK(isfinite(s.rib.radius) && isfinite(s.front_rib[1].radius));
+}
+
 static void test_table(void)
 {
   CHECK(TRB_N_GEOMETRY == (int)(sizeof trb_geometry_table / sizeof trb_geometry_table[0]));
@@ -86,6 +105,7 @@ int main(void)
   test_rig();
   test_rolling();
   test_what_does_not_fit();
+  test_without_oil();
   test_table();
   return check_report();
 }

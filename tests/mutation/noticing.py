@@ -71,6 +71,8 @@ FIRST: dict[str, list[str]] = {
 
 NEAR: list[tuple[str, list[str]]] = [
     ("csrc/laws", ["laws", "geometry/test_interference.py", "physics/test_looking.py", "api/test_laws_api.py"]),
+    ("csrc/surface/land", ["physics/test_land.py"]),
+    ("csrc/surface", ["geometry", "physics/test_looking.py"]),
     ("csrc/contact/land", ["physics/test_land.py"]),
     ("csrc/contact/drag", ["physics/test_drag.py"]),
     (

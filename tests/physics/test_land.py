@@ -382,7 +382,7 @@ def test_continuous_in_the_place(kit: SimpleNamespace, guidance: str, speed: flo
 def test_continuous_where_the_mean_speed_reverses(kit: SimpleNamespace, e: float) -> None:
     """Where everything that moves the oil vanishes, so does the force; across it there is no jump."""
     sim = land_sim(kit, "outer_land")
-    orbit = sim.scene.bearing.geometry.cage_speed_ratio * 3000.0 * np.pi / 30.0
+    orbit = sim.scene.bearing.geometry.cage_speed_ratio * float(sim.record()["shaft_speed"])
     x, sizes = 1e-4 * e, []
     for off in (1e-6, 1e-8, 0.0):
         values = forces(

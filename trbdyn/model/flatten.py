@@ -20,7 +20,7 @@ from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
-from trbdyn.model.lubricants import Dicke, Lubricant, vg100
+from trbdyn.model.lubricants import Dicke, Lubricant
 from trbdyn.model.motion import History, knot_table, value_at
 
 if TYPE_CHECKING:
@@ -130,8 +130,10 @@ def effects_entries(effects: Effects) -> Entries:
     }
 
 
-def block_of(entries: Mapping[str, Entry]) -> FloatArray:
+def block_of(entries: Mapping[str, Entry], *, partial: bool = False) -> FloatArray:
     """The core's parameter block, shape (P,): float64 in the order of `_core.parameter_table()`.
+
+    With `partial`, numbers that have no entry are NaN: for a caller in the core that does not read them.
 
     Raises
     ------
@@ -142,8 +144,9 @@ def block_of(entries: Mapping[str, Entry]) -> FloatArray:
     """
     table = _core.parameter_table()
     names = {row[0] for row in table}
-    if names != set(entries):
-        raise RuntimeError(f"the core's table of parameters and the models differ in {sorted(names ^ set(entries))}")
+    strange = set(entries) - names if partial else names ^ set(entries)
+    if strange:
+        raise RuntimeError(f"the core's table of parameters and the models differ in {sorted(strange)}")
     problems = [
         Problem(
             entries[name].path,
@@ -151,11 +154,11 @@ def block_of(entries: Mapping[str, Entry]) -> FloatArray:
             f"must be from {lower:g} to {upper:g}{'' if unit == '1' else f' ({unit})'}",
         )
         for name, unit, lower, upper, _ in table
-        if not lower <= entries[name].value <= upper
+        if name in entries and not lower <= entries[name].value <= upper
     ]
     if problems:
         raise InputError(problems)
-    return np.array([entries[row[0]].value for row in table], dtype=np.float64)
+    return np.array([entries[row[0]].value if row[0] in entries else math.nan for row in table], dtype=np.float64)
 
 
 def prefixed(prefix: str, entries: Entries) -> Entries:
@@ -164,16 +167,16 @@ def prefixed(prefix: str, entries: Entries) -> Entries:
 
 
 def bearing_geometry(bearing: Bearing) -> Geometry:
-    """Derived geometry of a bearing.
+    """Derived geometry of a bearing; it needs no oil and no effects.
 
     Raises
     ------
     InputError
         If the numbers do not fit together.
     """
-    entries = {**lubricant_entries(vg100()), **effects_entries(Effects()), **bearing_entries(bearing)}
+    entries = bearing_entries(bearing)
     try:
-        return Geometry.from_parameters(block_of(entries))
+        return Geometry.from_parameters(block_of(entries, partial=True))
     except _core.CoreError as error:
         raise input_error_of_core(error, entries) from None
 

@@ -137,7 +137,7 @@ class Geometry:
         Parameters
         ----------
         block : ndarray, shape (P,)
-            A value for each row of the core's table of parameters.
+            A value for each row of the core's table of parameters; those that are not a bearing's own may be NaN.
 
         Raises
         ------

@@ -1,5 +1,5 @@
 /* The nearest point of a bounded convex polygon. */
-#include "laws/interference.h"
+#include "surface/polygon.h"
 
 #include "check.h"
 #include "rig.h"

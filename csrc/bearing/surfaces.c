@@ -1,0 +1,48 @@
+#include "bearing/surfaces.h"
+
+#include <math.h>
+
+/* In the axial plane the raceway touches the flank where it is 1/2 Dwe off the roller's axis, across that axis, and goes on along the raceway
+ * to the roller-centre plane: 1/2 Dpw +- 1/2 Dwe [cos(alpha_m) +- sin(alpha_m) tan(alpha)], which the difference of both angles, nu, makes
+ * 1/2 Dpw +- 1/2 Dwe cos(nu)/cos(alpha). */
+trb_cone trb_raceway_cone(const trb_params *params, const trb_geometry *geometry, int race, double place)
+{
+  const double side = race == TRB_RACE_OUTER ? 1.0 : -1.0,
+               angle = race == TRB_RACE_OUTER ? params->cup_half_angle : geometry->cone_half_angle;
+  const double radius = 0.5 * params->pitch_diameter + side * 0.5 * params->roller_diameter * cos(geometry->roller_half_angle) / cos(angle);
+  return trb_cone_of(place, radius, angle, side);
+}
+
+/* The nominal sphere of the large end touches the face at the nominal contact. */
+static trb_cone rib_face(const trb_geometry *g)
+{
+  const double sphere = g->large_end_station - g->sphere_radius; /* its centre, from mid length */
+  return (trb_cone){.place = sphere * cos(g->roller_axis_angle) + g->sphere_radius * cos(g->rib_normal_angle),
+                    .radius = g->rib_contact_radius,
+                    .cosine = sin(g->rib_normal_angle),
+                    .sine = -cos(g->rib_normal_angle)};
+}
+
+/* Edges of the front rib: circles about the inner ring's axis on the face that is parallel to the nominal roller's small end. */
+static void place_front_rib(const trb_params *p, const trb_geometry *g, trb_surfaces *s)
+{
+  const double heights[2] = {p->front_rib_low, p->front_rib_high}, am = g->roller_axis_angle;
+  const double along = g->small_end_station - p->front_rib_clearance; /* of the face, from mid length */
+  for (int i = 0; i < 2; i++) {
+    const double below = trb_cone_radius(&s->flank, along) - heights[i] / cos(g->roller_half_angle); /* the roller's axis */
+    s->front_rib[i].radius = 0.5 * p->pitch_diameter + along * sin(am) - below * cos(am);
+    s->front_rib[i].place = along * cos(am) + below * sin(am);
+  }
+}
+
+void trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, trb_surfaces *surfaces)
+{
+  const trb_geometry *g = geometry;
+  surfaces->race[TRB_RACE_OUTER] = trb_raceway_cone(params, g, TRB_RACE_OUTER, g->centre_plane);
+  surfaces->race[TRB_RACE_INNER] = trb_raceway_cone(params, g, TRB_RACE_INNER, 0.0);
+  surfaces->rib = rib_face(g);
+  surfaces->flank = trb_cone_of(-g->roller_mass_offset, 0.5 * params->roller_diameter, g->roller_half_angle, -1.0);
+  surfaces->large_end = (trb_sphere){g->large_end_station - g->sphere_radius - g->roller_mass_offset, g->sphere_radius};
+  surfaces->small_end = g->small_end_station - g->roller_mass_offset;
+  place_front_rib(params, g, surfaces);
+}

@@ -1,0 +1,29 @@
+/* The surfaces of a bearing, each in the coordinates of the body that carries it: what contacts need of the geometry. They follow from the
+ * bearing's numbers alone, without oil or effects. */
+#ifndef TRB_BEARING_SURFACES_H
+#define TRB_BEARING_SURFACES_H
+
+#include "bearing/geometry.h"
+#include "surface/circle.h"
+#include "surface/cone.h"
+#include "surface/sphere.h"
+
+enum { TRB_RACE_OUTER = 0, TRB_RACE_INNER = 1, TRB_N_RACES = 2 };
+
+typedef struct trb_surfaces {
+  /* of the rings, about their axes; places from the origin for the outer ring, from the roller-centre plane for the inner one */
+  trb_cone   race[TRB_N_RACES];
+  trb_cone   rib;          /* face of the inner ring's back-face rib */
+  trb_circle front_rib[2]; /* edges of its front rib */
+  /* of a roller, about its axis; places from its centre of mass */
+  trb_cone   flank;     /* without profile and deviation; its reference plane is mid length */
+  trb_sphere large_end; /* sphere of the large end */
+  double     small_end; /* plane of the small end, m */
+} trb_surfaces;
+
+/* The cones of outer and inner raceway, with the reference plane through the rollers' mid length, at a place along their axis. */
+trb_cone trb_raceway_cone(const trb_params *params, const trb_geometry *geometry, int race, double place);
+
+void trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, trb_surfaces *surfaces);
+
+#endif
