@@ -109,7 +109,7 @@ static trb_status configure(trb_integrator *it, trb_message *message)
 static trb_status bdf_create(trb_integrator *it, trb_message *message)
 {
   const trb_model *m = it->dynamics->model;
-  const int        with_cage = m->params.with_cage > 0.0;
+  const int        hub_width = TRB_CAGE_SIZE;
   bdf             *self = calloc(1, sizeof *self);
   if (self == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   it->self = self;
@@ -119,8 +119,8 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   if (status != TRB_OK) return status;
   self->y = trb_sundials_vector(&self->sundials, it->n, it->y);
   self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
-  self->matrix = trb_arrow_matrix(m->n_rollers, with_cage, self->sundials.context);
-  self->solver = trb_arrow_linear_solver(m->n_rollers, it->dynamics->work->variant, self->sundials.context);
+  self->matrix = trb_arrow_matrix(m->n_rollers, hub_width, self->sundials.context);
+  self->solver = trb_arrow_linear_solver(m->n_rollers, hub_width, it->dynamics->work->variant, self->sundials.context);
   self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->y, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)

@@ -57,7 +57,7 @@ static sunrealtype norm_of_bodies(N_Vector x, N_Vector w)
 {
   const double *value = N_VGetArrayPointer(x), *weight = N_VGetArrayPointer(w);
   const int     n_rollers = trb_state_rollers((int)length_of(x)), cage = n_rollers * TRB_NR;
-  double        largest = mean_square(value + cage, weight + cage, TRB_NC);
+  double        largest = mean_square(value + cage, weight + cage, TRB_CAGE_SIZE);
   for (int j = 0; j < n_rollers; j++) {
     const double of_roller = mean_square(value + j * TRB_NR, weight + j * TRB_NR, TRB_NR);
     largest = of_roller <= largest ? largest : of_roller;
