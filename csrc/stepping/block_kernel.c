@@ -165,37 +165,38 @@ static inline void set_product(const double (*columns)[TRB_NP], int n, const dou
   for (int i = 0; i < TRB_NP; i++) to[i] = scale * sum[i];
 }
 
-/* to += scale columns x, for the TRB_NP entries of a roller, or of a part of the hub; stride: from one column to the next */
-static inline void add_product(const double *columns, int stride, int n, const double *x, double scale, double *to)
+/* to += scale columns x */
+static inline void add_product(const double (*columns)[TRB_NP], int n, const double *x, double scale, double *to)
 {
   double sum[TRB_NP];
   for (int i = 0; i < TRB_NP; i++) sum[i] = to[i];
   for (int c = 0; c < n; c++)
-    for (int i = 0; i < TRB_NP; i++) sum[i] += scale * x[c] * columns[c * stride + i];
+    for (int i = 0; i < TRB_NP; i++) sum[i] += scale * x[c] * columns[c][i];
   for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
 }
 
-/* The same for columns of the hub. */
-static inline void add_hub_product(const double *columns, int room, int n, const double *x, double scale, double *to)
+/* to += scale columns x, for columns of a hub of any width */
+static void add_wide_product(const double *restrict columns, int room, int n, const double *restrict x, double scale, double *restrict to)
 {
-  for (int part = 0; part < room; part += TRB_NP) add_product(columns + part, room, n, x, scale, to + part);
+  for (int c = 0; c < n; c++)
+    for (int i = 0; i < room; i++) to[i] += scale * x[c] * columns[c * room + i];
 }
 
-/* The functions that follow are compiled for the usual width, where width and room are known to the compiler, and for any
- * width. */
-static inline void border_of(int width, int room, const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own,
-                             trb_arrow_factor_border *g, double *restrict schur)
-{
-  for (int i = 0; i < TRB_NR * room; i++) g->from[i] = -gamma * b->from[i];
-  for (int c = 0; c < width; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
-  for (int c = 0; c < width; c++) add_hub_product(g->from, room, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * room);
-}
+/* Columns of a hub of the usual width. */
+typedef const double (*usual_columns)[TRB_HUB_USUAL];
 
 static void border(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
                    const trb_hub_factor *hub)
 {
-  if (hub->width == TRB_HUB_USUAL) border_of(TRB_HUB_USUAL, TRB_HUB_USUAL, b, gamma, own, g, hub->schur);
-  else border_of(hub->width, hub->room, b, gamma, own, g, hub->schur);
+  const int     width = hub->width, room = hub->room;
+  double *const schur = hub->schur;
+  for (int i = 0; i < TRB_NR * room; i++) g->from[i] = -gamma * b->from[i];
+  for (int c = 0; c < width; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
+  if (width == TRB_HUB_USUAL)
+    for (int c = 0; c < TRB_HUB_USUAL; c++)
+      add_product((usual_columns)g->from, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * TRB_HUB_USUAL);
+  else
+    for (int c = 0; c < width; c++) add_wide_product(g->from, room, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * room);
 }
 
 /* Inverse in place by Gauss-Jordan elimination with exchanges of columns, as above, of a hub that is wider than a padded roller. */
@@ -250,33 +251,53 @@ static int invert_hub(const trb_hub_factor *hub)
   return invert_wide(hub->width, hub->room, hub->inverse, hub->scratch, hub->pivot);
 }
 
-/* The solution of a roller is written with its padding, which covers the first entry of the next one; that entry is put back. right: of
- * the hub's equations; found: its solution. */
-static inline void solve_of(int width, int room, const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n,
-                            const double *inverse, double *restrict right, double *restrict found, double *restrict x)
+/* The solution of a roller is written with its padding, which covers the first entry of the next one; that entry is put back. */
+static inline void solve_roller(const trb_arrow_factor_block *own, double *z)
+{
+  const double covered = z[TRB_NR];
+  set_product(own->inverse, TRB_NR, z, 1.0, z);
+  z[TRB_NR] = covered;
+}
+
+static void solve_usual(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, usual_columns inverse,
+                        double *restrict x)
 {
   double *const y = x + n * TRB_NR;
-  memset(right, 0, (size_t)room * sizeof *right);
-  memcpy(right, y, (size_t)width * sizeof *right);
+  double        right[TRB_HUB_USUAL];
+  memcpy(right, y, sizeof right);
   for (int j = 0; j < n; j++) {
     double *const z = x + j * TRB_NR;
-    const double  covered = z[TRB_NR];
-    set_product(own[j].inverse, TRB_NR, z, 1.0, z);
-    z[TRB_NR] = covered;
-    if (border[j].coupled) add_hub_product(border[j].from, room, TRB_NR, z, -1.0, right);
+    solve_roller(&own[j], z);
+    if (border[j].coupled) add_product((usual_columns)border[j].from, TRB_NR, z, -1.0, right);
   }
-  memset(found, 0, (size_t)room * sizeof *found);
-  add_hub_product(inverse, room, width, right, 1.0, found);
+  set_product(inverse, TRB_HUB_USUAL, right, 1.0, y);
+  memcpy(right, y, sizeof right);
+  for (int j = 0; j < n; j++)
+    if (border[j].coupled) add_product((usual_columns)border[j].solved, TRB_HUB_USUAL, right, -1.0, x + j * TRB_NR);
+}
+
+/* The same for any width. right: of the hub's equations; found: its solution. */
+static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub,
+                       double *restrict x)
+{
+  double *const y = x + n * TRB_NR, *const right = hub->scratch, *const found = right + hub->room;
+  const int width = hub->width, room = hub->room;
+  memset(right, 0, 2 * (size_t)room * sizeof *right);
+  memcpy(right, y, (size_t)width * sizeof *right);
+  for (int j = 0; j < n; j++) {
+    solve_roller(&own[j], x + j * TRB_NR);
+    if (border[j].coupled) add_wide_product(border[j].from, room, TRB_NR, x + j * TRB_NR, -1.0, right);
+  }
+  add_wide_product(hub->inverse, room, width, right, 1.0, found);
   memcpy(y, found, (size_t)width * sizeof *y);
   for (int j = 0; j < n; j++)
-    if (border[j].coupled) add_product(border[j].solved, TRB_NP, width, found, -1.0, x + j * TRB_NR);
+    if (border[j].coupled) add_product((const double (*)[TRB_NP])border[j].solved, width, found, -1.0, x + j * TRB_NR);
 }
 
 static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x)
 {
-  double right[TRB_HUB_USUAL], found[TRB_HUB_USUAL];
-  if (hub->width == TRB_HUB_USUAL) solve_of(TRB_HUB_USUAL, TRB_HUB_USUAL, own, border, n, hub->inverse, right, found, x);
-  else solve_of(hub->width, hub->room, own, border, n, hub->inverse, hub->scratch, hub->scratch + hub->room, x);
+  if (hub->width == TRB_HUB_USUAL) solve_usual(own, border, n, (usual_columns)hub->inverse, x);
+  else solve_wide(own, border, n, hub, x);
 }
 
 static double step_from(const double *restrict origin, const double *restrict per, const double *restrict y, double turn,
