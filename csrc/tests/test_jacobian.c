@@ -82,7 +82,7 @@ static void check_scene(const trb_params *params, double load, double most, int 
   int           coupled = 0;
   if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
   if (!CHECK(trb_jacobian_create(m, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(m->n_rollers, TRB_CAGE_SIZE, &arrow, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(m->n_rollers, trb_hub_width(m), &arrow, NULL) == TRB_OK)) return;
   memcpy(start, y, sizeof start);
   rig_disturb(m, &seed, y);
   rig_draw_back(d, most, start, y);
