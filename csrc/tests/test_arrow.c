@@ -242,6 +242,27 @@ static void test_unit(trb_arrow *a, trb_arrow_factors *f)
   for (int i = 0; i < n + SPARE; i++) CHECK_NEAR(x[i], i, 0.0);
 }
 
+/* A system that has no pivot on the diagonal but after exchanges: each block only moves entries on by one place. */
+static void test_exchanges(trb_arrow *a, trb_arrow_factors *f)
+{
+  const int hub = a->n * TRB_NR, n = hub + a->width;
+  double    x[SIZE + SPARE];
+  for (int j = 0; j < a->n; j++) {
+    a->borders[j].coupled = 0;
+    for (int c = 0; c < TRB_NR; c++)
+      for (int i = 0; i < TRB_NR; i++) a->rollers[j].own[c][i] = (i == (c + 1) % TRB_NR);
+  }
+  for (int c = 0; c < a->width; c++)
+    for (int i = 0; i < a->width; i++) a->hub[c * a->room + i] = (i == (c + 1) % a->width);
+  of_system(a);
+  CHECK(trb_arrow_factor(a, f) == 1);
+  for (int i = 0; i < n; i++) x[i] = i;
+  trb_arrow_solve(f, x);
+  for (int j = 0; j < a->n; j++)
+    for (int c = 0; c < TRB_NR; c++) CHECK(x[j * TRB_NR + c] == j * TRB_NR + (c + 1) % TRB_NR);
+  for (int c = 0; c < a->width; c++) CHECK(x[hub + c] == hub + (c + 1) % a->width);
+}
+
 static void test_singular(int variant, int width)
 {
   trb_arrow         *a;
@@ -258,6 +279,7 @@ static void test_singular(int variant, int width)
   for (int c = 0; c < TRB_NR; c++)
     for (int i = 0; i < TRB_NR; i++) a->rollers[0].own[c][i] = (double)(i == c) - 1.0;
   expect_singular(a, f);
+  test_exchanges(a, f);
   test_unit(a, f);
   trb_arrow_free(a);
   trb_arrow_factors_free(f);
