@@ -209,7 +209,7 @@ static void test_singular_roller(trb_arrow *a, trb_arrow_factors *f, int kind, i
 static void test_singular_hub(trb_arrow *a, trb_arrow_factors *f, int kind, int at)
 {
   const double bad[] = {NAN, INFINITY, -INFINITY};
-  for (int k = 0; k < 3 * a->width; k++) {
+  for (int k = 0; k < 3 * a->width; k += 1 + a->width / 16) {
     randomise(a, kind);
     a->hub[k % a->width * a->room + at] = bad[k / a->width];
     expect_singular(a, f);
@@ -272,7 +272,7 @@ static void test_singular(int variant, int width)
   a->gamma = 1.0;
   for (int kind = 0; kind < N_KINDS; kind++) {
     for (int at = 0; at < TRB_NR; at++) test_singular_roller(a, f, kind, at);
-    for (int at = 0; at < width; at++) test_singular_hub(a, f, kind, at);
+    for (int at = 0; at < width; at += 1 + width / 8) test_singular_hub(a, f, kind, at);
   }
   /* a block of rank one */
   randomise(a, 0);
