@@ -17,7 +17,7 @@ typedef struct trb_hub_kind {
   trb_body              body; /* the loads on this body of a pair act on it */
   int                   size; /* coordinates */
   const trb_coordinate *coordinates;
-  int                   skew;       /* coordinate that must stay below a right angle */
+  int                   skew;       /* coordinate that must stay below a right angle, or -1 */
   int (*is_on)(const trb_model *m); /* whether the state of a model has its coordinates */
   void (*pose)(const trb_model *m, const trb_drive *drive, const double *y, trb_rigid_pose *pose);
   /* rates of the coordinates under a load, gravity and inertia */

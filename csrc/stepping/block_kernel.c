@@ -199,7 +199,7 @@ static void border(const trb_arrow_border *b, double gamma, const trb_arrow_fact
     for (int c = 0; c < width; c++) add_wide_product(g->from, room, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * room);
 }
 
-/* Inverse in place by Gauss-Jordan elimination with exchanges of columns, as above, of a hub that is wider than a padded roller. */
+/* Inverse in place by Gauss-Jordan elimination with exchanges of columns, as above, of a hub of any other width. */
 static int invert_wide(int n, int room, double *restrict a, double *restrict row, int *pivot)
 {
   if (!all_finite(a, n * room)) return 0;
