@@ -1,8 +1,9 @@
-/* The cage: rigid, six degrees of freedom. Its coordinates with their tolerances, its pose, its rates under a load. */
+/* The cage: rigid, six degrees of freedom: a body of the hub. Its coordinates with their tolerances, its pose, its rates under a load. In
+ * a bearing without a cage they are there and stand still. */
 #ifndef TRB_BODY_CAGE_H
 #define TRB_BODY_CAGE_H
 
-#include "body/ring.h"
+#include "body/hub.h"
 
 /* X(name, unit kind, text), as for rollers. */
 #define TRB_CAGE_STATE(X) \
@@ -26,27 +27,8 @@ enum {
       TRB_CAGE_SIZE
 };
 
-/* The cage, in R. */
-typedef struct trb_cage_pose {
-  trb_vec3  x;           /* centre of mass, from the apex, m */
-  trb_frame frame;       /* n, t, a; does not turn with the cage */
-  trb_frame body;        /* axes of the cage, through which pocket j stands at 2 pi j/Z */
-  trb_vec3  v;           /* inertial velocity, m/s */
-  trb_vec3  omega;       /* inertial angular velocity, rad/s */
-  trb_vec3  omega_frame; /* the same in (n, t, a) */
-} trb_cage_pose;
+void trb_cage_pose_unpack(const trb_model *m, const trb_drive *drive, const double *y, trb_rigid_pose *pose);
 
-void trb_cage_pose_unpack(const trb_model *m, const trb_drive *drive, const double *y, trb_cage_pose *pose);
-/* Rates of the cage's coordinates under a load; zero in a bearing without a cage. */
-void trb_cage_rates(const trb_model *m, const trb_drive *drive, const trb_cage_pose *c, const double *y, const trb_wrench *load,
-                    double *rates);
-/* What a coordinate does to the cage's place, or to its velocity, in R. */
-trb_rigid trb_cage_motion(const trb_cage_pose *cage, int coordinate);
-
-static inline double trb_cage_kinetic(const trb_model *m, const trb_cage_pose *c)
-{
-  if (m->params.with_cage <= 0.0) return 0.0;
-  return trb_kinetic(m->params.cage_mass, m->params.cage_inertia_axial, m->params.cage_inertia_transverse, c->v, c->omega_frame);
-}
+extern const trb_hub_kind trb_hub_cage;
 
 #endif

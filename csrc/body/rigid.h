@@ -26,6 +26,19 @@ static inline void trb_add_wrench(trb_wrench *to, const trb_wrench *w)
   to->moment = trb_add(to->moment, w->moment);
 }
 
+/* Kinds of bodies that act on each other. */
+typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE, TRB_BODY_OIL, TRB_N_BODIES } trb_body;
+
+/* Place and motion of a rigid body of the hub, in R. */
+typedef struct trb_rigid_pose {
+  trb_vec3  x;           /* centre of mass, from the apex, m */
+  trb_frame frame;       /* n, t, a; does not turn with the body */
+  trb_frame body;        /* axes that turn with it; through those of the cage pocket j stands at 2 pi j/Z */
+  trb_vec3  v;           /* inertial velocity, m/s */
+  trb_vec3  omega;       /* inertial angular velocity, rad/s */
+  trb_vec3  omega_frame; /* the same in (n, t, a) */
+} trb_rigid_pose;
+
 /* A rigid motion, about a body's centre of mass. */
 typedef struct trb_rigid {
   trb_vec3 shift, turn;

@@ -1,5 +1,5 @@
-/* The layout of the state vector (docs/theory/motion.md#coordinates): the coordinates of the bodies (body/roller.h, body/cage.h), then spin
- * angles and quadratures.
+/* The layout of the state vector (docs/theory/motion.md#coordinates): the coordinates of the rollers (body/roller.h), those of the bodies
+ * of the hub (body/hub.h), then spin angles and quadratures.
  *
  * The frame R turns about the bearing axis with the kinematic cage angle. A roller's coordinates are cylindrical and are offsets from
  * pure rolling; its axis is given by skew and tilt in the frame (e_r, e_t, e_z) that orbits with it; its velocities are inertial
@@ -32,17 +32,15 @@ enum { TRB_Q_losses = TRB_N_QUADRATURES - TRB_N_LOSSES };
 /* Quadratures that a model has. */
 static inline int trb_n_quadratures(const trb_model *m) { return TRB_Q_losses + m->n_losses; }
 
-/* State vector: rollers, cage, then the tail: a spin angle per roller, the quadratures. */
+/* State vector: rollers, hub, then the tail: a spin angle per roller, the quadratures. The cage is the first body of the hub, in every
+ * model. */
 static inline int trb_state_roller(int roller) { return roller * TRB_ROLLER_SIZE; }
-static inline int trb_state_cage(const trb_model *m) { return m->n_rollers * TRB_ROLLER_SIZE; }
-static inline int trb_state_main_size(const trb_model *m) { return trb_state_cage(m) + TRB_CAGE_SIZE; }
+static inline int trb_state_hub(const trb_model *m) { return m->n_rollers * TRB_ROLLER_SIZE; }
+static inline int trb_state_cage(const trb_model *m) { return trb_state_hub(m); }
+static inline int trb_state_main_size(const trb_model *m) { return trb_state_hub(m) + trb_hub_width(m); }
 static inline int trb_state_spin(const trb_model *m) { return trb_state_main_size(m); }
 static inline int trb_state_quadrature(const trb_model *m) { return trb_state_spin(m) + m->n_rollers; }
 static inline int trb_state_size(const trb_model *m) { return trb_state_quadrature(m) + trb_n_quadratures(m); }
-
-/* Rollers of a state of this size: a loss more or less is no roller. */
-_Static_assert(TRB_N_LOSSES - TRB_N_USUAL_LOSSES <= TRB_ROLLER_SIZE, "the size of a state tells the number of rollers");
-static inline int trb_state_rollers(int size) { return (size - TRB_CAGE_SIZE - TRB_Q_losses - TRB_N_USUAL_LOSSES) / (TRB_ROLLER_SIZE + 1); }
 
 /* Tolerance kind of every entry. */
 trb_tolerance trb_state_tolerance(const trb_model *m, int index);

@@ -1,7 +1,7 @@
 /* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is; contact/pairs.c lists all of them.
  *
  * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
- * the power lost, by kind. A pair without a roller adds to the loads of the hub, which is made of all other bodies. A pair does not depend
+ * the power lost, by kind. A pair without a roller adds to the loads of the hub, which is made of all other bodies (body/hub.h). A pair does not depend
  * on time and stores nothing between calls. */
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
@@ -55,9 +55,6 @@ typedef struct trb_counters {
 /* Margin of a contact that the scene does not have, m. */
 #define TRB_NO_CONTACT 1e30
 
-/* Kinds of bodies that a pair can join. */
-typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE, TRB_BODY_OIL, TRB_N_BODIES } trb_body;
-
 /* How a pair loses energy. */
 typedef enum trb_mechanism {
   TRB_BY_SLIDING,
@@ -91,7 +88,7 @@ typedef struct trb_instant {
   const trb_drive       *drive;   /* what is prescribed */
   const trb_roller_pose *rollers; /* n_rollers */
   const trb_ring_pose   *inner;   /* n_rollers: the inner ring in each roller's frame */
-  const trb_cage_pose   *cage;    /* NULL without a cage */
+  const trb_rigid_pose  *cage;    /* NULL without a cage */
   const int             *chosen;  /* rollers to evaluate, ascending */
   int                    n;       /* how many */
   const unsigned        *apart;   /* n_rollers: bits of the rows of the table of pairs that are proven not to touch; NULL: none is */

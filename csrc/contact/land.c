@@ -12,15 +12,15 @@
 
 /* Both bodies, and what is summed. */
 typedef struct meeting {
-  const trb_model     *m;
-  const trb_cage_pose *cage;
-  trb_ring_pose        ring;   /* in R; centre: the point about which its moment is taken */
-  int                  inside; /* 1: the cage runs inside the land */
-  double               radius; /* of the land, m */
-  trb_counters        *counters;
-  trb_load            *load;
-  trb_land_detail      seen;
-  trb_vec3             film, contact; /* forces on the cage, N */
+  const trb_model      *m;
+  const trb_rigid_pose *cage;
+  trb_ring_pose         ring;   /* in R; centre: the point about which its moment is taken */
+  int                   inside; /* 1: the cage runs inside the land */
+  double                radius; /* of the land, m */
+  trb_counters         *counters;
+  trb_load             *load;
+  trb_land_detail       seen;
+  trb_vec3              film, contact; /* forces on the cage, N */
 } meeting;
 
 static trb_land_strip strip_at(const meeting *w, double station)

@@ -33,7 +33,7 @@ typedef struct pocket_sums {
 /* Exponent of the interference in a point contact's load. */
 #define TRB_POINT_EXPONENT 1.5
 
-static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_cage_pose *cage, int roller, pocket_view *p)
+static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_rigid_pose *cage, int roller, pocket_view *p)
 {
   const trb_frame in_r = trb_compose(&cage->body, &m->pocket_axes[roller]);
   const trb_vec3  from_cage = trb_from_frame(&cage->body, m->pocket_origin[roller]);
@@ -44,7 +44,7 @@ static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_
   p->a = trb_to_frame(&p->axes, r->frame.a);
 }
 
-static void view_motions(const trb_roller_pose *r, const trb_cage_pose *cage, const trb_vec3 *pocket_origin, pocket_view *p)
+static void view_motions(const trb_roller_pose *r, const trb_rigid_pose *cage, const trb_vec3 *pocket_origin, pocket_view *p)
 {
   const trb_vec3 from_cage = trb_turn_z(trb_from_frame(&cage->body, *pocket_origin), r->cosine, -r->sine);
   p->cage = trb_to_frame(&p->axes, trb_scale(-1.0, from_cage));

@@ -4,7 +4,7 @@
 
 #include "motion/dynamics.h"
 
-/* Kinetic energy of rollers and cage at the poses kept, J. */
+/* Kinetic energy of rollers and of the bodies of the hub at the poses kept, J. */
 double trb_audit_kinetic(const trb_dynamics *d);
 /* Elastic energy of all contacts at the loads kept, J. */
 double trb_audit_elastic(const trb_dynamics *d);

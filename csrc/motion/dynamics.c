@@ -23,6 +23,20 @@ static int choose_fast(trb_dynamics *d)
   return 1;
 }
 
+/* The bodies of the hub that the model has, and where the state has their entries and the tail. */
+static void place_bodies(trb_dynamics *d)
+{
+  int at = trb_state_hub(d->model);
+  for (int k = 0; k < trb_n_hub_kinds; k++) {
+    const trb_hub_kind *kind = trb_hub_table[k];
+    if (!kind->is_on(d->model)) continue;
+    d->bodies[d->n_bodies++] = (trb_hub_body){.kind = kind, .first = at};
+    at += kind->size;
+  }
+  d->spin = trb_state_spin(d->model);
+  d->quadrature = trb_state_quadrature(d->model);
+}
+
 trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
                                trb_message *message)
 {
@@ -32,6 +46,7 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
   const size_t n = (size_t)m->n_rollers;
   d->model = m;
   d->motion = motion;
+  place_bodies(d);
   d->rollers = calloc(n, sizeof *d->rollers);
   d->inner = calloc(n, sizeof *d->inner);
   d->loads = calloc(n, sizeof *d->loads);
@@ -80,16 +95,24 @@ void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y)
   d->inner[roller] = trb_ring_pose_in_frame(&drive->inner, cosine, sine);
 }
 
+void trb_dynamics_pose_hub(trb_dynamics *d, const double *y)
+{
+  for (int b = 0; b < d->n_bodies; b++) {
+    trb_hub_body *body = &d->bodies[b];
+    body->kind->pose(d->model, &d->drive, y + body->first, &body->pose);
+  }
+}
+
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 {
   trb_motion_at(d->motion, d->model, time, &d->drive);
   for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
-  trb_cage_pose_unpack(d->model, &d->drive, y + trb_state_cage(d->model), &d->cage);
+  trb_dynamics_pose_hub(d, y);
 }
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
 {
-  return (trb_instant){&d->drive,   d->rollers,          d->inner, d->model->params.with_cage > 0.0 ? &d->cage : NULL,
+  return (trb_instant){&d->drive,   d->rollers,          d->inner, d->model->params.with_cage > 0.0 ? trb_dynamics_cage(d) : NULL,
                        d->everyone, d->model->n_rollers, NULL};
 }
 
@@ -129,23 +152,28 @@ void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads
   quadratures[TRB_Q_work_ring] += power.place;
 }
 
-void trb_dynamics_start(const trb_dynamics *d, double *rates)
+void trb_dynamics_start(trb_dynamics *d, double *rates)
 {
   const trb_model *m = d->model;
-  double          *q = rates + trb_state_quadrature(m);
+  double          *q = rates + d->quadrature;
   memset(q, 0, (size_t)trb_n_quadratures(m) * sizeof *q);
-  if (!trb_has_gravity(&d->drive) || m->params.with_cage <= 0.0) return;
-  d->work->counters.gravity_bodies++;
-  q[TRB_Q_work_gravity] = m->params.cage_mass * trb_dot(trb_gravity_in(&d->drive, 1.0, 0.0), d->cage.v);
+  for (int b = 0; b < d->n_bodies; b++) {
+    trb_hub_body *body = &d->bodies[b];
+    const double  mass = body->kind->mass(m);
+    body->load = (trb_wrench){{0, 0, 0}, {0, 0, 0}};
+    if (!trb_has_gravity(&d->drive) || mass <= 0.0) continue;
+    d->work->counters.gravity_bodies++;
+    q[TRB_Q_work_gravity] += mass * trb_dot(trb_gravity_in(&d->drive, 1.0, 0.0), body->pose.v);
+  }
 }
 
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates)
 {
   const trb_model *m = d->model;
   const int        all = trb_n_quadratures(m), n = all < TRB_FLOW_N_QUADRATURES ? all : TRB_FLOW_N_QUADRATURES;
-  double          *q = rates + trb_state_quadrature(m);
+  double          *q = rates + d->quadrature;
   memcpy(rates + trb_state_roller(roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
-  rates[trb_state_spin(m) + roller] = flow[TRB_FLOW_spin];
+  rates[d->spin + roller] = flow[TRB_FLOW_spin];
   for (int k = 0; k < n; k++) q[k] += flow[TRB_FLOW_quadrature + k];
 }
 
@@ -172,7 +200,7 @@ trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double 
   return gaps;
 }
 
-void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *on_cage)
+void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow)
 {
   for (int f = 0; f < d->n_fast; f++) {
     const trb_pair *pair = d->fast[f].pair;
@@ -183,20 +211,29 @@ void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double 
     trb_roller_response(d->model, &d->rollers[roller], &load.on_a, flow);
     for (int by = 0; by < TRB_N_MECHANISMS; by++)
       if (pair->books.loss[by] != TRB_LOSS_none) flow[TRB_FLOW_quadrature + TRB_Q_losses + pair->books.loss[by]] += load.lost[by];
-    trb_add_wrench(on_cage, &load.on_b);
+    trb_hub_body *const body = trb_dynamics_body(d, pair->b);
+    if (body != NULL) trb_add_wrench(&body->load, &load.on_b);
   }
 }
 
-void trb_dynamics_add_hub(trb_dynamics *d, trb_wrench *on_cage, double *rates)
+void trb_dynamics_add_hub(trb_dynamics *d, double *rates)
 {
   const trb_instant at = trb_dynamics_instant(d);
-  double           *q = rates + trb_state_quadrature(d->model);
+  double           *q = rates + d->quadrature;
   if (d->work->n_hub == 0) return;
   trb_contact_hub(d->model, &at, d->work, &d->hub, NULL);
-  trb_add_wrench(on_cage, &d->hub.on[TRB_BODY_CAGE]);
+  for (int b = 0; b < d->n_bodies; b++) trb_add_wrench(&d->bodies[b].load, &d->hub.on[d->bodies[b].kind->body]);
   for (int k = 0; k < d->model->n_losses; k++) q[TRB_Q_losses + k] += d->hub.power[k];
   const trb_ring_pose  ring = trb_ring_pose_in_frame(&d->drive.inner, d->drive.cosine, d->drive.sine);
   const trb_ring_power power = trb_ring_power_of(&ring, d->drive.shaft_speed, &d->hub.on[TRB_BODY_INNER_RING]);
   q[TRB_Q_work_shaft] += power.shaft;
   q[TRB_Q_work_ring] += power.place;
+}
+
+void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
+{
+  for (int b = 0; b < d->n_bodies; b++) {
+    const trb_hub_body *body = &d->bodies[b];
+    body->kind->rates(d->model, &d->drive, &body->pose, y + body->first, &body->load, rates + body->first);
+  }
 }

@@ -1,4 +1,4 @@
-/* Newton's and Euler's equations of each roller and the cage, in frames that orbit with them (docs/theory/motion.md#newtons-equations): the
+/* Newton's and Euler's equations of each roller and each body of the hub, in frames that orbit with them (docs/theory/motion.md#newtons-equations): the
  * parts of which motion/rhs.h makes the right-hand side. */
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
@@ -25,17 +25,27 @@ typedef struct trb_fast_pair {
   trb_clearance_arms arms[TRB_N_GAPS];
 } trb_fast_pair;
 
+/* A body of the hub. */
+typedef struct trb_hub_body {
+  const trb_hub_kind *kind;
+  int                 first; /* of its entries of the state */
+  trb_rigid_pose      pose;  /* at the last state evaluated */
+  trb_wrench          load;  /* sum of the right-hand side under way, in R */
+} trb_hub_body;
+
 typedef struct trb_dynamics {
   const trb_model  *model;
   const trb_motion *motion;
   trb_workspace    *work;
-  trb_drive         drive;   /* at the last time evaluated */
-  trb_roller_pose  *rollers; /* at the last state evaluated */
-  trb_ring_pose    *inner;   /* the inner ring in each roller's frame */
-  trb_cage_pose     cage;
-  trb_loads        *loads;    /* of every roller */
-  trb_loads         hub;      /* of pairs without a roller, in R; zero where there are none */
-  int              *everyone; /* 0, 1, ...: all rollers */
+  trb_drive         drive;                /* at the last time evaluated */
+  trb_roller_pose  *rollers;              /* at the last state evaluated */
+  trb_ring_pose    *inner;                /* the inner ring in each roller's frame */
+  trb_hub_body      bodies[TRB_N_BODIES]; /* of the hub, in the order of the state */
+  int               n_bodies;
+  int               spin, quadrature; /* where the tail of the state begins, and its quadratures */
+  trb_loads        *loads;            /* of every roller */
+  trb_loads         hub;              /* of pairs without a roller, in R; zero where there are none */
+  int              *everyone;         /* 0, 1, ...: all rollers */
   trb_fast_pair     fast[TRB_N_PAIRS];
   int               n_fast;
   double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
@@ -50,6 +60,8 @@ void       trb_dynamics_free(trb_dynamics *dynamics);
 
 /* Poses at (t, y), kept in the dynamics. */
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
+/* Poses of the bodies of the hub only. */
+void trb_dynamics_pose_hub(trb_dynamics *d, const double *y);
 /* Pose of one roller only, from its part of a state. */
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
 /* All loads at the poses kept; detail may be NULL. */
@@ -64,17 +76,28 @@ trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
 
-/* A right-hand side is made in four steps: start it, put in the flow of each roller, add the pairs without a roller, compute the rates of
- * the cage. */
-void trb_dynamics_start(const trb_dynamics *d, double *rates);
+/* A body of the hub; NULL: the model does not have it. */
+static inline trb_hub_body *trb_dynamics_body(trb_dynamics *d, trb_body body)
+{
+  for (int b = 0; b < d->n_bodies; b++)
+    if (d->bodies[b].kind->body == body) return &d->bodies[b];
+  return NULL;
+}
+/* The pose of the cage, which is the first body of the hub in every model. */
+static inline const trb_rigid_pose *trb_dynamics_cage(const trb_dynamics *d) { return &d->bodies[0].pose; }
+
+/* A right-hand side is made in four steps: start it, put in the flow of each roller, add the pairs without a roller, put in the rates of
+ * the hub. */
+void trb_dynamics_start(trb_dynamics *d, double *rates);
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
 /* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
 trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
-/* Adds the loads of the fast pairs in which a roller is near to its flow and to the sum on the cage. */
-void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *on_cage);
-/* Adds the loads of pairs without a roller to the sum on the cage and their powers to the quadratures of the rates. */
-void trb_dynamics_add_hub(trb_dynamics *d, trb_wrench *on_cage, double *rates);
+/* Adds the loads of the fast pairs in which a roller is near to its flow and to the loads of the hub's bodies. */
+void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow);
+/* Adds the loads of pairs without a roller to those of the hub's bodies and their powers to the quadratures of the rates. */
+void trb_dynamics_add_hub(trb_dynamics *d, double *rates);
+void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates);
 
 #endif

@@ -181,7 +181,7 @@ static void look_at_fast(trb_peak_look *p, const double *y, double *values)
   double           *to = of(p, TRB_PEAK_pocket_force, values);
   memset(to, 0, (size_t)(m->n_rollers * m->n_slots) * sizeof *to);
   if (at.cage == NULL) return;
-  trb_cage_pose_unpack(m, &p->d->drive, y + trb_state_cage(m), &p->d->cage);
+  trb_dynamics_pose_hub(p->d, y);
   forces.pocket_force = to;
   forces.pocket_interference = NULL;
   for (int j = 0; j < m->n_rollers; j++) {

@@ -97,10 +97,10 @@ static trb_frame spun(const trb_frame *f, double angle)
 
 static void put_cage(writer *w, const double *y)
 {
-  const trb_dynamics  *d = w->d;
-  const trb_model     *m = d->model;
-  const trb_drive     *drive = &d->drive;
-  const trb_cage_pose *c = &d->cage;
+  const trb_dynamics   *d = w->d;
+  const trb_model      *m = d->model;
+  const trb_drive      *drive = &d->drive;
+  const trb_rigid_pose *c = trb_dynamics_cage(d);
   const trb_vec3  plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage_rail_offset);
   const trb_vec3  axis = from_r(drive, c->frame.a), centre = from_r(drive, c->x);
   const trb_frame body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};

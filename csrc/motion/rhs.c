@@ -7,7 +7,7 @@ static int place(trb_dynamics *d, const trb_approximation *instead, double time,
   const trb_model *m = d->model;
   int              n_exact = 0;
   trb_motion_at(d->motion, m, time, &d->drive);
-  trb_cage_pose_unpack(m, &d->drive, y + trb_state_cage(m), &d->cage);
+  trb_dynamics_pose_hub(d, y);
   if (instead != NULL) instead->begin(instead->self, d, time);
   for (int j = 0; j < m->n_rollers; j++) {
     const double *own = y + trb_state_roller(j);
@@ -38,7 +38,6 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
 void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, const double *y, double *rates)
 {
   const trb_model *m = d->model;
-  trb_wrench       on_cage = {{0, 0, 0}, {0, 0, 0}};
   d->work->counters.force_evaluations++;
   /* poses */
   const int n_exact = place(d, instead, time, y);
@@ -47,12 +46,12 @@ void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, con
   evaluate_slow(d, instead, n_exact, y);
   for (int j = 0; j < m->n_rollers; j++) {
     /* fast pairs that are not proven clear */
-    if (d->near[j] != 0) trb_dynamics_add_fast(d, j, y, d->flows[j], &on_cage);
+    if (d->near[j] != 0) trb_dynamics_add_fast(d, j, y, d->flows[j]);
     /* rates of rollers */
     trb_dynamics_put(d, j, d->flows[j], rates);
   }
   /* pairs without a roller */
-  trb_dynamics_add_hub(d, &on_cage, rates);
-  /* rates of the cage */
-  trb_cage_rates(m, &d->drive, &d->cage, y + trb_state_cage(m), &on_cage, rates + trb_state_cage(m));
+  trb_dynamics_add_hub(d, rates);
+  /* rates of the hub's bodies */
+  trb_dynamics_put_hub(d, y, rates);
 }

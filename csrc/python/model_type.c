@@ -110,19 +110,22 @@ static PyObject *peak_layout(PyObject *self, PyObject *none)
 static PyObject *state_layout(PyObject *self, PyObject *none)
 {
 #define NAME(name, kind, text) #name,
-  static const char *const roller[] = {TRB_ROLLER_STATE(NAME)}, *const cage[] = {TRB_CAGE_STATE(NAME)};
+  static const char *const roller[] = {TRB_ROLLER_STATE(NAME)};
 #undef NAME
   const trb_model *m = ((model_object *)self)->model;
   PyObject        *list = PyList_New(0);
   (void)none;
-  const int total = TRB_ROLLER_SIZE + TRB_CAGE_SIZE + 2;
+  const int width = trb_hub_width(m), total = TRB_ROLLER_SIZE + width + 2;
   for (int i = 0; list != NULL && i < total; i++) {
     PyObject *row;
     if (i < TRB_ROLLER_SIZE)
       row = Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), i, m->n_rollers, TRB_ROLLER_SIZE);
-    else if (i < TRB_ROLLER_SIZE + TRB_CAGE_SIZE)
-      row = Py_BuildValue("(Ni())", PyUnicode_FromFormat("cage_%s", cage[i - TRB_ROLLER_SIZE]), trb_state_cage(m) + i - TRB_ROLLER_SIZE);
-    else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(m), m->n_rollers);
+    else if (i < TRB_ROLLER_SIZE + width) {
+      int                       coordinate;
+      const trb_hub_kind *const kind = trb_hub_kind_at(m, i - TRB_ROLLER_SIZE, &coordinate);
+      PyObject                 *name = PyUnicode_FromFormat("%s_%s", kind->name, kind->coordinates[coordinate].name);
+      row = Py_BuildValue("(Ni())", name, trb_state_hub(m) + i - TRB_ROLLER_SIZE);
+    } else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(m), m->n_rollers);
     else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(m), trb_n_quadratures(m));
     if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
     Py_XDECREF(row);

@@ -1,23 +1,38 @@
 #include "stepping/arrow.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 
-trb_status trb_arrow_create(int n_rollers, int with_cage, trb_arrow **arrow, trb_message *message)
+enum { LINE = 8 }; /* entries of a cache line */
+
+/* Entries of an array of the borders, so that the next one starts with a cache line. */
+static size_t padded(int rows, int columns) { return ((size_t)rows * (size_t)columns + LINE - 1) / LINE * LINE; }
+
+trb_status trb_arrow_create(int n_rollers, int hub_width, trb_arrow **arrow, trb_message *message)
 {
-  trb_arrow *a = calloc(1, sizeof *a);
+  const int    room = trb_hub_room(hub_width);
+  const size_t n = (size_t)n_rollers, to_hub = padded(TRB_NR, hub_width), from = padded(TRB_NR, room);
+  trb_arrow   *a = calloc(1, sizeof *a);
   *arrow = NULL;
   if (a != NULL) {
-    a->rollers = trb_zeros((size_t)n_rollers, sizeof *a->rollers);
-    a->borders = trb_zeros((size_t)n_rollers, sizeof *a->borders);
+    a->rollers = trb_zeros(n, sizeof *a->rollers);
+    a->borders = trb_zeros(n, sizeof *a->borders);
+    a->hub = trb_zeros((size_t)hub_width * (size_t)room, sizeof *a->hub);
+    a->memory = trb_zeros(n * (to_hub + from), sizeof *a->memory);
   }
-  if (a == NULL || a->rollers == NULL || a->borders == NULL) {
+  if (a == NULL || a->rollers == NULL || a->borders == NULL || a->hub == NULL || a->memory == NULL) {
     trb_arrow_free(a);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian of %d rollers", n_rollers);
   }
+  for (size_t j = 0; j < n; j++) {
+    a->borders[j].to_hub = a->memory + j * (to_hub + from);
+    a->borders[j].from = a->borders[j].to_hub + to_hub;
+  }
   a->n = n_rollers;
-  a->with_cage = with_cage;
+  a->width = hub_width;
+  a->room = room;
   *arrow = a;
   return TRB_OK;
 }
@@ -27,22 +42,45 @@ void trb_arrow_free(trb_arrow *arrow)
   if (arrow == NULL) return;
   free(arrow->rollers);
   free(arrow->borders);
+  free(arrow->hub);
+  free(arrow->memory);
   free(arrow);
 }
 
-trb_status trb_arrow_factors_create(int n_rollers, int variant, trb_arrow_factors **factors, trb_message *message)
+void trb_arrow_clear_border(trb_arrow *arrow, int roller)
 {
+  trb_arrow_border *border = &arrow->borders[roller];
+  memset(border->to_hub, 0, (size_t)(arrow->width * TRB_NR) * sizeof(double));
+  memset(border->from, 0, (size_t)(TRB_NR * arrow->room) * sizeof(double));
+}
+
+trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, trb_arrow_factors **factors, trb_message *message)
+{
+  const int          room = trb_hub_room(hub_width);
+  const size_t       n = (size_t)n_rollers, width = (size_t)hub_width, solved = padded(hub_width, TRB_NP), from = padded(TRB_NR, room);
   trb_arrow_factors *f = calloc(1, sizeof *f);
   *factors = NULL;
   if (f != NULL) {
-    f->rollers = trb_zeros((size_t)n_rollers, sizeof *f->rollers);
-    f->borders = trb_zeros((size_t)n_rollers, sizeof *f->borders);
+    f->rollers = trb_zeros(n, sizeof *f->rollers);
+    f->borders = trb_zeros(n, sizeof *f->borders);
+    f->memory = trb_zeros(n * (solved + from), sizeof *f->memory);
+    f->hub.schur = trb_zeros(width * (size_t)room, sizeof *f->hub.schur);
+    f->hub.inverse = trb_zeros(width * (size_t)room, sizeof *f->hub.inverse);
+    f->hub.scratch = trb_zeros(2 * (size_t)room, sizeof *f->hub.scratch);
+    f->hub.pivot = trb_zeros(width, sizeof *f->hub.pivot);
   }
-  if (f == NULL || f->rollers == NULL || f->borders == NULL) {
+  if (f == NULL || f->rollers == NULL || f->borders == NULL || f->memory == NULL || f->hub.schur == NULL || f->hub.inverse == NULL ||
+      f->hub.scratch == NULL || f->hub.pivot == NULL) {
     trb_arrow_factors_free(f);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the factors of %d rollers", n_rollers);
   }
+  for (size_t j = 0; j < n; j++) {
+    f->borders[j].solved = f->memory + j * (solved + from);
+    f->borders[j].from = f->borders[j].solved + solved;
+  }
   f->n = n_rollers;
+  f->hub.width = hub_width;
+  f->hub.room = room;
   f->kernels = trb_block_kernels_of(variant);
   *factors = f;
   return TRB_OK;
@@ -53,27 +91,29 @@ void trb_arrow_factors_free(trb_arrow_factors *factors)
   if (factors == NULL) return;
   free(factors->rollers);
   free(factors->borders);
+  free(factors->memory);
+  free(factors->hub.schur);
+  free(factors->hub.inverse);
+  free(factors->hub.scratch);
+  free(factors->hub.pivot);
   free(factors);
 }
 
 int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *f)
 {
-  double schur[TRB_NC][TRB_NC]; /* column by column */
+  const trb_hub_factor *hub = &f->hub;
   f->gamma = 0.0;
-  for (int c = 0; c < TRB_NC; c++)
-    for (int i = 0; i < TRB_NC; i++) schur[c][i] = (double)(i == c) - arrow->gamma * arrow->cage[c][i];
+  for (int c = 0; c < hub->width; c++)
+    for (int i = 0; i < hub->room; i++) hub->schur[c * hub->room + i] = (double)(i == c) - arrow->gamma * arrow->hub[c * hub->room + i];
   for (int j = 0; j < arrow->n; j++)
     if (!f->kernels->factor(&arrow->rollers[j], arrow->gamma, &f->rollers[j])) return 0;
   for (int j = 0; j < arrow->n; j++) {
     f->borders[j].coupled = arrow->borders[j].coupled;
-    if (arrow->borders[j].coupled) f->kernels->border(&arrow->borders[j], arrow->gamma, &f->rollers[j], &f->borders[j], schur);
+    if (arrow->borders[j].coupled) f->kernels->border(&arrow->borders[j], arrow->gamma, &f->rollers[j], &f->borders[j], hub);
   }
-  if (!f->kernels->invert_cage((const double (*)[TRB_NC])schur, f->cage)) return 0;
+  if (!f->kernels->invert_hub(hub)) return 0;
   f->gamma = arrow->gamma;
   return 1;
 }
 
-void trb_arrow_solve(const trb_arrow_factors *f, double *x)
-{
-  f->kernels->solve(f->rollers, f->borders, f->n, (const double (*)[TRB_NC])f->cage, x);
-}
+void trb_arrow_solve(const trb_arrow_factors *f, double *x) { f->kernels->solve(f->rollers, f->borders, f->n, &f->hub, x); }

@@ -1,11 +1,12 @@
 /* The Jacobian as a matrix in the shape of an arrow, and systems with it (docs/theory/numerics.md#arrow-shaped-system).
  *
- * Rollers do not act on each other but on the cage alone. If the rollers come first in the state and the cage last, the system matrix
- * I - gamma J therefore has a small block A_j on the diagonal for each roller j, a border B_j in the columns of the cage, a border C_j in
- * its rows, and the cage's block D; all else is zero. Such a system is solved by eliminating the rollers: the Schur complement
- * S = D - sum C_j A_j^-1 B_j gives the cage's part of the solution, and that gives the part of each roller. The effort is
- * proportional to the number of rollers. A roller that does not touch its pocket has no borders. One factorisation is used for many
- * solutions and the blocks are small, so their inverses are computed and stored. */
+ * Rollers do not act on each other but on the other bodies alone: the cage, and whatever else is not a rolling element. These bodies
+ * together are the hub. If the rollers come first in the state and the hub last, the system matrix I - gamma J therefore has a small block
+ * A_j on the diagonal for each roller j, a border B_j in the columns of the hub, a border C_j in its rows, and the hub's block D; all else
+ * is zero. Such a system is solved by eliminating the rollers: the Schur complement S = D - sum C_j A_j^-1 B_j gives the hub's part of the
+ * solution, and that gives the part of each roller. The effort is proportional to the number of rollers. A roller that acts on no body of
+ * the hub has no borders. One factorisation is used for many solutions and the blocks are small, so their inverses are computed and
+ * stored. */
 #ifndef TRB_STEPPING_ARROW_H
 #define TRB_STEPPING_ARROW_H
 
@@ -14,12 +15,13 @@
 
 /* The Jacobian J. */
 typedef struct trb_arrow {
-  int               n;                    /* rollers */
-  int               with_cage;            /* 0: there is no cage, its block is zero */
-  double            gamma;                /* of the system matrix I - gamma J */
-  trb_arrow_block  *rollers;              /* n */
-  trb_arrow_border *borders;              /* n */
-  double            cage[TRB_NC][TRB_NC]; /* column by column */
+  int               n;           /* rollers */
+  int               width, room; /* of the hub: its entries, and the length of its columns */
+  double            gamma;       /* of the system matrix I - gamma J */
+  trb_arrow_block  *rollers;     /* n */
+  trb_arrow_border *borders;     /* n */
+  double           *hub;         /* [width][room], column by column, padded by zeros */
+  double           *memory;      /* of the borders */
 } trb_arrow;
 
 typedef struct trb_arrow_factors {
@@ -28,18 +30,22 @@ typedef struct trb_arrow_factors {
   double                   gamma; /* of the system that was factored; 0: none was */
   trb_arrow_factor_block  *rollers;
   trb_arrow_factor_border *borders;
-  double                   cage[TRB_NC][TRB_NC]; /* column by column: inverse of the Schur complement */
+  trb_hub_factor           hub;
+  double                  *memory; /* of the borders */
 } trb_arrow_factors;
 
-trb_status trb_arrow_create(int n_rollers, int with_cage, trb_arrow **arrow, trb_message *message);
+/* hub_width: entries of the hub, from 0. */
+trb_status trb_arrow_create(int n_rollers, int hub_width, trb_arrow **arrow, trb_message *message);
 void       trb_arrow_free(trb_arrow *arrow);
+/* Sets a roller's borders to zero. */
+void trb_arrow_clear_border(trb_arrow *arrow, int roller);
 
 /* variant: index of the kernels' instruction set. */
-trb_status trb_arrow_factors_create(int n_rollers, int variant, trb_arrow_factors **factors, trb_message *message);
+trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, trb_arrow_factors **factors, trb_message *message);
 void       trb_arrow_factors_free(trb_arrow_factors *factors);
 /* 1 if I - gamma J is regular. */
 int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *factors);
-/* x: rollers then cage, overwritten by the solution. */
+/* x: rollers then hub, overwritten by the solution; see trb_block_kernels. */
 void trb_arrow_solve(const trb_arrow_factors *factors, double *x);
 
 #endif

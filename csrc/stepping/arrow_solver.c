@@ -18,12 +18,12 @@ static void matrix_destroy(SUNMatrix matrix)
   SUNMatFreeEmpty(matrix);
 }
 
-SUNMatrix trb_arrow_matrix(int n_rollers, int with_cage, SUNContext context)
+SUNMatrix trb_arrow_matrix(int n_rollers, int hub_width, SUNContext context)
 {
   SUNMatrix  matrix = SUNMatNewEmpty(context);
   trb_arrow *arrow = NULL;
   if (matrix == NULL) return NULL;
-  if (trb_arrow_create(n_rollers, with_cage, &arrow, NULL) != TRB_OK) {
+  if (trb_arrow_create(n_rollers, hub_width, &arrow, NULL) != TRB_OK) {
     SUNMatFreeEmpty(matrix);
     return NULL;
   }
@@ -77,12 +77,12 @@ static int solver_free(SUNLinearSolver solver)
   return 0;
 }
 
-SUNLinearSolver trb_arrow_linear_solver(int n_rollers, int variant, SUNContext context)
+SUNLinearSolver trb_arrow_linear_solver(int n_rollers, int hub_width, int variant, SUNContext context)
 {
   SUNLinearSolver    solver = SUNLinSolNewEmpty(context);
   trb_arrow_factors *factors = NULL;
   if (solver == NULL) return NULL;
-  if (trb_arrow_factors_create(n_rollers, variant, &factors, NULL) != TRB_OK) {
+  if (trb_arrow_factors_create(n_rollers, hub_width, variant, &factors, NULL) != TRB_OK) {
     SUNLinSolFreeEmpty(solver);
     return NULL;
   }

@@ -6,8 +6,8 @@
 #include "stepping/sundials_shim.h"
 
 /* NULL if out of memory. The tail of the state (spin angles, quadratures) has the identity. */
-SUNMatrix       trb_arrow_matrix(int n_rollers, int with_cage, SUNContext context);
+SUNMatrix       trb_arrow_matrix(int n_rollers, int hub_width, SUNContext context);
 trb_arrow      *trb_arrow_of(SUNMatrix matrix);
-SUNLinearSolver trb_arrow_linear_solver(int n_rollers, int variant, SUNContext context);
+SUNLinearSolver trb_arrow_linear_solver(int n_rollers, int hub_width, int variant, SUNContext context);
 
 #endif

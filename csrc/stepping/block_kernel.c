@@ -175,35 +175,129 @@ static inline void add_product(const double (*columns)[TRB_NP], int n, const dou
   for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
 }
 
-static void border(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
-                   double (*schur)[TRB_NC])
+/* to += scale columns x, for columns of a hub of any width */
+static void add_wide_product(const double *restrict columns, int room, int n, const double *restrict x, double scale, double *restrict to)
 {
-  for (int q = 0; q < TRB_NR; q++)
-    for (int i = 0; i < TRB_NC; i++) g->from[q][i] = -gamma * b->from[q][i];
-  for (int c = 0; c < TRB_NC; c++) set_product(own->inverse, TRB_NR, b->to_cage[c], -gamma, g->solved[c]);
-  for (int c = 0; c < TRB_NC; c++) add_product((const double (*)[TRB_NP])g->from, TRB_NR, g->solved[c], -1.0, schur[c]);
+  for (int c = 0; c < n; c++)
+    for (int i = 0; i < room; i++) to[i] += scale * x[c] * columns[c * room + i];
 }
 
-static int invert_cage(const double (*schur)[TRB_NC], double (*inverse)[TRB_NC]) { return invert(0.0, 1.0, schur, inverse, TRB_NC); }
+/* Columns of a hub of the usual width. */
+typedef const double (*usual_columns)[TRB_HUB_USUAL];
+
+static void border(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
+                   const trb_hub_factor *hub)
+{
+  const int     width = hub->width, room = hub->room;
+  double *const schur = hub->schur;
+  for (int i = 0; i < TRB_NR * room; i++) g->from[i] = -gamma * b->from[i];
+  for (int c = 0; c < width; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
+  if (width == TRB_HUB_USUAL)
+    for (int c = 0; c < TRB_HUB_USUAL; c++)
+      add_product((usual_columns)g->from, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * TRB_HUB_USUAL);
+  else
+    for (int c = 0; c < width; c++) add_wide_product(g->from, room, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * room);
+}
+
+/* Inverse in place by Gauss-Jordan elimination with exchanges of columns, as above, of a hub of any other width. */
+static int invert_wide(int n, int room, double *restrict a, double *restrict row, int *pivot)
+{
+  if (!all_finite(a, n * room)) return 0;
+  for (int c = 0; c < n; c++) {
+    double *const at = a + c * room;
+    int           best = c;
+    for (int k = c + 1; k < n; k++)
+      if (fabs(at[k]) > fabs(at[best])) best = k;
+    if (fabs(at[c]) >= DIAGONAL_SHARE * fabs(at[best])) best = c;
+    if (!(fabs(at[best]) > 0.0)) return 0;
+    pivot[c] = best;
+    for (int i = 0; best != c && i < n; i++) {
+      const double keep = a[i * room + c];
+      a[i * room + c] = a[i * room + best];
+      a[i * room + best] = keep;
+    }
+    const double per = 1.0 / at[c];
+    for (int k = 0; k < room; k++) row[k] = per * at[k];
+    row[c] = per;
+    for (int i = 0; i < n; i++) {
+      double *const other = a + i * room;
+      const double  m = other[c];
+      if (i == c) continue;
+      for (int k = 0; k < room; k++) other[k] -= m * row[k];
+      other[c] = -m * per;
+    }
+    memcpy(at, row, (size_t)room * sizeof *at);
+  }
+  for (int c = n - 1; c >= 0; c--) {
+    double *const at = a + c * room, *const other = a + pivot[c] * room;
+    for (int k = 0; pivot[c] != c && k < room; k++) {
+      const double keep = at[k];
+      at[k] = other[k];
+      other[k] = keep;
+    }
+  }
+  return all_finite(a, n * room);
+}
+
+static int invert_usual(const double (*schur)[TRB_NP], double (*inverse)[TRB_NP])
+{
+  return invert(0.0, 1.0, schur, inverse, TRB_HUB_USUAL);
+}
+
+static int invert_hub(const trb_hub_factor *hub)
+{
+  if (hub->width == TRB_HUB_USUAL) return invert_usual((const double (*)[TRB_NP])hub->schur, (double (*)[TRB_NP])hub->inverse);
+  memcpy(hub->inverse, hub->schur, (size_t)(hub->width * hub->room) * sizeof *hub->inverse);
+  return invert_wide(hub->width, hub->room, hub->inverse, hub->scratch, hub->pivot);
+}
 
 /* The solution of a roller is written with its padding, which covers the first entry of the next one; that entry is put back. */
-static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const double (*cage)[TRB_NC],
-                  double *restrict x)
+static inline void solve_roller(const trb_arrow_factor_block *own, double *z)
+{
+  const double covered = z[TRB_NR];
+  set_product(own->inverse, TRB_NR, z, 1.0, z);
+  z[TRB_NR] = covered;
+}
+
+static void solve_usual(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, usual_columns inverse,
+                        double *restrict x)
 {
   double *const y = x + n * TRB_NR;
-  double        right[TRB_NC];
+  double        right[TRB_HUB_USUAL];
   memcpy(right, y, sizeof right);
   for (int j = 0; j < n; j++) {
     double *const z = x + j * TRB_NR;
-    const double  covered = z[TRB_NR];
-    set_product(own[j].inverse, TRB_NR, z, 1.0, z);
-    z[TRB_NR] = covered;
-    if (border[j].coupled) add_product(border[j].from, TRB_NR, z, -1.0, right);
+    solve_roller(&own[j], z);
+    if (border[j].coupled) add_product((usual_columns)border[j].from, TRB_NR, z, -1.0, right);
   }
-  set_product(cage, TRB_NC, right, 1.0, y);
+  set_product(inverse, TRB_HUB_USUAL, right, 1.0, y);
   memcpy(right, y, sizeof right);
   for (int j = 0; j < n; j++)
-    if (border[j].coupled) add_product(border[j].solved, TRB_NC, right, -1.0, x + j * TRB_NR);
+    if (border[j].coupled) add_product((usual_columns)border[j].solved, TRB_HUB_USUAL, right, -1.0, x + j * TRB_NR);
+}
+
+/* The same for any width. right: of the hub's equations; found: its solution. */
+static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub,
+                       double *restrict x)
+{
+  double *const y = x + n * TRB_NR, *const right = hub->scratch, *const found = right + hub->room;
+  const int width = hub->width, room = hub->room;
+  memset(right, 0, 2 * (size_t)room * sizeof *right);
+  memcpy(right, y, (size_t)width * sizeof *right);
+  for (int j = 0; j < n; j++) {
+    solve_roller(&own[j], x + j * TRB_NR);
+    if (border[j].coupled) add_wide_product(border[j].from, room, TRB_NR, x + j * TRB_NR, -1.0, right);
+  }
+  add_wide_product(hub->inverse, room, width, right, 1.0, found);
+  memcpy(y, found, (size_t)width * sizeof *y);
+  for (int j = 0; j < n; j++)
+    if (border[j].coupled) add_product((const double (*)[TRB_NP])border[j].solved, width, found, -1.0, x + j * TRB_NR);
+}
+
+static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x)
+{
+  if (hub->width == TRB_HUB_USUAL) solve_usual(own, border, n, (usual_columns)hub->inverse, x);
+  else solve_wide(own, border, n, hub, x);
 }
 
 static double step_from(const double *restrict origin, const double *restrict per, const double *restrict y, double turn,
@@ -234,5 +328,5 @@ static void weigh(const double *restrict relative, const double *restrict scale,
   for (int i = 0; i < n; i++) weights[i] = 1.0 / (relative[i] * fabs(y[i]) + scale[i]);
 }
 
-const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {factor,    border, invert_cage, solve,
-                                                                            step_from, follow, weigh,       all_finite};
+const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {factor,    border, invert_hub, solve,
+                                                                            step_from, follow, weigh,      all_finite};

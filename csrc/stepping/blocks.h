@@ -6,17 +6,25 @@
 #include "body/state.h"
 
 /* TRB_NP: a roller's entries, padded; TRB_TANGENT_IN: a roller's state and the angle of the frame; TRB_TANGENT_OUT: its flow, padded. */
-enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NC = TRB_CAGE_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = 24 };
+enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = 24 };
+
+/* The hub: all bodies that are not rolling elements, with `width` coordinates together. The width is known when a simulation is made.
+ * Columns of the hub's length are padded by zeros to a multiple of TRB_NP, their room, so that loops over them have no remainder. The
+ * usual width, that of the cage alone, has loops of its own whose lengths the compiler
+ * knows. */
+enum { TRB_HUB_USUAL = 12 };
+static inline int trb_hub_room(int width) { return (width + TRB_NP - 1) / TRB_NP * TRB_NP; }
 
 /* Block and borders of a roller. They are stored apart, so that the blocks, which every system needs, lie in one stretch of memory. */
 typedef struct trb_arrow_block {
   double own[TRB_NR][TRB_NP]; /* d roller / d roller, column by column, padded by zeros */
 } trb_arrow_block;
 
+/* Column by column; the arrays belong to the matrix. */
 typedef struct trb_arrow_border {
-  double to_cage[TRB_NC][TRB_NR]; /* d roller / d cage, column by column */
-  double from[TRB_NR][TRB_NC];    /* d cage / d roller, column by column */
-  int    coupled;                 /* 0: both are zero, whatever they hold */
+  double *to_hub;  /* [width][TRB_NR]: d roller / d hub */
+  double *from;    /* [TRB_NR][room]: d hub / d roller */
+  int     coupled; /* 0: both are zero, whatever they hold */
 } trb_arrow_border;
 
 /* Columns are contiguous, so that a product with a vector is a sum of columns. */
@@ -25,21 +33,31 @@ typedef struct trb_arrow_factor_block {
 } trb_arrow_factor_block;
 
 typedef struct trb_arrow_factor_border {
-  double solved[TRB_NC][TRB_NP]; /* column by column: inverse to_cage */
-  double from[TRB_NR][TRB_NC];   /* column by column: border of the cage's rows */
-  int    coupled;
+  double *solved; /* [width][TRB_NP]: inverse to_hub */
+  double *from;   /* [TRB_NR][room]: border of the hub's rows */
+  int     coupled;
 } trb_arrow_factor_border;
+
+/* The hub's Schur complement, and memory for the kernels. */
+typedef struct trb_hub_factor {
+  int     width, room;
+  double *schur;   /* [width][room], column by column; the kernels may use its memory */
+  double *inverse; /* of it, likewise */
+  double *scratch; /* 2 room */
+  int    *pivot;   /* width */
+} trb_hub_factor;
 
 typedef struct trb_block_kernels {
   /* Of I - gamma J: the inverse of a roller's block; 0: singular. */
   int (*factor)(const trb_arrow_block *b, double gamma, trb_arrow_factor_block *g);
-  /* What a roller's border adds to a solution, and its share of the cage's Schur complement, column by column. */
+  /* What a roller's border adds to a solution, and its share of the Schur complement. */
   void (*border)(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
-                 double (*schur)[TRB_NC]);
-  /* Inverse of the cage's Schur complement, both column by column; 0: singular. */
-  int (*invert_cage)(const double (*schur)[TRB_NC], double (*inverse)[TRB_NC]);
-  /* x: rollers then cage, overwritten by the solution; cage: inverse of its Schur complement. */
-  void (*solve)(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const double (*cage)[TRB_NC], double *x);
+                 const trb_hub_factor *hub);
+  /* Inverse of the Schur complement; 0: singular. */
+  int (*invert_hub)(const trb_hub_factor *hub);
+  /* x: rollers then hub, overwritten by the solution. The entry after the last roller is read and written back: it must be there even if
+   * the hub has no entries. */
+  void (*solve)(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x);
   /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. It reads TRB_NP entries of
    * y. */
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);

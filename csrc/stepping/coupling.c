@@ -5,9 +5,9 @@
 static const trb_vec3 none = {0, 0, 0}, third = {0, 0, 1};
 
 static trb_vec3 to_roller(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, -k->roller->sine); }
-static trb_vec3 to_cage(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, k->roller->sine); }
+static trb_vec3 to_body(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, k->roller->sine); }
 
-/* Change of the wrench on the roller with a motion relative to the pocket. */
+/* Change of the wrench on the roller with a motion relative to the other body. */
 static trb_wrench wrench_of(const trb_coupling *k, trb_rigid motion, int is_place)
 {
   const trb_wrench *columns = is_place ? k->slopes.place : k->slopes.velocity;
@@ -22,24 +22,26 @@ static trb_wrench wrench_of(const trb_coupling *k, trb_rigid motion, int is_plac
   return (trb_wrench){trb_from_frame(axes, sum.force), trb_from_frame(axes, sum.moment)};
 }
 
-/* Loads of roller and cage from the change of the wrench; shift: of the roller from the cage's centre, which is an arm of the force. */
+/* Loads of both bodies from the change of the wrench; shift: of the roller from the other body's centre, which is an arm of the force. */
 static trb_load loads_of(const trb_coupling *k, trb_wrench change, trb_vec3 shift)
 {
   trb_load load;
   memset(&load, 0, sizeof load);
   load.on_a.force = change.force;
   load.on_a.moment = change.moment;
-  load.on_b.force = to_cage(k, trb_scale(-1.0, change.force));
+  load.on_b.force = to_body(k, trb_scale(-1.0, change.force));
   load.on_b.moment =
-      to_cage(k, trb_scale(-1.0, trb_add(change.moment, trb_add(trb_cross(k->arm, change.force), trb_cross(shift, k->force)))));
+      to_body(k, trb_scale(-1.0, trb_add(change.moment, trb_add(trb_cross(k->arm, change.force), trb_cross(shift, k->force)))));
   return load;
 }
 
-void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_cage_pose *cage, const trb_load *load)
+void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_hub_kind *kind, const trb_rigid_pose *body,
+                        const trb_load *load)
 {
   k->roller = roller;
-  k->cage = cage;
-  k->arm = trb_sub(roller->x, to_roller(k, cage->x));
+  k->kind = kind;
+  k->body = body;
+  k->arm = trb_sub(roller->x, to_roller(k, body->x));
   k->force = load->on_a.force;
   k->moment = load->on_a.moment;
 }
@@ -56,14 +58,14 @@ trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
   return load;
 }
 
-trb_load trb_coupling_of_cage(const trb_coupling *k, int coordinate)
+trb_load trb_coupling_of_body(const trb_coupling *k, int coordinate)
 {
-  const int       is_place = coordinate < TRB_CAGE_v_x;
-  const trb_rigid cage = trb_cage_motion(k->cage, coordinate);
-  const trb_vec3  shift = trb_scale(-1.0, to_roller(k, cage.shift)), turn = trb_scale(-1.0, to_roller(k, cage.turn));
+  const int       is_place = trb_is_place(&k->kind->coordinates[coordinate]);
+  const trb_rigid motion = k->kind->motion(k->body, coordinate);
+  const trb_vec3  shift = trb_scale(-1.0, to_roller(k, motion.shift)), turn = trb_scale(-1.0, to_roller(k, motion.turn));
   trb_wrench      change = wrench_of(k, (trb_rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
   if (!is_place) return loads_of(k, change, none);
-  /* when the cage moves, the roller moves the other way in its pocket, and the forces turn with the cage */
+  /* when the body moves, the roller moves the other way relative to it, and the forces turn with the body */
   change.force = trb_sub(change.force, trb_cross(turn, k->force));
   change.moment = trb_sub(change.moment, trb_cross(turn, k->moment));
   return loads_of(k, change, shift);

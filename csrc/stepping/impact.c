@@ -41,7 +41,7 @@ void trb_impacts_forget(const trb_model *m, trb_impacts *impacts)
 }
 
 /* Speed of a roller's centre of mass relative to its pocket. */
-static double closing_speed(const trb_roller_pose *r, const trb_cage_pose *cage)
+static double closing_speed(const trb_roller_pose *r, const trb_rigid_pose *cage)
 {
   const trb_vec3 arm = trb_sub(trb_turn_z(r->x, r->cosine, r->sine), cage->x);
   const trb_vec3 pocket = trb_add(cage->v, trb_cross(cage->omega, arm));
@@ -88,7 +88,7 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
   const trb_model *m = d->model;
   const double    *y_cage = y + trb_state_cage(m);
   trb_drive        drive;
-  trb_cage_pose    cage;
+  trb_rigid_pose   cage;
   double           rise[TRB_N_PAIRS], least = 1.0;
   int              posed = 0;
   for (int f = 0; f < d->n_fast; f++) rise[f] = rise_of(m, d->fast[f].pair);

@@ -54,5 +54,5 @@ void trb_integrator_weights(const trb_integrator *it, const double *y, double *w
   trb_block_kernels_of(it->dynamics->work->variant)->weigh(it->relative, it->scale, y, it->n, weights);
   for (int j = 0; j < n_rollers; j++)
     for (int i = 0; i < TRB_NR && factor[j] < 1.0; i++) weights[trb_state_roller(j) + i] /= factor[j];
-  for (int i = 0; i < TRB_NC && factor[n_rollers] < 1.0; i++) weights[n_rollers * TRB_NR + i] /= factor[n_rollers];
+  for (int i = n_rollers * TRB_NR; i < it->n_main && factor[n_rollers] < 1.0; i++) weights[i] /= factor[n_rollers];
 }

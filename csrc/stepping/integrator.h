@@ -91,8 +91,9 @@ struct trb_integrator {
   const char                *variant; /* kernel variant */
   trb_settings               settings;
   int                        n;        /* length of y */
+  int                        n_main;   /* entries of rollers and hub */
   double                     time;     /* end of the last step, s */
-  double                    *y;        /* state there */
+  double                    *y;        /* state there; TRB_VECTOR_ROOM more behind it */
   double                    *scale;    /* absolute tolerance of every entry */
   double                    *relative; /* relative tolerance of every entry */
   trb_impacts                impacts;  /* of rollers and cage, with the factors of their tolerances */

@@ -109,7 +109,7 @@ static trb_status configure(trb_integrator *it, trb_message *message)
 static trb_status bdf_create(trb_integrator *it, trb_message *message)
 {
   const trb_model *m = it->dynamics->model;
-  const int        with_cage = m->params.with_cage > 0.0;
+  const int        hub_width = trb_hub_width(m);
   bdf             *self = calloc(1, sizeof *self);
   if (self == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   it->self = self;
@@ -117,15 +117,16 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->filled_at = -INFINITY;
   trb_status status = trb_sundials_open(&self->sundials, message);
   if (status != TRB_OK) return status;
-  self->y = trb_sundials_vector(&self->sundials, it->n, it->y);
+  const trb_body_entries entries = trb_body_entries_of(m);
+  self->y = trb_vector_over(it->y, it->n, &entries, it->dynamics->work->variant, self->sundials.context);
   self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
-  self->matrix = trb_arrow_matrix(m->n_rollers, with_cage, self->sundials.context);
-  self->solver = trb_arrow_linear_solver(m->n_rollers, it->dynamics->work->variant, self->sundials.context);
-  self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->y, self->sundials.context);
+  self->matrix = trb_arrow_matrix(m->n_rollers, hub_width, self->sundials.context);
+  self->solver = trb_arrow_linear_solver(m->n_rollers, hub_width, it->dynamics->work->variant, self->sundials.context);
+  /* a plain vector is the pattern of its own: the norm of what the equations lack is SUNDIALS', the mean over all entries */
+  if (self->scratch != NULL) self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->scratch, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
-  trb_vector_use(self->y, it->dynamics->work->variant);
   trb_sundials_quiet_cvode(&self->sundials, self->memory);
   status = trb_jacobian_create(m, it->motion, it->variant, &self->jacobian, message);
   return status == TRB_OK ? configure(it, message) : status;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "stepping/coupling.h"
 
 trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
@@ -13,8 +14,12 @@ trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, con
   if (j == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
   trb_status status = trb_dynamics_create(m, motion, variant, &j->d, message);
   if (status == TRB_OK) {
+    const size_t width = (size_t)trb_hub_width(m);
     j->moved = calloc((size_t)trb_state_size(m), sizeof *j->moved);
-    if (j->moved == NULL) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
+    j->rates = trb_zeros(3 * width, sizeof *j->rates);
+    j->changes = trb_zeros(width, sizeof *j->changes);
+    if (j->moved == NULL || j->rates == NULL || j->changes == NULL)
+      status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
     else status = trb_tangents_create(m, &j->tangents, message);
   }
   if (status != TRB_OK) {
@@ -31,6 +36,8 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   trb_dynamics_free(jacobian->d);
   trb_tangents_free(jacobian->tangents);
   free(jacobian->moved);
+  free(jacobian->rates);
+  free(jacobian->changes);
   free(jacobian);
 }
 
@@ -41,65 +48,99 @@ static void roller_response(const trb_dynamics *d, int roller, const trb_wrench 
   trb_roller_response(d->model, &d->rollers[roller], load, rates);
 }
 
-static void cage_rates(const trb_dynamics *d, const double *y_cage, const trb_wrench *load, double *rates)
+/* Rates of a body of the hub, at its pose, under a load. */
+static void body_rates(const trb_dynamics *d, const trb_hub_body *body, const double *y, const trb_wrench *load, double *rates)
 {
-  trb_cage_rates(d->model, &d->drive, &d->cage, y_cage, load, rates);
+  body->kind->rates(d->model, &d->drive, &body->pose, y + body->first, load, rates);
 }
 
-/* Slopes of the cage's loads with each of its coordinates. */
-typedef struct cage_loads {
-  trb_wrench by[TRB_NC];
-} cage_loads;
-
-/* Adds what a fast pair in contact gives to its roller's block, to both borders and to the slopes of the cage's loads. still: rates of the
- * cage without loads. */
-static void add_fast(const trb_dynamics *d, int j, const trb_coupling *k, const double *y_cage, const double *still, trb_arrow_block *block,
-                     trb_arrow_border *border, cage_loads *sums)
+/* Adds what a fast pair in contact gives to its roller's block, to both borders and to the slopes of the loads of the other body. still:
+ * rates of the hub without loads. */
+static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, const trb_hub_body *body, const double *y, const double *still,
+                     trb_arrow *arrow)
 {
-  double change[TRB_NR], rates[TRB_NC];
+  const trb_dynamics *d = jac->d;
+  trb_arrow_block    *block = &arrow->rollers[j];
+  trb_arrow_border   *border = &arrow->borders[j];
+  const int           size = body->kind->size, first = body->first - trb_state_hub(d->model);
+  double             *rates = jac->rates, change[TRB_NR];
   for (int c = 0; c < TRB_NR; c++) {
     const trb_load load = trb_coupling_of_roller(k, c);
+    double        *from = border->from + c * arrow->room + first;
     roller_response(d, j, &load.on_a, change);
-    cage_rates(d, y_cage, &load.on_b, rates);
+    body_rates(d, body, y, &load.on_b, rates);
     for (int i = 0; i < TRB_NR; i++) block->own[c][i] += change[i];
-    for (int i = 0; i < TRB_NC; i++) border->from[c][i] += rates[i] - still[i];
+    for (int i = 0; i < size; i++) from[i] += rates[i] - still[first + i];
   }
-  for (int c = 0; c < TRB_NC; c++) {
-    const trb_load load = trb_coupling_of_cage(k, c);
+  for (int c = 0; c < size; c++) {
+    const trb_load load = trb_coupling_of_body(k, c);
+    double        *to = border->to_hub + (first + c) * TRB_NR;
     roller_response(d, j, &load.on_a, change);
-    for (int i = 0; i < TRB_NR; i++) border->to_cage[c][i] += change[i];
-    trb_add_wrench(&sums->by[c], &load.on_b);
+    for (int i = 0; i < TRB_NR; i++) to[i] += change[i];
+    trb_add_wrench(&jac->changes[first + c], &load.on_b);
   }
 }
 
-/* Adds what pairs without a roller do to the cage at the poses kept. */
-static void add_hub(trb_dynamics *d, trb_wrench *on_cage)
+/* Rates of the whole hub at the poses kept. Loads of the fast pairs are those of the bodies; that of body `moved` changes with its
+ * coordinate at, which was moved by h. Pairs without a roller are evaluated. moved: -1 if none was. */
+static void hub_rates(trb_jacobian *jac, const double *y, int moved, int at, double h, double *rates)
 {
-  const trb_instant at = trb_dynamics_instant(d);
-  if (d->work->n_hub == 0) return;
-  trb_contact_hub(d->model, &at, d->work, &d->hub, NULL);
-  trb_add_wrench(on_cage, &d->hub.on[TRB_BODY_CAGE]);
+  trb_dynamics     *d = jac->d;
+  const trb_instant instant = trb_dynamics_instant(d);
+  const int         hub = trb_state_hub(d->model);
+  if (d->work->n_hub > 0) trb_contact_hub(d->model, &instant, d->work, &d->hub, NULL);
+  for (int b = 0; b < d->n_bodies; b++) {
+    const trb_hub_body *body = &d->bodies[b];
+    trb_wrench          load = body->load;
+    if (b == moved) load = (trb_wrench){trb_axpy(load.force, h, jac->changes[at].force), trb_axpy(load.moment, h, jac->changes[at].moment)};
+    if (d->work->n_hub > 0) trb_add_wrench(&load, &d->hub.on[body->kind->body]);
+    body_rates(d, body, y, &load, rates + body->first - hub);
+  }
 }
 
-/* The block of the cage, by differences of its rates. load: of the fast pairs, which changes with each coordinate as `changes` tells; pairs
- * without a roller are evaluated again. */
-static void cage_block(trb_jacobian *jac, const double *y, const trb_wrench *load, const cage_loads *changes, trb_arrow *arrow)
+/* The block of the hub, by differences of its rates. */
+static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
-  double          *y_cage = jac->moved + trb_state_cage(m), base[TRB_NC], rates[TRB_NC];
-  trb_wrench       here = *load;
-  add_hub(d, &here);
-  cage_rates(d, y + trb_state_cage(m), &here, base);
-  for (int c = 0; c < TRB_NC; c++) {
-    const double was = y_cage[c], h = trb_difference[trb_state_tolerance(m, trb_state_cage(m) + c)], per = 1.0 / h;
-    y_cage[c] = was + h;
-    trb_cage_pose_unpack(m, &d->drive, y_cage, &d->cage);
-    trb_wrench moved = {trb_axpy(load->force, h, changes->by[c].force), trb_axpy(load->moment, h, changes->by[c].moment)};
-    add_hub(d, &moved);
-    cage_rates(d, y_cage, &moved, rates);
-    for (int i = 0; i < TRB_NC; i++) arrow->cage[c][i] = per * (rates[i] - base[i]);
-    y_cage[c] = was;
+  const int        hub = trb_state_hub(m);
+  double          *rates = jac->rates, *base = rates + arrow->width;
+  hub_rates(jac, y, -1, 0, 0.0, base);
+  for (int b = 0; b < d->n_bodies; b++) {
+    trb_hub_body *body = &d->bodies[b];
+    double       *own = jac->moved + body->first;
+    for (int c = 0; c < body->kind->size; c++) {
+      const int    at = body->first - hub + c;
+      const double was = own[c], h = trb_difference[body->kind->coordinates[c].tolerance], per = 1.0 / h;
+      own[c] = was + h;
+      body->kind->pose(m, &d->drive, own, &body->pose);
+      hub_rates(jac, jac->moved, b, at, h, rates);
+      for (int i = 0; i < arrow->width; i++) arrow->hub[at * arrow->room + i] = per * (rates[i] - base[i]);
+      own[c] = was;
+    }
+    body->kind->pose(m, &d->drive, own, &body->pose);
+  }
+}
+
+/* Blocks and borders of the fast pairs of a roller that touch. */
+static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *still, trb_arrow *arrow)
+{
+  trb_dynamics     *d = jac->d;
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_arrow_border *border = &arrow->borders[j];
+  border->coupled = 0;
+  for (int f = 0; f < d->n_fast; f++) {
+    const trb_pair *pair = d->fast[f].pair;
+    trb_hub_body   *body = trb_dynamics_body(d, pair->b);
+    trb_coupling    k;
+    trb_load        load;
+    const trb_gaps  gaps = pair->touch(d->model, &at, j, &d->work->counters, &load, &k.slopes, NULL);
+    if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0) || body == NULL) continue;
+    if (!border->coupled) trb_arrow_clear_border(arrow, j);
+    border->coupled = 1;
+    trb_coupling_place(&k, &d->rollers[j], body->kind, &body->pose, &load);
+    trb_add_wrench(&body->load, &load.on_b);
+    add_fast(jac, j, &k, body, y, still, arrow);
   }
 }
 
@@ -107,6 +148,8 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
+  double          *still = jac->rates + 2 * arrow->width;
+  const trb_wrench none = {{0, 0, 0}, {0, 0, 0}};
   memcpy(jac->moved, y, (size_t)trb_state_size(m) * sizeof *y);
   trb_dynamics_pose(d, time, y);
   if (fresh || !jac->tangents->has_slopes) {
@@ -115,27 +158,11 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   }
   for (int j = 0; j < m->n_rollers; j++)
     for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[j].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
-  if (!arrow->with_cage) return;
-  const trb_instant at = trb_dynamics_instant(d);
-  const double     *y_cage = y + trb_state_cage(m);
-  trb_wrench        on_cage = {{0, 0, 0}, {0, 0, 0}};
-  cage_loads        changes = {0};
-  double            still[TRB_NC];
-  cage_rates(d, y_cage, &on_cage, still);
-  for (int j = 0; j < m->n_rollers; j++) {
-    trb_arrow_border *border = &arrow->borders[j];
-    border->coupled = 0;
-    for (int f = 0; f < d->n_fast; f++) {
-      trb_coupling   k;
-      trb_load       load;
-      const trb_gaps gaps = d->fast[f].pair->touch(m, &at, j, &d->work->counters, &load, &k.slopes, NULL);
-      if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0)) continue;
-      if (!border->coupled) memset(border, 0, sizeof *border);
-      border->coupled = 1;
-      trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
-      trb_add_wrench(&on_cage, &load.on_b);
-      add_fast(d, j, &k, y_cage, still, &arrow->rollers[j], border, &changes);
-    }
+  memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
+  for (int b = 0; b < d->n_bodies; b++) {
+    d->bodies[b].load = none;
+    body_rates(d, &d->bodies[b], y, &none, still + d->bodies[b].first - trb_state_hub(m));
   }
-  cage_block(jac, y, &on_cage, &changes, arrow);
+  for (int j = 0; j < m->n_rollers; j++) fill_fast(jac, j, y, still, arrow);
+  hub_block(jac, y, arrow);
 }

@@ -4,7 +4,7 @@
  * changes slowly and is computed by differences: one evaluation of these pairs for each coordinate, with all rollers moved at once. It is
  * reused until it is old, or until a second Jacobian is asked for within one step. The part of the fast pairs changes with each impact.
  * Only rollers that touch have it, and its slopes are computed in closed form together with the forces. Pairs without a roller are part of
- * the block of the cage, by differences. */
+ * the block of the hub, by differences. */
 #ifndef TRB_STEPPING_JACOBIAN_H
 #define TRB_STEPPING_JACOBIAN_H
 
@@ -15,6 +15,8 @@ typedef struct trb_jacobian {
   trb_dynamics *d;        /* not that of the integration, whose poses must stay */
   trb_tangents *tangents; /* they hold the part of the rings */
   double       *moved;    /* scratch: a state with one coordinate moved */
+  double       *rates;    /* scratch: three times the rates of the hub */
+  trb_wrench   *changes;  /* scratch: slopes of the loads of the hub's bodies with each of their own coordinates */
   long          rings_evaluations;
 } trb_jacobian;
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "stepping/vectors.h"
 
 static trb_status check_settings(const trb_settings *settings, trb_message *message)
 {
@@ -22,13 +23,15 @@ static void describe(const trb_model *m, int index, trb_message *out)
 {
 #define TRB_STATE_NAME(name, kind, what) #name " (" what ")",
   static const char *const roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_NAME)};
-  static const char *const cage[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(TRB_STATE_NAME)};
 #undef TRB_STATE_NAME
   if (index < 0) (void)trb_fail(out, TRB_OK, "no single quantity");
-  else if (index < trb_state_cage(m))
-    (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
-  else if (index < trb_state_main_size(m)) (void)trb_fail(out, TRB_OK, "cage, %s", cage[index - trb_state_cage(m)]);
-  else (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(m));
+  else if (index < trb_state_hub(m)) (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
+  else if (index < trb_state_main_size(m)) {
+    int                       coordinate;
+    const trb_hub_kind *const kind = trb_hub_kind_at(m, index - trb_state_hub(m), &coordinate);
+    const trb_coordinate     *is = &kind->coordinates[coordinate];
+    (void)trb_fail(out, TRB_OK, "%s, %s (%s)", kind->name, is->name, is->text);
+  } else (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(m));
 }
 
 static trb_status check_state(const trb_model *m, double time, const double *state, trb_message *message)
@@ -46,9 +49,12 @@ static trb_status check_state(const trb_model *m, double time, const double *sta
       return trb_fail(message, TRB_ERR_STATE, "roller %d: r = %g m, skew = %g rad: beyond what the coordinates hold", j, y[TRB_ROLLER_r],
                       y[TRB_ROLLER_skew]);
   }
-  if (fabs(state[trb_state_cage(m) + TRB_CAGE_skew]) > 1.5)
-    return trb_fail(message, TRB_ERR_STATE, "cage: skew = %g rad: beyond what the coordinates hold",
-                    state[trb_state_cage(m) + TRB_CAGE_skew]);
+  for (int i = trb_state_hub(m); i < trb_state_main_size(m); i++) {
+    int                       coordinate;
+    const trb_hub_kind *const kind = trb_hub_kind_at(m, i - trb_state_hub(m), &coordinate);
+    if (coordinate == kind->skew && fabs(state[i]) > 1.5)
+      return trb_fail(message, TRB_ERR_STATE, "%s: skew = %g rad: beyond what the coordinates hold", kind->name, state[i]);
+  }
   return TRB_OK;
 }
 
@@ -64,7 +70,8 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   trb_integrator *it = &s->integrator;
   trb_status      status;
   it->n = trb_state_size(s->model);
-  it->y = trb_zeros((size_t)it->n, sizeof(double));
+  it->n_main = trb_state_main_size(s->model);
+  it->y = trb_zeros((size_t)(it->n + TRB_VECTOR_ROOM), sizeof(double));
   it->scale = trb_zeros((size_t)it->n, sizeof(double));
   it->relative = trb_zeros((size_t)it->n, sizeof(double));
   s->between = trb_zeros((size_t)it->n, sizeof(double));

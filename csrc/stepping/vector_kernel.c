@@ -1,5 +1,6 @@
 /* The operations of SUNDIALS' serial vector that take most of the time of a step, compiled once for each instruction set. */
 #include <math.h>
+#include <string.h>
 
 #include "stepping/blocks.h"
 #include "stepping/vectors.h"
@@ -42,26 +43,41 @@ static void scale(sunrealtype a, N_Vector x, N_Vector z)
   ENTRIES for (long i = 0; i < n; i++) to[i] = a * from[i];
 }
 
-static double mean_square(const double *value, const double *weight, int n)
+/* Sum of squares of the weighted entries, no more than TRB_NP of them. */
+static double sum_squares(const double *value, const double *weight, int n)
 {
   double square[TRB_NP], sum = 0.0;
   for (int k = 0; k < n; k++) square[k] = value[k] * weight[k] * (value[k] * weight[k]);
   for (int k = 0; k < n; k++) sum += square[k];
+  return sum;
+}
+
+static double mean_square(const double *value, const double *weight, int n)
+{
+  double sum = 0.0;
+  for (int k = 0; k < n; k += TRB_NP) sum += sum_squares(value + k, weight + k, n - k < TRB_NP ? n - k : TRB_NP);
   return sum / n;
 }
 
-/* The largest root mean square of a body. The mean over all entries would let a single roller, or the cage that hits its rollers, be
+/* The larger one; not a number (NaN) if either is none. */
+static double larger(double a, double b) { return a >= b || isnan(a) ? a : b; }
+
+/* The largest root mean square of a body. The mean over all entries would let a single roller, or a cage that hits its rollers, be
  * wrong by the root of the number of bodies times the tolerance. The tail of the state controls nothing. If an entry is not a number
  * (NaN), so is the norm. */
 static sunrealtype norm_of_bodies(N_Vector x, N_Vector w)
 {
-  const double *value = N_VGetArrayPointer(x), *weight = N_VGetArrayPointer(w);
-  const int     n_rollers = trb_state_rollers((int)length_of(x)), cage = n_rollers * TRB_NR;
-  double        largest = mean_square(value + cage, weight + cage, TRB_NC);
-  for (int j = 0; j < n_rollers; j++) {
-    const double of_roller = mean_square(value + j * TRB_NR, weight + j * TRB_NR, TRB_NR);
-    largest = of_roller <= largest ? largest : of_roller;
+  const double    *value = N_VGetArrayPointer(x), *weight = N_VGetArrayPointer(w);
+  trb_body_entries entries;
+  double           largest = 0.0;
+  memcpy(&entries, value + length_of(x), sizeof entries);
+  int at = entries.n_rollers * TRB_NR;
+  for (int b = 0; b < entries.n_bodies; b++) {
+    largest = larger(largest, mean_square(value + at, weight + at, entries.size[b]));
+    at += entries.size[b];
   }
+  for (int j = 0; j < entries.n_rollers; j++)
+    largest = larger(largest, sum_squares(value + j * TRB_NR, weight + j * TRB_NR, TRB_NR) / TRB_NR);
   return sqrt(largest);
 }
 

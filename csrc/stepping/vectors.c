@@ -1,5 +1,7 @@
 #include "stepping/vectors.h"
 
+#include <string.h>
+
 typedef void use_function(N_Vector v);
 
 static use_function *const variants[] = {
@@ -13,4 +15,32 @@ static use_function *const variants[] = {
 #endif
 };
 
-void trb_vector_use(N_Vector v, int variant) { variants[variant](v); }
+trb_body_entries trb_body_entries_of(const trb_model *m)
+{
+  trb_body_entries entries = {.n_rollers = m->n_rollers};
+  for (int k = 0; k < trb_n_hub_kinds; k++)
+    if (trb_hub_table[k]->is_on(m)) entries.size[entries.n_bodies++] = trb_hub_table[k]->size;
+  return entries;
+}
+
+static N_Vector clone(N_Vector v)
+{
+  const sunindextype n = NV_LENGTH_S(v);
+  NV_LENGTH_S(v) = n + TRB_VECTOR_ROOM;
+  N_Vector made = N_VClone_Serial(v);
+  NV_LENGTH_S(v) = n;
+  if (made == NULL) return NULL;
+  NV_LENGTH_S(made) = n;
+  memcpy(NV_DATA_S(made) + n, NV_DATA_S(v) + n, sizeof(trb_body_entries));
+  return made;
+}
+
+N_Vector trb_vector_over(double *values, int n, const trb_body_entries *entries, int variant, SUNContext context)
+{
+  N_Vector v = N_VMake_Serial(n, values, context);
+  if (v == NULL) return NULL;
+  memcpy(values + n, entries, sizeof *entries);
+  v->ops->nvclone = clone;
+  variants[variant](v);
+  return v;
+}

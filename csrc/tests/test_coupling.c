@@ -108,9 +108,9 @@ static void check_scene(const trb_params *params, double most, double shift, con
       trb_load     load;
       trb_coupling k;
       if (!differentiate(d, j, y, exact) || !loads_at(d, j, y, &load, &k.slopes)) continue;
-      trb_coupling_place(&k, &d->rollers[j], &d->cage, &load);
+      trb_coupling_place(&k, &d->rollers[j], &trb_hub_cage, trb_dynamics_cage(d), &load);
       for (int c = 0; c < COLUMNS; c++) {
-        const trb_load slope = c < TRB_ROLLER_SIZE ? trb_coupling_of_roller(&k, c) : trb_coupling_of_cage(&k, c - TRB_ROLLER_SIZE);
+        const trb_load slope = c < TRB_ROLLER_SIZE ? trb_coupling_of_roller(&k, c) : trb_coupling_of_body(&k, c - TRB_ROLLER_SIZE);
         rows_of(&d->rollers[j].frame, &slope, found[c]);
       }
       compare(m, j, found, exact, b);

@@ -7,7 +7,7 @@
 #include "check.h"
 #include "rig.h"
 
-enum { MOST = 12 * TRB_NR + TRB_NC };
+enum { MOST = 12 * TRB_NR + TRB_CAGE_SIZE };
 
 /* Tolerances of a run, by kind: what makes rows and columns comparable. */
 static const double       unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-5, 1e-3, 1.0};
@@ -41,13 +41,13 @@ static void expand(const trb_model *m, const trb_arrow *a)
   for (int j = 0; j < m->n_rollers; j++)
     for (int i = 0; i < TRB_NR; i++) {
       for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
-      for (int c = 0; c < TRB_NC; c++) {
-        found[j * TRB_NR + i][cage + c] = a->borders[j].to_cage[c][i];
-        found[cage + c][j * TRB_NR + i] = a->borders[j].from[i][c];
+      for (int c = 0; c < TRB_CAGE_SIZE; c++) {
+        found[j * TRB_NR + i][cage + c] = a->borders[j].to_hub[c * TRB_NR + i];
+        found[cage + c][j * TRB_NR + i] = a->borders[j].from[i * a->room + c];
       }
     }
-  for (int i = 0; i < TRB_NC; i++)
-    for (int c = 0; c < TRB_NC; c++) found[cage + i][cage + c] = a->cage[c][i];
+  for (int i = 0; i < TRB_CAGE_SIZE; i++)
+    for (int c = 0; c < TRB_CAGE_SIZE; c++) found[cage + i][cage + c] = a->hub[c * a->room + i];
   for (int i = 0; i < n; i++)
     for (int c = 0; c < n; c++) found[i][c] *= unit[trb_state_tolerance(m, c)] / unit[trb_state_tolerance(m, i)];
 }
@@ -82,7 +82,7 @@ static void check_scene(const trb_params *params, double load, double most, int 
   int           coupled = 0;
   if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
   if (!CHECK(trb_jacobian_create(m, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(m->n_rollers, m->params.with_cage > 0.0, &arrow, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(m->n_rollers, trb_hub_width(m), &arrow, NULL) == TRB_OK)) return;
   memcpy(start, y, sizeof start);
   rig_disturb(m, &seed, y);
   rig_draw_back(d, most, start, y);

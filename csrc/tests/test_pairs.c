@@ -58,7 +58,7 @@ static void look(const trb_motion *motion, const double *y, unsigned left_out, s
   if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_detail_create(m, &detail, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_jacobian_create(m, motion, "scalar", &jac, NULL) == TRB_OK)) exit(1);
-  if (!CHECK(trb_arrow_create(m->n_rollers, 1, &s->arrow, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_arrow_create(m->n_rollers, trb_hub_width(m), &s->arrow, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_peak_look_create(m, motion, "scalar", &peaks, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_record_offset(m, TRB_N_FIELDS) <= MOST_FIELDS && trb_peak_look_sizes(m).all <= MOST_FIELDS)) exit(1);
   trb_rhs(d, NULL, 0.01, y, s->rates);
@@ -118,7 +118,7 @@ static void check_jacobian(int row, const seen *full, const seen *out, const see
 {
   double made = 0.0;
   if (is_hub(row)) {
-    CHECK_BLOCK(TRB_NC, cage[c][i])
+    CHECK_BLOCK(TRB_CAGE_SIZE, hub[c * full->arrow->room + i])
   } else {
     for (int j = 0; j < n; j++) CHECK_BLOCK(TRB_NR, rollers[j].own[c][i])
   }

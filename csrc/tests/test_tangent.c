@@ -47,8 +47,9 @@ static int open_bench(bench *b, const trb_params *params, double share, double b
   rig_disturb(b->model, &seed, b->y);
   if (!CHECK(trb_dynamics_create(b->model, b->motion, "scalar", &b->d, NULL) == TRB_OK)) return 0;
   if (!CHECK(trb_tangents_create(b->model, &b->tangents, NULL) == TRB_OK)) return 0;
-  if (!CHECK(trb_arrow_factors_create(b->model->n_rollers, b->d->work->variant, &b->factors, NULL) == TRB_OK)) return 0;
-  if (!CHECK(trb_arrow_create(b->model->n_rollers, 1, &arrow, NULL) == TRB_OK)) return 0;
+  if (!CHECK(trb_arrow_factors_create(b->model->n_rollers, trb_hub_width(b->model), b->d->work->variant, &b->factors, NULL) == TRB_OK))
+    return 0;
+  if (!CHECK(trb_arrow_create(b->model->n_rollers, trb_hub_width(b->model), &arrow, NULL) == TRB_OK)) return 0;
   arrow->gamma = 1e-5;
   CHECK(trb_arrow_factor(arrow, b->factors));
   trb_arrow_free(arrow);

@@ -1,0 +1,302 @@
+/* The hub takes a second body. This program has a table of the hub of its own, which the linker takes instead of that of body/hub.c: the
+ * cage, and a weight on a damped spring that carries the land of the inner ring. The weight has three coordinates and their velocities, and
+ * it is there only while a switch says so. Nothing else of the core knows of it. */
+#include <stdlib.h>
+
+#include "body/cage.h"
+#include "check.h"
+#include "contact/kernels.h"
+#include "rig.h"
+#include "motion/audit.h"
+#include "stepping/jacobian.h"
+#include "stepping/sundials_context.h"
+#include "stepping/vectors.h"
+
+enum { X, Y, Z, V_X, V_Y, V_Z, WEIGHT_SIZE };
+enum { ROOM = 600, MOST = 12 * TRB_NR + TRB_CAGE_SIZE + WEIGHT_SIZE };
+
+static const double mass = 0.7, stiffness = 7e5, damping = 40.0;
+static int          present; /* whether models have the weight */
+
+static int is_present(const trb_model *m)
+{
+  (void)m;
+  return present;
+}
+
+static void pose_of(const trb_model *m, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
+{
+  (void)m;
+  (void)drive;
+  memset(pose, 0, sizeof *pose);
+  pose->x = trb_v(y[X], y[Y], y[Z]);
+  pose->v = trb_v(y[V_X], y[V_Y], y[V_Z]);
+}
+
+static void rates_of(const trb_model *m, const trb_drive *drive, const trb_rigid_pose *pose, const double *y, const trb_wrench *load,
+                     double *rates)
+{
+  const trb_vec3 gravity = trb_gravity_in(drive, 1.0, 0.0), held = trb_scale(-stiffness, pose->x);
+  const trb_vec3 force = trb_add(trb_axpy(held, -damping, pose->v), load->force);
+  (void)m;
+  for (int i = 0; i < 3; i++) rates[i] = y[V_X + i];
+  rates[V_X] = force.x / mass + gravity.x, rates[V_Y] = force.y / mass + gravity.y, rates[V_Z] = force.z / mass + gravity.z;
+}
+
+static trb_rigid motion_of(const trb_rigid_pose *pose, int coordinate)
+{
+  const double along[3] = {coordinate % 3 == 0, coordinate % 3 == 1, coordinate % 3 == 2};
+  (void)pose;
+  return (trb_rigid){trb_v(along[0], along[1], along[2]), trb_v(0, 0, 0)};
+}
+
+static double mass_of(const trb_model *m)
+{
+  (void)m;
+  return mass;
+}
+
+static double kinetic_of(const trb_model *m, const trb_rigid_pose *pose)
+{
+  (void)m;
+  return 0.5 * mass * trb_dot(pose->v, pose->v);
+}
+
+static const trb_coordinate coordinates[WEIGHT_SIZE] = {
+    {"x", TRB_TOL_POSITION, "first place, m"},         {"y", TRB_TOL_POSITION, "second place, m"},
+    {"z", TRB_TOL_POSITION, "third place, m"},         {"v_x", TRB_TOL_VELOCITY, "first velocity, m/s"},
+    {"v_y", TRB_TOL_VELOCITY, "second velocity, m/s"}, {"v_z", TRB_TOL_VELOCITY, "third velocity, m/s"}};
+
+static const trb_hub_kind weight = {.name = "weight",
+                                    .body = TRB_BODY_INNER_RING,
+                                    .size = WEIGHT_SIZE,
+                                    .coordinates = coordinates,
+                                    .skew = -1,
+                                    .is_on = is_present,
+                                    .pose = pose_of,
+                                    .rates = rates_of,
+                                    .motion = motion_of,
+                                    .mass = mass_of,
+                                    .kinetic = kinetic_of};
+
+const trb_hub_kind *const trb_hub_table[] = {&trb_hub_cage, &weight};
+const int                 trb_n_hub_kinds = 2;
+
+static const double       unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-5, 1e-3, 1.0};
+static unsigned long long seed = 5;
+static double             dense[MOST][MOST], found[MOST][MOST];
+
+/* A bearing whose cage is guided by the inner ring's land, with the weight and without it, at the same state; tail and hub moved up. */
+typedef struct scene {
+  trb_model  *model;
+  trb_motion *motion;
+  double      y[ROOM];
+} scene;
+
+static scene open_scene(void)
+{
+  trb_params p = rig_params();
+  scene      s = {0};
+  p.guidance = TRB_GUIDANCE_INNER_LAND, p.damping = 1;
+  s.model = rig_model(&p);
+  s.motion = rig_motion(rig_state(s.model, 4930.0, 100 * TRB_PI, s.y), 100 * TRB_PI);
+  return s;
+}
+
+static void close_scene(scene *s)
+{
+  trb_motion_free(s->motion);
+  trb_model_free(s->model);
+}
+
+static int weight_at(const trb_model *m) { return trb_state_cage(m) + TRB_CAGE_SIZE; }
+
+static void test_layout(void)
+{
+  scene s = open_scene();
+  present = 0;
+  const int without = trb_state_size(s.model);
+  CHECK(trb_hub_width(s.model) == TRB_CAGE_SIZE);
+  present = 1;
+  CHECK(trb_hub_width(s.model) == TRB_CAGE_SIZE + WEIGHT_SIZE);
+  CHECK(trb_state_size(s.model) == without + WEIGHT_SIZE);
+  CHECK(trb_state_spin(s.model) == weight_at(s.model) + WEIGHT_SIZE);
+  for (int i = 0; i < WEIGHT_SIZE; i++)
+    CHECK(trb_state_tolerance(s.model, weight_at(s.model) + i) == (i < V_X ? TRB_TOL_POSITION : TRB_TOL_VELOCITY));
+  CHECK(trb_state_tolerance(s.model, trb_state_spin(s.model)) == TRB_TOL_QUADRATURE);
+  close_scene(&s);
+}
+
+/* Rates of a disturbed state with the weight in it, and of the same state without the weight. */
+static void test_rates(void)
+{
+  scene         s = open_scene();
+  double        with[ROOM] = {0}, rates[ROOM], alone[ROOM], energy[2];
+  trb_dynamics *d;
+  const int     at = weight_at(s.model);
+  present = 0;
+  const int size = trb_state_size(s.model);
+  rig_disturb(s.model, &seed, s.y);
+  if (!CHECK(trb_dynamics_create(s.model, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  trb_rhs(d, NULL, 0.01, s.y, alone);
+  energy[0] = trb_audit_kinetic(d);
+  const trb_vec3 on_ring = d->hub.on[TRB_BODY_INNER_RING].force;
+  trb_dynamics_free(d);
+  present = 1;
+  memcpy(with, s.y, (size_t)at * sizeof *with);
+  memcpy(with + at + WEIGHT_SIZE, s.y + at, (size_t)(size - at) * sizeof *with);
+  for (int i = 0; i < WEIGHT_SIZE; i++) with[at + i] = i < V_X ? 1e-5 * (i + 1) : 0.1 * i;
+  if (!CHECK(trb_dynamics_create(s.model, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  trb_rhs(d, NULL, 0.01, with, rates);
+  energy[1] = trb_audit_kinetic(d);
+  const trb_vec3 gravity = trb_gravity_in(&d->drive, 1.0, 0.0), v = trb_v(with[at + V_X], with[at + V_Y], with[at + V_Z]);
+  trb_dynamics_free(d);
+  /* rollers, cage, spin angles and losses have the same bits */
+  for (int i = 0; i < at; i++) CHECK(rates[i] == alone[i]);
+  for (int i = at; i < size; i++)
+    if (i != trb_state_quadrature(s.model) - WEIGHT_SIZE + TRB_Q_work_gravity) CHECK(rates[i + WEIGHT_SIZE] == alone[i]);
+  /* the weight moves as its row says, under the land's force on the ring and under gravity, which does work on it */
+  CHECK(trb_norm(on_ring) > 1.0);
+  for (int i = 0; i < V_X; i++) CHECK(rates[at + i] == with[at + V_X + i]);
+  CHECK_NEAR(rates[at + V_X], (on_ring.x - stiffness * with[at + X] - damping * v.x) / mass + gravity.x, 1e-9 * fabs(rates[at + V_X]));
+  CHECK_NEAR(rates[at + V_Y], (on_ring.y - stiffness * with[at + Y] - damping * v.y) / mass + gravity.y, 1e-9 * fabs(rates[at + V_Y]));
+  const int    work = trb_state_quadrature(s.model) + TRB_Q_work_gravity;
+  const double more = mass * trb_dot(gravity, v), before = alone[work - WEIGHT_SIZE];
+  CHECK_NEAR(rates[work] - before, more, 1e-9 * fabs(more) + 1e-12 * fabs(before));
+  CHECK_NEAR(energy[1] - energy[0], 0.5 * mass * trb_dot(v, v), 1e-9 * energy[1]);
+  close_scene(&s);
+}
+
+/* The Jacobian against differences of the right-hand side, in units of the tolerances. */
+static void test_jacobian(void)
+{
+  scene         s = open_scene();
+  double        low[ROOM], high[ROOM], coupled = 0.0;
+  trb_dynamics *d;
+  trb_jacobian *jac;
+  trb_arrow    *a;
+  present = 1;
+  const int n = trb_state_main_size(s.model), hub = trb_state_hub(s.model), at = weight_at(s.model);
+  rig_disturb(s.model, &seed, s.y);
+  if (!CHECK(trb_dynamics_create(s.model, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_jacobian_create(s.model, s.motion, "scalar", &jac, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(s.model->n_rollers, trb_hub_width(s.model), &a, NULL) == TRB_OK)) return;
+  trb_jacobian_fill(jac, 0.01, s.y, 1, a);
+  memset(found, 0, sizeof found);
+  for (int j = 0; j < a->n; j++)
+    for (int i = 0; i < TRB_NR; i++) {
+      for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
+      for (int c = 0; c < a->width && a->borders[j].coupled; c++) {
+        found[j * TRB_NR + i][hub + c] = a->borders[j].to_hub[c * TRB_NR + i];
+        found[hub + c][j * TRB_NR + i] = a->borders[j].from[i * a->room + c];
+      }
+    }
+  for (int c = 0; c < a->width; c++)
+    for (int i = 0; i < a->width; i++) found[hub + i][hub + c] = a->hub[c * a->room + i];
+  for (int c = 0; c < n; c++) {
+    const double of = unit[trb_state_tolerance(s.model, c)], was = s.y[c];
+    s.y[c] = was + 0.05 * of;
+    trb_rhs(d, NULL, 0.01, s.y, high);
+    s.y[c] = was - 0.05 * of;
+    trb_rhs(d, NULL, 0.01, s.y, low);
+    s.y[c] = was;
+    for (int i = 0; i < n; i++) {
+      const double per = unit[trb_state_tolerance(s.model, i)];
+      dense[i][c] = (high[i] - low[i]) / 0.1 / per;
+      found[i][c] *= of / per;
+    }
+  }
+  for (int i = 0; i < n; i++) {
+    double largest = 0.0, off = 0.0;
+    for (int c = 0; c < n; c++) largest = fmax(largest, fabs(dense[i][c])), off = fmax(off, fabs(found[i][c] - dense[i][c]));
+    CHECK_NEAR(off, 0.0, 0.1 * largest + 1e-9);
+    for (int c = hub; c < at && i >= at + V_X; c++) coupled = fmax(coupled, fabs(found[i][c]) / largest);
+  }
+  /* the land couples the weight to the cage */
+  CHECK(coupled > 1e-3);
+  trb_arrow_free(a);
+  trb_jacobian_free(jac);
+  trb_dynamics_free(d);
+  close_scene(&s);
+}
+
+/* Integrated by both methods, the weight vibrates as a damped spring does: the land is far from it. */
+static void test_steps(const char *kind)
+{
+  trb_params      p = rig_params();
+  trb_settings    settings = rig_settings();
+  trb_message     message = {TRB_OK, ""};
+  trb_simulation *sim;
+  double          y[ROOM] = {0};
+  present = 1;
+  settings.rtol = 1e-6, settings.atol_position = 1e-12, settings.atol_velocity = 1e-7, settings.atol_angle = 1e-10,
+  settings.atol_spin = 1e-5;
+  trb_model  *m = rig_model(&p);
+  trb_motion *motion = rig_motion(rig_state(m, 4930.0, 100 * TRB_PI, y), 100 * TRB_PI);
+  const int   at = weight_at(m);
+  y[at + Z] = 1e-4;
+  if (!CHECK(trb_simulation_create(m, motion, kind, "", &settings, 0.0, y, &sim, &message) == TRB_OK)) return;
+  while (sim->integrator.time < 5e-3)
+    if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
+  const double t = sim->integrator.time, decay = 0.5 * damping / mass, omega = sqrt(stiffness / mass - decay * decay);
+  const double exact = 1e-4 * exp(-decay * t) * (cos(omega * t) + decay / omega * sin(omega * t));
+  CHECK_NEAR(sim->integrator.y[at + Z], exact, 1e-7);
+  CHECK(sim->integrator.n_main == at + WEIGHT_SIZE);
+  trb_simulation_free(sim);
+  /* what is wrong is said in the weight's name */
+  y[at + V_Y] = NAN;
+  CHECK(trb_simulation_create(m, motion, kind, "", &settings, 0.0, y, &sim, &message) != TRB_OK);
+  CHECK_SAYS(message.text, "weight, v_y (second velocity, m/s)");
+  trb_motion_free(motion);
+  trb_model_free(m);
+}
+
+/* The norm of a vector is that of the body whose mean is largest, each body of the hub for itself; and not a number if an entry is not. */
+static void test_norm(void)
+{
+  double       values[ROOM] = {0}, weights[ROOM];
+  scene        s = open_scene();
+  trb_sundials sundials = {0};
+  present = 1;
+  const int              n = trb_state_size(s.model), at = weight_at(s.model);
+  const trb_body_entries entries = trb_body_entries_of(s.model);
+  if (!CHECK(trb_sundials_open(&sundials, NULL) == TRB_OK)) return;
+  for (int variant = 0; variant < trb_n_kernel_variants; variant++) {
+    if (!trb_kernel_runs(variant)) continue;
+    for (int i = 0; i < n; i++) values[i] = 0.0, weights[i] = 2.0;
+    N_Vector v = trb_vector_over(values, n, &entries, variant, sundials.context);
+    N_Vector w = trb_vector_over(weights, n, &entries, variant, sundials.context), clone = N_VClone(v);
+    values[at + Z] = 3.0, values[at + V_Z] = 4.0;
+    N_VScale(1.0, v, clone);
+    CHECK_NEAR(N_VWrmsNorm(clone, w), sqrt(100.0 / WEIGHT_SIZE), 1e-14);
+    values[at - 1] = 60.0;
+    CHECK_NEAR(N_VWrmsNorm(v, w), 120.0 / sqrt(TRB_CAGE_SIZE), 1e-12);
+    values[5] = 600.0;
+    CHECK_NEAR(N_VWrmsNorm(v, w), 1200.0 / sqrt(TRB_NR), 1e-11);
+    values[n - 1] = 1e9; /* of the tail */
+    CHECK_NEAR(N_VWrmsNorm(v, w), 1200.0 / sqrt(TRB_NR), 1e-11);
+    const int places[] = {0, at - 1, at + 2};
+    for (int i = 0; i < 3; i++) {
+      const double was = values[places[i]];
+      values[places[i]] = NAN;
+      CHECK(isnan(N_VWrmsNorm(v, w)));
+      values[places[i]] = was;
+    }
+    N_VDestroy(clone);
+    N_VDestroy(v);
+    N_VDestroy(w);
+  }
+  trb_sundials_close(&sundials);
+  close_scene(&s);
+}
+
+int main(void)
+{
+  test_layout();
+  test_rates();
+  test_jacobian();
+  test_steps("bdf");
+  test_steps("erk");
+  test_norm();
+  return check_report();
+}
