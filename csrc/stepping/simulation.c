@@ -71,7 +71,7 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   trb_status      status;
   it->n = trb_state_size(s->model);
   it->n_main = trb_state_main_size(s->model);
-  it->y = trb_zeros((size_t)(it->n + TRB_VECTOR_ROOM), sizeof(double));
+  it->y = trb_zeros((size_t)it->n + TRB_VECTOR_ROOM, sizeof(double));
   it->scale = trb_zeros((size_t)it->n, sizeof(double));
   it->relative = trb_zeros((size_t)it->n, sizeof(double));
   s->between = trb_zeros((size_t)it->n, sizeof(double));
