@@ -23,7 +23,7 @@ PYTEST ?=
 SLOW   ?=
 JOBS   ?= 2
 QUICK  ?=
-BENCH  ?= $(filter-out common bit_identity,$(basename $(notdir $(wildcard benchmarks/*.py))))
+BENCH  ?= $(filter-out common bit_identity paired,$(basename $(notdir $(wildcard benchmarks/*.py))))
 
 VENV    := .venv
 PY      := $(VENV)/bin/python
