@@ -179,7 +179,10 @@ def test_the_wheel_is_the_one_that_is_made() -> None:
 def different() -> list[str]:
     """Commands that take seconds; one that runs the same program with the same words under another name of Python only once."""
     found = [command for command in commands() if command not in MINUTES | INSTALLS and not is_wheel(command)]
-    return list({command.removeprefix(".venv/bin/"): command for command in reversed(found)}.values())[::-1]
+    first: dict[str, str] = {}
+    for command in found:
+        first.setdefault(command.removeprefix(".venv/bin/"), command)
+    return list(first.values())
 
 
 @pytest.mark.parametrize("command", different())
