@@ -297,6 +297,7 @@ class TestStatements:
 
 
 class TestCommand:
+    @pytest.mark.slow
     def test_quick(self, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
         words = ["-o", str(tmp_path), "--quick", "--starts", "whirl", "unequal", "--quiet"]
         words += ["--points", "3000rpm_4930N", "3000rpm_1230N*", "--seeds", "0", "1"]

@@ -71,7 +71,12 @@ def closure(result: Result) -> float:
     return float(np.abs(result.energy_balance["residual"]).max()) / result.energy_audit.dissipated
 
 
-@pytest.mark.parametrize("case", CASES)
+LONG = {"whirl", "ring_displaced", "planar", "boundary", "run_up"}
+
+
+@pytest.mark.parametrize(
+    "case", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in CASES]
+)
 def test_closure_falls_with_the_tolerance(kit: SimpleNamespace, case: str) -> None:
     loose, tight = (run(kit, case, rtol) for rtol in (1e-4, 1e-6))
     assert loose.pocket_force.max() > 10.0

@@ -65,6 +65,7 @@ def test_planar_cage_above_the_yield_limit_rests(planar: Any) -> None:
     assert whirl[1] < 0.1
 
 
+@pytest.mark.slow
 def test_planar_growth_is_converged_in_stiffness_and_steps(planar: Any) -> None:
     cage = planar.Cage(friction=0.0, roller_mass=0.0)
     rates = [
