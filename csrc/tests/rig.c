@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "contact/kernels.h"
 #include "motion/equilibrium.h"
@@ -174,4 +175,21 @@ double rig_random(unsigned long long *seed)
   x *= 0xff51afd7ed558ccdULL;
   x ^= x >> 33;
   return (double)(x >> 11) / 4503599627370496.0 - 1.0;
+}
+
+void rig_expand(const trb_arrow *a, int stride, double *whole)
+{
+  const int hub = a->n * TRB_NR;
+  for (int i = 0; i < hub + a->width; i++) memset(whole + (size_t)i * (size_t)stride, 0, (size_t)(hub + a->width) * sizeof *whole);
+  for (int j = 0; j < a->n; j++)
+    for (int i = 0; i < TRB_NR; i++) {
+      double *row = whole + (size_t)(j * TRB_NR + i) * (size_t)stride;
+      for (int c = 0; c < TRB_NR; c++) row[j * TRB_NR + c] = a->rollers[j].own[c][i];
+      for (int c = 0; c < a->width && a->borders[j].coupled; c++) {
+        row[hub + c] = a->borders[j].to_hub[c * TRB_NR + i];
+        whole[(size_t)(hub + c) * (size_t)stride + (size_t)(j * TRB_NR + i)] = a->borders[j].from[i * a->room + c];
+      }
+    }
+  for (int c = 0; c < a->width; c++)
+    for (int i = 0; i < a->width; i++) whole[(size_t)(hub + i) * (size_t)stride + (size_t)(hub + c)] = a->hub[c * a->room + i];
 }

@@ -3,6 +3,7 @@
 #define TRB_TESTS_RIG_H
 
 #include "motion/rhs.h"
+#include "stepping/arrow.h"
 #include "stepping/simulation.h"
 
 enum { RIG_FACES = 4, RIG_SLICES = 24 };
@@ -26,5 +27,8 @@ double rig_random(unsigned long long *seed);
 
 /* Back towards a state until no roller pushes the cage with more than a force. */
 void rig_draw_back(trb_dynamics *d, double most, const double *to, double *state);
+
+/* The whole Jacobian that an arrow holds: rows of `stride` entries, as many as the arrow has unknowns. */
+void rig_expand(const trb_arrow *a, int stride, double *whole);
 
 #endif

@@ -64,18 +64,8 @@ static void randomise(trb_arrow *a, int kind)
 /* I - gamma J */
 static void expand(const trb_arrow *a)
 {
-  const int hub = a->n * TRB_NR, n = hub + a->width;
-  memset(matrix, 0, sizeof matrix);
-  for (int j = 0; j < a->n; j++)
-    for (int i = 0; i < TRB_NR; i++) {
-      for (int c = 0; c < TRB_NR; c++) matrix[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
-      for (int c = 0; c < a->width && a->borders[j].coupled; c++) {
-        matrix[j * TRB_NR + i][hub + c] = a->borders[j].to_hub[c * TRB_NR + i];
-        matrix[hub + c][j * TRB_NR + i] = a->borders[j].from[i * a->room + c];
-      }
-    }
-  for (int i = 0; i < a->width; i++)
-    for (int c = 0; c < a->width; c++) matrix[hub + i][hub + c] = a->hub[c * a->room + i];
+  const int n = a->n * TRB_NR + a->width;
+  rig_expand(a, SIZE, &matrix[0][0]);
   for (int i = 0; i < n; i++)
     for (int c = 0; c < n; c++) matrix[i][c] = (double)(i == c) - a->gamma * matrix[i][c];
 }

@@ -182,17 +182,7 @@ static void test_jacobian(void)
   if (!CHECK(trb_jacobian_create(s.model, s.motion, "scalar", &jac, NULL) == TRB_OK)) return;
   if (!CHECK(trb_arrow_create(s.model->n_rollers, trb_hub_width(s.model), &a, NULL) == TRB_OK)) return;
   trb_jacobian_fill(jac, 0.01, s.y, 1, a);
-  memset(found, 0, sizeof found);
-  for (int j = 0; j < a->n; j++)
-    for (int i = 0; i < TRB_NR; i++) {
-      for (int c = 0; c < TRB_NR; c++) found[j * TRB_NR + i][j * TRB_NR + c] = a->rollers[j].own[c][i];
-      for (int c = 0; c < a->width && a->borders[j].coupled; c++) {
-        found[j * TRB_NR + i][hub + c] = a->borders[j].to_hub[c * TRB_NR + i];
-        found[hub + c][j * TRB_NR + i] = a->borders[j].from[i * a->room + c];
-      }
-    }
-  for (int c = 0; c < a->width; c++)
-    for (int i = 0; i < a->width; i++) found[hub + i][hub + c] = a->hub[c * a->room + i];
+  rig_expand(a, MOST, &found[0][0]);
   for (int c = 0; c < n; c++) {
     const double of = unit[trb_state_tolerance(s.model, c)], was = s.y[c];
     s.y[c] = was + 0.05 * of;
