@@ -1,8 +1,9 @@
-/* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is; contact/pairs.c lists all of them.
+/* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is;
+ * contact/pairs.c lists all of them.
  *
  * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
- * the power lost, by kind. A pair without a roller adds to the loads of the hub, which is made of all other bodies (body/hub.h). A pair does not depend
- * on time and stores nothing between calls. */
+ * the power lost, by kind. A pair without a roller adds to the loads of the hub, which is made of all other bodies (body/hub.h). A pair
+ * does not depend on time and stores nothing between calls. */
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
 

@@ -1,5 +1,5 @@
-/* Newton's and Euler's equations of each roller and each body of the hub, in frames that orbit with them (docs/theory/motion.md#newtons-equations): the
- * parts of which motion/rhs.h makes the right-hand side. */
+/* Newton's and Euler's equations of each roller and each body of the hub, in frames that orbit with them
+ * (docs/theory/motion.md#newtons-equations): the parts of which motion/rhs.h makes the right-hand side. */
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
 

@@ -6,8 +6,8 @@
 
 #include "contact/pair.h"
 
-/* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from USUAL_STEPS on the balance that
- * is good enough for a run, TRB_FAIR_SHARE of the largest load, ends it. */
+/* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from USUAL_STEPS on it ends
+ * at a balance that is good enough for a run, TRB_FAIR_SHARE of the largest load. */
 enum { USUAL_STEPS = 300, MOST_STEPS = 3000 };
 #define TRB_FAIR_SHARE 1e-5
 /* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */

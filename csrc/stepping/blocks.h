@@ -10,8 +10,7 @@ enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGE
 
 /* The hub: all bodies that are not rolling elements, with `width` coordinates together. The width is known when a simulation is made.
  * Columns of the hub's length are padded by zeros to a multiple of TRB_NP, their room, so that loops over them have no remainder. The
- * usual width, that of the cage alone, has loops of its own whose lengths the compiler
- * knows. */
+ * usual width, that of the cage alone, has loops of its own whose lengths the compiler knows. */
 enum { TRB_HUB_USUAL = 12 };
 static inline int trb_hub_room(int width) { return (width + TRB_NP - 1) / TRB_NP * TRB_NP; }
 
