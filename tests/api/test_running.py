@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import os
 import re
+import subprocess
+import sys
 import threading
 from pathlib import Path
 from typing import Any
@@ -126,12 +128,60 @@ def test_a_run_in_memory_ends_before_the_memory_is_full(monkeypatch: pytest.Monk
     assert sim.run(duration=1e-4).success
 
 
+def test_a_run_that_is_complete_needs_no_more_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "LOOK_EVERY", 1)
+    monkeypatch.setattr(memory, "available", lambda: memory.RESERVE)
+    result = trb.Simulation(trb.cases.scene_30310(3000.0)).run(duration=1e-4, save_every=1e-5)
+    assert result.success
+    assert len(result) == 11
+
+
 def test_free_memory_is_what_the_system_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     free = memory.available()
     if free is not None:
         assert 1 << 20 < free < os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     monkeypatch.setattr(memory, "_MEMINFO", tmp_path / "nothing")
+    monkeypatch.setattr(memory, "_GROUPS", ())
     assert memory.available() is None
+
+
+@pytest.mark.parametrize(
+    ("limit", "taken", "files"),
+    [
+        ("memory.max", "memory.current", "inactive_file"),
+        ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+    ],
+)
+def test_free_memory_knows_the_limit_of_a_container(
+    limit: str, taken: str, files: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Written as the kernel writes them; files that were read and are no longer used make room."""
+    monkeypatch.setattr(memory, "_MEMINFO", tmp_path / "meminfo")
+    monkeypatch.setattr(memory, "_GROUPS", ((tmp_path, limit, taken, files),))
+    (tmp_path / "meminfo").write_text(
+        "MemTotal:       24000000 kB\nMemAvailable:    9000000 kB\nHugePages_Total:       0\n"
+    )
+    assert memory.available() == 9_000_000 * 1024
+    (tmp_path / limit).write_text("3000000000\n")
+    (tmp_path / taken).write_text("2500000000\n")
+    (tmp_path / "memory.stat").write_text(f"anon 1900000000\n{files} 400000000\n")
+    assert memory.available() == 900_000_000
+    (tmp_path / limit).write_text("max\n" if limit == "memory.max" else "9223372036854771712\n")
+    assert memory.available() == 9_000_000 * 1024
+
+
+def test_free_memory_knows_the_limit_of_the_process() -> None:
+    """In a process of its own: the limit cannot be raised again."""
+    code = (
+        "import resource, trbdyn.run.memory as memory\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))\n"
+        "before = memory.available()\n"
+        "kept = bytearray(256 << 20)\n"
+        "print(before, memory.available())\n"
+    )
+    before, after = map(int, subprocess.check_output([sys.executable, "-c", code], text=True).split())
+    assert 0 < after < before < 3 << 30
+    assert before - after == pytest.approx(256 << 20, rel=0.05)
 
 
 def test_pieces_are_joined_in_their_order() -> None:

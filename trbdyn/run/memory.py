@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+if sys.platform != "win32":
+    import resource
 
 Array = NDArray[np.float64]
 
@@ -15,16 +19,54 @@ LOOK_EVERY: Final = 64 << 20
 RESERVE: Final = 512 << 20
 """Memory that a run leaves to everything else (byte)."""
 _MEMINFO: Final = Path("/proc/meminfo")
+_GROUPS: Final = (
+    (Path("/sys/fs/cgroup"), "memory.max", "memory.current", "inactive_file"),
+    (Path("/sys/fs/cgroup/memory"), "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+)
+"""What a container may take, in both versions of Linux control groups: folder; files of the limit and of what is taken; the name
+in ``memory.stat`` of files that make room when they must."""
 
 
 def available() -> int | None:
-    """Memory that programs can still take without swapping (byte); None where the system does not tell."""
+    """Memory that this process can still take without swapping: of the machine, and within the limits that a container or
+    ``ulimit -v`` sets (byte); None where the system does not tell.
+    """
+    found = [_of_machine(), *(_of_group(*names) for names in _GROUPS), _of_process()]
+    return min((free for free in found if free is not None), default=None)
+
+
+def _of_machine() -> int | None:
+    kilobytes = _entries(_MEMINFO).get("MemAvailable:")
+    return None if kilobytes is None else 1024 * kilobytes
+
+
+def _of_group(folder: Path, limit: str, taken: str, files: str) -> int | None:
     try:
-        lines = _MEMINFO.read_text(encoding="ascii").splitlines()
+        most, now = ((folder / name).read_text(encoding="ascii").strip() for name in (limit, taken))
     except OSError:
         return None
-    found = next((line.split() for line in lines if line.startswith("MemAvailable:")), None)
-    return int(found[1]) * 1024 if found else None
+    if most == "max":
+        return None
+    return int(most) - int(now) + _entries(folder / "memory.stat").get(files, 0)
+
+
+def _of_process() -> int | None:
+    if sys.platform == "win32":
+        return None
+    most, _ = resource.getrlimit(resource.RLIMIT_AS)
+    size = next(iter(_entries(Path("/proc/self/statm"))), None)
+    if most == resource.RLIM_INFINITY or size is None:
+        return None
+    return most - int(size) * resource.getpagesize()
+
+
+def _entries(path: Path) -> dict[str, int]:
+    """The first two words of each line; none where there is no such file."""
+    try:
+        lines = [line.split() for line in path.read_text(encoding="ascii").splitlines()]
+    except OSError:
+        return {}
+    return {words[0]: int(words[1]) for words in lines if len(words) > 1}
 
 
 class Kept:

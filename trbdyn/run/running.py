@@ -205,7 +205,7 @@ class Run:
                 raise KeyboardInterrupt
             if doubt is not None:
                 return doubt
-            if self.kept.is_full():
+            if self.done < self.times.size and self.kept.is_full():
                 return self.kept.said(sim.time)
             if rows and self.until.reached(self.done, self._so_far):
                 self.times = self.times[: self.done]
