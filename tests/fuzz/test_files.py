@@ -434,6 +434,28 @@ def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
     assert names(tmp_path) == ["run.h5"]
 
 
+def test_a_lost_result_that_another_process_begins_to_write_is_left_to_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file comes between the look whether it is there and the first record."""
+    path = tmp_path / "run.h5"
+    cut_run(path, 2e-3)
+    begun = path.read_bytes()
+    there = names(tmp_path)
+    path.unlink()
+    read = checkpoint.read_last_good
+
+    def read_while_another_begins(*arguments: Any) -> checkpoint.Checkpoint:
+        path.write_bytes(begun)
+        return read(*arguments)
+
+    monkeypatch.setattr(checkpoint, "read_last_good", read_while_another_begins)
+    with pytest.raises(FileError, match="exists already"), pytest.warns(UserWarning, match="there is no such file"):
+        trb.resume(path)
+    assert path.read_bytes() == begun
+    assert names(tmp_path) == there
+
+
 def test_resuming_touches_nothing_of_others(tmp_path: Path) -> None:
     """A file of another run in the place of the result, or beside it, is read and left as it is."""
     path, part = tmp_path / "run.h5", tmp_path / "run.part1.h5"

@@ -74,7 +74,7 @@ def resume(
         notes.append(note)
         warnings.warn(note, UserWarning, stacklevel=3)
 
-    def run_on(first: FileSource | None) -> Result:
+    def run_on(first: FileSource | None, segment: int, *, overwrite: bool = False) -> Result:
         found = checkpoint.read_last_good(output, tell)
         if first is not None and first.run_id != found.run_id:
             raise FileError(
@@ -88,17 +88,18 @@ def resume(
             )
         run = Run(sim, options, times, callback, found.done)
         run.notes, run.spent, run.doubts = notes, found.stepping_s, list(found.warnings)
-        # the first segment is written again where there is none; one that cannot be read may still hold something
-        empty = output.exists() and output.stat().st_size == 0
-        segment = 0 if empty or not output.exists() else 1 + max(segment_paths(output), default=0)
-        run.write_to(output, segment, found.run_id, overwrite=empty)
+        run.write_to(output, segment, found.run_id, overwrite=overwrite)
         return run.go(progress=progress)
+
+    def next_segment() -> int:
+        return 1 + max(segment_paths(output), default=0)
 
     if not output.exists():
         found = checkpoint.read_last_good(output, lambda note: None)
         if found.done:
             tell(f"{output}: there is no such file; its records are lost, those from the checkpoint on will be written")
-        return run_on(None)
+        # refused if another process has begun to write the file meanwhile
+        return run_on(None, 0)
     try:
         lock = take_lock(output)
     except OSError as error:
@@ -110,13 +111,15 @@ def resume(
             tell(f"{error}; its records are lost, those from the checkpoint on will be written")
             if output.stat().st_size == 0:
                 lock.close()
-            return run_on(None)
+                return run_on(None, 0, overwrite=True)
+            # one that cannot be read may still hold something
+            return run_on(None, next_segment())
         for segment in (output, *segment_paths(output).values()):
             if run_id_in(segment) == first.run_id:
                 mend(segment)
         if _is_complete(output):
             return load(output)
-        return run_on(first)
+        return run_on(first, next_segment())
 
 
 def _is_complete(output: Path) -> bool:
