@@ -19,8 +19,32 @@ void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity
   drive->inner.omega = trb_axpy(drive->ring_omega, shaft_speed, axis);
 }
 
-trb_ring_pose trb_ring_pose_in_frame(const trb_ring_pose *ring, double cosine, double sine)
+void trb_rings_place(const trb_model *m, const trb_drive *drive, trb_ring *rings)
 {
-  return (trb_ring_pose){trb_turn_z(ring->axis, cosine, -sine), trb_turn_z(ring->centre, cosine, -sine),
-                         trb_turn_z(ring->velocity, cosine, -sine), trb_turn_z(ring->omega, cosine, -sine)};
+  for (int r = 0; r < TRB_N_RINGS; r++) trb_ring_table[r]->place(m, drive, &rings[r].pose);
 }
+
+/* Moments on a ring at rest are about the apex. */
+static void place_at_rest(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose)
+{
+  (void)m;
+  (void)drive;
+  *pose = (trb_ring_pose){.axis = {0, 0, 1}};
+}
+
+static void place_as_prescribed(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose)
+{
+  (void)m;
+  *pose = drive->inner;
+}
+
+static trb_ring_power power_of_drive(const trb_ring_pose *ring, const trb_drive *drive, const trb_wrench *on_ring)
+{
+  const double shaft = -trb_dot(on_ring->moment, ring->axis) * drive->shaft_speed;
+  return (trb_ring_power){shaft, -trb_dot(on_ring->force, ring->velocity) - trb_dot(on_ring->moment, ring->omega) - shaft};
+}
+
+const trb_ring_kind trb_ring_at_rest = {.name = "outer ring at rest", .body = TRB_BODY_OUTER_RING, .rests = 1, .place = place_at_rest};
+
+const trb_ring_kind trb_ring_prescribed = {
+    .name = "inner ring as prescribed", .body = TRB_BODY_INNER_RING, .place = place_as_prescribed, .power = power_of_drive};

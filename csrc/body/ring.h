@@ -1,4 +1,6 @@
-/* The rings: the outer one stands still, the inner one is placed and turned as prescribed. Here too what is prescribed at an instant. */
+/* The rings of a bearing. A ring is a rigid surface of revolution that turns. Contacts read its pose and ask no more; where the pose comes
+ * from, and whether the work that is done on the ring is booked, is said by its kind: the outer ring rests, the inner one is placed and
+ * turned as prescribed (body/rings.c is the table). What is prescribed at an instant is here too. */
 #ifndef TRB_BODY_RING_H
 #define TRB_BODY_RING_H
 
@@ -29,21 +31,49 @@ typedef struct trb_drive {
   trb_vec3      gravity;      /* m/s2 */
 } trb_drive;
 
-/* Pose of the inner ring: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */
+/* The prescribed pose: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */
 void trb_ring_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity, const double rotation[2], const double rotation_rate[2],
                     double shaft_speed, trb_drive *drive);
 
-/* The inner ring as a roller's cylindrical frame sees it. */
-trb_ring_pose trb_ring_pose_in_frame(const trb_ring_pose *ring, double cosine, double sine);
-
-/* Power that a wrench of rollers on the inner ring takes from the shaft's turn, and from the motion of its place, W. */
+/* Power that a wrench on a ring takes from its drive, W: from the turn about its axis, and from the motion of its place. */
 typedef struct trb_ring_power {
   double shaft, place;
 } trb_ring_power;
-static inline trb_ring_power trb_ring_power_of(const trb_ring_pose *ring, double shaft_speed, const trb_wrench *on_ring)
+
+typedef struct trb_ring_kind {
+  const char *name;
+  trb_body    body;  /* the loads on this body of a pair act on it */
+  int         rests; /* 1: its pose is the same at all times, and in every frame that turns about the bearing's axis */
+  void (*place)(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose); /* in inertial coordinates */
+  /* pose and wrench in the same frame; NULL: it takes none */
+  trb_ring_power (*power)(const trb_ring_pose *pose, const trb_drive *drive, const trb_wrench *on_ring);
+} trb_ring_kind;
+
+extern const trb_ring_kind trb_ring_at_rest, trb_ring_prescribed;
+
+/* The rings, as in the bodies of body/rigid.h. */
+enum { TRB_RING_OUTER, TRB_RING_INNER, TRB_N_RINGS };
+extern const trb_ring_kind *const trb_ring_table[TRB_N_RINGS];
+
+/* A ring at an instant. */
+typedef struct trb_ring {
+  trb_ring_pose  pose;     /* in inertial coordinates */
+  trb_ring_pose *in_frame; /* n_rollers: in the cylindrical frame of each roller; NULL where nobody asks for them */
+} trb_ring;
+
+/* Poses of all rings, but those in the frames of rollers. */
+void trb_rings_place(const trb_model *m, const trb_drive *drive, trb_ring *rings);
+
+static inline trb_ring_pose trb_ring_pose_in_frame(const trb_ring_pose *ring, double cosine, double sine)
 {
-  const double shaft = -trb_dot(on_ring->moment, ring->axis) * shaft_speed;
-  return (trb_ring_power){shaft, -trb_dot(on_ring->force, ring->velocity) - trb_dot(on_ring->moment, ring->omega) - shaft};
+  return (trb_ring_pose){trb_turn_z(ring->axis, cosine, -sine), trb_turn_z(ring->centre, cosine, -sine),
+                         trb_turn_z(ring->velocity, cosine, -sine), trb_turn_z(ring->omega, cosine, -sine)};
+}
+
+/* A ring in a frame that is turned about z by the angle whose cosine and sine are given. */
+static inline trb_ring_pose trb_ring_in(const trb_ring *rings, int ring, double cosine, double sine)
+{
+  return trb_ring_table[ring]->rests ? rings[ring].pose : trb_ring_pose_in_frame(&rings[ring].pose, cosine, sine);
 }
 
 static inline int trb_has_gravity(const trb_drive *drive)

@@ -88,7 +88,7 @@ typedef struct trb_loads {
 typedef struct trb_instant {
   const trb_drive       *drive;   /* what is prescribed */
   const trb_roller_pose *rollers; /* n_rollers */
-  const trb_ring_pose   *inner;   /* n_rollers: the inner ring in each roller's frame */
+  const trb_ring        *rings;   /* TRB_N_RINGS */
   const trb_rigid_pose  *cage;    /* NULL without a cage */
   const int             *chosen;  /* rollers to evaluate, ascending */
   int                    n;       /* how many */

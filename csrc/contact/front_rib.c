@@ -49,7 +49,8 @@ void trb_contact_front_rib(const trb_model *m, const trb_instant *at, const trb_
   for (int k = 0; k < at->n; k++) {
     const int        j = at->chosen[k];
     trb_point_detail c = {0};
-    for (int edge = 0; edge < 2; edge++) edge_on_end(m, &at->rollers[j], &at->inner[j], edge, batch, &work->counters, &loads[j], &c);
+    for (int edge = 0; edge < 2; edge++)
+      edge_on_end(m, &at->rollers[j], &at->rings[TRB_RING_INNER].in_frame[j], edge, batch, &work->counters, &loads[j], &c);
     if (detail != NULL) detail->front_rib[j] = c;
   }
 }

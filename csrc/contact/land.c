@@ -99,12 +99,12 @@ static void contact_on_strip(meeting *w, double station, double width)
 
 static meeting meeting_of(const trb_model *m, const trb_instant *at, int inside)
 {
-  const trb_drive *drive = at->drive;
-  meeting          w = {.m = m, .cage = at->cage, .inside = inside, .seen = {.gap = INFINITY}};
-  w.radius = inside ? m->params.land_outer_radius : m->params.land_inner_radius;
-  if (inside) w.ring.axis = trb_v(0, 0, 1); /* the outer ring rests, its moment is about the apex */
-  else w.ring = trb_ring_pose_in_frame(&drive->inner, drive->cosine, drive->sine);
-  return w;
+  return (meeting){.m = m,
+                   .cage = at->cage,
+                   .ring = trb_ring_in(at->rings, inside ? TRB_RING_OUTER : TRB_RING_INNER, at->drive->cosine, at->drive->sine),
+                   .inside = inside,
+                   .radius = inside ? m->params.land_outer_radius : m->params.land_inner_radius,
+                   .seen = {.gap = INFINITY}};
 }
 
 static void meet(const trb_model *m, const trb_instant *at, int inside, trb_counters *counters, trb_load *load, trb_detail *detail)

@@ -6,15 +6,13 @@
 #include "contact/pair.h"
 #include "laws/line_contact.h"
 
-static const trb_ring_pose fixed_ring = {.axis = {0, 0, 1}};
-
 static int race_of(const trb_pair *pair) { return pair->b == TRB_BODY_OUTER_RING ? TRB_RACE_OUTER : TRB_RACE_INNER; }
 
 static trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, int race)
 {
-  const int outer = race == TRB_RACE_OUTER;
+  const int ring = race == TRB_RACE_OUTER ? TRB_RING_OUTER : TRB_RING_INNER;
   return (trb_race_input){&at->rollers[roller],
-                          outer ? &fixed_ring : &at->inner[roller],
+                          &at->rings[ring].in_frame[roller],
                           &m->surfaces.race[race],
                           m->centre + (size_t)roller * (size_t)m->n_lanes,
                           m->sphere + (size_t)roller * (size_t)m->n_lanes,

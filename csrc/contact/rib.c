@@ -54,7 +54,7 @@ void trb_contact_rib(const trb_model *m, const trb_instant *at, const trb_batch 
     const int              j = at->chosen[k];
     const trb_race_output *out = &outputs[k];
     trb_loads             *to = &loads[j];
-    if (detail != NULL) fill_detail(m, &at->inner[j], k, work->lanes, out, &detail->rib[j]);
+    if (detail != NULL) fill_detail(m, &at->rings[TRB_RING_INNER].in_frame[j], k, work->lanes, out, &detail->rib[j]);
     to->margin[row] = trb_min(to->margin[row], fabs(out->depth));
     if (!out->loaded) continue;
     const trb_load load = trb_load_of_output(out);

@@ -9,11 +9,12 @@
 /* Deepest point of the end's sphere in the rib's cone, and the velocities there. */
 static void pass_geometry(const trb_model *m, const trb_instant *at, trb_lanes *l)
 {
-  const trb_cone   face = m->surfaces.rib;
-  const trb_sphere end = m->surfaces.large_end;
+  const trb_cone       face = m->surfaces.rib;
+  const trb_sphere     end = m->surfaces.large_end;
+  const trb_ring_pose *inner = at->rings[TRB_RING_INNER].in_frame;
   for (int j = 0; j < at->n; j++) {
     const trb_roller_pose *r = &at->rollers[at->chosen[j]];
-    const trb_ring_pose   *ring = &at->inner[at->chosen[j]];
+    const trb_ring_pose   *ring = &inner[at->chosen[j]];
     const trb_vec3         centre = trb_axpy(r->x, end.place, r->frame.a);
     const trb_cone_foot    foot = trb_cone_at(&face, ring->axis, trb_sub(centre, trb_cone_point(&face, ring->centre, ring->axis)));
     const double           d = end.radius + foot.beyond;
@@ -97,8 +98,9 @@ static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_r
 
 void TRB_KERNEL_NAME(const trb_model *m, const trb_instant *at, trb_lanes *l, trb_counters *counters, trb_race_output *outputs)
 {
-  const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
-  const trb_pass_kind kind = {TRB_POINT_MEAN_PRESSURE, m->params.roughness_rib};
+  const trb_ring_pose *inner = at->rings[TRB_RING_INNER].in_frame;
+  const int            n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
+  const trb_pass_kind  kind = {TRB_POINT_MEAN_PRESSURE, m->params.roughness_rib};
   if (n == 0) return;
   pass_geometry(m, at, l);
   pad(n, all, l);
@@ -122,5 +124,5 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_instant *at, trb_lanes *l, tr
   if (m->friction) pass_friction(m, &kind, all, l, counters);
   if (m->params.damping > 0.0) counters->damping_nodes += touching;
   for (int j = 0; j < n; j++)
-    if (l->interference[j] > 0.0) sum_roller(m, &at->rollers[at->chosen[j]], &at->inner[at->chosen[j]], j, l, &outputs[j]);
+    if (l->interference[j] > 0.0) sum_roller(m, &at->rollers[at->chosen[j]], &inner[at->chosen[j]], j, l, &outputs[j]);
 }

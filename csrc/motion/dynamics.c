@@ -23,6 +23,19 @@ static int choose_fast(trb_dynamics *d)
   return 1;
 }
 
+/* Rings that rest have the same pose in the frames of all rollers, for good. */
+static int make_rings(trb_dynamics *d)
+{
+  trb_rings_place(d->model, &d->drive, d->rings);
+  for (int r = 0; r < TRB_N_RINGS; r++) {
+    trb_ring *ring = &d->rings[r];
+    ring->in_frame = calloc((size_t)d->model->n_rollers, sizeof *ring->in_frame);
+    if (ring->in_frame == NULL) return 0;
+    for (int j = 0; j < d->model->n_rollers; j++) ring->in_frame[j] = ring->pose;
+  }
+  return 1;
+}
+
 /* The bodies of the hub that the model has, and where the state has their entries and the tail. */
 static void place_bodies(trb_dynamics *d)
 {
@@ -48,14 +61,13 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
   d->motion = motion;
   place_bodies(d);
   d->rollers = calloc(n, sizeof *d->rollers);
-  d->inner = calloc(n, sizeof *d->inner);
   d->loads = calloc(n, sizeof *d->loads);
   d->everyone = calloc(n, sizeof *d->everyone);
   d->flows = trb_zeros(n, sizeof *d->flows);
   d->exact = calloc(n, sizeof *d->exact);
   d->near = calloc(n, sizeof *d->near);
   trb_status status = TRB_OK;
-  if (d->rollers == NULL || d->inner == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
+  if (!make_rings(d) || d->rollers == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
       d->near == NULL) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   } else {
@@ -76,7 +88,7 @@ void trb_dynamics_free(trb_dynamics *d)
   if (d == NULL) return;
   trb_workspace_free(d->work);
   free(d->rollers);
-  free(d->inner);
+  for (int r = 0; r < TRB_N_RINGS; r++) free(d->rings[r].in_frame);
   free(d->loads);
   free(d->everyone);
   for (int f = 0; f < d->n_fast; f++) free(d->fast[f].clearances);
@@ -92,7 +104,14 @@ void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y)
   const trb_drive *drive = &d->drive;
   trb_roller_pose_unpack(d->model, drive, roller, y, r);
   const double cosine = drive->cosine * r->cosine - drive->sine * r->sine, sine = drive->sine * r->cosine + drive->cosine * r->sine;
-  d->inner[roller] = trb_ring_pose_in_frame(&drive->inner, cosine, sine);
+  for (int i = 0; i < TRB_N_RINGS; i++)
+    if (!trb_ring_table[i]->rests) d->rings[i].in_frame[roller] = trb_ring_pose_in_frame(&d->rings[i].pose, cosine, sine);
+}
+
+void trb_dynamics_drive(trb_dynamics *d, double time)
+{
+  trb_motion_at(d->motion, d->model, time, &d->drive);
+  trb_rings_place(d->model, &d->drive, d->rings);
 }
 
 void trb_dynamics_pose_hub(trb_dynamics *d, const double *y)
@@ -105,14 +124,14 @@ void trb_dynamics_pose_hub(trb_dynamics *d, const double *y)
 
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 {
-  trb_motion_at(d->motion, d->model, time, &d->drive);
+  trb_dynamics_drive(d, time);
   for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
   trb_dynamics_pose_hub(d, y);
 }
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
 {
-  return (trb_instant){&d->drive,   d->rollers,          d->inner, d->model->params.with_cage > 0.0 ? trb_dynamics_cage(d) : NULL,
+  return (trb_instant){&d->drive,   d->rollers,          d->rings, d->model->params.with_cage > 0.0 ? trb_dynamics_cage(d) : NULL,
                        d->everyone, d->model->n_rollers, NULL};
 }
 
@@ -138,6 +157,16 @@ void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
   }
 }
 
+/* Books what a ring's drive puts in against a wrench; pose and wrench in the same frame. */
+static void add_work(const trb_dynamics *d, int ring, const trb_ring_pose *pose, const trb_loads *loads, double *quadratures)
+{
+  const trb_ring_kind *kind = trb_ring_table[ring];
+  if (kind->power == NULL) return;
+  const trb_ring_power power = kind->power(pose, &d->drive, &loads->on[kind->body]);
+  quadratures[TRB_Q_work_shaft] += power.shaft;
+  quadratures[TRB_Q_work_ring] += power.place;
+}
+
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow)
 {
   const trb_roller_pose *r = &d->rollers[roller];
@@ -147,9 +176,7 @@ void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads
   d->work->counters.gravity_bodies += trb_has_gravity(&d->drive);
   trb_roller_response(d->model, r, &loads->on[TRB_BODY_ROLLER], flow);
   for (int k = 0; k < TRB_N_ROLLER_LOSSES; k++) quadratures[TRB_Q_losses + k] += loads->power[k];
-  const trb_ring_power power = trb_ring_power_of(&d->inner[roller], d->drive.shaft_speed, &loads->on[TRB_BODY_INNER_RING]);
-  quadratures[TRB_Q_work_shaft] += power.shaft;
-  quadratures[TRB_Q_work_ring] += power.place;
+  for (int i = 0; i < TRB_N_RINGS; i++) add_work(d, i, &d->rings[i].in_frame[roller], loads, quadratures);
 }
 
 void trb_dynamics_start(trb_dynamics *d, double *rates)
@@ -224,10 +251,10 @@ void trb_dynamics_add_hub(trb_dynamics *d, double *rates)
   trb_contact_hub(d->model, &at, d->work, &d->hub, NULL);
   for (int b = 0; b < d->n_bodies; b++) trb_add_wrench(&d->bodies[b].load, &d->hub.on[d->bodies[b].kind->body]);
   for (int k = 0; k < d->model->n_losses; k++) q[TRB_Q_losses + k] += d->hub.power[k];
-  const trb_ring_pose  ring = trb_ring_pose_in_frame(&d->drive.inner, d->drive.cosine, d->drive.sine);
-  const trb_ring_power power = trb_ring_power_of(&ring, d->drive.shaft_speed, &d->hub.on[TRB_BODY_INNER_RING]);
-  q[TRB_Q_work_shaft] += power.shaft;
-  q[TRB_Q_work_ring] += power.place;
+  for (int r = 0; r < TRB_N_RINGS; r++) {
+    const trb_ring_pose pose = trb_ring_in(d->rings, r, d->drive.cosine, d->drive.sine);
+    add_work(d, r, &pose, &d->hub, q);
+  }
 }
 
 void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)

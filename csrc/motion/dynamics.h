@@ -39,7 +39,7 @@ typedef struct trb_dynamics {
   trb_workspace    *work;
   trb_drive         drive;                /* at the last time evaluated */
   trb_roller_pose  *rollers;              /* at the last state evaluated */
-  trb_ring_pose    *inner;                /* the inner ring in each roller's frame */
+  trb_ring          rings[TRB_N_RINGS];   /* at the last time evaluated, and in the frames of the last state evaluated */
   trb_hub_body      bodies[TRB_N_BODIES]; /* of the hub, in the order of the state */
   int               n_bodies;
   int               spin, quadrature; /* where the tail of the state begins, and its quadratures */
@@ -58,6 +58,8 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
                                trb_message *message);
 void       trb_dynamics_free(trb_dynamics *dynamics);
 
+/* What is prescribed at a time, and where the rings are then; kept in the dynamics. */
+void trb_dynamics_drive(trb_dynamics *d, double time);
 /* Poses at (t, y), kept in the dynamics. */
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
 /* Poses of the bodies of the hub only. */

@@ -51,6 +51,7 @@ static void place(solver *s, const double *rollers, const double *displacement)
   memset(drive, 0, sizeof *drive);
   drive->cosine = 1.0;
   trb_ring_place(m, trb_v(displacement[0], displacement[1], displacement[2]), trb_v(0, 0, 0), displacement + 3, still, 0.0, drive);
+  trb_rings_place(m, drive, s->d->rings);
   for (int j = 0; j < m->n_rollers; j++) {
     double y[TRB_ROLLER_SIZE] = {0};
     y[TRB_ROLLER_r] = rollers[3 * j];

@@ -6,10 +6,9 @@
 /* Across the bearing's axis. */
 static double across(trb_vec3 v) { return fabs(v.x) + fabs(v.y); }
 
-trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_drive *drive)
+trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_ring_pose *ring)
 {
-  const trb_ring_pose *ring = &drive->inner;
-  const double         outside = 2.0 * m->geometry.roller_centre_radius;
+  const double outside = 2.0 * m->geometry.roller_centre_radius;
   /* what meets the ring, and the centres of its curvature: that of the large end is far away, near the axis */
   const double far = outside + fabs(m->surfaces.large_end.place) + m->params.total_length;
   return (trb_hold_ring){across(ring->centre) + far * across(ring->axis), across(ring->velocity) + outside * across(ring->omega)};

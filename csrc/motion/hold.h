@@ -22,7 +22,7 @@ typedef struct trb_hold_ring {
   double speed; /* m/s */
 } trb_hold_ring;
 
-trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_drive *drive);
+trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_ring_pose *ring);
 /* turn: of the roller about the bearing's axis, rad. */
 void trb_hold_set(const double *y_roller, double turn, double way, double speed, trb_hold *hold);
 int  trb_hold_holds(const trb_hold *hold, const trb_hold_arms *arms, const trb_hold_ring *ring, const double *y_roller, double turn);

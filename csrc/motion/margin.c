@@ -27,10 +27,10 @@ static double turned_on_end(const trb_margin_arm *a, const double *place, const 
   return arm * (skewed * (sine + skew + lean) + tilted * (a->normal_lean + sine + tilt + lean));
 }
 
-int trb_margin_holds(const trb_margin_arms *arms, const trb_drive *drive, const double *margin, double share, const double *place,
+int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_pose *ring, const double *margin, double share, const double *place,
                      const double *step, double turn)
 {
-  const double lean = hypot(drive->inner.axis.x, drive->inner.axis.y), aside = hypot(drive->displacement.x, drive->displacement.y);
+  const double lean = hypot(ring->axis.x, ring->axis.y), aside = hypot(ring->centre.x, ring->centre.y);
   const double around = fabs(step[TRB_ROLLER_psi]) + fabs(turn), shift = fabs(step[TRB_ROLLER_r]) + fabs(step[TRB_ROLLER_z]);
   const double turned = fabs(step[TRB_ROLLER_skew]) + fabs(step[TRB_ROLLER_tilt]);
   for (int i = 0; i < arms->n; i++) {

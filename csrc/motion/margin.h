@@ -22,7 +22,7 @@ typedef struct trb_margin_arms {
 trb_margin_arms trb_margin_arms_of(const trb_model *m);
 /* Whether every contact is proven to change its interference by less than a share of its margin. place: the roller's state at which the
  * margins, one a row of the table of pairs, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
-int trb_margin_holds(const trb_margin_arms *arms, const trb_drive *drive, const double *margin, double share, const double *place,
+int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_pose *ring, const double *margin, double share, const double *place,
                      const double *step, double turn);
 
 #endif

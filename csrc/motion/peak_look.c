@@ -155,7 +155,7 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
   int              chosen[TRB_TILE_LANES];
   trb_contact_look looks[TRB_TILE_LANES * TRB_MOST_TOGETHER];
 
-  const trb_hold_ring ring = trb_hold_ring_of(m, &d->drive);
+  const trb_hold_ring ring = trb_hold_ring_of(m, &d->rings[TRB_RING_INNER].pose);
   at.chosen = chosen;
   for (int i = 0; i < d->work->n_batches; i++) {
     const trb_batch *batch = &d->work->batches[i];
@@ -209,18 +209,19 @@ static void look_at_places(const trb_peak_look *p, const double *y, double *valu
 
 static int same(trb_vec3 a, trb_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-/* Whether the ring stands where it stood at the look before, and turns as fast. */
-static int ring_rests(const trb_drive *a, const trb_drive *b)
+/* Whether a ring stands where it stood at the look before, and turns as fast. */
+static int ring_rests(const trb_ring_pose *a, const trb_ring_pose *b)
 {
-  return same(a->inner.centre, b->inner.centre) && same(a->inner.axis, b->inner.axis) && same(a->inner.velocity, b->inner.velocity) &&
-         same(a->inner.omega, b->inner.omega);
+  return same(a->centre, b->centre) && same(a->axis, b->axis) && same(a->velocity, b->velocity) && same(a->omega, b->omega);
 }
 
 void trb_peak_look_at(trb_peak_look *look, double time, const double *y, double *values)
 {
-  const trb_drive before = look->d->drive;
-  trb_motion_at(look->d->motion, &look->normal, time, &look->d->drive);
-  if (!ring_rests(&before, &look->d->drive)) trb_peak_look_forget(look);
+  trb_ring before[TRB_N_RINGS];
+  memcpy(before, look->d->rings, sizeof before);
+  trb_dynamics_drive(look->d, time);
+  for (int r = 0; r < TRB_N_RINGS; r++)
+    if (!ring_rests(&before[r].pose, &look->d->rings[r].pose)) trb_peak_look_forget(look);
   memset(look->posed, 0, (size_t)look->normal.n_rollers * sizeof *look->posed);
   look_at_fast(look, y, values);
   look_at_hub(look, values);

@@ -195,7 +195,7 @@ static void put_ring(writer *w)
     const trb_wrench *on_ring = &l->on[TRB_BODY_INNER_RING];
     force = trb_add(force, from_orbit(&d->drive, &d->rollers[j], on_ring->force));
     moment = trb_add(moment, from_orbit(&d->drive, &d->rollers[j], on_ring->moment));
-    all += trb_dot(on_ring->moment, d->inner[j].axis);
+    all += trb_dot(on_ring->moment, d->rings[TRB_RING_INNER].in_frame[j].axis);
     outer += l->on[TRB_BODY_OUTER_RING].moment.z;
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += l->torque[k];
   }
@@ -204,7 +204,7 @@ static void put_ring(writer *w)
     const trb_vec3    hub_moment = from_r(&d->drive, on_ring->moment);
     force = trb_add(force, from_r(&d->drive, on_ring->force));
     moment = trb_add(moment, hub_moment);
-    all += trb_dot(hub_moment, d->drive.inner.axis);
+    all += trb_dot(hub_moment, d->rings[TRB_RING_INNER].pose.axis);
     outer += d->hub.on[TRB_BODY_OUTER_RING].moment.z;
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += d->hub.torque[k];
   }

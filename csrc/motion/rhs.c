@@ -6,7 +6,7 @@ static int place(trb_dynamics *d, const trb_approximation *instead, double time,
 {
   const trb_model *m = d->model;
   int              n_exact = 0;
-  trb_motion_at(d->motion, m, time, &d->drive);
+  trb_dynamics_drive(d, time);
   trb_dynamics_pose_hub(d, y);
   if (instead != NULL) instead->begin(instead->self, d, time);
   for (int j = 0; j < m->n_rollers; j++) {

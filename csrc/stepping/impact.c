@@ -114,7 +114,9 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
   if (d->work->n_hub > 0) {
     trb_motion_at(motion, m, time, &drive);
     trb_cage_pose_unpack(m, &drive, y_cage, &cage);
-    const trb_instant at = {.drive = &drive, .cage = &cage};
+    trb_ring rings[TRB_N_RINGS] = {0};
+    trb_rings_place(m, &drive, rings);
+    const trb_instant at = {.drive = &drive, .rings = rings, .cage = &cage};
     least = trb_min(least, factor_of_hub(impacts, d, &at, step, measure));
   }
   impacts->factor[m->n_rollers] = least;
