@@ -1,11 +1,13 @@
-"""Processor time of the steps in two builds, in pairs: does a change of the core make it slower?
+"""Processor time of the steps in two builds, side by side: does a change of the core make it slower?
 
-    python benchmarks/paired.py OTHER/.venv/bin/python [--pairs 9] [--quick] [--json FILE]
+    python benchmarks/paired.py OTHER/.venv/bin/python [--rounds 200] [--quick] [--json FILE]
 
-OTHER is the checkout of another version with its environment (``make install`` there). In each pair every scene is run once by
-both builds, each in a process of its own and in turns, so that a machine that gets slower meets both; the median of the ratios
-counts. Only steps are timed: no records, no files. The builds may round differently, and a colliding cage then takes other
-steps: so the ratio of the time a step is given as well.
+OTHER is the checkout of another version with its environment (``make install`` there). Each scene runs in both builds at once,
+each in a process of its own, and the two take turns: one computes a tenth of a turn of the shaft while the other waits, then
+the other. A machine that gets slower or faster within seconds so meets both alike. A round gives a ratio of the times; the
+median of all rounds counts, with its interval of 95 % confidence from the order of the ratios. Only steps are timed: no
+records, no files. The builds may round differently, and a colliding cage then takes other steps: so the ratio of the time a
+step is given as well.
 """
 
 from __future__ import annotations
@@ -15,27 +17,31 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import common
 import numpy as np
+from scipy.stats import binom
 
-COLUMNS = {
+COLUMNS: Final = {
     "scene": "text: what is run",
-    "turns": "1: turns of the shaft",
-    "other_ms": "ms: processor time a turn of the other build, median",
-    "this_ms": "ms: processor time a turn of this build, median",
-    "ratio": "1: this over the other, median of the pairs",
-    "least": "1: smallest ratio of a pair",
-    "most": "1: largest ratio of a pair",
-    "ratio_per_step": "1: ratio of the time a step, median of the pairs",
+    "rounds": "1: parts of the run, of a tenth of a turn each",
+    "other_ms": "ms: processor time a turn of the other build, mean",
+    "this_ms": "ms: processor time a turn of this build, mean",
+    "ratio": "1: this over the other, median of the rounds",
+    "low": "1: lower end of the median's interval of 95 % confidence",
+    "high": "1: its upper end",
+    "ratio_per_step": "1: ratio of the time a step, median of the rounds",
+    "low_per_step": "1: lower end of its interval",
+    "high_per_step": "1: its upper end",
 }
-TURNS = 4.0
-WORK = """
+PART: Final = 0.1
+"""Turns of the shaft in a round."""
+WORK: Final = """
 import json, sys, time
 import trbdyn as trb
 
-name, turns = sys.argv[1], float(sys.argv[2])
+name, part = sys.argv[1], float(sys.argv[2])
 effects = trb.Effects.paper().replace(quadrature="gauss", n_slices=8)
 scenes = {
     "colliding cage": lambda: trb.cases.scene_30310(3000.0, 4930.0, effects=effects, start=trb.Start.whirl(0.9)),
@@ -49,60 +55,91 @@ scenes = {
 }
 scene = scenes[name]()
 simulation = trb.Simulation(scene, accuracy="standard")
-turn = 60.0 / scene.speed_rpm
-while simulation.time < turn:
+turn, end = 60.0 / scene.speed_rpm, 1.0
+while simulation.time < end * turn:
     simulation.step()
-began, steps = time.process_time(), 0
-while simulation.time < (1.0 + turns) * turn:
-    simulation.step()
-    steps += 1
-print(json.dumps([time.process_time() - began, steps]))
+for _ in sys.stdin:
+    end += part
+    began, steps = time.process_time(), 0
+    while simulation.time < end * turn:
+        simulation.step()
+        steps += 1
+    print(json.dumps([time.process_time() - began, steps]), flush=True)
 """
-SCENES = ("colliding cage", "combined load", "smooth rolling", "24 slices")
+SCENES: Final = ("colliding cage", "combined load", "smooth rolling", "24 slices")
 
 
-def timed(python: str, scene: str, turns: float) -> tuple[float, int]:
-    """Processor time (s) and number of the steps in a build."""
-    words = [python, "-P", "-c", WORK, scene, str(turns)]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, cwd="/")
-    if done.returncode:
-        raise SystemExit(f"{python}: {scene} failed:\n{done.stderr[-2000:]}")
-    seconds, steps = json.loads(done.stdout)
-    return float(seconds), int(steps)
+class Worker:
+    """A scene in a build, in a process of its own."""
+
+    def __init__(self, python: str, scene: str) -> None:
+        self.what = f"{python}: {scene}"
+        words = [python, "-P", "-c", WORK, scene, str(PART)]
+        self.process = subprocess.Popen(
+            words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd="/"
+        )
+
+    def __enter__(self) -> Worker:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+    def timed(self) -> tuple[float, int]:
+        """Processor time (s) and number of the steps of the next part."""
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        try:
+            self.process.stdin.write("\n")
+            self.process.stdin.flush()
+            seconds, steps = json.loads(self.process.stdout.readline())
+        except (OSError, ValueError):
+            raise SystemExit(f"{self.what} failed:\n{self.process.communicate()[1][-2000:]}") from None
+        return float(seconds), int(steps)
 
 
-def row_of(scene: str, other: str, turns: float, pairs: int) -> dict[str, Any]:
+def interval(values: np.ndarray) -> tuple[float, float]:
+    """Interval of 95 % confidence of a median: values in order, whose ranks follow from the binomial distribution."""
+    ordered, n = np.sort(values), len(values)
+    rank = max(int(binom.ppf(0.025, n, 0.5)) - 1, 0)
+    return float(ordered[rank]), float(ordered[n - 1 - rank])
+
+
+def row_of(scene: str, other: str, rounds: int) -> dict[str, Any]:
     """The row of a scene; which build comes first alternates."""
     found: tuple[list[tuple[float, int]], list[tuple[float, int]]] = ([], [])
-    builds = (other, sys.executable)
-    for pair in range(pairs):
-        for build in (0, 1) if pair % 2 else (1, 0):
-            found[build].append(timed(builds[build], scene, turns))
-    before, now = (np.array(values, dtype=float) for values in found)
-    ratios = now[:, 0] / before[:, 0]
+    with Worker(other, scene) as before, Worker(sys.executable, scene) as now:
+        for part in range(rounds + 1):
+            for build in (0, 1) if part % 2 else (1, 0):
+                found[build].append((before, now)[build].timed())
+    old, new = (np.array(values[1:], dtype=float) for values in found)
+    ratios, per_step = new[:, 0] / old[:, 0], new[:, 0] / new[:, 1] / (old[:, 0] / old[:, 1])
     return {
         "scene": scene,
-        "turns": turns,
-        "other_ms": 1e3 * float(np.median(before[:, 0])) / turns,
-        "this_ms": 1e3 * float(np.median(now[:, 0])) / turns,
+        "rounds": rounds,
+        "other_ms": 1e3 * float(old[:, 0].mean()) / PART,
+        "this_ms": 1e3 * float(new[:, 0].mean()) / PART,
         "ratio": float(np.median(ratios)),
-        "least": float(ratios.min()),
-        "most": float(ratios.max()),
-        "ratio_per_step": float(np.median(ratios * before[:, 1] / now[:, 1])),
+        "low": interval(ratios)[0],
+        "high": interval(ratios)[1],
+        "ratio_per_step": float(np.median(per_step)),
+        "low_per_step": interval(per_step)[0],
+        "high_per_step": interval(per_step)[1],
     }
 
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
     parser.add_argument("other", type=Path, help="Python of the other build's environment")
-    parser.add_argument("--pairs", type=int, default=9)
+    parser.add_argument("--rounds", type=int, default=200)
     options = parser.parse_args(arguments)
     report = common.Report("paired", options, COLUMNS)
     other = str(options.other.absolute())
-    pairs = 3 if options.quick else options.pairs
-    report.inputs = {"pairs": pairs, "turns": TURNS, "accuracy": "standard"}
+    rounds = 50 if options.quick else options.rounds
+    report.inputs = {"rounds": rounds, "part": PART, "accuracy": "standard"}
     for scene in SCENES:
-        report.add(**row_of(scene, other, TURNS, pairs))
+        report.add(**row_of(scene, other, rounds))
     print("\n" + common.table(report.results, COLUMNS))
     report.finish()
     return report
