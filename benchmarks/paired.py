@@ -1,6 +1,6 @@
 """Processor time of the steps in two builds, side by side: does a change of the core make it slower?
 
-    python benchmarks/paired.py OTHER/.venv/bin/python [--rounds 200] [--quick] [--json FILE]
+    python benchmarks/paired.py OTHER/.venv/bin/python [--rounds 2000] [--quick] [--json FILE]
 
 OTHER is the checkout of another version with its environment (``make install`` there). Each scene runs in both builds at once,
 each in a process of its own, and the two take turns: one computes a tenth of a turn of the shaft while the other waits, then
@@ -132,7 +132,7 @@ def row_of(scene: str, other: str, rounds: int) -> dict[str, Any]:
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
     parser.add_argument("other", type=Path, help="Python of the other build's environment")
-    parser.add_argument("--rounds", type=int, default=200)
+    parser.add_argument("--rounds", type=int, default=2000)
     options = parser.parse_args(arguments)
     report = common.Report("paired", options, COLUMNS)
     other = str(options.other.absolute())
