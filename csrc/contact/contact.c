@@ -77,12 +77,13 @@ trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_messag
   *detail = NULL;
   if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
   d->lanes = calloc(lane_total(m), sizeof(double));
+  d->raceway = calloc(TRB_N_RACES * rollers, sizeof *d->raceway);
   d->rib = calloc(rollers, sizeof *d->rib);
   d->front_rib = calloc(rollers, sizeof *d->front_rib);
   d->pocket_force = calloc(slots, sizeof(double));
   d->pocket_friction = calloc(slots, sizeof(double));
   d->pocket_interference = calloc(slots, sizeof(double));
-  if (!d->lanes || !d->rib || !d->front_rib || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
+  if (!d->lanes || !d->raceway || !d->rib || !d->front_rib || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
     trb_detail_free(d);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
   }
@@ -94,6 +95,7 @@ void trb_detail_free(trb_detail *detail)
 {
   if (detail == NULL) return;
   free(detail->lanes);
+  free(detail->raceway);
   free(detail->rib);
   free(detail->front_rib);
   free(detail->pocket_force);
@@ -105,11 +107,12 @@ void trb_detail_free(trb_detail *detail)
 void trb_detail_clear(const trb_model *m, trb_detail *detail)
 {
   const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
-  memset(detail->lanes, 0, lane_total(m) * sizeof(double));
+  if (detail->lanes != NULL) memset(detail->lanes, 0, lane_total(m) * sizeof(double));
+  memset(detail->raceway, 0, TRB_N_RACES * rollers * sizeof *detail->raceway);
   memset(detail->rib, 0, rollers * sizeof *detail->rib);
   memset(detail->front_rib, 0, rollers * sizeof *detail->front_rib);
   memset(detail->pocket_force, 0, slots * sizeof(double));
   memset(detail->pocket_friction, 0, slots * sizeof(double));
-  for (size_t i = 0; i < slots; i++) detail->pocket_interference[i] = -INFINITY;
+  for (size_t i = 0; i < slots && detail->pocket_interference != NULL; i++) detail->pocket_interference[i] = -INFINITY;
   memset(&detail->land, 0, sizeof detail->land);
 }

@@ -135,11 +135,17 @@ typedef struct trb_land_detail {
 #undef TRB_LAND_MEMBER
 } trb_land_detail;
 
+/* A roller's contact as records see it: what one contact has, the others leave at zero. */
+typedef struct trb_contact_view {
+  double load, pressure, film, film_parameter, slide_roll, traction, friction, height, overhang;
+} trb_contact_view;
+
 struct trb_lanes;
 
 /* Intermediate quantities, stored if a caller wants to look at them; NULL while integrating. */
 typedef struct trb_detail {
-  double           *lanes;               /* [lane field][race][roller][node of n_lanes] */
+  double           *lanes;               /* [lane field][race][roller][node of n_lanes]; or NULL: the views alone */
+  trb_contact_view *raceway;             /* [race][roller] */
   trb_point_detail *rib;                 /* n_rollers */
   trb_point_detail *front_rib;           /* n_rollers */
   double           *pocket_force;        /* [roller][slot], N */

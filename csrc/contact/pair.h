@@ -34,11 +34,6 @@ typedef struct trb_bookings {
    [TRB_BY_DAMPING] = TRB_TORQUE_none, \
    [TRB_BY_FILM] = TRB_TORQUE_none}
 
-/* A roller's contact as records see it: what one contact has, the others leave at zero. */
-typedef struct trb_contact_view {
-  double load, pressure, film, film_parameter, slide_roll, traction, friction, height, overhang;
-} trb_contact_view;
-
 /* A roller's contact as peaks see it, and how far it holds. */
 typedef struct trb_contact_look {
   double load;           /* N */

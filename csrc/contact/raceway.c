@@ -39,20 +39,52 @@ typedef struct contact {
   const trb_pair *pair;
 } contact;
 
-/* Lane fields of the tile's loaded contacts, in the order in which the kernel packed them. */
-static void copy_detail(const trb_model *m, const contact *contacts, const trb_lanes *lanes, const trb_race_output *outputs, int n,
+/* Sums over the nodes of a contact, which are the lanes from `first` on; means are weighted by load. */
+static trb_contact_view view_of(const trb_model *m, const trb_lanes *l, int first)
+{
+  trb_contact_view out = {0};
+  for (int k = first; k < first + m->n_nodes; k++) {
+    const double q = l->load[k];
+    if (!(q > 0.0)) continue;
+    out.load += q;
+    out.pressure = trb_max(out.pressure, l->pressure[k]);
+    if (m->film) {
+      out.film += q * l->film[k];
+      out.film_parameter += q * l->film_parameter[k];
+    }
+    /* sliding along rolling: the mean velocity's direction */
+    const double along = l->sx[k] * l->mx[k] + l->sy[k] * l->my[k] + l->sz[k] * l->mz[k], mean = l->mean_speed[k];
+    out.slide_roll += q * along / (mean * mean);
+    out.traction -= q * l->friction_coefficient[k] / l->sliding_speed[k] * l->sy[k] + l->rolling[k] / mean * l->my[k];
+  }
+  if (out.load > 0.0) {
+    out.film /= out.load;
+    out.film_parameter /= out.load;
+    out.slide_roll /= out.load;
+  }
+  return out;
+}
+
+/* All fields of a contact's nodes, which are the lanes from `first` on. place: of the contact in the detail. */
+static void copy_lanes_of(const trb_model *m, const trb_lanes *lanes, int first, size_t place, trb_detail *detail)
+{
+  const size_t  n = (size_t)m->n_lanes, field_size = (size_t)(TRB_N_RACES * m->n_rollers) * n;
+  const double *from = (const double *)lanes + first;
+  for (size_t f = 0; f < TRB_N_LANE_FIELDS; f++)
+    memcpy(detail->lanes + f * field_size + place * n, from + f * TRB_LANE_STRIDE, n * sizeof(double));
+}
+
+/* What is seen of a tile's loaded contacts, in the order in which the kernel packed them. */
+static void fill_detail(const trb_model *m, const contact *contacts, const trb_lanes *lanes, const trb_race_output *outputs, int n,
                         trb_detail *detail)
 {
-  const size_t  lane_count = (size_t)m->n_lanes, field_size = (size_t)(TRB_N_RACES * m->n_rollers) * lane_count;
-  const double *from = (const double *)lanes;
-  int           packed = 0;
+  int first = 0;
   for (int c = 0; c < n; c++) {
     if (!outputs[c].loaded) continue;
-    const size_t to = ((size_t)contacts[c].race * (size_t)m->n_rollers + (size_t)contacts[c].roller) * lane_count;
-    for (int f = 0; f < TRB_N_LANE_FIELDS; f++)
-      memcpy(detail->lanes + (size_t)f * field_size + to, from + (size_t)f * TRB_LANE_STRIDE + (size_t)packed * lane_count,
-             lane_count * sizeof(double));
-    packed++;
+    const size_t place = (size_t)contacts[c].race * (size_t)m->n_rollers + (size_t)contacts[c].roller;
+    detail->raceway[place] = view_of(m, lanes, first);
+    if (detail->lanes != NULL) copy_lanes_of(m, lanes, first, place, detail);
+    first += m->n_lanes;
   }
 }
 
@@ -74,7 +106,7 @@ void trb_contact_raceway(const trb_model *m, const trb_instant *at, const trb_ba
     }
     trb_kernel_variants[work->variant].raceway(m, inputs, n, work->lanes, &work->counters, outputs);
     for (int c = 0; c < n; c++) add_output(&outputs[c], contacts[c].pair, contacts[c].row, &loads[contacts[c].roller]);
-    if (detail != NULL) copy_detail(m, contacts, work->lanes, outputs, n, detail);
+    if (detail != NULL) fill_detail(m, contacts, work->lanes, outputs, n, detail);
   }
 }
 
@@ -134,42 +166,14 @@ static void look_at_races(const trb_model *m, const trb_instant *at, const trb_b
     for (int i = 0; i < batch->n; i++) look_at_race(m, at, at->chosen[k], race_of(batch->pairs[i]), work, share, &looks[k * batch->n + i]);
 }
 
-/* Sums over the nodes of a contact; means are weighted by load. */
-static void view_of(const trb_model *m, const trb_detail *detail, int race, int roller, trb_contact_view *out)
-{
-  const double *field[TRB_N_LANE_FIELDS];
-  *out = (trb_contact_view){0};
-  for (int f = 0; f < TRB_N_LANE_FIELDS; f++) field[f] = trb_detail_lane(m, detail, f, race, roller);
-  for (int k = 0; k < m->n_nodes; k++) {
-    const double q = field[TRB_LANE_load][k];
-    if (!(q > 0.0)) continue;
-    out->load += q;
-    out->pressure = fmax(out->pressure, field[TRB_LANE_pressure][k]);
-    out->film += q * field[TRB_LANE_film][k];
-    out->film_parameter += q * field[TRB_LANE_film_parameter][k];
-    /* sliding along rolling: the mean velocity's direction */
-    const double along = field[TRB_LANE_sx][k] * field[TRB_LANE_mx][k] + field[TRB_LANE_sy][k] * field[TRB_LANE_my][k] +
-                         field[TRB_LANE_sz][k] * field[TRB_LANE_mz][k];
-    const double mean = field[TRB_LANE_mean_speed][k];
-    out->slide_roll += q * along / (mean * mean);
-    out->traction -= q * field[TRB_LANE_friction_coefficient][k] / field[TRB_LANE_sliding_speed][k] * field[TRB_LANE_sy][k] +
-                     field[TRB_LANE_rolling][k] / mean * field[TRB_LANE_my][k];
-  }
-  if (out->load > 0.0) {
-    out->film /= out->load;
-    out->film_parameter /= out->load;
-    out->slide_roll /= out->load;
-  }
-}
-
 static void view_outer(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
 {
-  view_of(m, detail, TRB_RACE_OUTER, roller, view);
+  *view = detail->raceway[TRB_RACE_OUTER * m->n_rollers + roller];
 }
 
 static void view_inner(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
 {
-  view_of(m, detail, TRB_RACE_INNER, roller, view);
+  *view = detail->raceway[TRB_RACE_INNER * m->n_rollers + roller];
 }
 
 #define RACEWAY \

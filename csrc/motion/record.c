@@ -56,9 +56,9 @@ int trb_record_offset(const trb_model *m, int field)
 
 /* Where each field of this record goes. */
 typedef struct writer {
-  trb_dynamics     *d;
-  const trb_detail *detail;
-  double           *at[TRB_N_FIELDS];
+  trb_dynamics *d;
+  trb_detail    seen; /* what records need, in the arrays of a detail: neither the nodes of raceways nor the gaps of pockets */
+  double       *at[TRB_N_FIELDS];
 } writer;
 
 #define PUT(name, index) w->at[TRB_FIELD_AT_##name][index]
@@ -160,7 +160,7 @@ static void put_contacts(writer *w, int j)
 {
   trb_contact_view views[TRB_N_PAIRS] = {{0}};
   for (int row = 0; row < TRB_N_PAIRS; row++)
-    if (trb_pair_table[row]->view != NULL) trb_pair_table[row]->view(w->d->model, w->detail, j, &views[row]);
+    if (trb_pair_table[row]->view != NULL) trb_pair_table[row]->view(w->d->model, &w->seen, j, &views[row]);
   for (size_t i = 0; i < sizeof contact_fields / sizeof contact_fields[0]; i++)
     w->at[contact_fields[i].field][j] = *(const double *)((const char *)&views[contact_fields[i].pair] + contact_fields[i].from);
 }
@@ -168,7 +168,7 @@ static void put_contacts(writer *w, int j)
 /* Of the cage on the land of a ring. */
 static void put_land(writer *w)
 {
-#define PUT_LAND(X, name, unit, text) PUT(land_##name, 0) = w->detail->land.name;
+#define PUT_LAND(X, name, unit, text) PUT(land_##name, 0) = w->seen.land.name;
   TRB_LAND_FIELDS(PUT_LAND, 0)
 #undef PUT_LAND
 }
@@ -237,17 +237,18 @@ static void put_energy(writer *w, const double *quadratures)
 void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record)
 {
   const trb_model *m = d->model;
-  writer           it = {.d = d, .detail = detail}, *w = &it;
+  writer           it = {.d = d, .seen = *detail}, *w = &it;
   int              offset = 0, shape[2];
   for (int i = 0; i < TRB_N_FIELDS; i++) {
     w->at[i] = record + offset;
     (void)trb_field_shape(m, trb_field_table[i].kind, shape);
     offset += shape[0] * shape[1];
   }
+  it.seen.lanes = it.seen.pocket_interference = NULL;
   trb_dynamics_pose(d, time, y);
-  trb_detail_clear(m, detail);
+  trb_detail_clear(m, &it.seen);
   const trb_counters keep = d->work->counters;
-  trb_dynamics_loads_of(d, apart, detail);
+  trb_dynamics_loads_of(d, apart, &it.seen);
   d->work->counters = keep; /* looking is not integrating */
   PUT(time, 0) = time;
   PUT(shaft_angle, 0) = d->drive.shaft_angle;
@@ -258,8 +259,8 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
     put_roller(w, j, y + trb_state_roller(j), y[trb_state_spin(m) + j]);
     put_contacts(w, j);
   }
-  memcpy(&PUT(pocket_force, 0), detail->pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
-  memcpy(&PUT(pocket_friction, 0), detail->pocket_friction, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
+  memcpy(&PUT(pocket_force, 0), it.seen.pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
+  memcpy(&PUT(pocket_friction, 0), it.seen.pocket_friction, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
   put_ring(w);
   put_energy(w, y + trb_state_quadrature(m));
 }
