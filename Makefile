@@ -54,7 +54,7 @@ wheels: install
 	.ci/wheels
 
 test: install $(VENV)/.test
-	$(VENV)/bin/ctest --test-dir build/package --output-on-failure --no-tests=ignore
+	$(VENV)/bin/ctest --test-dir build/package -j $(JOBS) --output-on-failure --no-tests=ignore
 	$(PY) -m pytest tests notebooks --nbmake -n $(JOBS) --dist loadfile --no-loadscope-reorder --max-worker-restart 0 $(if $(SLOW),-m "slow or not slow") $(PYTEST)
 
 lint: $(VENV)/.lint build/.package

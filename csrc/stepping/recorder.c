@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PLACES = 64 }; /* of the queue */
+/* Places of the queue, and how many of them are filled before a thread that waits for work is woken: to wake it costs as much as to compute
+ * a state, and nobody needs its results before the recorder is closed. */
+enum { PLACES = 64, ENOUGH = 8 };
 
 /* A state in the queue. */
 typedef struct place {
@@ -65,11 +67,12 @@ static place *reserve(trb_recorder *r)
   return next;
 }
 
+/* The thread waits only when the queue is empty: so it is woken when there is exactly enough. */
 static void hand_over(trb_recorder *r)
 {
   pthread_mutex_lock(&r->lock);
   r->put++;
-  pthread_cond_signal(&r->has_work);
+  if (r->put - r->taken == ENOUGH) pthread_cond_signal(&r->has_work);
   pthread_mutex_unlock(&r->lock);
 }
 

@@ -163,6 +163,8 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int, *, patien
     watch = Watch(sim, begin + duration, found) if Watch is not None else None
     looks = np.linspace(0.0, duration, 17)[1:] + begin
     began, half = clock.process_time(), (begin, 0)
+    # a run that is cut short is looked at as often as a whole one, so that no exchange of energy is missed
+    often = max(most_steps // 16, 1)
     try:
         for look in looks:
             while sim.time < look and run.steps < most_steps:
@@ -170,6 +172,10 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int, *, patien
                 run.steps += 1
                 if run.steps % 4000 == 0 and _look(watch, run):
                     most_steps = run.steps
+                if run.steps % often == 0:
+                    now = sim.record()
+                    turned += 0.5 * _turned_over(last, now)
+                    last = now
                 if run.steps == most_steps // 2:
                     half = (sim.time, run.steps)
                 if run.steps % 256 == 0 and clock.process_time() - began > patience:
