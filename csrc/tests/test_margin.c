@@ -54,7 +54,8 @@ static void walk(double aside, double lean, double *held, double *tightest)
     for (int j = 0; j < m->n_rollers; j++) {
       double step[TRB_ROLLER_SIZE];
       for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(j) + c] - place[trb_state_roller(j) + c];
-      if (!trb_margin_holds(&arms, &d->rings[TRB_RING_INNER].pose, before[j].margin, share, place + trb_state_roller(j), step, turn)) continue;
+      if (!trb_margin_holds(&arms, &d->rings[TRB_RING_INNER].pose, before[j].margin, share, place + trb_state_roller(j), step, turn))
+        continue;
       ++*held;
       for (int i = 0; i < TRB_N_PAIRS; i++) {
         const double change = fabs(after[j].margin[i] - before[j].margin[i]);
