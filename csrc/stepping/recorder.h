@@ -1,7 +1,7 @@
 /* Records and peaks of a run, computed beside the stepping by a second thread.
  *
- * A record needs an exact evaluation of every contact, and peaks look at all loads at the end of every step; together they cost nearly
- * as much as the steps themselves. Both follow from the states that the integrator has reached, and change nothing in it. So the
+ * A record needs an exact evaluation of every contact, and peaks look at all loads at the end of every step; together they cost more
+ * than half as much as the steps themselves. Both follow from the states that the integrator has reached, and change nothing in it. So the
  * stepping puts each state that they need into a queue, in their order, and goes on; the second thread takes the states from the queue
  * and computes. What it computes is the same to the bit as without it. The thread lives within one call of `trb_simulation_run`: when
  * the call returns, the queue is empty and the thread has ended. It never calls Python, and takes no signals. */
