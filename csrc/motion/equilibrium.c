@@ -7,9 +7,11 @@
 #include "contact/pair.h"
 
 /* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from USUAL_STEPS on it ends
- * at a balance that is good enough for a run, TRB_FAIR_SHARE of the largest load. */
+ * at a balance that is good enough for a run, TRB_FAIR_SHARE of the largest load. It goes on so long only where less than
+ * TRB_NEAR_SHARE of the largest load is unbalanced then: under a load that nothing carries the ring moves away for ever. */
 enum { USUAL_STEPS = 300, MOST_STEPS = 3000 };
 #define TRB_FAIR_SHARE 1e-5
+#define TRB_NEAR_SHARE 1e-2
 /* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */
 #define TRB_BALANCE_SHARE 1e-10
 #define TRB_BALANCE_FORCE 1e-7
@@ -248,6 +250,7 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
     e->residual = off;
     if (off < fmax(TRB_BALANCE_FORCE, TRB_BALANCE_SHARE * largest_load(s))) return TRB_OK;
     if (e->iterations >= USUAL_STEPS && is_fair(s, off)) return TRB_OK;
+    if (e->iterations == USUAL_STEPS && !(off < TRB_NEAR_SHARE * largest_load(s))) break;
     if (!known) differentiate(s);
     int          accepted = 0;
     const int    reused = known;

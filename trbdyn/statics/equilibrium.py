@@ -108,9 +108,12 @@ class EquilibriumSolver:
         try:
             found = self.model.equilibrium(force, fixed, place, load.shaft_speed, self.angles, rollers)
         except _core.CoreLoadError as error:
-            for trial in (load.displacement, self._pushed(load)) if displacement is None else ():
+            # starts that were not tried yet: without the guess, and where the axial position is given with play
+            trials: list[tuple[Array, Array | None]] = [(load.displacement, None)] if guess is not None else []
+            if load.displacement[2] > 0.0:
+                trials.append((self._pushed(load), self._along_cup(float(load.displacement[2]))))
+            for trial, guessed in trials if displacement is None else []:
                 with contextlib.suppress(_core.CoreLoadError):
-                    guessed = None if trial is load.displacement else self._along_cup(float(trial[2]))
                     found = self.model.equilibrium(force, fixed, trial, load.shaft_speed, self.angles, guessed)
                     break
             if found is None:
