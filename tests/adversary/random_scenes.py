@@ -53,6 +53,10 @@ ORDINARY: Table = {
     "oil_fill": 0.0,
     "rotating_share": 0.0,
     "rotating_turns": 1.0,
+    "guidance": "rollers",
+    "land_clearance": 1.0,
+    "land_film": 1.0,
+    "land_fill": 1.0,
 }
 """What a table that says nothing means; shrinking a failure leads back to these."""
 
@@ -139,7 +143,17 @@ def wide(rng: np.random.Generator) -> Table:
     return table
 
 
-KINDS = {"usual": usual, "wide": wide}
+def guided(rng: np.random.Generator) -> Table:
+    """As `wide`, with a cage that a land of a ring guides."""
+    return wide(rng) | {
+        "guidance": _one_of(rng, "inner_land", "outer_land"),
+        "land_clearance": _log(rng, 0.1, 5.0),
+        "land_film": _log(rng, 0.1, 10.0),
+        "land_fill": float(rng.uniform(0.0, 1.0)),
+    }
+
+
+KINDS = {"usual": usual, "wide": wide, "guided": guided}
 
 
 def draw(kind: str, seed: int) -> Table:
@@ -203,7 +217,13 @@ def _bearing(t: Table) -> trb.Bearing:
     if t["scatter"] > 0.0:
         deviations = np.random.default_rng(t["seed"]).uniform(-0.5, 0.5, bearing.n_rollers) * t["scatter"]
         roller = roller.replace(diameter_deviation=tuple(deviations.tolist()))
-    return bearing.replace(cage=cage, roller=roller)
+    land = bearing.land
+    land = land.replace(
+        clearance=land.clearance * t["land_clearance"],
+        contact_film=land.contact_film * t["land_clearance"] * t["land_film"],
+        fill=t["land_fill"],
+    )
+    return bearing.replace(cage=cage, roller=roller, land=land)
 
 
 def _effects(t: Table) -> trb.Effects:
@@ -214,7 +234,7 @@ def _effects(t: Table) -> trb.Effects:
         "frictionless": trb.Effects.frictionless,
     }[t["effects"]]()
     changes: Table = {"gravity": t["gravity"], "starvation_factor": t["starvation"]}
-    changes |= {"quadrature": "gauss", "n_slices": t["nodes"], "oil_fill": t["oil_fill"]}
+    changes |= {"quadrature": "gauss", "n_slices": t["nodes"], "oil_fill": t["oil_fill"], "guidance": t["guidance"]}
     for name in ("lubrication", "traction", "thermal", "rolling_resistance", "back_rib", "front_rib", "planar"):
         if t[name] is not None:
             changes[name] = t[name]
