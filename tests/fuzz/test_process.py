@@ -191,6 +191,7 @@ print(median_of_three() - before)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
 def test_models_and_equilibria_do_not_leak() -> None:
     """What 300 leave behind is less than 3.4 kB each, in a process of its own, whose memory nothing else touches. Its threads
