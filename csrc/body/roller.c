@@ -4,7 +4,7 @@
 
 static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, third = {0, 0, 1};
 
-void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)
+void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)
 {
   const trb_geometry *g = &m->geometry;
   const trb_rolling   rolling = trb_pure_rolling(m, drive->shaft_speed);
@@ -13,8 +13,15 @@ void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roll
   pose->cosine = cos(pose->angle);
   pose->sine = sin(pose->angle);
   pose->x = trb_v(pose->radius, 0.0, g->roller_centre_height + y[TRB_ROLLER_z]);
-  pose->frame = trb_tilted_frame(y[TRB_ROLLER_skew], g->roller_axis_angle + y[TRB_ROLLER_tilt]);
   pose->v = trb_v(y[TRB_ROLLER_v_r], rolling.v_t + y[TRB_ROLLER_v_t], y[TRB_ROLLER_v_z]);
+}
+
+void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)
+{
+  const trb_geometry *g = &m->geometry;
+  const trb_rolling   rolling = trb_pure_rolling(m, drive->shaft_speed);
+  trb_roller_pose_unpack_centre(m, drive, roller, y, pose);
+  pose->frame = trb_tilted_frame(y[TRB_ROLLER_skew], g->roller_axis_angle + y[TRB_ROLLER_tilt]);
   pose->orbit_speed = pose->v.y / pose->radius;
   pose->omega_frame = trb_v(rolling.omega_n + y[TRB_ROLLER_omega_n], y[TRB_ROLLER_omega_t], rolling.omega_a + y[TRB_ROLLER_omega_a]);
   pose->omega = trb_from_frame(&pose->frame, pose->omega_frame);

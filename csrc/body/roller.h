@@ -56,6 +56,8 @@ static inline trb_rolling trb_pure_rolling(const trb_model *m, double shaft_spee
 static inline double trb_nominal_angle(const trb_model *m, int roller) { return 2.0 * TRB_PI * roller / m->n_rollers; }
 
 void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose);
+/* Only where the centre is and how it moves: radius, angle with its cosine and sine, x, v. */
+void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose);
 /* Rates of a roller's coordinates and of its spin angle without loads; gives the power of gravity, W. */
 double trb_roller_inertia(const trb_model *m, const trb_drive *drive, const trb_roller_pose *r, double *rates, double *spin);
 /* Added to the rates: what a wrench does. */

@@ -27,16 +27,20 @@ static double turned_on_end(const trb_margin_arm *a, const double *place, const 
   return arm * (skewed * (sine + skew + lean) + tilted * (a->normal_lean + sine + tilt + lean));
 }
 
-int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_pose *ring, const double *margin, double share, const double *place,
+trb_ring_offset trb_ring_offset_of(const trb_ring_pose *ring)
+{
+  return (trb_ring_offset){.lean = hypot(ring->axis.x, ring->axis.y), .aside = hypot(ring->centre.x, ring->centre.y)};
+}
+
+int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *ring, const double *margin, double share, const double *place,
                      const double *step, double turn)
 {
-  const double lean = hypot(ring->axis.x, ring->axis.y), aside = hypot(ring->centre.x, ring->centre.y);
   const double around = fabs(step[TRB_ROLLER_psi]) + fabs(turn), shift = fabs(step[TRB_ROLLER_r]) + fabs(step[TRB_ROLLER_z]);
   const double turned = fabs(step[TRB_ROLLER_skew]) + fabs(step[TRB_ROLLER_tilt]);
   for (int i = 0; i < arms->n; i++) {
     const trb_margin_arm *a = &arms->of[i];
-    const double          by_turn = a->on_end ? turned_on_end(a, place, step, lean) : a->arm * turned;
-    if (!(shift + by_turn + around * (aside + lean * a->ring) <= share * margin[arms->row[i]])) return 0;
+    const double          by_turn = a->on_end ? turned_on_end(a, place, step, ring->lean) : a->arm * turned;
+    if (!(shift + by_turn + around * (ring->aside + ring->lean * a->ring) <= share * margin[arms->row[i]])) return 0;
   }
   return 1;
 }

@@ -19,10 +19,17 @@ typedef struct trb_margin_arms {
   int            n;
 } trb_margin_arms;
 
+/* How far a ring's axis is from the bearing's axis. */
+typedef struct trb_ring_offset {
+  double lean;  /* sine of the angle between the axes */
+  double aside; /* of the reference point from the bearing's axis, m */
+} trb_ring_offset;
+
 trb_margin_arms trb_margin_arms_of(const trb_model *m);
+trb_ring_offset trb_ring_offset_of(const trb_ring_pose *ring);
 /* Whether every contact is proven to change its interference by less than a share of its margin. place: the roller's state at which the
  * margins, one a row of the table of pairs, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
-int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_pose *ring, const double *margin, double share, const double *place,
+int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *ring, const double *margin, double share, const double *place,
                      const double *step, double turn);
 
 #endif

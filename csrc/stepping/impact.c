@@ -104,7 +104,7 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
         posed = 1;
       }
       trb_roller_pose r;
-      trb_roller_pose_unpack(m, &drive, j, y_roller, &r);
+      trb_roller_pose_unpack_centre(m, &drive, j, y_roller, &r);
       const double       left = trb_clearance_left(&fast->clearances[j], fast->arms, y_roller, y_cage);
       const trb_approach now = {.left = left, .speed = closing_speed(&r, &cage), .rise = rise[f]};
       impacts->factor[j] = trb_min(impacts->factor[j], factor_of(&now, step, measure, &impacts->speed[j]));

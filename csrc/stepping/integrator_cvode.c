@@ -122,8 +122,7 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
   self->matrix = trb_arrow_matrix(m->n_rollers, hub_width, self->sundials.context);
   self->solver = trb_arrow_linear_solver(m->n_rollers, hub_width, it->dynamics->work->variant, self->sundials.context);
-  /* a plain vector is the pattern of its own: the norm of what the equations lack is SUNDIALS', the mean over all entries */
-  if (self->scratch != NULL) self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->scratch, self->sundials.context);
+  if (self->y != NULL) self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->y, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");

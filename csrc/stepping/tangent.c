@@ -208,6 +208,7 @@ static void begin(void *self, const trb_dynamics *d, double time)
 {
   trb_tangents *t = self;
   t->under_way = trb_motion_under_way(d->motion, time);
+  t->offset = trb_ring_offset_of(&d->rings[TRB_RING_INNER].pose);
   for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
 }
 
@@ -221,8 +222,7 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   if (t->under_way) return 0;
   const double distance2 = r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) : (double)INFINITY;
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step) ||
-                      !trb_margin_holds(&t->arms, &d->rings[TRB_RING_INNER].pose, r->margin, measure->margin_share, r->origin, step,
-                                        step[TRB_TANGENT_TURN]);
+                      !trb_margin_holds(&t->arms, &t->offset, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
   r->served += !t->beyond[roller];
   if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
   kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, flow);

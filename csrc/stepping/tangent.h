@@ -47,6 +47,7 @@ typedef struct trb_tangents {
   const struct trb_tangent_measure *measure;                          /* of the evaluation under way */
   int                               under_way;                        /* the prescribed motion is: everything is exact */
   int                              *beyond;                           /* scratch: whether a bound of the tangent is passed */
+  trb_ring_offset                   offset;                           /* of the inner ring, in this evaluation */
   trb_margin_arms                   arms;                             /* what bounds the change of an interference */
   double                            time;                             /* at which slopes were last evaluated, s */
   int                               has_slopes;                       /* whether they were at all */

@@ -51,11 +51,11 @@ static void walk(double aside, double lean, double *held, double *tightest)
     disturb(m, pow(10.0, -9.0 + 4.0 * fabs(rig_random(&seed))), moved);
     const double turn = 1e-3 * rig_random(&seed);
     look(d, turn / (m->geometry.cage_speed_ratio * speed), moved, after);
+    const trb_ring_offset offset = trb_ring_offset_of(&d->rings[TRB_RING_INNER].pose);
     for (int j = 0; j < m->n_rollers; j++) {
       double step[TRB_ROLLER_SIZE];
       for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(j) + c] - place[trb_state_roller(j) + c];
-      if (!trb_margin_holds(&arms, &d->rings[TRB_RING_INNER].pose, before[j].margin, share, place + trb_state_roller(j), step, turn))
-        continue;
+      if (!trb_margin_holds(&arms, &offset, before[j].margin, share, place + trb_state_roller(j), step, turn)) continue;
       ++*held;
       for (int i = 0; i < TRB_N_PAIRS; i++) {
         const double change = fabs(after[j].margin[i] - before[j].margin[i]);
