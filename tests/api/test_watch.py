@@ -9,7 +9,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.model.cases import scene_30310
-from trbdyn.run.watch import STOP, WARN, WINDOWS, Watch
+from trbdyn.run.watch import LOST_SHARE, STOP, WARN, WINDOWS, Watch
 
 LOOSE: dict[str, Any] = {
     "rtol": 0.1,
@@ -100,6 +100,27 @@ def test_bounds(work, loss, warned, ended):
     reason, found = _window(work, loss, 0.0, 0.0)
     assert bool(found) is warned
     assert (reason is not None) is ended
+
+
+@pytest.mark.parametrize(
+    ("loss", "missing", "said"),
+    [
+        (8e-4, 3.8e-4, "took 0.00038 J"),
+        (8e-4, -3.8e-4, "made 0.00038 J"),
+        (8e-4, 0.9 * LOST_SHARE * 8e-4, ""),
+        (1e-6, 3e-5, ""),
+        (0.0, 3e-4, ""),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
+def test_what_is_missing_beside_the_losses_is_said(loss, missing, said):
+    """Also where it is less than a hundredth of a thousandth of the energy that is stored, 38.7 J; the run goes on."""
+    sim, found = _Sim(), []
+    sim._core.row = [0.0, 0.0, 38.0, 0.7]
+    watch = Watch(sim, 1.0, found)  # type: ignore[arg-type]
+    sim._core.time, sim._core.row = 1.0, [loss + missing, loss, 38.0, 0.7]
+    assert watch.look(final=True) is None
+    assert [said in text for text in found] == [True] * bool(said)
 
 
 @pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")

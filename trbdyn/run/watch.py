@@ -4,7 +4,8 @@ The core integrates every work and every loss beside the motion, so an error of 
 in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
 whole run. A window whose energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more
 than `STOP` was made ends the run, as its losses, slip and forces would be wrong by as much. So does one in which that much is
-missing, if losses or the work put in are a large share of what was turned over.
+missing, if losses or the work put in are a large share of what was turned over. Over the whole run it is looked at beside the
+losses as well: a bearing that loses little may turn over much more.
 """
 
 from __future__ import annotations
@@ -30,6 +31,10 @@ STOP: Final = 0.1
 """The same, above which a run ends."""
 DISSIPATING: Final = 0.3
 """Share of losses, or of the work put in, in the energy turned over above which missing energy ends a run, too."""
+LOST_SHARE: Final = 0.1
+"""The same over the losses of the whole run, above which it warns."""
+LEAST_STORED_SHARE: Final = 1e-6
+"""Share of the kinetic and elastic energy below which nothing is looked at beside the losses."""
 WINDOWS: Final = 20
 """Windows of a run, at most."""
 STORED_SHARE: Final = 1e-3
@@ -98,6 +103,8 @@ class Watch:
             self._window, self._since, self._turned_over = now, time, 0.0
         if final and time > self._begin:
             reason = self._judge(self._first, self._begin, now, time, self._turned_over_in_all) or reason
+            if "energy" not in self._said:
+                self._judge_losses(now, time)
             text = self._vibrations and self._vibrations.judge(_missing(self._first, now)[0], self._begin, time)
             if text:
                 self._say(text, "vibrations")
@@ -147,6 +154,18 @@ class Watch:
         self._say(text, "energy")
         advice = "Try accuracy='reference' or smaller tolerances, or when_wrong='go_on' to go on all the same"
         return f"ended at {time:.6g} s: {text}. {advice}"
+
+    def _judge_losses(self, now: dict[str, float], time: float) -> None:
+        missing, _, lost = _missing(self._first, now)
+        stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
+        if lost <= 0.0 or not abs(missing) > max(LOST_SHARE * lost, LEAST_STORED_SHARE * stored, LEAST_ENERGY):
+            return
+        self._say(
+            f"from {self._begin:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, and the integration "
+            f"{'took' if missing > 0.0 else 'made'} {abs(missing):.2g} J: where losses come from impacts or vibrations they "
+            "may be wrong by as much; try accuracy='reference', or smaller tolerances",
+            "losses",
+        )
 
     def _look_at_steps(self) -> str | None:
         sim = self._sim
