@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import copy
+import errno
+import itertools
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -20,7 +25,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
-from trbdyn.results import sources
+from trbdyn.results import result_file, sources
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
 
@@ -193,6 +198,30 @@ def test_records_must_fit_the_layout(synthetic: Any, stub_scene: Any) -> None:
     assert not np.shares_memory(chosen.inner_torque, synthetic.records)
 
 
+@pytest.mark.parametrize("where", ["memory", "pieces", "file", "window"])
+@pytest.mark.parametrize("how", ["pickle", "copy", "deepcopy"])
+def test_results_can_be_copied_and_sent(tmp_path: Path, whirling: Result, how: str, where: str) -> None:
+    """To another process, say; a result in a file is read from there."""
+    path = tmp_path / "run.h5"
+    ways: dict[str, Callable[[Any], Any]] = {
+        "pickle": lambda result: pickle.loads(pickle.dumps(result)),
+        "copy": copy.copy,
+        "deepcopy": copy.deepcopy,
+    }
+    if where in ("pieces", "file"):
+        scene = trb.cases.scene_30310(3000.0)
+        output = path if where == "file" else None
+        result = trb.Simulation(scene).run(duration=1e-3, save_every=1e-5, output=output, save_groups=["cage"])
+    else:
+        result = whirling.window(0.2) if where == "window" else whirling
+    again = ways[how](result)
+    assert again.groups == result.groups
+    assert again.success is result.success
+    assert np.array_equal(again.cage_position, result.cage_position)
+    with pytest.raises(AttributeError, match="_nothing"):
+        again._nothing  # noqa: B018
+
+
 def test_xarray_has_names_units_and_coordinates(whirling: Result) -> None:
     dataset = whirling.to_xarray()
     assert dict(dataset.sizes) == {"time": 4001, "xyz": 3, "xy": 2, "wxyz": 4, "roller": 12, "slot": 4}
@@ -279,7 +308,8 @@ spec.loader.exec_module(module)
 from trbdyn.results import result_file
 result_file.FLUSH_SECONDS = 0.0
 run = module.make_run(n=2001)
-writer = result_file.ResultWriter(sys.argv[1], scene=module.StubScene(), layout=run.layout, fields=run.fields)
+options = {"scene": module.StubScene(), "layout": run.layout, "fields": run.fields, "beside": sys.argv[3] == "True"}
+writer = result_file.ResultWriter(sys.argv[1], **options)
 """
 
 WRITE_ON = """
@@ -302,19 +332,21 @@ except FileError as error:
 """
 
 
-def start_writer(tmp_path: Path, then: str) -> subprocess.Popen[bytes]:
+def start_writer(tmp_path: Path, then: str, *, beside: bool) -> subprocess.Popen[bytes]:
     """A process that opens run.h5 for writing, flushes every record at once, and then does as told."""
     script = tmp_path / "writer.py"
     script.write_text(LOADER + then)
-    command = [sys.executable, str(script), str(tmp_path / "run.h5"), str(Path(__file__).parent)]
+    command = [sys.executable, str(script), str(tmp_path / "run.h5"), str(Path(__file__).parent), str(beside)]
     return subprocess.Popen(
         command, stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     )
 
 
 @pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="needs a limit of file size")
-def test_a_full_disk_is_an_error_and_leaves_a_readable_file(tmp_path: Path) -> None:
-    with start_writer(tmp_path, FILL_UP) as process:
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_full_disk_is_an_error_and_leaves_a_readable_file(tmp_path: Path, beside: bool) -> None:
+    """What comes after the error is not written: it would lie behind a gap."""
+    with start_writer(tmp_path, FILL_UP, beside=beside) as process:
         said, _ = process.communicate()
     assert process.returncode == 0
     assert b"cannot be written" in said
@@ -326,9 +358,9 @@ def test_a_full_disk_is_an_error_and_leaves_a_readable_file(tmp_path: Path) -> N
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
-@pytest.mark.parametrize("seed", range(3))
-def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, seed: int) -> None:
-    with start_writer(tmp_path, WRITE_ON) as process:
+@pytest.mark.parametrize(("seed", "beside"), [(0, False), (1, True), (2, True)])
+def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, seed: int, beside: bool) -> None:
+    with start_writer(tmp_path, WRITE_ON, beside=beside) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"ready\n"
         time.sleep(0.4 + 0.237 * seed)
@@ -355,6 +387,96 @@ def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: An
     with pytest.raises(FileError, match="closed already"):
         writer.finish(**synthetic.ending())
     np.testing.assert_array_equal(load(tmp_path / "run.h5").time, synthetic.column("time")[:11])
+
+
+@pytest.mark.parametrize("compression", [None, "gzip", "lzf"])
+@pytest.mark.parametrize("expected", [None, 7, 100, 4001, 100_000])
+@pytest.mark.parametrize("beside", [False, True])
+def test_what_is_written_is_what_was_recorded(
+    tmp_path: Path,
+    synthetic: Any,
+    stub_scene: Any,
+    beside: bool,
+    expected: int | None,
+    compression: str | None,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In chunks of all lengths, full or not, that come in pieces of other lengths; some are flushed halfway."""
+    monkeypatch.setattr(result_file, "FLUSH_BYTES", 100_000)
+    options: dict[str, Any] = {"scene": stub_scene, "layout": synthetic.layout, "fields": synthetic.fields}
+    path = tmp_path / "run.h5"
+    with ResultWriter(path, **options, compression=compression, expected=expected, beside=beside) as writer:
+        start, sizes = 0, itertools.cycle([40, 1, 333, 512, 2])
+        while start < len(synthetic.records):
+            stop = start + next(sizes)
+            writer.append(synthetic.records[start:stop])
+            if stop - start == 1:
+                writer.flush()
+                with h5py.File(path, "r", swmr=True) as file:
+                    np.testing.assert_array_equal(file["fields/time"], synthetic.column("time")[:stop])
+            start = stop
+        writer.finish(**synthetic.ending())
+    loaded = load(path)
+    assert len(loaded) == len(synthetic.records)
+    for field in synthetic.fields:
+        np.testing.assert_array_equal(loaded[field.name], synthetic.column(field.name))
+
+
+@pytest.mark.parametrize("expected", [None, 4001])
+def test_a_full_disk_keeps_what_it_has_room_for(
+    tmp_path: Path, synthetic: Any, stub_scene: Any, expected: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options: dict[str, Any] = {"scene": stub_scene, "layout": synthetic.layout, "fields": synthetic.fields}
+    writer = ResultWriter(tmp_path / "run.h5", **options, expected=expected)
+    room, reserve, asked = 6_000_000, writer._reserve, []
+
+    def limited(size: int) -> None:
+        asked.append(size)
+        if size > room:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        reserve(size)
+
+    monkeypatch.setattr(writer, "_reserve", limited)
+    monkeypatch.setattr(result_file, "FLUSH_BYTES", 1 << 30)
+    writer.append(synthetic.records[:2000])
+    with pytest.raises(FileError, match="no space"):
+        writer.flush()
+    assert asked[0] > room >= asked[-1]
+    writer.append(synthetic.records[2000:2010])
+    with pytest.raises(FileError, match="records before these"):
+        writer.flush()
+    writer.close()
+    loaded = load(tmp_path / "run.h5")
+    assert len(loaded) >= 100
+    for field in synthetic.fields:
+        np.testing.assert_array_equal(loaded[field.name], synthetic.column(field.name)[: len(loaded)])
+
+
+def test_an_error_of_the_second_thread_reaches_the_next_call(
+    tmp_path: Path, synthetic: Any, stub_scene: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The records before it stay, those after it are not written."""
+    monkeypatch.setattr(result_file, "FLUSH_SECONDS", 0.0)
+    writer = ResultWriter(
+        tmp_path / "run.h5", scene=stub_scene, layout=synthetic.layout, fields=synthetic.fields, beside=True
+    )
+    writer.append(synthetic.records[:40])
+    writer.flush()
+    threads = []
+
+    def full(size: int) -> None:
+        threads.append(threading.current_thread())
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(writer, "_reserve", full)
+        writer.append(synthetic.records[40:80])
+        with pytest.raises(FileError, match="no space"):
+            writer.append(synthetic.records[80:120])
+    assert threads
+    assert threading.current_thread() not in threads
+    writer.close()
+    assert len(load(tmp_path / "run.h5")) == 40
 
 
 def test_foreign_and_missing_files_are_told_apart(tmp_path: Path) -> None:
@@ -432,6 +554,7 @@ def test_damaged_files_are_refused_clearly(
 
 def test_truncated_files_raise_file_errors(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
     data = write(tmp_path / "run.h5", synthetic, stub_scene).read_bytes()
+    assert len(data) == int.from_bytes(data[28:36], "little")  # its end, as the superblock has it
     for share in (0.0, 0.001, 0.01, 0.3, 0.9, 0.999):
         path = tmp_path / f"cut{share}.h5"
         path.write_bytes(data[: int(share * len(data))])
@@ -458,6 +581,9 @@ def test_files_that_cannot_be_made(tmp_path: Path, synthetic: Any, stub_scene: A
         write(tmp_path / "open.h5", synthetic, stub_scene)
     with pytest.raises(InputError, match="groups"):
         write(tmp_path / "run.h5", synthetic, stub_scene, groups=["wheels"])
+    with pytest.raises(InputError, match="compression"):
+        write(tmp_path / "run.h5", synthetic, stub_scene, compression="zip")
+    assert not (tmp_path / "run.h5").exists()
 
 
 def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:

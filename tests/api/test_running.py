@@ -18,6 +18,7 @@ import tqdm
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError, StepError
 from trbdyn.model.cases import scene_30310
+from trbdyn.results.fields import Field
 from trbdyn.run import checkpoint, memory, running
 
 
@@ -146,28 +147,41 @@ def test_free_memory_is_what_the_system_says(tmp_path: Path, monkeypatch: pytest
 
 
 @pytest.mark.parametrize(
-    ("limit", "taken", "files"),
+    ("controller", "limit", "taken", "files"),
     [
-        ("memory.max", "memory.current", "inactive_file"),
-        ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+        ("", "memory.max", "memory.current", "inactive_file"),
+        ("memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
     ],
 )
 def test_free_memory_knows_the_limit_of_a_container(
-    limit: str, taken: str, files: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    controller: str, limit: str, taken: str, files: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Written as the kernel writes them; files that were read and are no longer used make room."""
     monkeypatch.setattr(memory, "_MEMINFO", tmp_path / "meminfo")
-    monkeypatch.setattr(memory, "_GROUPS", ((tmp_path, limit, taken, files),))
+    monkeypatch.setattr(memory, "_OWN_GROUPS", tmp_path / "own")
+    monkeypatch.setattr(memory, "_GROUPS", ((controller, tmp_path / "groups", limit, taken, files),))
     (tmp_path / "meminfo").write_text(
         "MemTotal:       24000000 kB\nMemAvailable:    9000000 kB\nHugePages_Total:       0\n"
     )
     assert memory.available() == 9_000_000 * 1024
-    (tmp_path / limit).write_text("3000000000\n")
-    (tmp_path / taken).write_text("2500000000\n")
-    (tmp_path / "memory.stat").write_text(f"anon 1900000000\n{files} 400000000\n")
+
+    def group(place: str, most: int | str, now: int) -> None:
+        folder = tmp_path / "groups" / place
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / limit).write_text(f"{most}\n")
+        (folder / taken).write_text(f"{now}\n")
+        (folder / "memory.stat").write_text(f"anon 1900000000\n{files} 400000000\n")
+
+    group("", 3_000_000_000, 2_500_000_000)
     assert memory.available() == 900_000_000
-    (tmp_path / limit).write_text("max\n" if limit == "memory.max" else "9223372036854771712\n")
+    group("", "max" if limit == "memory.max" else 9223372036854771712, 2_500_000_000)
     assert memory.available() == 9_000_000 * 1024
+    (tmp_path / "own").write_text(f"2:cpu,cpuacct:/elsewhere\n4:{controller}:/user/ours\n")
+    group("user", 2_000_000_000, 1_800_000_000)
+    group("user/ours", 1_000_000_000, 900_000_000)
+    assert memory.available() == 500_000_000
+    group("user", 2_000_000_000, 2_100_000_000)
+    assert memory.available() == 300_000_000
 
 
 def test_free_memory_knows_the_limit_of_the_process() -> None:
@@ -185,13 +199,25 @@ def test_free_memory_knows_the_limit_of_the_process() -> None:
 
 
 def test_pieces_are_joined_in_their_order() -> None:
-    kept = memory.Kept(3)
-    assert kept.joined().shape == (0, 3)
-    kept = memory.Kept(3)
-    pieces = [np.full((n, 3), float(n)) for n in (2, 1, 4)]
-    for piece in pieces:
-        kept.append(piece)
-    assert kept.size == 7 * 3 * 8
-    assert np.array_equal(kept.joined(), np.concatenate(pieces))
-    kept.append(np.zeros((1, 3)))
-    assert np.array_equal(kept.joined()[:7], np.concatenate(pieces))
+    layout = [("time", 0, ()), ("angle", 1, (2,)), ("force", 3, (2, 3))]
+    fields = tuple(
+        Field(name, group, kind, "", "")
+        for name, group, kind in (("time", "time", "scalar"), ("angle", "cage", "vec2"), ("force", "ring", "vec3"))
+    )
+    rows = np.arange(70.0).reshape(7, 10)
+    for kept_fields, width in ((fields, 10), ((fields[0], fields[2]), 7)):
+        kept = memory.Kept(layout, kept_fields)
+        assert kept.source().read("time").shape == (0,)
+        assert kept.source().read("force").shape == (0, 2, 3)
+        for start, stop in ((0, 2), (2, 3), (3, 7)):
+            kept.append(rows[start:stop].copy())
+            source = kept.source()
+            assert source.n_records == stop
+            assert np.array_equal(source.read("force"), rows[:stop, 3:9].reshape(-1, 2, 3))
+            assert source.read("force") is source.read("force")
+        assert kept.size == 7 * width * 8
+        source = kept.source()
+        for field in kept_fields:
+            offset, size = {name: (at, int(np.prod(shape))) for name, at, shape in layout}[field.name]
+            assert np.array_equal(source.read(field.name).reshape(7, -1), rows[:, offset : offset + size])
+        assert np.array_equal(source.read("time"), rows[:, 0])  # again, when all have been read

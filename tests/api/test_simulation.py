@@ -163,6 +163,22 @@ def test_callback_ends_the_run(tmp_path: Path) -> None:
     assert 256 < len(trb.load(path)) < 2000
 
 
+def test_what_a_callback_raises_brings_the_records_with_it() -> None:
+    def callback(sim: trb.Simulation) -> None:
+        if sim.time > 1e-3:
+            raise ValueError("enough")
+
+    sim = trb.Simulation(trb.cases.scene_30310(3000.0))
+    with pytest.raises(ValueError, match="enough") as caught:
+        sim.run(duration=1.0, save_every=1e-5, callback=callback)
+    result = caught.value.result
+    assert not result.success
+    assert "ended by ValueError" in result.message
+    assert len(result) > 100
+    assert result.time[-1] == pytest.approx(1e-5 * (len(result) - 1))
+    assert "'result'" in caught.value.__notes__[0]
+
+
 def test_what_a_callback_raises_comes_out(tmp_path: Path) -> None:
     def callback(_: Simulation) -> None:
         raise RuntimeError("enough")

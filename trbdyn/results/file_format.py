@@ -44,7 +44,11 @@ SCHEMA = "trbdyn-result"
 SCHEMA_VERSION = 1
 
 CHUNK_BYTES = 16384
-"""Size aimed at for an HDF5 chunk: small enough that a short run wastes little, large enough to read fast."""
+"""Size aimed at for an HDF5 chunk where nobody knows how many records will come."""
+BLOCK_ROWS = 256
+"""Most rows of a chunk where it is known: a chunk that is not full is written again at each flush."""
+BLOCK_BYTES = 8 << 20
+"""Most bytes of the chunks of all fields together."""
 
 PEAKS = "peaks"
 """The group of fields that are peaks of each record's interval."""
@@ -140,4 +144,18 @@ def stored(value: Any) -> Any:
 
 
 def chunk_rows(shape: tuple[int, ...]) -> int:
+    """Rows of a chunk of a field where nobody knows how many records will come."""
     return max(1, CHUNK_BYTES // (8 * max(1, int(np.prod(shape)))))
+
+
+def block_rows(expected: int, record_bytes: int) -> int:
+    """Rows of a chunk of every field, so that whole chunks of all fields are full at the same time.
+
+    Parameters
+    ----------
+    expected : int
+        Records that will come at most.
+    record_bytes : int
+        Bytes of a record.
+    """
+    return max(1, min(expected, BLOCK_ROWS, BLOCK_BYTES // max(1, record_bytes)))

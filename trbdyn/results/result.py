@@ -166,7 +166,10 @@ class Result(Derived):
         return self._source.read(name)
 
     def __getattr__(self, name: str) -> Array:
-        if name.startswith("_") or name not in self._fields:
+        # a copy that is being made asks for such names before it has any fields
+        if name.startswith("_"):
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        if name not in self._fields:
             raise AttributeError(f"this result has no {name!r}: {self._unknown(name)}")
         return self[name]
 

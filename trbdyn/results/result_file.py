@@ -7,9 +7,11 @@ import os
 import shutil
 import time
 import uuid
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
 from weakref import WeakSet
@@ -19,23 +21,24 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn.base.own_files import copy_content, create_draft, exists_already, is_same, output_path, put_in_place
+from trbdyn.base.second_thread import SecondThread
 from trbdyn.base.version import __version__
-from trbdyn.errors import FileError
+from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import (
-    CHUNK_BYTES,
     LIBVER,
     PEAKS,
     SCHEMA,
     SCHEMA_VERSION,
+    block_rows,
     chunk_rows,
     json_text,
     reason,
     stored,
 )
 from trbdyn.results.hdf5_marks import lock, take_lock
-from trbdyn.results.hdf5_quick import append, describe
+from trbdyn.results.hdf5_quick import Column
 
 Array = NDArray[np.float64]
 
@@ -77,15 +80,20 @@ class ResultWriter:
         Number of the segment.
     first_record : int
         Place of the segment's first record in the run.
+    expected : int, optional
+        Records that will come at most, where it is known: the file is made for them.
     overwrite : bool
         Replace a file that is there.
+    beside : bool
+        Make and write the file with a second thread while the caller goes on. What goes wrong is then raised by a later call;
+        `wait` tells whether the file is there.
 
     Raises
     ------
     FileError
         If the file cannot be created, or is there and is not to be replaced.
     InputError
-        If a group is unknown, or the path names no file.
+        If a group or the compression is unknown, or the path names no file.
 
     Notes
     -----
@@ -111,96 +119,104 @@ class ResultWriter:
         run_id: str | None = None,
         segment: int = 0,
         first_record: int = 0,
+        expected: int | None = None,
         overwrite: bool = False,
+        beside: bool = False,
     ) -> None:
+        if compression not in (None, "gzip", "lzf"):
+            raise InputError.of("compression", compression, "must be 'gzip', 'lzf' or None")
         self.path = output_path(path, overwrite=overwrite)
         self.run_id = run_id or uuid.uuid4().hex
         self.n_written = 0
         self._places = {name: (offset, tuple(shape)) for name, offset, shape in layout}
         self.fields = tuple(f for f in field_table.select(fields, groups) if f.name in self._places)
-        self._datasets: dict[str, h5py.h5d.DatasetID] = {}
+        self._width = sum(int(np.prod(self._places[f.name][1])) for f in self.fields)
+        self._block = None if expected is None else block_rows(expected, 8 * self._width)
+        self._columns: dict[str, Column] = {}
+        self._whole_run: dict[str, Column] = {}
         self._pending: list[Array] = []
         self._pending_bytes = 0
+        self._n_taken = 0
+        self._failed = False
         self._last_flush = time.monotonic()
+        self._second = SecondThread() if beside else None
+        self._file: Any = None
+        head = {"run_id": self.run_id, "segment": segment, "first_record": first_record}
+        header = partial(self._write_header, head, scene, dict(meta or {}), dict(geometry or {}), compression)
         with self._guard("cannot be written"):
             replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
-                self._begin(
-                    scene, {"segment": segment, "first_record": first_record}, meta, geometry, compression, replaced
-                )
+                # segments of one run that are begun at the same time must not share a draft
+                draft, stream = create_draft(self.path, uuid.uuid4().hex)
+                _WRITERS.add(self)
+                make = partial(self._make, draft, stream, header, replace=replaced is not None)
+                if self._second is None or replaced is not None:
+                    make()
+                else:
+                    self._second.start(make)
             finally:
                 if replaced is not None:
                     replaced.close()
-        _WRITERS.add(self)
 
-    def _begin(
-        self,
-        scene: Any,
-        place: dict[str, Any],
-        meta: Mapping[str, Any] | None,
-        geometry: Mapping[str, float] | None,
-        compression: str | None,
-        replaced: BinaryIO | None,
-    ) -> None:
+    def _make(self, draft: Path, stream: BinaryIO, header: Callable[[h5py.File], None], *, replace: bool) -> None:
         """Make every object of the file in a draft, which then takes its place."""
-        # segments of one run that are begun at the same time must not share a draft
-        draft, stream = create_draft(self.path, uuid.uuid4().hex)
-        try:
-            self._lock = lock(stream)
-            self._file = h5py.File(draft, "w", libver=LIBVER)
-            head = {"run_id": self.run_id} | place
-            self._write_header(head, scene.to_dict(), dict(meta or {}), dict(geometry or {}), compression)
-            self._file.flush()
-            self._file.swmr_mode = True
+        with self._guard("cannot be written"):
             try:
-                put_in_place(draft, self.path, replace=replaced is not None)
-            except FileExistsError:
-                raise exists_already(self.path) from None
-        except BaseException:
-            with suppress(AttributeError, OSError, RuntimeError):
-                self._file.close()
-            stream.close()
-            draft.unlink(missing_ok=True)
-            raise
+                self._lock = lock(stream)
+                self._file = h5py.File(draft, "w", libver=LIBVER)
+                # ext4 writes a file that was emptied to the disk when it is closed the next time: better now than in the end
+                draft.open("rb").close()
+                header(self._file)
+                self._file.flush()
+                self._file.swmr_mode = True
+                try:
+                    put_in_place(draft, self.path, replace=replace)
+                except FileExistsError:
+                    raise exists_already(self.path) from None
+            except BaseException:
+                with suppress(AttributeError, OSError, RuntimeError):
+                    file, self._file = self._file, None
+                    if file is not None:
+                        file.close()
+                stream.close()
+                draft.unlink(missing_ok=True)
+                raise
 
     def _write_header(
         self,
-        place: dict[str, Any],
-        scene: dict[str, Any],
+        head: dict[str, Any],
+        scene: Any,
         meta: dict[str, Any],
         geometry: dict[str, float],
         compression: str | None,
+        file: h5py.File,
     ) -> None:
-        head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__} | place
+        head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__} | head
         head |= {"created": datetime.now(UTC).isoformat(), "geometry": json_text(geometry), "meta": json_text(meta)}
         head |= {name: value for name, value in meta.items() if isinstance(value, str | bool | int | float)}
-        self._file.attrs.update({name: stored(value) for name, value in head.items()})
-        self._file.create_dataset("scene", data=stored(json_text(scene)))
-        self._file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
-        self._file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
-        group = self._file.create_group("fields")
-        peaks = self._file.create_group("peaks")
+        file.attrs.update({name: stored(value) for name, value in head.items()})
+        file.create_dataset("scene", data=stored(json_text(scene.to_dict())))
+        file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
+        file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
+        group = file.create_group("fields")
+        peaks = file.create_group("peaks")
         for index, entry in enumerate(self.fields):
             shape = self._places[entry.name][1]
+            attributes: dict[str, str | int] = {
+                "unit": entry.unit,
+                "description": entry.text,
+                "group": entry.group,
+                "kind": entry.kind,
+            }
+            attributes |= {"dims": " ".join(("time", *entry.dims)), "index": index}
+            rows = self._block or chunk_rows(shape)
+            made = [Column(group, entry.name, shape, rows, compression=compression)]
+            self._columns[entry.name] = made[0]
             if entry.group == PEAKS:
-                whole = peaks.create_dataset(entry.name, (0, *shape), "f8", maxshape=(1, *shape), chunks=(1, *shape))
-                self._describe(whole, entry, index)
-            dataset = group.create_dataset(
-                entry.name,
-                shape=(0, *shape),
-                maxshape=(None, *shape),
-                dtype="f8",
-                chunks=(chunk_rows(shape), *shape),
-                compression=compression,
-                shuffle=compression is not None,
-            )
-            self._describe(dataset, entry, index)
-            self._datasets[entry.name] = dataset.id
-
-    def _describe(self, dataset: h5py.Dataset, entry: Field, index: int) -> None:
-        attributes = {"unit": entry.unit, "description": entry.text, "group": entry.group, "kind": entry.kind}
-        attributes["dims"] = " ".join(("time", *entry.dims))
-        describe(dataset, attributes | {"index": index})
+                made.append(Column(peaks, entry.name, shape, 1, most=1))
+                self._whole_run[entry.name] = made[1]
+            for column in made:
+                column.describe(attributes)
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:
@@ -217,20 +233,27 @@ class ResultWriter:
         Parameters
         ----------
         records : array_like, shape (n, record_length)
-            Full records in the layout given at the start.
+            Full records in the layout given at the start. They may be written later: do not change them.
 
         Raises
         ------
         FileError
             If the file cannot be written.
         """
-        rows = np.array(records, dtype=float, ndmin=2)
+        rows = np.atleast_2d(np.asarray(records, dtype=float))
         if rows.shape[0] == 0:
             return
         self._pending.append(rows)
         self._pending_bytes += rows.nbytes
-        if self._pending_bytes >= FLUSH_BYTES or time.monotonic() - self._last_flush >= FLUSH_SECONDS:
-            self.flush()
+        is_late = time.monotonic() - self._last_flush >= FLUSH_SECONDS
+        if not is_late and self._pending_bytes < FLUSH_BYTES:
+            return
+        pending = self._take(whole_blocks=not is_late)
+        if self._second is None:
+            self._flush(pending)
+        else:
+            self.wait()
+            self._second.start(partial(self._flush, pending))
 
     def flush(self) -> None:
         """Write what waits in memory, so that it survives a kill.
@@ -238,20 +261,57 @@ class ResultWriter:
         Raises
         ------
         FileError
-            If the file cannot be written. What waited is lost then; what was written before stays readable. Also if another
+            If the file cannot be written; what the disk had room for stays readable. Also if another
             program has removed the file, which is then put back, or has put another one in its place, which is left alone: the
             records are then in a file beside it. The message names it.
         """
+        pending = self._take()
+        self.wait()
+        self._flush(pending)
+
+    def _flush_or_drop(self) -> None:
+        """At the end: what came after an error, which has been raised already, is not written."""
+        self.wait()
+        if self._failed:
+            self._take()
+        self.flush()
+
+    def wait(self) -> None:
+        """Wait for the second thread, and raise what went wrong there.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be made or written.
+        """
+        if self._second is not None:
+            self._second.wait()
+
+    def _take(self, *, whole_blocks: bool = False) -> list[Array]:
+        """What waits, and from now on waits no more; if only whole blocks are asked for, the rest of the last one still waits."""
+        taken, self._pending = self._pending, []
+        count = sum(map(len, taken))
+        left = (self._n_taken + count) % self._block if whole_blocks and self._block is not None else 0
+        left = min(left, count)
+        self._n_taken += count - left
+        while left:
+            piece = taken.pop()
+            if len(piece) > left:
+                taken.append(piece[:-left])
+            self._pending.insert(0, piece[-left:])
+            left -= len(self._pending[0])
+        self._pending_bytes = sum(piece.nbytes for piece in self._pending)
+        if taken:
+            self._last_flush = time.monotonic()
+        return taken
+
+    def _flush(self, pending: list[Array]) -> None:
         if not self._file:
             raise FileError(f"{self.path}: the result file is closed already")
-        pending, size = self._pending, self._pending_bytes
-        self._pending, self._pending_bytes = [], 0
         with self._guard("cannot be written"):
             if pending:
-                self._reserve(size + len(self.fields) * CHUNK_BYTES + SPARE_BYTES)
-                self._write(pending[0] if len(pending) == 1 else np.concatenate(pending))
+                self._write(pending)
             self._file.flush()
-        self._last_flush = time.monotonic()
         if not is_same(self.path, self._lock):
             self._rescue()
 
@@ -279,7 +339,8 @@ class ResultWriter:
         os.dup2(nowhere, self._file.id.get_vfd_handle(), inheritable=False)
         os.dup2(nowhere, self._lock.fileno(), inheritable=False)
         os.close(nowhere)
-        self._pending, self._pending_bytes = [], 0
+        self._take()
+        self._second = None
         with suppress(OSError, RuntimeError):
             self._file.close()
         self._lock.close()
@@ -303,13 +364,32 @@ class ResultWriter:
         elif shutil.disk_usage(self.path.parent).free < size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    def _write(self, rows: Array) -> None:
-        start, stop = self.n_written, self.n_written + rows.shape[0]
+    def _write(self, pieces: list[Array]) -> None:
+        """Add pieces of records, or as many as the disk has room for. After an error nothing more is written: it would lie
+        behind a gap.
+        """
+        if self._failed:
+            raise OSError("records before these could not be written")
+        self._failed = True
+        count, full = sum(map(len, pieces)), None
+        while True:
+            try:
+                self._reserve(sum(column.room_for(count) for column in self._columns.values()) + SPARE_BYTES)
+                break
+            except OSError as error:
+                if count < 2:
+                    raise
+                full, count = error, count // 2
         for entry in self.fields:
             offset, shape = self._places[entry.name]
-            size = int(np.prod(shape))
-            append(self._datasets[entry.name], start, rows[:, offset : offset + size].reshape(-1, *shape))
-        self.n_written = stop
+            end = offset + int(np.prod(shape))
+            rows = np.concatenate([piece[:, offset:end] for piece in pieces])[:count]
+            self._columns[entry.name].append(rows.reshape(-1, *shape))
+        self.n_written += count
+        if full is not None:
+            self._file.flush()
+            raise full
+        self._failed = False
 
     def finish(
         self,
@@ -348,14 +428,13 @@ class ResultWriter:
         FileError
             If the file cannot be written.
         """
-        self.flush()
+        self._flush_or_drop()
         with self._guard("cannot be written"):
             self._reserve(SPARE_BYTES)
             if final_state is not None:
                 self._put("final_state", np.asarray(final_state, dtype=float))
-            whole = self._file["peaks"]
             for name, values in (peaks or {}).items():
-                append(whole[name].id, 0, np.asarray(values, dtype=float)[np.newaxis])
+                self._whole_run[name].append(np.asarray(values, dtype=float)[np.newaxis])
             ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
             ending |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
             self._put("ending", np.frombuffer(json_text(ending).encode(), dtype="u1"))
@@ -368,10 +447,10 @@ class ResultWriter:
 
     def close(self) -> None:
         """Write what waits and close the file; an unfinished run stays marked as such."""
-        if not self._file:
-            return
         try:
-            self.flush()
+            self.wait()
+            if self._file:
+                self._flush_or_drop()
         finally:
             self._close()
 
@@ -402,5 +481,12 @@ def _forget_all() -> None:
     _WRITERS.clear()
 
 
+def _settle_all() -> None:
+    """Before a fork: a thread in the middle of a write would leave HDF5's lock taken for ever in the child."""
+    for writer in list(_WRITERS):
+        if writer._second is not None:
+            writer._second.settle()
+
+
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget_all)
+    os.register_at_fork(before=_settle_all, after_in_child=_forget_all)

@@ -1,13 +1,18 @@
-"""Records of a run that stay in memory: the run ends before they fill it, and they are joined piece by piece."""
+"""Records of a run that stay in memory: the run ends before they fill it, and what is not kept of them takes no room."""
 
 from __future__ import annotations
 
+import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+from trbdyn.results.fields import Field, Layout
+from trbdyn.results.records import RecordsSource
 
 if sys.platform != "win32":
     import resource
@@ -19,19 +24,28 @@ LOOK_EVERY: Final = 64 << 20
 RESERVE: Final = 512 << 20
 """Memory that a run leaves to everything else (byte)."""
 _MEMINFO: Final = Path("/proc/meminfo")
+_OWN_GROUPS: Final = Path("/proc/self/cgroup")
 _GROUPS: Final = (
-    (Path("/sys/fs/cgroup"), "memory.max", "memory.current", "inactive_file"),
-    (Path("/sys/fs/cgroup/memory"), "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+    ("", Path("/sys/fs/cgroup"), "memory.max", "memory.current", "inactive_file"),
+    (
+        "memory",
+        Path("/sys/fs/cgroup/memory"),
+        "memory.limit_in_bytes",
+        "memory.usage_in_bytes",
+        "total_inactive_file",
+    ),
 )
-"""What a container may take, in both versions of Linux control groups: folder; files of the limit and of what is taken; the name
-in ``memory.stat`` of files that make room when they must."""
+"""Limits of Linux control groups, as containers and services have them, in both versions: the controller in `_OWN_GROUPS`;
+folder; files of the limit and of what is taken; the name in ``memory.stat`` of files that make room when they must."""
 
 
 def available() -> int | None:
     """Memory that this process can still take without swapping: of the machine, and within the limits that a container or
     ``ulimit -v`` sets (byte); None where the system does not tell.
     """
-    found = [_of_machine(), *(_of_group(*names) for names in _GROUPS), _of_process()]
+    found = [_of_machine(), _of_process()]
+    for controller, folder, *names in _GROUPS:
+        found += [_of_group(one, *names) for one in _own_groups(controller, folder)]
     return min((free for free in found if free is not None), default=None)
 
 
@@ -40,14 +54,25 @@ def _of_machine() -> int | None:
     return None if kilobytes is None else 1024 * kilobytes
 
 
+def _own_groups(controller: str, folder: Path) -> list[Path]:
+    """Folders of the group that this process is in and of the groups around it: each may have a limit of its own.
+
+    In a container the outermost folder is the container's own group, and the path of the process may not be there.
+    """
+    try:
+        lines = [line.split(":", 2) for line in _OWN_GROUPS.read_text(encoding="utf-8").splitlines()]
+    except OSError:
+        lines = []
+    own = [Path(words[2].strip("/")) for words in lines if len(words) == 3 and controller in words[1].split(",")]
+    return [folder, *(folder / group for path in own for group in (path, *path.parents) if group != Path())]
+
+
 def _of_group(folder: Path, limit: str, taken: str, files: str) -> int | None:
     try:
-        most, now = ((folder / name).read_text(encoding="ascii").strip() for name in (limit, taken))
-    except OSError:
+        most, now = (int((folder / name).read_text(encoding="ascii")) for name in (limit, taken))
+    except (OSError, ValueError):  # no such group, or "max": no limit
         return None
-    if most == "max":
-        return None
-    return int(most) - int(now) + _entries(folder / "memory.stat").get(files, 0)
+    return most - now + _entries(folder / "memory.stat").get(files, 0)
 
 
 def _of_process() -> int | None:
@@ -66,32 +91,53 @@ def _entries(path: Path) -> dict[str, int]:
         lines = [line.split() for line in path.read_text(encoding="ascii").splitlines()]
     except OSError:
         return {}
-    return {words[0]: int(words[1]) for words in lines if len(words) > 1}
+    return {words[0]: int(words[1]) for words in lines if len(words) > 1 and words[1].isdecimal()}
 
 
 class Kept:
-    """Records in memory, a piece at a time.
+    """Records in memory, a piece at a time, as far as a run keeps their fields.
+
+    Parameters
+    ----------
+    layout : sequence of (name, offset, shape)
+        Places of all fields in a record.
+    fields : sequence of Field
+        The fields to keep.
 
     Attributes
     ----------
-    width : int
-        Length of a record.
     size : int
         Bytes so far.
     """
 
-    def __init__(self, width: int) -> None:
-        self.width = width
+    def __init__(self, layout: Layout, fields: Sequence[Field]) -> None:
         self.size = 0
+        places = {name: (offset, shape) for name, offset, shape in layout}
+        self._fields = tuple(field for field in fields if field.name in places)
+        self._places: dict[str, tuple[int, tuple[int, ...]]] = {}
+        self._columns: list[slice] = []
+        """Where the fields are in a full record; in a record that is kept they follow each other."""
+        width = 0
+        for field in self._fields:
+            offset, shape = places[field.name]
+            count = math.prod(shape)
+            self._places[field.name] = (width, tuple(shape))
+            self._columns.append(slice(offset, offset + count))
+            width += count
+        self._whole = width == max((offset + math.prod(shape) for offset, shape in places.values()), default=0)
+        if self._whole:
+            self._places = {field.name: places[field.name] for field in self._fields}
         self._pieces: list[Array] = []
         self._looked = 0
 
     def append(self, records: Array) -> None:
-        self._pieces.append(records)
-        self.size += records.nbytes
+        """Add full records; they are kept as they are, and must not change, unless fields are left out."""
+        kept = records if self._whole else np.hstack([records[:, place] for place in self._columns])
+        self._pieces.append(kept)
+        self.size += kept.nbytes
 
     def is_full(self) -> bool:
-        """Whether there is room for no more of them and for the result, which has a copy; looks only now and then."""
+        """Whether there is room for no more of them and for the arrays that are read from them; looks only now and then."""
         if self.size - self._looked < LOOK_EVERY:
             return False
         self._looked = self.size
@@ -105,14 +151,6 @@ class Kept:
             "write them to a file (output=...), make fewer (save_every=...) or keep fewer groups (save_groups=...)"
         )
 
-    def joined(self) -> Array:
-        """All records so far in one array, shape (records, width); pieces are let go one by one while they are copied."""
-        if len(self._pieces) != 1:
-            whole, done = np.empty((sum(len(piece) for piece in self._pieces), self.width)), 0
-            self._pieces.reverse()
-            while self._pieces:
-                piece = self._pieces.pop()
-                whole[done : done + len(piece)] = piece
-                done += len(piece)
-            self._pieces = [whole]
-        return self._pieces[0]
+    def source(self) -> RecordsSource:
+        """The records so far, to read fields from."""
+        return RecordsSource(self._pieces, self._fields, self._places)

@@ -20,7 +20,7 @@ from trbdyn.errors import FileError, InputError, RunWarning, StepError
 from trbdyn.model.motion import History
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
-from trbdyn.results.file_format import reason
+from trbdyn.results.file_format import RunInfo, reason
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
 from trbdyn.results.sources import FileSource, Written, run_id_in, segment_paths
@@ -81,7 +81,7 @@ class Run:
             self.layout += [
                 (name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()
             ]
-        self.kept = Kept(max(at + int(np.prod(shape)) for _, at, shape in self.layout))
+        self.kept = Kept(self.layout, field_table.select(self.fields, options.save_groups))
 
     def _keep_peaks(self, since: float) -> None:
         """Start to keep peaks from a time of the last step on, if the run asks for them and does not keep them yet."""
@@ -113,9 +113,13 @@ class Run:
             run_id=run_id,
             segment=segment,
             first_record=self.done,
+            expected=self.times.size - self.done,
             overwrite=overwrite,
+            beside=self.beside,
         )
         self.output = output
+        if run_id is not None or older is not None or scheduled or self.callback is not None:
+            self.writer.wait()
         if run_id is not None:
             return
         try:
@@ -161,7 +165,8 @@ class Run:
             except BaseException as error:
                 if self.process != os.getpid():
                     raise
-                self._finish(False, f"ended by {type(error).__name__} at {sim.time:.6g} s: {error}")
+                result = self._finish(False, f"ended by {type(error).__name__} at {sim.time:.6g} s: {error}")
+                _hand_over(result, error)
                 raise
         return self._finish(message is None, message or self.enough or f"reached {self.times[-1]:.6g} s")
 
@@ -176,7 +181,8 @@ class Run:
             look = self.until.next_look(self.done)
             chunk = self.times[self.done : min(self.done + CHUNK_RECORDS, look or self.times.size)]
             # a signal may come before the core answers: rows that are filled are those with a finite time
-            self.filling = records = np.full((chunk.size, sim._core.row_length), np.nan)
+            self.filling = records = np.empty((chunk.size, sim._core.row_length))
+            records[:, 0] = np.nan
             before = clock.perf_counter()
             try:
                 rows, _ = sim._core.run(chunk, records, CHUNK_STEPS, due, self.beside)
@@ -220,13 +226,7 @@ class Run:
     def _so_far(self) -> Result:
         """The records up to here."""
         if self.writer is None:
-            nothing: dict[str, Any] = {
-                "stats": {},
-                "counters": {},
-                "final_time": self.sim._reached,
-                "final_state": None,
-            }
-            return self._from_memory(success=False, message="", **nothing)
+            return self._from_memory(final_time=self.sim._reached)
         assert self.output is not None
         self.writer.flush()
         return load(self.output)
@@ -380,15 +380,19 @@ class Run:
         return self._from_memory(**how)
 
     def _from_memory(self, **how: Any) -> Result:
-        return Result.from_records(
-            self.kept.joined(),
-            self.layout,
-            fields=self.fields,
-            scene=self.sim.scene,
-            geometry=asdict(self.sim.scene.bearing.geometry),
-            meta=self._meta(),
-            groups=self.options.save_groups,
-            **how,
+        scene = self.sim.scene
+        how |= {"warnings": tuple(self.doubts), "geometry": asdict(scene.bearing.geometry), "meta": self._meta()}
+        return Result(self.kept.source(), RunInfo(scene=scene.to_dict(), **how), scene)
+
+
+def _hand_over(result: Result, error: BaseException) -> None:
+    """Give an error that ends a run the records so far, which nobody could get at otherwise."""
+    if hasattr(error, "result"):
+        return
+    with contextlib.suppress(AttributeError, TypeError):
+        vars(error)["result"] = result
+        error.add_note(
+            f"The run ended by this; its {len(result)} records so far are in the error's attribute 'result'."
         )
 
 

@@ -343,7 +343,8 @@ class Simulation:
             Show a progress bar.
         callback : callable, optional
             Called with this simulation about every tenth of a second; True ends the run. What it raises ends the run
-            too, after the file is closed. It may look at the simulation, but not step, restart or set it.
+            too, after the file is closed; the result so far is the attribute ``result`` of the exception. It may look
+            at the simulation, but not step, restart or set it.
         checkpoint_every : float, optional
             Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options.
             Together with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
