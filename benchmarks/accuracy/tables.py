@@ -103,7 +103,7 @@ def user_table(rows: Sequence[Mapping[str, Any]]) -> str:
         }
         for row in rows
     ]
-    text = "What a user's run takes: default records of all groups, 24 slices, wall time a turn:"
+    text = "What a user's run takes: default records of all groups, 24 slices, wall time a turn; medians:"
     return "\n".join((text, "", common.table(found, found[0])))
 
 
