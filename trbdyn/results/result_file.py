@@ -5,11 +5,9 @@ from __future__ import annotations
 import errno
 import os
 import shutil
-import time
 import uuid
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -22,23 +20,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from trbdyn.base.own_files import copy_content, create_draft, exists_already, is_same, output_path, put_in_place
 from trbdyn.base.second_thread import SecondThread
-from trbdyn.base.version import __version__
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
 from trbdyn.results.fields import Field, Layout
-from trbdyn.results.file_format import (
-    LIBVER,
-    PEAKS,
-    SCHEMA,
-    SCHEMA_VERSION,
-    block_rows,
-    chunk_rows,
-    json_text,
-    reason,
-    stored,
-)
+from trbdyn.results.file_format import LIBVER, block_rows, json_text, reason
+from trbdyn.results.file_head import make_columns, write_head
 from trbdyn.results.hdf5_marks import lock, take_lock
 from trbdyn.results.hdf5_quick import Column
+from trbdyn.results.waiting_rows import WaitingRows
 
 Array = NDArray[np.float64]
 
@@ -132,13 +121,10 @@ class ResultWriter:
         self.fields = tuple(f for f in field_table.select(fields, groups) if f.name in self._places)
         self._width = sum(int(np.prod(self._places[f.name][1])) for f in self.fields)
         self._block = None if expected is None else block_rows(expected, 8 * self._width)
+        self._waiting = WaitingRows(self._block)
         self._columns: dict[str, Column] = {}
         self._whole_run: dict[str, Column] = {}
-        self._pending: list[Array] = []
-        self._pending_bytes = 0
-        self._n_taken = 0
         self._failed = False
-        self._last_flush = time.monotonic()
         self._second = SecondThread() if beside else None
         self._file: Any = None
         head = {"run_id": self.run_id, "segment": segment, "first_record": first_record}
@@ -191,32 +177,11 @@ class ResultWriter:
         compression: str | None,
         file: h5py.File,
     ) -> None:
-        head = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__} | head
-        head |= {"created": datetime.now(UTC).isoformat(), "geometry": json_text(geometry), "meta": json_text(meta)}
-        head |= {name: value for name, value in meta.items() if isinstance(value, str | bool | int | float)}
-        file.attrs.update({name: stored(value) for name, value in head.items()})
-        file.create_dataset("scene", data=stored(json_text(scene.to_dict())))
-        file.create_dataset("final_state", shape=(0,), maxshape=(None,), dtype="f8", chunks=(512,))
-        file.create_dataset("ending", shape=(0,), maxshape=(None,), dtype="u1", chunks=(4096,))
-        group = file.create_group("fields")
-        peaks = file.create_group("peaks")
-        for index, entry in enumerate(self.fields):
-            shape = self._places[entry.name][1]
-            attributes: dict[str, str | int] = {
-                "unit": entry.unit,
-                "description": entry.text,
-                "group": entry.group,
-                "kind": entry.kind,
-            }
-            attributes |= {"dims": " ".join(("time", *entry.dims)), "index": index}
-            rows = self._block or chunk_rows(shape)
-            made = [Column(group, entry.name, shape, rows, compression=compression)]
-            self._columns[entry.name] = made[0]
-            if entry.group == PEAKS:
-                made.append(Column(peaks, entry.name, shape, 1, most=1))
-                self._whole_run[entry.name] = made[1]
-            for column in made:
-                column.describe(attributes)
+        write_head(file, head, scene, meta, geometry)
+        shapes = {entry.name: self._places[entry.name][1] for entry in self.fields}
+        self._columns, self._whole_run = make_columns(
+            file, self.fields, shapes, rows=self._block, compression=compression
+        )
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:
@@ -243,17 +208,16 @@ class ResultWriter:
         rows = np.atleast_2d(np.asarray(records, dtype=float))
         if rows.shape[0] == 0:
             return
-        self._pending.append(rows)
-        self._pending_bytes += rows.nbytes
-        is_late = time.monotonic() - self._last_flush >= FLUSH_SECONDS
-        if not is_late and self._pending_bytes < FLUSH_BYTES:
+        self._waiting.append(rows)
+        is_late = self._waiting.seconds >= FLUSH_SECONDS
+        if not is_late and self._waiting.nbytes < FLUSH_BYTES:
             return
-        pending = self._take(whole_blocks=not is_late)
+        rows_to_write = self._waiting.take(whole_blocks=not is_late)
         if self._second is None:
-            self._flush(pending)
+            self._flush(rows_to_write)
         else:
             self.wait()
-            self._second.start(partial(self._flush, pending))
+            self._second.start(partial(self._flush, rows_to_write))
 
     def flush(self) -> None:
         """Write what waits in memory, so that it survives a kill.
@@ -265,15 +229,15 @@ class ResultWriter:
             program has removed the file, which is then put back, or has put another one in its place, which is left alone: the
             records are then in a file beside it. The message names it.
         """
-        pending = self._take()
+        rows = self._waiting.take()
         self.wait()
-        self._flush(pending)
+        self._flush(rows)
 
     def _flush_or_drop(self) -> None:
         """At the end: what came after an error, which has been raised already, is not written."""
         self.wait()
         if self._failed:
-            self._take()
+            self._waiting.take()
         self.flush()
 
     def wait(self) -> None:
@@ -287,30 +251,12 @@ class ResultWriter:
         if self._second is not None:
             self._second.wait()
 
-    def _take(self, *, whole_blocks: bool = False) -> list[Array]:
-        """What waits, and from now on waits no more; if only whole blocks are asked for, the rest of the last one still waits."""
-        taken, self._pending = self._pending, []
-        count = sum(map(len, taken))
-        left = (self._n_taken + count) % self._block if whole_blocks and self._block is not None else 0
-        left = min(left, count)
-        self._n_taken += count - left
-        while left:
-            piece = taken.pop()
-            if len(piece) > left:
-                taken.append(piece[:-left])
-            self._pending.insert(0, piece[-left:])
-            left -= len(self._pending[0])
-        self._pending_bytes = sum(piece.nbytes for piece in self._pending)
-        if taken:
-            self._last_flush = time.monotonic()
-        return taken
-
-    def _flush(self, pending: list[Array]) -> None:
+    def _flush(self, pieces: list[Array]) -> None:
         if not self._file:
             raise FileError(f"{self.path}: the result file is closed already")
         with self._guard("cannot be written"):
-            if pending:
-                self._write(pending)
+            if pieces:
+                self._write(pieces)
             self._file.flush()
         if not is_same(self.path, self._lock):
             self._rescue()
@@ -339,7 +285,7 @@ class ResultWriter:
         os.dup2(nowhere, self._file.id.get_vfd_handle(), inheritable=False)
         os.dup2(nowhere, self._lock.fileno(), inheritable=False)
         os.close(nowhere)
-        self._take()
+        self._waiting.take()
         self._second = None
         with suppress(OSError, RuntimeError):
             self._file.close()
