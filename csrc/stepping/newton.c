@@ -15,12 +15,18 @@
  *
  * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
  * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
- * two points between which the plain method would jump for ever are left. */
+ * two points between which the plain method would jump for ever are left.
+ *
+ * Where that is not enough time and again, in steps with a fresh Jacobian, the solution is searched between two of the points
+ * (stepping/bracket.c). Else the step would be shortened until the equations hardly matter, and stay so. */
 #include "stepping/newton.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "stepping/bracket.h"
+#include "stepping/weighted.h"
 
 /* Largest share of the last correction that the next one may repeat before it is prolonged no further: by 1/(1 - most_kept) at most. */
 static const double most_kept = 0.95;
@@ -29,6 +35,10 @@ static const double most_kept = 0.95;
 static const double negligible = 0.1, contraction = 0.3;
 /* A correction that grows beyond this multiple of the first one diverges. */
 static const double divergence = 1e3;
+/* Weight of the present solve in the share of solves that fail, and the share above which a solution is searched between two points. */
+static const double present = 0.2, often = 0.3;
+/* Evaluations of that search at most. */
+enum { most_between = 12 };
 
 typedef struct newton {
   SUNNonlinSolSysFn    residual;
@@ -40,6 +50,8 @@ typedef struct newton {
   int                  n, most;                 /* entries; iterations allowed */
   int                  iterations, failures;    /* of the last solve */
   int                  troubled;                /* whether the last solve failed */
+  double               failing;                 /* share of solves that failed, the last ones counting most */
+  trb_bracket          bracket;
 } newton;
 
 static SUNNonlinearSolver_Type type_of(SUNNonlinearSolver solver)
@@ -54,17 +66,6 @@ static int initialize(SUNNonlinearSolver solver)
   return 0;
 }
 
-/* Weighted product of two vectors. Eight sums side by side: one alone would wait for each of its additions. */
-static double product(int n, const double *a, const double *b, const double *weight)
-{
-  double sum[8] = {0};
-  int    i = 0;
-  for (; i + 8 <= n; i += 8)
-    for (int k = 0; k < 8; k++) sum[k] += a[i + k] * weight[i + k] * (b[i + k] * weight[i + k]);
-  for (int k = 0; i < n; i++, k++) sum[k] += a[i] * weight[i] * (b[i] * weight[i]);
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-}
-
 /* Turns the plain correction into that of Broyden's method and stores it; m: number of corrections that were taken before. Broyden's
  * update of M^-1 is a matrix of rank one for each correction s_j, so it is applied without any matrix: with k_j = (s_j . delta)/(s_j .
  * s_j), delta is replaced by delta + k_j s_(j+1) for each earlier correction, and by delta/(1 - k_j) for the last one. The products are
@@ -73,7 +74,7 @@ static void improve(newton *self, int m, const double *weight, double *delta)
 {
   const int n = self->n;
   for (int j = 0; j < m; j++) {
-    const double *s = self->taken + (size_t)j * (size_t)n, kept = product(n, s, delta, weight) / self->square[j];
+    const double *s = self->taken + (size_t)j * (size_t)n, kept = trb_weighted_product(n, s, delta, weight) / self->square[j];
     if (j + 1 < m) {
       const double *next = s + n;
       for (int i = 0; i < n; i++) delta[i] += kept * next[i];
@@ -83,12 +84,37 @@ static void improve(newton *self, int m, const double *weight, double *delta)
     }
   }
   memcpy(self->taken + (size_t)m * (size_t)n, delta, (size_t)n * sizeof *delta);
-  self->square[m] = product(n, delta, delta, weight);
+  self->square[m] = trb_weighted_product(n, delta, delta, weight);
 }
 
-static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
+/* Whether the equations hold well enough: what they lack, and what they lacked before the last correction. */
+static int holds(double off, double before, double tolerance)
+{
+  return off <= negligible * tolerance || (off <= tolerance && off <= contraction * before);
+}
+
+/* Searches between the two best points. What is found is taken as it is: a further correction would go too far again. */
+static int search(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
+{
+  const double *const weight = N_VGetArrayPointer(weights), *const lack = N_VGetArrayPointer(self->delta);
+  if (!trb_bracket_begin(&self->bracket, weight)) return SUN_NLS_CONV_RECVR;
+  const double before = sqrt(self->bracket.best.square / self->n);
+  for (int m = 0; m < most_between; m++) {
+    trb_bracket_next(&self->bracket, N_VGetArrayPointer(correction));
+    const int flag = self->residual(correction, self->delta, memory);
+    if (flag != 0) return flag;
+    self->iterations++;
+    if (holds(sqrt(trb_weighted_product(self->n, lack, lack, weight) / self->n), before, tolerance)) return 0;
+    trb_bracket_found(&self->bracket, lack, weight);
+  }
+  return SUN_NLS_CONV_RECVR;
+}
+
+/* searching: whether to search between two points in the end. The first point is none of them: there all equations lack something. */
+static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int searching, void *memory)
 {
   double first = INFINITY, before = 0.0;
+  trb_bracket_clear(&self->bracket);
   for (int m = 0; m < self->most; m++) {
     if (m > 0) {
       const int flag = self->residual(correction, self->delta, memory);
@@ -97,7 +123,8 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     double *const       delta = N_VGetArrayPointer(self->delta);
     const double *const weight = N_VGetArrayPointer(weights);
     /* what the equations lack, in the mean over all entries */
-    const double off = sqrt(product(self->n, delta, delta, weight) / self->n);
+    const double off = sqrt(trb_weighted_product(self->n, delta, delta, weight) / self->n);
+    if (searching && m > 0) trb_bracket_add(&self->bracket, N_VGetArrayPointer(correction), delta, weight);
     for (int i = 0; i < self->n; i++) delta[i] = -delta[i];
     const int flag = self->solve(self->delta, memory);
     if (flag != 0) return flag;
@@ -105,13 +132,14 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     improve(self, m, weight, delta);
     const double change = sqrt(self->square[m] / self->n);
     N_VLinearSum(1.0, correction, 1.0, self->delta, correction);
-    if (change <= tolerance && (off <= negligible * tolerance || (off <= tolerance && off <= contraction * before))) return 0;
+    if (change <= tolerance && holds(off, before, tolerance)) return 0;
     before = off;
     if (m == 0) first = change;
-    if (!(change <= divergence * first) || !(self->square[m] > 0.0)) return SUN_NLS_CONV_RECVR;
+    if (!(change <= divergence * first) || !(self->square[m] > 0.0)) break;
   }
-  return SUN_NLS_CONV_RECVR;
+  return searching ? search(self, correction, weights, tolerance, memory) : SUN_NLS_CONV_RECVR;
 }
+
 static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction, N_Vector weights, sunrealtype tolerance, int setup,
                  void *memory)
 {
@@ -126,7 +154,8 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
       flag = self->setup(bad, &current, memory);
       if (flag != 0) return flag;
     }
-    flag = iterate(self, correction, weights, tolerance, memory);
+    flag = iterate(self, correction, weights, tolerance, current && self->failing > often, memory);
+    if (flag >= 0) self->failing += present * ((flag > 0) - self->failing);
     if (flag == 0) self->troubled = 0;
     if (flag <= 0) return flag;
     self->failures++;
@@ -144,6 +173,7 @@ static int free_solver(SUNNonlinearSolver solver)
   if (self != NULL) {
     if (self->delta != NULL) N_VDestroy(self->delta);
     free(self->taken);
+    trb_bracket_free(&self->bracket);
     free(self);
   }
   solver->content = NULL;
@@ -198,7 +228,12 @@ static int get_failures(SUNNonlinearSolver solver, long *n)
 
 int trb_newton_troubled(SUNNonlinearSolver solver) { return ((newton *)solver->content)->troubled; }
 
-void trb_newton_forget(SUNNonlinearSolver solver) { ((newton *)solver->content)->troubled = 0; }
+void trb_newton_forget(SUNNonlinearSolver solver)
+{
+  newton *self = solver->content;
+  self->troubled = 0;
+  self->failing = 0.0;
+}
 
 SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, SUNContext context)
 {
@@ -212,7 +247,7 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, SUNConte
     self->delta = N_VClone(like);
     self->taken = calloc((size_t)self->n * (size_t)self->most, sizeof(double));
   }
-  if (self == NULL || self->delta == NULL || self->taken == NULL) {
+  if (self == NULL || self->delta == NULL || self->taken == NULL || trb_bracket_create(&self->bracket, self->n) != 0) {
     (void)free_solver(solver);
     return NULL;
   }
