@@ -3,6 +3,8 @@ belongs to its own time."""
 
 from __future__ import annotations
 
+import math
+import re
 import time as clock
 from typing import Any
 
@@ -13,7 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 import trbdyn as trb
 from trbdyn import Effects, History, InputError, LoadError, RotatingLoad, Simulation, Start
 from trbdyn.model.cases import scene_30310
-from trbdyn.statics.equilibrium import EquilibriumSolver, least_axial_load, nominal_angles
+from trbdyn.statics.equilibrium import EquilibriumSolver, least_axial_load, most_radial_load, nominal_angles
 from trbdyn.statics.ring_path import PATH_TOLERANCE
 
 TURNS = {
@@ -231,6 +233,20 @@ def test_axial_load_with_given_radial_place() -> None:
     sim = Simulation(scene_30310(3000.0, 2000.0, displacement=(5e-6, None, None), effects=Effects.frictionless()))
     assert sim.equilibrium.displacement[0] == 5e-6
     assert sim.record()["ring_force"][1:] == pytest.approx([0.0, 2000.0], abs=1.0)
+
+
+@pytest.mark.parametrize(("speed", "axial"), [(5000.0, 600.0), (10000.0, 1000.0), (10000.0, 4930.0)])
+def test_the_largest_radial_load_knows_the_centrifugal_force(speed: float, axial: float) -> None:
+    """At three quarters of it there is an equilibrium, above it there is none, and the message tells it."""
+    scene = scene_30310(speed, axial)
+    most = most_radial_load(scene, axial)
+    assert most < 0.95 * axial / math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    found = Simulation(scene.replace(radial_load=0.75 * most)).equilibrium
+    cosine = math.cos(math.radians(scene.bearing.cup_half_angle_deg))
+    assert abs(float(np.sum(found.outer_load * cosine * np.sin(found.angles)))) == pytest.approx(0.75 * most, rel=1e-3)
+    told = rf"is more than axial_load = {axial:g} N can hold .* radial load below {re.escape(f'{most:.4g}')} N"
+    with pytest.raises(LoadError, match=told):
+        Simulation(scene.replace(radial_load=1.02 * most))
 
 
 def test_light_load_is_told_the_least() -> None:

@@ -6,7 +6,7 @@ import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
+
+NEAR_SHARE: Final = 0.8
+"""Share of the largest radial load from which a load that was not balanced is said to be too close to it."""
 
 
 @dataclass(frozen=True)
@@ -145,17 +148,31 @@ class EquilibriumSolver:
 
 
 def least_axial_load(scene: Scene, time: float = 0.0) -> float:
-    """Axial load (N) below which rollers that orbit press the ring off, without any other load.
+    """Axial load (N) below which rollers that orbit press the ring off, without any other load; 0 without a back-face rib.
 
     The centrifugal force Fc of a roller presses it against the cup, whose slope pushes it with Fc tan(alpha_o) towards
     its large end, and there against the rib, whose normal lies at the angle theta to the bearing axis: the inner
     raceway carries nothing at Fa = Z Fc tan(alpha_o) / [1 + tan(theta) tan(alpha_o)].
     """
+    if not scene.effects.back_rib:
+        return 0.0
     geometry = scene.bearing.geometry
     orbit = geometry.cage_speed_ratio * value_at(scene.speed_rpm, time) * math.pi / 30.0
     centrifugal = geometry.roller_mass * orbit**2 * geometry.roller_centre_radius
     slope = math.tan(math.radians(scene.bearing.cup_half_angle_deg))
     return scene.bearing.n_rollers * centrifugal * slope / (1.0 + math.tan(geometry.rib_normal_angle) * slope)
+
+
+def most_radial_load(scene: Scene, axial_load: float, time: float = 0.0) -> float:
+    """Radial load (N) that no position of the rings can carry under an axial load (N).
+
+    The cup carries both loads: its normal loads Q have the axial sum Fa = sum Q sin(alpha_o) and the radial one
+    Fr = sum Q cos(alpha_o) cos(psi). The part of Fa that holds the rollers against their centrifugal forces (`least_axial_load`)
+    is spread evenly and carries no radial load; the rest carries most where it acts on one roller in the direction of the load:
+    (Fa - least) / tan(alpha_o).
+    """
+    slope = math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    return (axial_load - least_axial_load(scene, time)) / slope
 
 
 def _why_not(scene: Scene, time: float, said: str) -> str:
@@ -170,18 +187,19 @@ def _why_not(scene: Scene, time: float, said: str) -> str:
             f"no equilibrium{when} with the ring held at z = {place:g} m under a radial load of {radial:g} N: "
             f"{'move it towards -z, so that rollers and rings touch' if place >= 0.0 else 'the load is too large'}; {said}"
         )
-    least = least_axial_load(scene, time) if scene.effects.back_rib else 0.0
+    least = least_axial_load(scene, time)
     if axial < least:
         return (
             f"no equilibrium{when}: axial_load = {axial:g} N is less than the rollers' centrifugal force needs at {speed:g} rpm; "
             f"axial_load must be at least {least:.4g} N at this speed, or the speed at most "
             f"{abs(speed) * math.sqrt(axial / least):.4g} rpm"
         )
-    most = axial / math.tan(math.radians(scene.bearing.cup_half_angle_deg))
+    most = most_radial_load(scene, axial, time)
     bounds = f"axial_load at least {least:.4g} N at {speed:g} rpm, radial load below {most:.4g} N"
-    if radial > 0.9 * most:
+    if radial > NEAR_SHARE * most:
+        how = "more than" if radial >= most else "too close to all that"
         return (
-            f"no equilibrium{when}: the radial load of {radial:g} N is too close to all that axial_load = {axial:g} N can hold "
+            f"no equilibrium{when}: the radial load of {radial:g} N is {how} axial_load = {axial:g} N can hold "
             f"({bounds}): raise axial_load, or lower radial_load; {said}"
         )
     return f"no equilibrium{when} under axial_load = {axial:g} N, radial load {radial:g} N (needed: {bounds}); {said}"
