@@ -51,7 +51,7 @@ static void fill(const trb_integrator *it, double time, const double *y, trb_arr
    * always while speed or ring change or have just done so: an old slope that is too stiff makes corrections so small that they seem to
    * converge */
   const double made = self->jacobian->tangents->time;
-  const int    again = it->time == self->filled_at && made < it->time;
+  const int    again = (it->time == self->filled_at && made < it->time) || trb_newton_renewing(self->newton);
   const int    old = fabs(time - made) > it->settings.rings_age || self->uses >= it->settings.rings_uses;
   const int    changing = trb_motion_changes(it->motion, time - it->settings.rings_age, time);
   const int    fresh = again || old || changing;
@@ -122,7 +122,8 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
   self->matrix = trb_arrow_matrix(m->n_rollers, hub_width, self->sundials.context);
   self->solver = trb_arrow_linear_solver(m->n_rollers, hub_width, it->dynamics->work->variant, self->sundials.context);
-  if (self->y != NULL) self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->y, self->sundials.context);
+  if (self->y != NULL)
+    self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->y, m->n_rollers, TRB_ROLLER_SIZE, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");

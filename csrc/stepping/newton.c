@@ -17,16 +17,16 @@
  * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
  * two points between which the plain method would jump for ever are left.
  *
- * Where that is not enough time and again, in steps with a fresh Jacobian, the solution is searched between two of the points
- * (stepping/bracket.c). Else the step would be shortened until the equations hardly matter, and stay so. */
+ * Where an oil yields or friction turns round within micrometres a second, F is nearly a step of the sliding speed, and a slope taken beside
+ * it is far too small: corrections go too far, to and fro. With several loaded rollers at such places one update for all of them does not
+ * help. The step would be shortened until forces hardly matter in it, and stay so. Where solves fail time and again the method therefore
+ * takes the bodies one by one: each has an update of its own, and the point at which its equations lacked least is kept. If the iterations
+ * end without a solution, slopes are taken again at these points, and the next iterations begin there. */
 #include "stepping/newton.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "stepping/bracket.h"
-#include "stepping/weighted.h"
 
 /* Largest share of the last correction that the next one may repeat before it is prolonged no further: by 1/(1 - most_kept) at most. */
 static const double most_kept = 0.95;
@@ -35,24 +35,31 @@ static const double most_kept = 0.95;
 static const double negligible = 0.1, contraction = 0.3;
 /* A correction that grows beyond this multiple of the first one diverges. */
 static const double divergence = 1e3;
-/* Weight of the present solve in the share of solves that fail, and the share above which a solution is searched between two points. */
+/* Weight of the present solve in the share of solves that fail, and the share above which bodies are taken one by one. */
 static const double present = 0.2, often = 0.3;
-/* Evaluations of that search at most. */
-enum { most_between = 12 };
+/* How often slopes are then taken again within a solve, at most. */
+enum { most_renewals = 8 };
 
 typedef struct newton {
   SUNNonlinSolSysFn    residual;
   SUNNonlinSolLSetupFn setup;
   SUNNonlinSolLSolveFn solve;
-  N_Vector             delta;                   /* residual, then correction */
-  double              *taken;                   /* corrections taken in this step, one after the other */
-  double               square[TRB_NEWTON_MOST]; /* of their weighted norms */
-  int                  n, most;                 /* entries; iterations allowed */
-  int                  iterations, failures;    /* of the last solve */
-  int                  troubled;                /* whether the last solve failed */
-  double               failing;                 /* share of solves that failed, the last ones counting most */
-  trb_bracket          bracket;
+  N_Vector             delta;   /* residual, then correction */
+  double              *taken;   /* corrections taken in this step, one after the other */
+  double              *square;  /* body by body: of their weighted norms */
+  double *best, *best_square;   /* body by body: the point at which its equations lacked least, and their weighted square there */
+  int     n, most;              /* entries; iterations allowed */
+  int     n_bodies, size;       /* bodies but the last one, and their entries; what is left is the last one */
+  int     iterations, failures; /* of the last solve */
+  int     troubled;             /* whether the last solve failed */
+  int     renewing;             /* slopes are taken again within a solve */
+  double  failing;              /* share of solves that failed, the last ones counting most */
 } newton;
+
+/* Entries of a body. */
+typedef struct part {
+  int from, n;
+} part;
 
 static SUNNonlinearSolver_Type type_of(SUNNonlinearSolver solver)
 {
@@ -66,55 +73,79 @@ static int initialize(SUNNonlinearSolver solver)
   return 0;
 }
 
-/* Turns the plain correction into that of Broyden's method and stores it; m: number of corrections that were taken before. Broyden's
- * update of M^-1 is a matrix of rank one for each correction s_j, so it is applied without any matrix: with k_j = (s_j . delta)/(s_j .
- * s_j), delta is replaced by delta + k_j s_(j+1) for each earlier correction, and by delta/(1 - k_j) for the last one. The products are
- * those of the weighted entries. */
-static void improve(newton *self, int m, const double *weight, double *delta)
+/* Weighted product of two vectors. Eight sums side by side: one alone would wait for each of its additions. */
+static double product(int n, const double *a, const double *b, const double *weight)
 {
-  const int n = self->n;
+  double sum[8] = {0};
+  int    i = 0;
+  for (; i + 8 <= n; i += 8)
+    for (int k = 0; k < 8; k++) sum[k] += a[i + k] * weight[i + k] * (b[i + k] * weight[i + k]);
+  for (int k = 0; i < n; i++, k++) sum[k] += a[i] * weight[i] * (b[i] * weight[i]);
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+static part part_of(const newton *self, int body)
+{
+  const int from = body * self->size;
+  return (part){.from = from, .n = body < self->n_bodies ? self->size : self->n - from};
+}
+
+/* Turns a part of the plain correction into that of Broyden's method and stores it; m: number of corrections that were taken before.
+ * Broyden's update of M^-1 is a matrix of rank one for each correction s_j, so it is applied without any matrix: with k_j = (s_j .
+ * delta)/(s_j . s_j), delta is replaced by delta + k_j s_(j+1) for each earlier correction, and by delta/(1 - k_j) for the last one. The
+ * products are those of the weighted entries. square: those of the corrections with themselves. */
+static void improve(newton *self, int m, part of, const double *all_weights, double *correction, double *square)
+{
+  const double *const weight = all_weights + of.from;
+  double *const delta = correction + of.from, *const taken = self->taken + of.from;
   for (int j = 0; j < m; j++) {
-    const double *s = self->taken + (size_t)j * (size_t)n, kept = trb_weighted_product(n, s, delta, weight) / self->square[j];
+    if (!(square[j] > 0.0)) continue;
+    const double *s = taken + (size_t)j * (size_t)self->n, kept = product(of.n, s, delta, weight) / square[j];
     if (j + 1 < m) {
-      const double *next = s + n;
-      for (int i = 0; i < n; i++) delta[i] += kept * next[i];
+      const double *next = s + self->n;
+      for (int i = 0; i < of.n; i++) delta[i] += kept * next[i];
     } else {
       const double scale = 1.0 / (1.0 - fmin(kept, most_kept));
-      for (int i = 0; i < n; i++) delta[i] *= scale;
+      for (int i = 0; i < of.n; i++) delta[i] *= scale;
     }
   }
-  memcpy(self->taken + (size_t)m * (size_t)n, delta, (size_t)n * sizeof *delta);
-  self->square[m] = trb_weighted_product(n, delta, delta, weight);
+  memcpy(taken + (size_t)m * (size_t)self->n, delta, (size_t)of.n * sizeof *delta);
+  square[m] = product(of.n, delta, delta, weight);
 }
 
-/* Whether the equations hold well enough: what they lack, and what they lacked before the last correction. */
-static int holds(double off, double before, double tolerance)
+/* Improves the correction, of all bodies together or one by one; gives its weighted square. */
+static double improve_all(newton *self, int m, int one_by_one, const double *weight, double *delta)
 {
-  return off <= negligible * tolerance || (off <= tolerance && off <= contraction * before);
-}
-
-/* Searches between the two best points. What is found is taken as it is: a further correction would go too far again. */
-static int search(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
-{
-  const double *const weight = N_VGetArrayPointer(weights), *const lack = N_VGetArrayPointer(self->delta);
-  if (!trb_bracket_begin(&self->bracket, weight)) return SUN_NLS_CONV_RECVR;
-  const double before = sqrt(self->bracket.best.square / self->n);
-  for (int m = 0; m < most_between; m++) {
-    trb_bracket_next(&self->bracket, N_VGetArrayPointer(correction));
-    const int flag = self->residual(correction, self->delta, memory);
-    if (flag != 0) return flag;
-    self->iterations++;
-    if (holds(sqrt(trb_weighted_product(self->n, lack, lack, weight) / self->n), before, tolerance)) return 0;
-    trb_bracket_found(&self->bracket, lack, weight);
+  if (!one_by_one) {
+    improve(self, m, (part){.from = 0, .n = self->n}, weight, delta, self->square);
+    return self->square[m];
   }
-  return SUN_NLS_CONV_RECVR;
+  double sum = 0.0;
+  for (int body = 0; body <= self->n_bodies; body++) {
+    double *const square = self->square + (size_t)body * TRB_NEWTON_MOST;
+    improve(self, m, part_of(self, body), weight, delta, square);
+    sum += square[m];
+  }
+  return sum;
 }
 
-/* searching: whether to search between two points in the end. The first point is none of them: there all equations lack something. */
-static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int searching, void *memory)
+/* Keep the point of each body whose equations lack less than at those before. */
+static void remember(newton *self, const double *at, const double *lack, const double *weight)
+{
+  for (int body = 0; body <= self->n_bodies; body++) {
+    const part   of = part_of(self, body);
+    const double square = product(of.n, lack + of.from, lack + of.from, weight + of.from);
+    if (!(square < self->best_square[body])) continue;
+    self->best_square[body] = square;
+    memcpy(self->best + of.from, at + of.from, (size_t)of.n * sizeof *at);
+  }
+}
+
+/* one_by_one: the bodies, and the best points are kept. */
+static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int one_by_one, void *memory)
 {
   double first = INFINITY, before = 0.0;
-  trb_bracket_clear(&self->bracket);
+  for (int body = 0; body <= self->n_bodies; body++) self->best_square[body] = (double)INFINITY;
   for (int m = 0; m < self->most; m++) {
     if (m > 0) {
       const int flag = self->residual(correction, self->delta, memory);
@@ -123,21 +154,34 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     double *const       delta = N_VGetArrayPointer(self->delta);
     const double *const weight = N_VGetArrayPointer(weights);
     /* what the equations lack, in the mean over all entries */
-    const double off = sqrt(trb_weighted_product(self->n, delta, delta, weight) / self->n);
-    if (searching && m > 0) trb_bracket_add(&self->bracket, N_VGetArrayPointer(correction), delta, weight);
+    const double off = sqrt(product(self->n, delta, delta, weight) / self->n);
+    if (one_by_one && m > 0) remember(self, N_VGetArrayPointer(correction), delta, weight);
     for (int i = 0; i < self->n; i++) delta[i] = -delta[i];
     const int flag = self->solve(self->delta, memory);
     if (flag != 0) return flag;
     self->iterations++;
-    improve(self, m, weight, delta);
-    const double change = sqrt(self->square[m] / self->n);
+    const double square = improve_all(self, m, one_by_one, weight, delta), change = sqrt(square / self->n);
     N_VLinearSum(1.0, correction, 1.0, self->delta, correction);
-    if (change <= tolerance && holds(off, before, tolerance)) return 0;
+    if (change <= tolerance && (off <= negligible * tolerance || (off <= tolerance && off <= contraction * before))) return 0;
     before = off;
     if (m == 0) first = change;
-    if (!(change <= divergence * first) || !(self->square[m] > 0.0)) break;
+    if (!(change <= divergence * first) || !(square > 0.0)) return SUN_NLS_CONV_RECVR;
   }
-  return searching ? search(self, correction, weights, tolerance, memory) : SUN_NLS_CONV_RECVR;
+  return SUN_NLS_CONV_RECVR;
+}
+
+/* Takes slopes at the best points and iterates from there, until that succeeds or was done often enough. */
+static int renew(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
+{
+  int current = 0, flag = SUN_NLS_CONV_RECVR;
+  for (int i = 0; i < most_renewals && flag > 0; i++) {
+    memcpy(N_VGetArrayPointer(correction), self->best, (size_t)self->n * sizeof *self->best);
+    flag = self->residual(correction, self->delta, memory);
+    if (flag == 0) flag = self->setup(1, &current, memory);
+    if (flag == 0) flag = iterate(self, correction, weights, tolerance, 1, memory);
+    else if (flag > 0) return flag;
+  }
+  return flag;
 }
 
 static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction, N_Vector weights, sunrealtype tolerance, int setup,
@@ -148,13 +192,19 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
   (void)start;
   self->iterations = self->failures = 0;
   for (;;) {
-    int flag = self->residual(correction, self->delta, memory);
+    const int one_by_one = self->failing > often;
+    int       flag = self->residual(correction, self->delta, memory);
     if (flag != 0) return flag;
     if (setup || bad) {
       flag = self->setup(bad, &current, memory);
       if (flag != 0) return flag;
     }
-    flag = iterate(self, correction, weights, tolerance, current && self->failing > often, memory);
+    flag = iterate(self, correction, weights, tolerance, one_by_one && current, memory);
+    if (flag > 0 && one_by_one && current) {
+      self->renewing = 1;
+      flag = renew(self, correction, weights, tolerance, memory);
+      self->renewing = 0;
+    }
     if (flag >= 0) self->failing += present * ((flag > 0) - self->failing);
     if (flag == 0) self->troubled = 0;
     if (flag <= 0) return flag;
@@ -173,7 +223,9 @@ static int free_solver(SUNNonlinearSolver solver)
   if (self != NULL) {
     if (self->delta != NULL) N_VDestroy(self->delta);
     free(self->taken);
-    trb_bracket_free(&self->bracket);
+    free(self->square);
+    free(self->best);
+    free(self->best_square);
     free(self);
   }
   solver->content = NULL;
@@ -228,6 +280,8 @@ static int get_failures(SUNNonlinearSolver solver, long *n)
 
 int trb_newton_troubled(SUNNonlinearSolver solver) { return ((newton *)solver->content)->troubled; }
 
+int trb_newton_renewing(SUNNonlinearSolver solver) { return ((newton *)solver->content)->renewing; }
+
 void trb_newton_forget(SUNNonlinearSolver solver)
 {
   newton *self = solver->content;
@@ -235,7 +289,7 @@ void trb_newton_forget(SUNNonlinearSolver solver)
   self->failing = 0.0;
 }
 
-SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, SUNContext context)
+SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_bodies, int size, SUNContext context)
 {
   SUNNonlinearSolver solver = SUNNonlinSolNewEmpty(context);
   if (solver == NULL) return NULL;
@@ -245,9 +299,14 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, SUNConte
     self->n = (int)N_VGetLength(like);
     self->most = max_iterations < TRB_NEWTON_MOST ? max_iterations : TRB_NEWTON_MOST;
     self->delta = N_VClone(like);
+    self->n_bodies = n_bodies;
+    self->size = size;
     self->taken = calloc((size_t)self->n * (size_t)self->most, sizeof(double));
+    self->square = calloc((size_t)(n_bodies + 1) * TRB_NEWTON_MOST, sizeof(double));
+    self->best = calloc((size_t)self->n, sizeof(double));
+    self->best_square = calloc((size_t)n_bodies + 1, sizeof(double));
   }
-  if (self == NULL || self->delta == NULL || self->taken == NULL || trb_bracket_create(&self->bracket, self->n) != 0) {
+  if (self == NULL || !self->delta || !self->taken || !self->square || !self->best || !self->best_square) {
     (void)free_solver(solver);
     return NULL;
   }

@@ -8,12 +8,15 @@
 
 enum { TRB_NEWTON_MOST = 12 }; /* iterations at most */
 
-/* like: a vector of the state's length. NULL if out of memory. */
-SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, SUNContext context);
+/* like: a vector of the state's length. Its first entries are n_bodies bodies of the same size; what is left counts as one more. NULL if
+ * out of memory. */
+SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_bodies, int size, SUNContext context);
 
 /* Whether the last solve failed. */
 int trb_newton_troubled(SUNNonlinearSolver solver);
-/* Forget whether the last solve failed. */
+/* Whether slopes are being taken again within a solve: all of them, then. */
+int trb_newton_renewing(SUNNonlinearSolver solver);
+/* Forget which solves failed. */
 void trb_newton_forget(SUNNonlinearSolver solver);
 
 #endif
