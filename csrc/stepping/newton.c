@@ -141,11 +141,14 @@ static void remember(newton *self, const double *at, const double *lack, const d
   }
 }
 
-/* one_by_one: the bodies, and the best points are kept. */
+/* one_by_one: the bodies, and the best points behind the first correction are kept. */
 static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int one_by_one, void *memory)
 {
   double first = INFINITY, before = 0.0;
-  for (int body = 0; body <= self->n_bodies; body++) self->best_square[body] = (double)INFINITY;
+  if (one_by_one) {
+    for (int body = 0; body <= self->n_bodies; body++) self->best_square[body] = (double)INFINITY;
+    memcpy(self->best, N_VGetArrayPointer(correction), (size_t)self->n * sizeof *self->best);
+  }
   for (int m = 0; m < self->most; m++) {
     if (m > 0) {
       const int flag = self->residual(correction, self->delta, memory);
@@ -178,8 +181,8 @@ static int renew(newton *self, N_Vector correction, N_Vector weights, double tol
     memcpy(N_VGetArrayPointer(correction), self->best, (size_t)self->n * sizeof *self->best);
     flag = self->residual(correction, self->delta, memory);
     if (flag == 0) flag = self->setup(1, &current, memory);
-    if (flag == 0) flag = iterate(self, correction, weights, tolerance, 1, memory);
-    else if (flag > 0) return flag;
+    if (flag != 0) return flag;
+    flag = iterate(self, correction, weights, tolerance, 1, memory);
   }
   return flag;
 }
