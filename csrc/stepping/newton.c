@@ -39,6 +39,8 @@ static const double divergence = 1e3;
 static const double present = 0.2, often = 0.3;
 /* How often slopes are then taken again within a solve, at most. */
 enum { most_renewals = 8 };
+/* Failed solves without that after it was in vain: one, then twice as many each time, at most so many. */
+enum { longest_pause = 64 };
 
 typedef struct newton {
   SUNNonlinSolSysFn    residual;
@@ -53,6 +55,7 @@ typedef struct newton {
   int     iterations, failures; /* of the last solve */
   int     troubled;             /* whether the last solve failed */
   int     renewing;             /* slopes are taken again within a solve */
+  int     pause, paused;        /* failed solves to go by without that, and those that have */
   double  failing;              /* share of solves that failed, the last ones counting most */
 } newton;
 
@@ -177,13 +180,16 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
 static int renew(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
 {
   int current = 0, flag = SUN_NLS_CONV_RECVR;
-  for (int i = 0; i < most_renewals && flag > 0; i++) {
+  self->renewing = 1;
+  for (int i = 0, going = 1; i < most_renewals && going; i++) {
     memcpy(N_VGetArrayPointer(correction), self->best, (size_t)self->n * sizeof *self->best);
     flag = self->residual(correction, self->delta, memory);
     if (flag == 0) flag = self->setup(1, &current, memory);
-    if (flag != 0) return flag;
-    flag = iterate(self, correction, weights, tolerance, 1, memory);
+    going = flag == 0;
+    if (going) flag = iterate(self, correction, weights, tolerance, 1, memory);
+    going = going && flag > 0;
   }
+  self->renewing = 0;
   return flag;
 }
 
@@ -203,10 +209,10 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
       if (flag != 0) return flag;
     }
     flag = iterate(self, correction, weights, tolerance, one_by_one && current, memory);
-    if (flag > 0 && one_by_one && current) {
-      self->renewing = 1;
+    if (flag > 0 && one_by_one && current && self->paused++ >= self->pause) {
       flag = renew(self, correction, weights, tolerance, memory);
-      self->renewing = 0;
+      self->paused = 0;
+      self->pause = flag == 0 ? 0 : self->pause == 0 ? 1 : 2 * self->pause < longest_pause ? 2 * self->pause : longest_pause;
     }
     if (flag >= 0) self->failing += present * ((flag > 0) - self->failing);
     if (flag == 0) self->troubled = 0;
@@ -290,6 +296,7 @@ void trb_newton_forget(SUNNonlinearSolver solver)
   newton *self = solver->content;
   self->troubled = 0;
   self->failing = 0.0;
+  self->pause = self->paused = 0;
 }
 
 SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_bodies, int size, SUNContext context)

@@ -102,8 +102,11 @@ static void test_renewal(trb_sundials *s)
 
   /* a place between two branches is no solution, however often it is tried */
   problem none = {.a = {0.5, 0.5, 0.5}, .gamma = 1.0, .strength = 0.3, .width = 1e3, .jump = 0.4};
-  CHECK(run_again(&none, s, y, 6) < 0.0);
+  CHECK(run_again(&none, s, y, 3) < 0.0);
   CHECK(none.setups == 1 + 8);
+  /* what was in vain is not done again at once */
+  CHECK(run_again(&none, s, y, 4) < 0.0);
+  CHECK(none.setups == 1);
 }
 
 int main(void)
