@@ -35,8 +35,9 @@ static const double most_kept = 0.95;
 static const double negligible = 0.1, contraction = 0.3;
 /* A correction that grows beyond this multiple of the first one diverges. */
 static const double divergence = 1e3;
-/* Weight of the present solve in the share of solves that fail, and the share above which bodies are taken one by one. */
-static const double present = 0.2, often = 0.3;
+/* Weight of the present solve in the share of solves that fail, and the share above which bodies are taken one by one: not in the course of
+ * an impact, whose few failures are well answered by a shorter step. */
+static const double present = 0.03, often = 0.3;
 /* How often slopes are then taken again within a solve, at most. */
 enum { most_renewals = 8 };
 /* Failed solves without that after it was in vain: one, then twice as many each time, at most so many. */
