@@ -40,16 +40,16 @@ int trb_peak_offset(const trb_model *m, int field)
 }
 
 struct trb_peaks {
-  const trb_model *model;
-  trb_peak_look   *look;
-  trb_peak_sizes   n;
-  double          *block;    /* what is saved, then what is asked between */
-  double          *end;      /* of the last step, s */
-  double          *value;    /* there */
-  trb_peak_track   whole;    /* the run up to the start of the last step */
-  trb_peak_track   interval; /* from the last record up to there, or nothing yet */
-  trb_peak_track   asked;
-  double          *between;
+  trb_peak_look *look;
+  trb_peak_sizes n;
+  int            offset[TRB_N_PEAK_QUANTITIES + 1]; /* where each quantity begins among the values; the end */
+  double        *block;                             /* what is saved, then what is asked between */
+  double        *end;                               /* of the last step, s */
+  double        *value;                             /* there */
+  trb_peak_track whole;                             /* the run up to the start of the last step */
+  trb_peak_track interval;                          /* from the last record up to there, or nothing yet */
+  trb_peak_track asked;
+  double        *between;
 };
 
 trb_status trb_peaks_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_peaks **peaks, trb_message *message)
@@ -57,8 +57,8 @@ trb_status trb_peaks_create(const trb_model *m, const trb_motion *motion, const 
   *peaks = NULL;
   trb_peaks *p = calloc(1, sizeof *p);
   if (p == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
-  p->model = m;
   p->n = trb_peak_look_sizes(m);
+  for (int i = 0; i <= TRB_N_PEAK_QUANTITIES; i++) p->offset[i] = trb_peak_look_offset(m, i);
   const size_t all = (size_t)p->n.all, track = (size_t)trb_peak_track_length(&p->n);
   p->block = trb_zeros(1 + 2 * all + 3 * track, sizeof(double));
   trb_status status = p->block != NULL ? TRB_OK : trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
@@ -126,8 +126,7 @@ static void write_row(const trb_peaks *p, const trb_peak_track *track, double *r
 {
   for (int f = 0; f < TRB_N_PEAK_FIELDS; f++) {
     const trb_peak_field_info *field = &trb_peak_field_table[f];
-    const int                  end = trb_peak_look_offset(p->model, field->quantity + 1);
-    for (int i = trb_peak_look_offset(p->model, field->quantity); i < end; i++) *row++ = taken(field, track, i);
+    for (int i = p->offset[field->quantity]; i < p->offset[field->quantity + 1]; i++) *row++ = taken(field, track, i);
   }
 }
 

@@ -1,13 +1,19 @@
+/* A queue between two threads without a lock. Each thread counts what it has put or taken, reads the other's count, and so knows which
+ * places are its own. The lock is only for a thread that waits: it says so before it looks at the counts for the last time, and the other
+ * one looks whether anybody waits after it has counted; so one of the two sees the other (all of these are sequentially consistent).
+ *
+ * To wake a thread costs as much as to compute a state, and nobody needs the results before the recorder is closed. So the second thread is
+ * woken when there is enough to do, and the stepping, when the queue was full, when half of it is free. */
 #include "stepping/recorder.h"
 
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Places of the queue, and how many of them are filled before a thread that waits for work is woken: to wake it costs as much as to compute
- * a state, and nobody needs its results before the recorder is closed. */
-enum { PLACES = 64, ENOUGH = 8 };
+/* Places of the queue; how many of them are filled, or free again, before a thread that waits is woken. */
+enum { PLACES = 128, ENOUGH = 32, FREE = 64 };
 
 /* A state in the queue. */
 typedef struct place {
@@ -21,9 +27,10 @@ struct trb_recorder {
   trb_recorder_parts parts;
   size_t             n_state;
   place              queue[PLACES];
-  unsigned long      put, taken; /* states put into the queue, and computed, since the beginning */
+  atomic_ulong       put, taken;    /* states put into the queue, and computed, since the beginning */
+  atomic_int         idle, held_up; /* whether the second thread waits for work, and the stepping for room */
   int                closing;
-  pthread_mutex_t    lock; /* of put, taken and closing */
+  pthread_mutex_t    lock; /* of waiting, and of closing */
   pthread_cond_t     has_work, has_room;
   pthread_t          thread;
 };
@@ -39,41 +46,61 @@ static void compute(const trb_recorder *r, const place *at)
   if (parts->peaks != NULL) trb_peaks_record(parts->peaks, at->time, at->row + trb_record_offset(parts->model, TRB_N_FIELDS));
 }
 
+/* How many places are filled. */
+static unsigned long filled(trb_recorder *r) { return r->put - r->taken; }
+
+/* Wake a thread that waits. */
+static void wake(trb_recorder *r, atomic_int *waits, pthread_cond_t *condition)
+{
+  pthread_mutex_lock(&r->lock);
+  *waits = 0;
+  pthread_cond_signal(condition);
+  pthread_mutex_unlock(&r->lock);
+}
+
+/* Wait until there is enough to do, or the end; gives 0 where nothing is left and nothing will come. */
+static int wait_for_work(trb_recorder *r)
+{
+  pthread_mutex_lock(&r->lock);
+  for (r->idle = 1; filled(r) < ENOUGH && !r->closing; r->idle = 1) pthread_cond_wait(&r->has_work, &r->lock);
+  r->idle = 0;
+  const int more = filled(r) > 0 || !r->closing;
+  pthread_mutex_unlock(&r->lock);
+  return more;
+}
+
+static void wait_for_room(trb_recorder *r)
+{
+  pthread_mutex_lock(&r->lock);
+  for (r->held_up = 1; filled(r) > PLACES - FREE; r->held_up = 1) pthread_cond_wait(&r->has_room, &r->lock);
+  r->held_up = 0;
+  pthread_mutex_unlock(&r->lock);
+}
+
 static void *work(void *recorder)
 {
   trb_recorder *r = recorder;
-  pthread_mutex_lock(&r->lock);
-  for (;;) {
-    while (r->taken == r->put && !r->closing) pthread_cond_wait(&r->has_work, &r->lock);
-    if (r->taken == r->put) break;
-    const place *next = &r->queue[r->taken % PLACES];
-    pthread_mutex_unlock(&r->lock);
-    compute(r, next);
-    pthread_mutex_lock(&r->lock);
-    r->taken++; /* one at a time, so that the stepping need not wait for the whole queue */
-    pthread_cond_signal(&r->has_room);
+  while (wait_for_work(r)) {
+    while (filled(r) > 0) {
+      compute(r, &r->queue[r->taken % PLACES]);
+      r->taken++;
+      if (r->held_up && filled(r) <= PLACES - FREE) wake(r, &r->held_up, &r->has_room);
+    }
   }
-  pthread_mutex_unlock(&r->lock);
   return NULL;
 }
 
 /* The next place, once it is free. */
 static place *reserve(trb_recorder *r)
 {
-  pthread_mutex_lock(&r->lock);
-  while (r->put - r->taken == PLACES) pthread_cond_wait(&r->has_room, &r->lock);
-  place *next = &r->queue[r->put % PLACES];
-  pthread_mutex_unlock(&r->lock);
-  return next;
+  if (filled(r) == PLACES) wait_for_room(r);
+  return &r->queue[r->put % PLACES];
 }
 
-/* The thread waits only when the queue is empty: so it is woken when there is exactly enough. */
 static void hand_over(trb_recorder *r)
 {
-  pthread_mutex_lock(&r->lock);
   r->put++;
-  if (r->put - r->taken == ENOUGH) pthread_cond_signal(&r->has_work);
-  pthread_mutex_unlock(&r->lock);
+  if (r->idle && filled(r) >= ENOUGH) wake(r, &r->idle, &r->has_work);
 }
 
 void trb_recorder_step(trb_recorder *r, double time, const double *y)
