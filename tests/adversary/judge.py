@@ -67,6 +67,8 @@ class Run:
     cage: tuple[float, float] = (math.nan, math.nan)
     mean_step: float = math.nan
     warnings: tuple[str, ...] = ()
+    asked: tuple[float, float] = (math.nan, math.nan)
+    """Loss (J) and speed of the rollers at the time that was asked for, which lies within the last step."""
 
     @property
     def closure(self) -> float:
@@ -129,13 +131,11 @@ def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
     """Against the tight run. Bodies that hit each other go their own ways after some impacts: where the judged run is off, other
     tight runs show by how much such a scene's losses and speeds differ that are all as good."""
 
-    def lost(other: Run) -> float:
-        # the last step reaches beyond the end, in a short run by much of it
-        return other.loss * run.time / other.time
-
-    scale = max(abs(run.loss), abs(lost(tight)), 1e-3 * tight.turned_over, 1e-6 * tight.stored, 1e-9)
-    loss = abs(run.loss - lost(tight)) / scale
-    speed = abs(run.roller_speed - tight.roller_speed)
+    # the last step of a tight run reaches beyond the end of the judged one, in a short run by much of it
+    tight_loss, tight_speed = tight.asked
+    scale = max(abs(run.loss), abs(tight_loss), 1e-3 * tight.turned_over, 1e-6 * tight.stored, 1e-9)
+    loss = abs(run.loss - tight_loss) / scale
+    speed = abs(run.roller_speed - tight_speed)
     if loss <= LOSS and speed <= SLIP:
         return
     others = [
@@ -144,8 +144,7 @@ def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
         )
         for changed in ({"rtol": 5e-5}, {"rtol": 2e-4})
     ]
-    good = [other for other in (tight, *others) if other.status == "done"]
-    losses, speeds = [lost(other) for other in good], [other.roller_speed for other in good]
+    losses, speeds = zip(*(other.asked for other in (tight, *others) if other.status == "done"), strict=True)
     loss -= 2.0 * (max(losses) - min(losses)) / scale
     speed -= 2.0 * (max(speeds) - min(speeds))
     if loss > LOSS:
@@ -159,6 +158,7 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int, *, patien
     run = Run()
     first = sim.record()
     begin, turned, last = sim.time, 0.0, first
+    place = sim.state
     found: list[str] = []
     watch = Watch(sim, begin + duration, found) if Watch is not None else None
     looks = np.linspace(0.0, duration, 17)[1:] + begin
@@ -168,6 +168,7 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int, *, patien
     try:
         for look in looks:
             while sim.time < look and run.steps < most_steps:
+                place = sim.state
                 sim.step()
                 run.steps += 1
                 if run.steps % 4000 == 0 and _look(watch, run):
@@ -198,11 +199,14 @@ def bounded_run(sim: trb.Simulation, duration: float, most_steps: int, *, patien
     stored = _stored(last)
     run.residual = _sum(last, "work_") - _sum(first, "work_") - (stored - _stored(first)) - run.loss
     run.turned_over, run.stored = turned, stored
-    nominal = abs(float(sim.scene.bearing.geometry.cage_speed_ratio) * _speed(sim)) * run.time
-    # a roller may be anywhere in its pocket: a mean speed over less than some plays of the pocket says nothing of slip
-    bearing = sim.scene.bearing
-    least = LEAST_PATH * bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter)
-    run.roller_speed = float(np.mean(last["roller_orbit_angle"] - first["roller_orbit_angle"])) / max(nominal, least)
+    run.roller_speed = _path(first, last) / _nominal_path(sim, run.time)
+    run.asked = run.loss, run.roller_speed
+    if run.status == "done" and run.time > duration:
+        earlier = sim.record(place.vector, place.time)
+        share = (begin + duration - place.time) / (sim.time - place.time)
+        lost = (1.0 - share) * (_sum(earlier, "loss_") - _sum(first, "loss_")) + share * run.loss
+        path = (1.0 - share) * _path(first, earlier) + share * _path(first, last)
+        run.asked = lost, path / _nominal_path(sim, duration)
     if "cage_position" in last:
         run.cage = (float(last["cage_position"][0]), float(last["cage_position"][1]))
     return run
@@ -227,6 +231,20 @@ def _duration(scene: trb.Scene) -> float:
         ends = [q.times[-1] for q in (speed, scene.axial_load) if isinstance(q, trb.History)]
         return float(1.2 * max(ends))
     return float(min(max(60.0 / abs(speed), 4e-3), 0.3))
+
+
+def _path(first: dict[str, Array], last: dict[str, Array]) -> float:
+    """Angle by which the rollers have gone on about the bearing's axis, in the mean."""
+    return float(np.mean(last["roller_orbit_angle"] - first["roller_orbit_angle"]))
+
+
+def _nominal_path(sim: trb.Simulation, time: float) -> float:
+    """The same in pure rolling at the largest speed. A roller may be anywhere in its pocket: a mean speed over less than some plays
+    of the pocket says nothing of slip.
+    """
+    bearing = sim.scene.bearing
+    least = LEAST_PATH * bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter)
+    return max(abs(float(bearing.geometry.cage_speed_ratio) * _speed(sim)) * time, least)
 
 
 def _speed(sim: trb.Simulation) -> float:
