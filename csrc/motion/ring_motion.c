@@ -112,8 +112,10 @@ static double channel_integral(const double *a, int channel, double s, double h)
               (0.25 * s4 - s3 / 3.0) * h * b[c + 1]);
 }
 
-/* Steps that an interval between two knots takes at least. */
-enum { STEPS_AN_INTERVAL = 8 };
+/* Parts of an interval between two knots at whose ends a step ends; steps that it takes at least where these are no shorter than a step that
+ * bearings take at usual speeds, s. */
+enum { STEPS_AN_INTERVAL = 8, STEPS_FOR_POWERS = 32 };
+static const double usual_step = 5e-5;
 
 /* Index of the last knot at or before a time between the first and the last. */
 static int interval_of(const trb_motion *motion, double time)
@@ -141,6 +143,15 @@ double trb_motion_stop(const trb_motion *motion, double time)
   const double next = knot(motion, low + 1), part = inside + (next - knot(motion, low)) / STEPS_AN_INTERVAL;
   /* no sliver of a step is left before the knot */
   return shift + (part < next - 0.5 * (part - inside) ? part : next);
+}
+
+double trb_motion_longest_step(const trb_motion *motion, double time)
+{
+  double turns;
+  if (motion->n == 1 || time < first_time(motion) || (time >= last_time(motion) && !repeats(motion))) return INFINITY;
+  const int    low = interval_of(motion, time_in_table(motion, time, &turns));
+  const double length = knot(motion, low + 1) - knot(motion, low);
+  return fmax(length / STEPS_FOR_POWERS, fmin(length / STEPS_AN_INTERVAL, usual_step));
 }
 
 int trb_motion_changes(const trb_motion *motion, double from, double to)

@@ -33,6 +33,9 @@ int trb_motion_changes(const trb_motion *motion, double from, double to);
 /* Where a step from a time on must end at the latest, so that no part of a history is stepped over: the next knot, and within an interval
  * a part of it. INFINITY where nothing changes any more. */
 double trb_motion_stop(const trb_motion *motion, double time);
+/* The longest step from a time on. Works and losses are integrated beside the motion and control no step: where bodies follow a smooth
+ * history in long steps, a power that rises and falls within it would be summed up from a few values. INFINITY where nothing changes. */
+double trb_motion_longest_step(const trb_motion *motion, double time);
 void   trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive);
 
 #endif

@@ -195,7 +195,10 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
   sunrealtype reached = it->time, step = 0.0;
   /* set at every step; far away where the prescribed motion changes no more */
   const double stop = trb_motion_stop(it->motion, it->time);
-  if (it->motion->n > 1) CHECK(CVodeSetStopTime(self->memory, fmin(stop, TRB_NEVER)));
+  if (it->motion->n > 1) {
+    CHECK(CVodeSetStopTime(self->memory, fmin(stop, TRB_NEVER)));
+    CHECK(CVodeSetMaxStep(self->memory, fmin(it->settings.max_step, trb_motion_longest_step(it->motion, it->time))));
+  }
   CHECK(CVodeGetCurrentStep(self->memory, &step));
   const trb_impact_measure measure = {.share = it->settings.impact_share,
                                       .least = it->settings.impact_least,

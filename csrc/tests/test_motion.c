@@ -157,6 +157,7 @@ static void test_stops(const trb_motion *motion)
   double       time = first - 1.0;
   int          met = 0, steps = 0;
   CHECK(trb_motion_stop(motion, time) == first);
+  CHECK(trb_motion_longest_step(motion, time) == (double)INFINITY && trb_motion_longest_step(motion, last) == (double)INFINITY);
   CHECK(trb_motion_stop(motion, last) == (double)INFINITY && trb_motion_stop(motion, last + 1.0) == (double)INFINITY);
   for (time = first; time < last && steps < 1000; steps++) {
     const double stop = trb_motion_stop(motion, time);
@@ -168,6 +169,7 @@ static void test_stops(const trb_motion *motion)
       met += stop == table[i][0];
     }
     CHECK(stop - time < 0.19 * interval && stop - time > 0.05 * interval);
+    CHECK_NEAR(trb_motion_longest_step(motion, time), fmax(interval / 32.0, fmin(interval / 8.0, 5e-5)), 1e-12 * interval);
     time = stop;
   }
   CHECK(met == KNOTS - 1);

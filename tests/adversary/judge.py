@@ -239,8 +239,8 @@ def _path(first: dict[str, Array], last: dict[str, Array]) -> float:
 
 
 def _nominal_path(sim: trb.Simulation, time: float) -> float:
-    """The same in pure rolling at the largest speed. A roller may be anywhere in its pocket: a mean speed over less than some plays
-    of the pocket says nothing of slip.
+    """The same in pure rolling at the largest speed. A roller may be anywhere in its pocket: a mean speed over less than some
+    plays of the pocket says nothing of slip.
     """
     bearing = sim.scene.bearing
     least = LEAST_PATH * bearing.cage.play_circumferential / (0.5 * bearing.pitch_diameter)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 import trbdyn as trb
@@ -52,6 +53,19 @@ def _run(scene: trb.Scene, duration: float, **options: object) -> tuple[float, f
     stored = sum(float(end[name] - begin[name]) for name in ("kinetic_energy", "elastic_energy"))
     lost = change("loss_")
     return lost / sim.time, abs(change("work_") - stored - lost) / lost, steps
+
+
+@pytest.mark.parametrize("accuracy", PRESETS)
+def test_losses_are_the_integral_of_their_power_where_slow_rotation_turns_round(accuracy):
+    """Where nothing falls or hits, bodies follow such a history in long steps without any error: the error test does not see a
+    power that falls to nothing and rises again. Summed up from eight steps the losses were off by 1.4 to 5 %.
+    """
+    turning = trb.History(times=(0.5e-3, 2.9e-3), values=(0.011, -0.0094))
+    scene = _lean(scene_32216(10.0, 30_000.0)).replace(speed_rpm=turning, gravity=(0.0, 0.0, 0.0))
+    result = trb.Simulation(scene, accuracy=accuracy).run(duration=2.9e-3, save_every=1e-5)
+    time, power = result.time, result["power_loss"]
+    lost = sum(float(result[name][-1]) for name in dir(result) if name.startswith("loss_"))
+    assert lost == pytest.approx(float(np.trapezoid(power, time)), rel=6e-3)
 
 
 @pytest.mark.parametrize("name", SCENES)
