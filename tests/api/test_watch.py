@@ -9,7 +9,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.model.cases import scene_30310
-from trbdyn.run.watch import LOST_SHARE, STOP, WARN, WINDOWS, Watch
+from trbdyn.run.watch import LEAST_STORED_SHARE, LOST_SHARE, STOP, WARN, WINDOWS, Watch
 
 LOOSE: dict[str, Any] = {
     "rtol": 0.1,
@@ -108,13 +108,14 @@ def test_bounds(work, loss, warned, ended):
         (8e-4, 3.8e-4, "took 0.00038 J"),
         (8e-4, -3.8e-4, "made 0.00038 J"),
         (8e-4, 0.9 * LOST_SHARE * 8e-4, ""),
-        (1e-6, 3e-5, ""),
+        (1e-6, 3e-5, "took 3e-05 J"),
+        (1e-6, 0.9 * LEAST_STORED_SHARE * 38.7, ""),
         (0.0, 3e-4, ""),
     ],
 )
 @pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
 def test_what_is_missing_beside_the_losses_is_said(loss, missing, said):
-    """Also where it is less than a hundredth of a thousandth of the energy that is stored, 38.7 J; the run goes on."""
+    """Also where it is less than a millionth of the energy that is stored, 38.7 J; the run goes on."""
     sim, found = _Sim(), []
     sim._core.row = [0.0, 0.0, 38.0, 0.7]
     watch = Watch(sim, 1.0, found)  # type: ignore[arg-type]

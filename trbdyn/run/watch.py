@@ -33,7 +33,7 @@ DISSIPATING: Final = 0.3
 """Share of losses, or of the work put in, in the energy turned over above which missing energy ends a run, too."""
 LOST_SHARE: Final = 0.01
 """The same over the losses of the whole run, above which it warns."""
-LEAST_STORED_SHARE: Final = 1e-6
+LEAST_STORED_SHARE: Final = 5e-8
 """Share of the kinetic and elastic energy below which nothing is looked at beside the losses."""
 WINDOWS: Final = 20
 """Windows of a run, at most."""
