@@ -15,13 +15,13 @@
  *
  * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
  * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
- * two points between which the plain method would jump for ever are left.
+ * the method gets away from two points between which the plain one would jump for ever.
  *
  * Where an oil yields or friction turns round within micrometres a second, F is nearly a step of the sliding speed, and a slope taken beside
  * it is far too small: corrections go too far, to and fro. With several loaded rollers at such places one update for all of them does not
  * help. The step would be shortened until forces hardly matter in it, and stay so. Where solves fail time and again the method therefore
- * takes the bodies one by one: each has an update of its own, and the point at which its equations lacked least is kept. If the iterations
- * end without a solution, slopes are taken again at these points, and the next iterations begin there. */
+ * takes the bodies one by one: each has an update of its own, and of the points after the first correction the one at which its equations
+ * lacked least is kept. If the iterations end without a solution, slopes are taken again at these points, and the next iterations begin there. */
 #include "stepping/newton.h"
 
 #include <math.h>
@@ -43,7 +43,7 @@ enum { most_renewals = 8 };
 /* Share of solves that fail above which the equations must hold to a share of the tolerance in any case. Where friction is that steep, what
  * a step lacks within the tolerance is a force that makes as much energy as the bearing loses. */
 static const double sometimes = 0.1, tiny = 0.01;
-/* Failed solves without that after it was in vain: one, then twice as many each time, at most so many. */
+/* Where that was in vain it is left out for one failed solve, then for twice as many each time, at most for so many. */
 enum { longest_pause = 64 };
 
 typedef struct newton {
@@ -59,7 +59,7 @@ typedef struct newton {
   int     iterations, failures; /* of the last solve */
   int     troubled;             /* whether the last solve failed */
   int     renewing;             /* slopes are taken again within a solve */
-  int     pause, paused;        /* failed solves to go by without that, and those that have */
+  int     pause, paused;        /* failed solves for which that is left out, and those that went by */
   double  failing;              /* share of solves that failed, the last ones counting most */
 } newton;
 
@@ -155,7 +155,7 @@ static int holds(const newton *self, double off, double before, double tolerance
   return off <= negligible * tolerance || (off <= tolerance && off <= contraction * before);
 }
 
-/* one_by_one: the bodies, and the best points behind the first correction are kept. */
+/* one_by_one: the bodies, and the best points after the first correction are kept. */
 static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int one_by_one, void *memory)
 {
   double first = INFINITY, before = 0.0;

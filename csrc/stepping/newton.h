@@ -12,7 +12,7 @@ enum { TRB_NEWTON_MOST = 12 }; /* iterations at most */
  * out of memory. */
 SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_bodies, int size, SUNContext context);
 
-/* Whether the last solve failed. */
+/* Whether the last solve failed that was not broken off by an evaluation or a Jacobian that failed. */
 int trb_newton_troubled(SUNNonlinearSolver solver);
 /* Whether slopes are being taken again within a solve: all of them, then. */
 int trb_newton_renewing(SUNNonlinearSolver solver);
