@@ -344,7 +344,9 @@ HARD: tuple[Hard, ...] = (
         duration=0.03,
         calm=0.02,
         steps=45.0,
-        tolerances=0.3,
+        # rollers bounce between the races, and two runs part: eight runs with tolerances 0.8 to 1.3 times as large scatter by 13
+        # to 19 % with every preset; their means agree (2283 +- 106, 2067 +- 138, 2145 +- 131 W from fast to reference)
+        tolerances=0.7,
     ),
     Hard(
         "load_step_in_one_step",
