@@ -204,6 +204,11 @@ void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, dou
   for (int k = 0; k < n; k++) q[k] += flow[TRB_FLOW_quadrature + k];
 }
 
+void trb_dynamics_forget(trb_dynamics *d)
+{
+  for (int f = 0; f < d->n_fast; f++) memset(d->fast[f].clearances, 0, (size_t)d->model->n_rollers * sizeof *d->fast[f].clearances);
+}
+
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)
 {
   const trb_model *m = d->model;

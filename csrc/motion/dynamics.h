@@ -92,6 +92,8 @@ static inline const trb_rigid_pose *trb_dynamics_cage(const trb_dynamics *d) { r
  * the hub. */
 void trb_dynamics_start(trb_dynamics *d, double *rates);
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
+/* Forget what was proven of fast pairs at earlier states. */
+void trb_dynamics_forget(trb_dynamics *d);
 /* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */

@@ -123,7 +123,8 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->matrix = trb_arrow_matrix(m->n_rollers, hub_width, self->sundials.context);
   self->solver = trb_arrow_linear_solver(m->n_rollers, hub_width, it->dynamics->work->variant, self->sundials.context);
   if (self->y != NULL)
-    self->newton = trb_newton_solver((int)it->settings.newton_iterations, self->y, m->n_rollers, TRB_ROLLER_SIZE, self->sundials.context);
+    self->newton =
+        trb_newton_solver((int)it->settings.newton_iterations, self->y, it->n_main, m->n_rollers, TRB_ROLLER_SIZE, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
@@ -163,7 +164,7 @@ static void read_totals(const trb_integrator *it, trb_statistics *s)
   READ(CVodeGetNumJacEvals, jacobian_evaluations);
   READ(CVodeGetNumLinSolvSetups, linear_setups);
   READ(CVodeGetNumNonlinSolvIters, nonlinear_iterations);
-  READ(CVodeGetNumNonlinSolvConvFails, nonlinear_failures);
+  READ(CVodeGetNumStepSolveFails, nonlinear_failures);
   READ(CVodeGetNumErrTestFails, error_failures);
 #undef READ
   (void)CVodeGetLastStep(self->memory, &s->last_step);

@@ -21,7 +21,8 @@
  * it is far too small: corrections go too far, to and fro. With several loaded rollers at such places one update for all of them does not
  * help. The step would be shortened until forces hardly matter in it, and stay so. Where solves fail time and again the method therefore
  * takes the bodies one by one: each has an update of its own, and of the points after the first correction the one at which its equations
- * lacked least is kept. If the iterations end without a solution, slopes are taken again at these points, and the next iterations begin there. */
+ * lacked least is kept. The integrals of losses, works and spin, which no force reads, keep the plain correction: it solves their equations.
+ * If the iterations end without a solution, slopes are taken again at these points, and the next iterations begin there. */
 #include "stepping/newton.h"
 
 #include <math.h>
@@ -54,11 +55,12 @@ typedef struct newton {
   double              *taken;   /* corrections taken in this step, one after the other */
   double              *square;  /* body by body: of their weighted norms */
   double *best, *best_square;   /* body by body: the point at which its equations lacked least, and their weighted square there */
-  int     n, most;              /* entries; iterations allowed */
-  int     n_bodies, size;       /* bodies but the last one, and their entries; what is left is the last one */
+  int     n, n_main, most;      /* entries; those before the integrals that no force reads; iterations allowed */
+  int     n_bodies, size;       /* bodies but the last one, and their entries; what is left before the integrals is the last one */
   int     iterations, failures; /* of the last solve */
   int     troubled;             /* whether the last solve failed */
   int     renewing;             /* slopes are taken again within a solve */
+  int     has_best;             /* whether the last iterations came to a point after their first correction */
   int     pause, paused;        /* failed solves for which that is left out, and those that went by */
   double  failing;              /* share of solves that failed, the last ones counting most */
 } newton;
@@ -94,7 +96,7 @@ static double product(int n, const double *a, const double *b, const double *wei
 static part part_of(const newton *self, int body)
 {
   const int from = body * self->size;
-  return (part){.from = from, .n = body < self->n_bodies ? self->size : self->n - from};
+  return (part){.from = from, .n = body < self->n_bodies ? self->size : self->n_main - from};
 }
 
 /* Turns a part of the plain correction into that of Broyden's method and stores it; m: number of corrections that were taken before.
@@ -139,6 +141,7 @@ static double improve_all(newton *self, int m, int one_by_one, const double *wei
 /* Keep the point of each body whose equations lack less than at those before. */
 static void remember(newton *self, const double *at, const double *lack, const double *weight)
 {
+  self->has_best = 1;
   for (int body = 0; body <= self->n_bodies; body++) {
     const part   of = part_of(self, body);
     const double square = product(of.n, lack + of.from, lack + of.from, weight + of.from);
@@ -159,6 +162,7 @@ static int holds(const newton *self, double off, double before, double tolerance
 static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int one_by_one, void *memory)
 {
   double first = INFINITY, before = 0.0;
+  self->has_best = 0;
   if (one_by_one) {
     for (int body = 0; body <= self->n_bodies; body++) self->best_square[body] = (double)INFINITY;
     memcpy(self->best, N_VGetArrayPointer(correction), (size_t)self->n * sizeof *self->best);
@@ -187,7 +191,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
   return SUN_NLS_CONV_RECVR;
 }
 
-/* Takes slopes at the best points and iterates from there, until that succeeds or was done often enough. */
+/* Takes slopes at the best points and iterates from there, until that succeeds, was done often enough, or comes to no new point. */
 static int renew(newton *self, N_Vector correction, N_Vector weights, double tolerance, void *memory)
 {
   int current = 0, flag = SUN_NLS_CONV_RECVR;
@@ -198,7 +202,7 @@ static int renew(newton *self, N_Vector correction, N_Vector weights, double tol
     if (flag == 0) flag = self->setup(1, &current, memory);
     going = flag == 0;
     if (going) flag = iterate(self, correction, weights, tolerance, 1, memory);
-    going = going && flag > 0;
+    going = going && flag > 0 && self->has_best;
   }
   self->renewing = 0;
   return flag;
@@ -298,7 +302,11 @@ static int get_failures(SUNNonlinearSolver solver, long *n)
   return 0;
 }
 
-int trb_newton_troubled(SUNNonlinearSolver solver) { return ((newton *)solver->content)->troubled; }
+int trb_newton_troubled(SUNNonlinearSolver solver)
+{
+  const newton *self = solver->content;
+  return self->troubled || self->failing > sometimes;
+}
 
 int trb_newton_renewing(SUNNonlinearSolver solver) { return ((newton *)solver->content)->renewing; }
 
@@ -310,7 +318,7 @@ void trb_newton_forget(SUNNonlinearSolver solver)
   self->pause = self->paused = 0;
 }
 
-SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_bodies, int size, SUNContext context)
+SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_main, int n_bodies, int size, SUNContext context)
 {
   SUNNonlinearSolver solver = SUNNonlinSolNewEmpty(context);
   if (solver == NULL) return NULL;
@@ -320,6 +328,7 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_bo
     self->n = (int)N_VGetLength(like);
     self->most = max_iterations < TRB_NEWTON_MOST ? max_iterations : TRB_NEWTON_MOST;
     self->delta = N_VClone(like);
+    self->n_main = n_main;
     self->n_bodies = n_bodies;
     self->size = size;
     self->taken = calloc((size_t)self->n * (size_t)self->most, sizeof(double));

@@ -8,11 +8,11 @@
 
 enum { TRB_NEWTON_MOST = 12 }; /* iterations at most */
 
-/* like: a vector of the state's length. Its first entries are n_bodies bodies of the same size; what is left counts as one more. NULL if
- * out of memory. */
-SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_bodies, int size, SUNContext context);
+/* like: a vector of the state's length. Its first n_main entries are n_bodies bodies of the same size and one more, which has what is left
+ * of them. The entries after those are integrals that no force reads. NULL if out of memory. */
+SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_main, int n_bodies, int size, SUNContext context);
 
-/* Whether the last solve failed that was not broken off by an evaluation or a Jacobian that failed. */
+/* Whether solves fail: the last one that was not broken off by an evaluation or a Jacobian that failed, or more than a tenth of those before. */
 int trb_newton_troubled(SUNNonlinearSolver solver);
 /* Whether slopes are being taken again within a solve: all of them, then. */
 int trb_newton_renewing(SUNNonlinearSolver solver);

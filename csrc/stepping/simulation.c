@@ -143,6 +143,7 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
   s->integrator.time = s->previous = time;
   trb_integrator_set_tolerances(&s->integrator);
   trb_impacts_forget(s->model, &s->integrator.impacts);
+  trb_dynamics_forget(s->dynamics);
   if (s->peaks != NULL) trb_peaks_begin(s->peaks, time, s->integrator.y, time, s->integrator.y);
   return s->integrator.kind->restart(&s->integrator, message);
 }

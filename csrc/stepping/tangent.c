@@ -62,6 +62,7 @@ void trb_tangents_forget(trb_tangents *t)
 {
   memset(t->rollers, 0, (size_t)t->model->n_rollers * sizeof *t->rollers);
   t->has_slopes = 0;
+  t->time = 0.0;
 }
 
 static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)

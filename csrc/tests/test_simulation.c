@@ -185,6 +185,37 @@ static void test_failed_step(void)
   trb_simulation_free(NULL);
 }
 
+/* A simulation that is set to a state goes on as a new one that begins there: nothing of the states before is left. share: of the
+ * disturbance of the start; whatever impacts, tangents or Jacobians might remember shows with one of them. */
+static void test_set_state(const char *kind, double share)
+{
+  enum { STEPS = 3000 };
+  trb_settings       settings = rig_settings();
+  const int          n = trb_state_size(m);
+  const size_t       length = sizeof(double) * (size_t)n;
+  trb_simulation    *s, *begun;
+  double             state[512];
+  unsigned long long seed = 7;
+  settings.first_step = 1e-5;
+  memcpy(state, start, length);
+  rig_disturb(m, &seed, state);
+  for (int i = 0; i < n; i++) state[i] = start[i] + share * (state[i] - start[i]);
+  if (!CHECK(create(kind, "", &settings, 1.0, state, &s) == TRB_OK)) return;
+  for (int i = 0; i < STEPS; i++) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
+  const double time = s->integrator.time;
+  memcpy(state, s->integrator.y, length);
+  CHECK(trb_simulation_set_state(s, time, state, NULL) == TRB_OK);
+  if (!CHECK(create(kind, "", &settings, time, state, &begun) == TRB_OK)) return;
+  int same = 1;
+  for (int i = 0; i < STEPS && same; i++) {
+    CHECK(trb_simulation_step(s, NULL) == TRB_OK && trb_simulation_step(begun, NULL) == TRB_OK);
+    same = memcmp(s->integrator.y, begun->integrator.y, length) == 0 && s->integrator.time == begun->integrator.time;
+  }
+  CHECK(same);
+  trb_simulation_free(begun);
+  trb_simulation_free(s);
+}
+
 int main(void)
 {
   const trb_params p = rig_params();
@@ -198,6 +229,8 @@ int main(void)
   test_newton_share();
   test_beside();
   test_failed_step();
+  for (int i = 0; i < 6; i++) test_set_state("bdf", pow(10.0, -i));
+  test_set_state("erk", 1.0);
   trb_motion_free(motion);
   trb_model_free(m);
   return check_report();

@@ -17,7 +17,9 @@ LOOSE: dict[str, Any] = {
     "atol_angle": 1e-4,
     "atol_velocity": 1.0,
     "atol_spin": 100.0,
+    "max_order": 4,
 }
+"""Tolerances that bind nothing, and formulas that make energy out of lightly damped vibrations."""
 
 
 def test_a_run_that_is_right_has_no_warnings(recwarn):
