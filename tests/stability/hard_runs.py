@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn.run import running
+from trbdyn.run.options import ACCURACY
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,9 @@ TIGHT: dict[str, Any] = {
     "when_wrong": "go_on",  # steps as small as these tolerances need do not end a run; its energy is judged here
 }
 """Tolerances of the runs that the others are compared with, and of comparisons between methods."""
+
+NEAR = (0.8, 1.3)
+"""Least and largest tolerances of runs that stand beside one another, in those of the first of them."""
 
 LATE = 10.0
 """Bound of the steps a second after an event, in those of the smooth scene."""
@@ -159,7 +163,8 @@ def _compare(hard: Hard, scene: trb.Scene, result: trb.Result, verdict: Verdict)
     tight, _ = _run(trb.Simulation(scene, **TIGHT), short, hard.slow)
     verdict.demand(tight.success, f"the reference did not finish: {tight.message}")
     verdict.demand(closure(tight) <= hard.closure, f"energy of the reference closes to {closure(tight):.2g} only")
-    verdict.tolerances = _difference_of_losses(result, tight)
+    ours = [result, *_runs_beside(hard, scene, short, ACCURACY[hard.accuracy].model_dump())]
+    verdict.tolerances = _difference_of_losses(ours, [tight, *_runs_beside(hard, scene, short, TIGHT)], tight.time[-1])
     verdict.demand(verdict.tolerances <= hard.tolerances, f"two tolerances differ by {verdict.tolerances:.2g}")
     verdict.twin = _made_by_twin(scene, min(short, 0.02))
     verdict.demand(verdict.twin <= hard.twin, f"without friction {verdict.twin:.2g} of the energy is made or lost")
@@ -167,15 +172,26 @@ def _compare(hard: Hard, scene: trb.Scene, result: trb.Result, verdict: Verdict)
     verdict.demand(verdict.path <= hard.path, f"two methods differ by {verdict.path:.2g} in their speeds")
 
 
-def _difference_of_losses(result: trb.Result, other: trb.Result) -> float:
+def _runs_beside(hard: Hard, scene: trb.Scene, duration: float, options: dict[str, Any]) -> list[trb.Result]:
+    """The other runs of a scene whose single runs part: with tolerances a little smaller and larger."""
+    results = []
+    for factor in np.linspace(*NEAR, hard.runs - 1):
+        scaled = {name: value if isinstance(value, str) else factor * value for name, value in options.items()}
+        results.append(_run(trb.Simulation(scene, accuracy=hard.accuracy, **scaled), duration, hard.slow)[0])
+    return results
+
+
+def _lost(result: trb.Result, time: float) -> float:
+    """Energy lost up to a time (J)."""
+    here = int(np.argmin(np.abs(result.time - time)))
+    return sum(float(result[entry.name][here]) for entry in result.fields if entry.name.startswith("loss_"))
+
+
+def _difference_of_losses(ours: list[trb.Result], theirs: list[trb.Result], time: float) -> float:
     """Relative difference of the mean loss, over the same time."""
-    end = other.time[-1]
-    here = int(np.argmin(np.abs(result.time - end)))
-    losses = [name for name in (entry.name for entry in result.fields) if name.startswith("loss_")]
-    ours = sum(float(result[name][here]) for name in losses)
-    theirs = sum(float(other[name][-1]) for name in losses)
-    energy = float(np.max(other.kinetic_energy + other.elastic_energy))
-    return abs(ours - theirs) / max(abs(ours), abs(theirs), 1e-3 * energy, 1e-6)
+    our, their = (float(np.mean([_lost(result, time) for result in results])) for results in (ours, theirs))
+    energy = float(np.max(theirs[0].kinetic_energy + theirs[0].elastic_energy))
+    return abs(our - their) / max(abs(our), abs(their), 1e-3 * energy, 1e-6)
 
 
 def _made_by_twin(scene: trb.Scene, duration: float) -> float:
