@@ -29,7 +29,7 @@ VENV    := .venv
 PY      := $(VENV)/bin/python
 PIP     := $(PY) -m pip --disable-pip-version-check
 SOURCES := $(shell find csrc -type f)
-TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws surface bearing body contact motion stepping python))
+TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws surface bearing body contact system motion stepping python))
 STYLED  := $(wildcard csrc/*/*.[ch])
 # Python tests that together run nearly every line of the C sources; the leak tests count a memory that sanitizers keep
 SANITIZED := $(addprefix tests/,laws/test_in_contacts.py laws/test_extremes.py laws/test_oracles.py api/test_laws_api.py geometry \

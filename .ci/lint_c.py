@@ -1,6 +1,7 @@
 """Rules of the C sources that no compiler checks. Prints each breach as file:line: text and exits with 1 if there is one.
 
-Sources: includes point one way (ORDER), SUNDIALS and Python headers stay where they belong, nothing prints, exits or aborts.
+Sources: includes point one way (ORDER), SUNDIALS and Python headers stay where they belong, nothing prints, exits or aborts, and
+what moves and steps a system names none of its bodies (NAMED).
 Objects (with --objects BUILD): exported symbols start with trb_, the core keeps no writable globals, the extension module shows
 nothing but its init function.
 """
@@ -13,10 +14,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CSRC = ROOT / "csrc"
-ORDER = ["base", "laws", "surface", "bearing", "body", "contact", "motion", "stepping", "python"]
+ORDER = ["base", "laws", "surface", "bearing", "body", "contact", "system", "motion", "stepping", "python"]
 SUNDIALS_HEADERS = re.compile(r"(sundials|cvodes?|arkode|kinsol|idas?|nvector|sunmatrix|sunlinsol|sunnonlinsol)/")
 CALLS = "v?f?printf|f?puts|putchar|perror|exit|_Exit|_exit|quick_exit|abort|system"
 FORBIDDEN = re.compile(rf"\b((?:{CALLS})\s*\(|(?:stdout|stderr)\b)")
+# motion/ and stepping/ loop over the bodies and pairs of a system. Records and peaks name those that files show; the kinematic
+# orbit is a number of the geometry.
+NAMED = re.compile(r"\b\w*(?:cage|inner|outer)\w*\b", re.I)
+MAY_NAME = {"motion/record.c", "motion/fields.h", "motion/peak_fields.h"}
+MAY_BE_NAMED = {"cage_speed_ratio"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 # comments, strings, characters
 NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.S)
@@ -68,6 +74,11 @@ def check_sources() -> list[str]:
             found.append(
                 (line, f"{match.group(1).rstrip('( ')}: the core reports through trb_message and status codes")
             )
+        if path.startswith(("motion/", "stepping/")) and path not in MAY_NAME:
+            for match in NAMED.finditer(code):
+                if match.group() not in MAY_BE_NAMED:
+                    line = code.count("\n", 0, match.start()) + 1
+                    found.append((line, f"{match.group()}: motion/ and stepping/ name no body of a system"))
         if path.endswith(".h") and "#ifndef TRB_" not in text and "#pragma once" not in text:
             found.append((1, "no include guard TRB_..."))
         breaches += [f"csrc/{path}:{line}: {text}" for line, text in sorted(found)]

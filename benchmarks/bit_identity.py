@@ -26,7 +26,7 @@ import numpy as np
 from common import HERE, machine, table
 
 import trbdyn as trb
-from trbdyn.model.cases import scene_30310, scene_32216
+from trbdyn.model.cases import paper_30310, scene_32216
 
 SCHEMA = "trbdyn-bits-1"
 DURATION = 6e-3
@@ -70,16 +70,16 @@ def own_scenes() -> dict[str, tuple[Make, dict[str, Any]]]:
     """What `trb.cases` offers, with options of the run that take other ways through the core."""
     whirl = trb.Start.whirl(1.0)
     return {
-        "scene_30310": (scene_30310, {}),
-        "scene_30310 fast": (lambda: scene_30310(start=whirl), {"accuracy": "fast"}),
-        "scene_30310 reference": (lambda: scene_30310(start=whirl), {"accuracy": "reference"}),
-        "scene_30310 erk": (lambda: scene_30310(start=whirl), {"integrator": "erk"}),
-        "scene_30310 combined load": (lambda: scene_30310(2000.0, 4930.0, 5530.0, start=whirl), {}),
-        "scene_30310 planar": (lambda: scene_30310(effects=paper(planar=True)), {}),
-        "scene_30310 no cage": (lambda: scene_30310(effects=paper(bodies="rollers")), {}),
-        "scene_30310 whirl": (lambda: scene_30310(start=whirl), {}),
-        "scene_30310 scalar": (lambda: scene_30310(start=whirl), {"instruction_set": "scalar"}),
-        "scene_30310 base": (lambda: scene_30310(start=whirl), {"instruction_set": "base"}),
+        "paper_30310": (paper_30310, {}),
+        "paper_30310 fast": (lambda: paper_30310(start=whirl), {"accuracy": "fast"}),
+        "paper_30310 reference": (lambda: paper_30310(start=whirl), {"accuracy": "reference"}),
+        "paper_30310 erk": (lambda: paper_30310(start=whirl), {"integrator": "erk"}),
+        "paper_30310 combined load": (lambda: paper_30310(2000.0, 4930.0, 5530.0, start=whirl), {}),
+        "paper_30310 planar": (lambda: paper_30310(effects=paper(planar=True)), {}),
+        "paper_30310 no cage": (lambda: paper_30310(effects=paper(bodies="rollers")), {}),
+        "paper_30310 whirl": (lambda: paper_30310(start=whirl), {}),
+        "paper_30310 scalar": (lambda: paper_30310(start=whirl), {"instruction_set": "scalar"}),
+        "paper_30310 base": (lambda: paper_30310(start=whirl), {"instruction_set": "base"}),
         "scene_32216": (scene_32216, {}),
     }
 

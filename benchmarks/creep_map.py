@@ -86,7 +86,7 @@ def scene(
     e: float = 0.4,
 ) -> trb.Scene:
     """A whirling start in either bearing."""
-    make = trb.cases.scene_30310 if name == "30310" else trb.cases.scene_32216
+    make = trb.cases.paper_30310 if name == "30310" else trb.cases.scene_32216
     return make(
         speed,
         load,
@@ -381,13 +381,13 @@ def main() -> None:
     """Run the benchmark."""
     parser = common.parser(__doc__)
     parser.add_argument(
-        "--picture", type=Path, default=None, help="draw the map here; paper/creep_map.png, with --quick nowhere"
+        "--picture", type=Path, default=None, help="draw the map here; pictures/creep_map.png, with --quick nowhere"
     )
     options = parser.parse_args()
     report, quick = common.Report("creep_map", options, COLUMNS), options.quick
     rheologies(report, quick)
     show(report, "chi")
-    picture = options.picture or (None if quick else common.HERE / "paper" / "creep_map.png")
+    picture = options.picture or (None if quick else common.PICTURES / "creep_map.png")
     found = behaviour(report, quick)
     if picture is not None and not options.no_picture:
         draw(report, picture, *found)

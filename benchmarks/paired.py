@@ -45,11 +45,11 @@ name, part = sys.argv[1], float(sys.argv[2])
 effects = trb.Effects.paper().replace(quadrature="gauss", n_slices=8)
 scenes = {
     "colliding cage": lambda: trb.cases.scene_30310(3000.0, 4930.0, effects=effects, start=trb.Start.whirl(0.9)),
-    "combined load": lambda: trb.cases.scene_30310(
+    "combined load": lambda: trb.cases.paper_30310(
         2000.0, 4930.0, effects=effects, start=trb.Start.whirl(0.9), radial_load=5530.0
     ),
     "smooth rolling": lambda: trb.cases.scene_30310(3000.0, 4930.0, effects=effects),
-    "24 slices": lambda: trb.cases.scene_30310(
+    "24 slices": lambda: trb.cases.paper_30310(
         3000.0, 4930.0, effects=effects.replace(quadrature="uniform", n_slices=24), start=trb.Start.whirl(0.9)
     ),
 }

@@ -38,7 +38,7 @@ def main() -> None:
     run = study.RunOptions(
         revolutions=revolutions, save_every=1e-3, save_groups=("cage", "rollers", "pocket", "torque")
     )
-    cases = study.grid(trb.cases.scene_30310(), {"bearing.cage.mass": masses}, run)
+    cases = study.grid(trb.cases.paper_30310(), {"bearing.cage.mass": masses}, run)
     report.inputs = {
         "bearing": "30310",
         "speed_rpm": 3000,

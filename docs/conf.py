@@ -1,10 +1,23 @@
 """How the documentation site is built: MyST pages, code cells executed at build, warnings are errors (`make docs`)."""
 
+import logging
 import os
+import sys
+import tempfile
+from pathlib import Path
 
 import trbdyn
 
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+
 os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"  # pictures of code cells stand on the page
+
+# The kernels run on this machine alone: their words about encryption, and the name of each, are no warnings of the site.
+_profile = Path(tempfile.mkdtemp(prefix="trbdyn-docs-")) / "profile_default"
+_profile.mkdir()
+(_profile / "ipython_kernel_config.py").write_text('c.IPKernelApp.log_level = "ERROR"\n')
+os.environ["IPYTHONDIR"] = str(_profile.parent)
+logging.getLogger("traitlets").setLevel(logging.WARNING)
 
 project = "trbdyn"
 author = "The trbdyn developers"
@@ -17,16 +30,20 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_copybutton",
+    "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",  # puts MathJax into the site: equations are shown without a network
+    "shown_pictures",
 ]
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "extensions", "static"]
 
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 600
 nb_execution_show_tb = True
 nb_merge_streams = True
+nb_render_markdown_format = "myst"  # tables that cells write
 nb_execution_in_temp = True
 suppress_warnings = ["ref.python"]  # a word of a docstring that many classes have as a field
 
@@ -41,3 +58,5 @@ default_role = "literal"
 html_theme = "furo"
 html_title = f"trbdyn {version}"
 html_show_sphinx = False
+html_static_path = ["static"]
+html_css_files = ["tables.css"]

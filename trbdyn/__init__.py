@@ -14,15 +14,14 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from trbdyn import former_names
-
 if TYPE_CHECKING:
     from trbdyn import errors, laws, plot, study
     from trbdyn.base.version import __version__
     from trbdyn.errors import FileError, InputError, LoadError, RunWarning, StepError, TrbError
     from trbdyn.model import cases, lubricants, pocket_shapes
-    from trbdyn.model.bearing import Bearing, Cage, Material, Profile, Ribs, Roller, Roughness, Scatter
+    from trbdyn.model.bearing import Bearing, Cage, CageBody, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.model.effects import Effects
+    from trbdyn.model.growth import Growth
     from trbdyn.model.land import Land
     from trbdyn.model.lubricants import Lubricant, Oil
     from trbdyn.model.motion import History
@@ -33,10 +32,12 @@ if TYPE_CHECKING:
     from trbdyn.results import observables
     from trbdyn.results.result import Result, load
     from trbdyn.run.options import RunOptions
+    from trbdyn.run.rating import rating
     from trbdyn.run.resume import resume
     from trbdyn.run.simulation import Simulation
     from trbdyn.run.toml_case import load_case
     from trbdyn.study.planning import plan
+    from trbdyn.study.uncertainty import uncertainty
     from trbdyn.study.what_matters import sensitivity
     from trbdyn.viewer import view
 
@@ -55,9 +56,11 @@ _MODULES = {
 _NAMES = {
     "Bearing": "trbdyn.model.bearing",
     "Cage": "trbdyn.model.bearing",
+    "CageBody": "trbdyn.model.bearing",
     "Effects": "trbdyn.model.effects",
     "Face": "trbdyn.model.pocket",
     "FileError": "trbdyn.errors",
+    "Growth": "trbdyn.model.growth",
     "History": "trbdyn.model.motion",
     "InputError": "trbdyn.errors",
     "Land": "trbdyn.model.land",
@@ -85,18 +88,22 @@ _NAMES = {
     "load": "trbdyn.results.result",
     "load_case": "trbdyn.run.toml_case",
     "plan": "trbdyn.study.planning",
+    "rating": "trbdyn.run.rating",
     "report": "trbdyn.reporting",
     "resume": "trbdyn.run.resume",
     "sensitivity": "trbdyn.study.what_matters",
+    "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
 }
 
 __all__ = [
     "Bearing",
     "Cage",
+    "CageBody",
     "Effects",
     "Face",
     "FileError",
+    "Growth",
     "History",
     "InputError",
     "Land",
@@ -132,14 +139,14 @@ __all__ = [
     "plan",
     "plot",
     "pocket_shapes",
+    "rating",
     "report",
     "resume",
     "sensitivity",
     "study",
+    "uncertainty",
     "view",
 ]
-
-former_names.install()
 
 
 def __getattr__(name: str) -> Any:
@@ -149,8 +156,6 @@ def __getattr__(name: str) -> Any:
         value = importlib.import_module(_MODULES[name])
     elif name in _NAMES:
         value = getattr(importlib.import_module(_NAMES[name]), name)
-    elif f"trbdyn.{name}" in former_names.MODULES:
-        value = importlib.import_module(former_names.MODULES[f"trbdyn.{name}"])
     else:
         raise AttributeError(f"module 'trbdyn' has no attribute {name!r}")
     globals()[name] = value
@@ -172,4 +177,5 @@ def _load_core() -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    """What users need: completion in a notebook shows these names, and not what this file imports."""
+    return sorted(__all__)

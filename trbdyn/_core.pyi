@@ -76,11 +76,12 @@ class Model:
         shaft_speed: float,
         angles: Array,
         rollers: Array | None = None,
+        loads: bool = False,
     ) -> dict[str, Any]:
         """Static equilibrium at speed. load (5,): force (3) and moment about x, y (2) on the ring; fixed (5,): 1 where
-        `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers; rollers (3 Z,): with `displacement` a
-        guess close to the solution, from which loads are not asked for and given as 0. Gives displacement (5,), rollers
-        (Z, 3: r, z, tilt offsets), loads (Z, 3: outer, inner, rib), residual, iterations."""
+        `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers; rollers (4 Z,): with `displacement` a
+        guess close to the solution, from which loads are given as 0 without `loads`. Gives displacement (5,), rollers
+        (Z, 4: r, z, tilt, skew offsets), loads (Z, 3: outer, inner, rib), residual, iterations."""
     def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of every field of a record."""
     def peak_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:

@@ -145,6 +145,25 @@ CASES: Final = {
         diameter_range=2e-6,
     ),
 }
+OF_FRONT: Final = {
+    "unloaded": CaseDefinition(
+        "radial load that leaves rollers unloaded, which ring between the races where they come into the load zone",
+        3000.0,
+        4930.0,
+        20_000.0,
+        Start.whirl(0.9),
+        2.0,
+        0.33,
+        False,
+        least_window=1e-3,
+        longest_window=1e-3,
+        reference="bdf",
+        batch=1.0,
+        tight_order=2,
+    ),
+}
+"""Further cases, of `benchmarks/front.py` alone."""
+ALL: Final = CASES | OF_FRONT
 N_STATES: Final = 5
 
 
@@ -176,7 +195,7 @@ class Case:
     @property
     def definition(self) -> CaseDefinition:
         """How its states came about."""
-        return CASES[self.name]
+        return ALL[self.name]
 
     @property
     def reference(self) -> Literal["erk", "bdf"]:
@@ -196,7 +215,7 @@ def scene_of(definition: CaseDefinition) -> Scene:
     if definition.diameter_range > 0.0:
         scatter = Scatter(range=definition.diameter_range, seed=1)
         bearing = bearing.replace(roller=bearing.roller.replace(diameter_scatter=scatter))
-    return cases.scene_30310(
+    return cases.paper_30310(
         definition.speed_rpm,
         definition.axial_load,
         definition.radial_load,
@@ -249,7 +268,7 @@ def make_file(names: Sequence[str] = (), path: Path = FILE) -> None:
     if path.exists():
         with np.load(path) as data:
             arrays = dict(data)
-    for name, definition in CASES.items():
+    for name, definition in ALL.items():
         if name not in names and (names or f"{name}_scene" in arrays):
             continue
         scene, states = scene_of(definition), make_states(definition)
@@ -273,7 +292,7 @@ def load_case(name: str, path: Path = FILE) -> Case:
         )
         return Case(
             name,
-            CASES[name].text,
+            ALL[name].text,
             Scene.from_dict(json.loads(str(data[f"{name}_scene"]))),
             states,
             tuple(map(float, data[f"{name}_window"])),

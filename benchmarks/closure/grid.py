@@ -65,7 +65,7 @@ class Point:
         radial = round(self.radial_share * unloading(self.axial_load)) if self.radial_share else 0.0
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return trb.cases.scene_30310(
+            return trb.cases.paper_30310(
                 self.speed_rpm,
                 self.axial_load,
                 radial,
@@ -81,7 +81,7 @@ def unloading(axial_load: float) -> float:
     low, high = 0.0, 4.0 * axial_load
     while high - low > 1e-3 * axial_load:
         middle = 0.5 * (low + high)
-        scene = trb.cases.scene_30310(100.0, axial_load, middle)
+        scene = trb.cases.paper_30310(100.0, axial_load, middle)
         low, high = (middle, high) if trb.Simulation(scene).equilibrium.inner_load.min() > 0.0 else (low, middle)
     return low
 

@@ -138,7 +138,7 @@ def page(report: common.Report) -> str:
     if len(by_effects) > len(by_preset):
         parts += [common.table(by_effects, ("preset", "effects", *names, *more)), ""]
     if any(row["status"] != "error" for row in rows):
-        parts += ["![Closure over speed and load](pictures/closures.png)", ""]
+        parts += ["The command draws the closure over speed and load.", ""]
     parts += ["## Findings", "", _findings(report), ""]
     worst_rows = _sorted(finished(rows), "closure")[:15]
     figures = ("closure", "closure_dissipated", "loss_w", "steps", "turns", "mean_step_s", "repeated_share")

@@ -73,7 +73,7 @@ EFFECTS: Final = (
         {"pocket_bars": True},
         ("gravity_bodies",),
         {
-            "body/ring.h": (
+            "body/drive.h": (
                 (
                     r"(static inline int trb_has_gravity\(const trb_drive \*drive\)\n\{).*?\n\}",
                     r"\1\n  (void)drive;\n  return 0;\n}",
@@ -87,7 +87,6 @@ EFFECTS: Final = (
         {"bodies": "rollers"},
         {},
         counters=("pocket_tests", "pocket_nodes", "pocket_culled"),
-        patch={"contact/contact.h": ((r"(#define TRB_PAIRS\(X\)[^\n]*?) X\(pocket\)", r"\1"),)},
     ),
     Effect(
         "boundary friction",
@@ -165,7 +164,6 @@ EFFECTS: Final = (
         {"back_rib": False},
         {"back_rib": True},
         counters=("rib_tests", "rib_contacts"),
-        patch={"contact/contact.h": ((r"(#define TRB_PAIRS\(X\)[^\n]*?) X\(rib\)", r"\1"),)},
     ),
     Effect(
         "front rib",
@@ -173,7 +171,6 @@ EFFECTS: Final = (
         {"front_rib": False},
         {"front_rib": True},
         counters=("front_rib_tests", "front_rib_contacts"),
-        patch={"contact/contact.h": ((r"(#define TRB_PAIRS\(X\)[^\n]*?) X\(front_rib\)", r"\1"),)},
     ),
     Effect(
         "rib film",

@@ -19,7 +19,7 @@ from .slip import SIDES, Budget
 Array = NDArray[np.float64]
 Rows = Sequence[Mapping[str, Any]]
 
-KINDS = ("stable", "circling", "unstable")
+KINDS = ("stable", "rocking", "circling", "unstable")
 MEASURED = "measured"
 MOST_ORDER = 14.0
 

@@ -39,7 +39,7 @@ def run(eccentricity: float, direction_deg: float, gravity: float = 9.80665) -> 
     angle = math.radians(direction_deg)
     start = Start.whirl(eccentricity, direction_deg=direction_deg) if eccentricity else Start.equal()
     effects = trb.Effects.paper().replace(quadrature="gauss", n_slices=8, damping="hunt_crossley", damping_cage=DAMPING)
-    scene = trb.cases.scene_30310(
+    scene = trb.cases.paper_30310(
         SPEED_RPM,
         AXIAL_LOAD,
         effects=effects,

@@ -171,7 +171,6 @@ def write_point(path: Path, result: Result, history: History, about: Mapping[str
         fields=fields,
         meta=result.meta,
         geometry=result.geometry,
-        compression="gzip",
         overwrite=True,
     ) as writer:
         writer.append(np.hstack(arrays))

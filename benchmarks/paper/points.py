@@ -9,7 +9,7 @@ from typing import Final, Literal
 
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Scatter
-from trbdyn.model.cases import OPERATING_POINTS, rig_30310, scene_30310
+from trbdyn.model.cases import OPERATING_POINTS, paper_30310, rig_30310
 from trbdyn.model.effects import Effects
 from trbdyn.model.scene import Scene, Start
 
@@ -136,7 +136,7 @@ class Point:
         if condition.scatter:
             scatter = Scatter(range=SCATTER, seed=self.seed)
             bearing = bearing.replace(roller=bearing.roller.replace(diameter_scatter=scatter))
-        return scene_30310(
+        return paper_30310(
             condition.speed_rpm,
             condition.axial_load,
             condition.radial_load,

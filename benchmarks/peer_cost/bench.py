@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from numpy_model import Jacobian, NumpyModel, solvers
 
 from trbdyn import Effects, RunOptions, Scene, Simulation, Start
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.run.options import ACCURACY, Tolerances
 
 Array = NDArray[np.float64]
@@ -100,7 +100,7 @@ class Bench:
         effects = Effects.paper().replace(quadrature="gauss", n_slices=options.gauss)
         if options.slices is not None:
             effects = effects.replace(quadrature="uniform", n_slices=options.slices)
-        self.scene: Scene = scene_30310(SPEED_RPM, AXIAL_LOAD, start=Start.whirl(0.9), effects=effects)
+        self.scene: Scene = paper_30310(SPEED_RPM, AXIAL_LOAD, start=Start.whirl(0.9), effects=effects)
         self.play = self.scene.bearing.cage.play_radial
         self.repeats = 1 if options.quick else 3
         self.model = NumpyModel(self.scene)

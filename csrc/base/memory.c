@@ -14,3 +14,11 @@ void *trb_zeros(size_t count, size_t size)
   if (made != NULL) memset(made, 0, bytes);
   return made;
 }
+
+int trb_has_room(size_t bytes)
+{
+  void *volatile room = malloc(bytes); /* volatile: a compiler may leave out memory that nobody uses */
+  const int found = room != NULL;
+  free(room);
+  return found;
+}

@@ -2,23 +2,29 @@
  * the state and the fields power_*, loss_*, work_* and inner_torque_* of a record, which files, plots and summaries read by their names. A
  * row of the table of pairs (contact/pair.h) says where each mechanism of the pair is booked.
  *
- * TRB_LOSSES(F, X): F(X, name, sense, text). TAKES: the mechanism never gives energy; EITHER: it may, at a body. Fields read "loss <text>"
- * and "energy lost <text>". */
+ * F(X, name, sense, is_on, text). TAKES: the mechanism never gives energy; EITHER: it may, at a body. is_on: whether parameters p can have
+ * such a loss; a state has quadratures up to the last loss that is on. Fields read "loss <text>" and "energy lost <text>". */
 #ifndef TRB_BEARING_LOSSES_H
 #define TRB_BEARING_LOSSES_H
 
-#define TRB_LOSSES(F, X) \
-  F(X, traction_outer,   TAKES,  "by sliding at the outer raceway") \
-  F(X, traction_inner,   TAKES,  "by sliding at the inner raceway") \
-  F(X, rolling,          EITHER, "by rolling resistance") \
-  F(X, rolling_pressure, EITHER, "by the rolling film's pressure force, which may also give energy") \
-  F(X, rib,              TAKES,  "at the back-face rib") \
-  F(X, front_rib,        TAKES,  "at the front rib") \
-  F(X, pocket,           TAKES,  "by friction in the pockets") \
-  F(X, damping,          TAKES,  "by normal damping") \
-  F(X, drag,             TAKES,  "by drag of the oil on rollers") \
-  F(X, land_film,        TAKES,  "in the oil film between cage and land") \
-  F(X, land,             TAKES,  "by friction of the cage on the land")
+/* Of pairs with a roller. */
+#define TRB_ROLLER_LOSSES(F, X) \
+  F(X, traction_outer,   TAKES,  1, "by sliding at the outer raceway") \
+  F(X, traction_inner,   TAKES,  1, "by sliding at the inner raceway") \
+  F(X, rolling,          EITHER, 1, "by rolling resistance") \
+  F(X, rolling_pressure, EITHER, 1, "by the rolling film's pressure force, which may also give energy") \
+  F(X, rib,              TAKES,  1, "at the back-face rib") \
+  F(X, front_rib,        TAKES,  1, "at the front rib") \
+  F(X, pocket,           TAKES,  1, "by friction in the pockets") \
+  F(X, damping,          TAKES,  1, "by normal damping") \
+  F(X, drag,             TAKES,  p->oil_fill > 0.0, "by drag of the oil on rollers")
+
+/* Of pairs without one. */
+#define TRB_HUB_LOSSES(F, X) \
+  F(X, land_film, TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "in the oil film between cage and land") \
+  F(X, land,      TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "by friction of the cage on the land")
+
+#define TRB_LOSSES(F, X) TRB_ROLLER_LOSSES(F, X) TRB_HUB_LOSSES(F, X)
 
 /* Works put in: F(X, name, text), each a quadrature and a field work_*. */
 #define TRB_WORKS(F, X) \
@@ -34,29 +40,36 @@
   F(X, front_rib, "the front rib") \
   F(X, land,      "the cage on the inner ring's land")
 
-enum {
-  TRB_LOSS_none = -1,
-#define TRB_LOSS_ENUM(X, name, sense, text) TRB_LOSS_##name,
-  TRB_LOSSES(TRB_LOSS_ENUM, 0)
+#define TRB_LOSS_ENUM(X, name, sense, is_on, text) TRB_LOSS_##name,
+/* What a roller does to the right-hand side has no others. */
+enum { TRB_ROLLER_LOSSES(TRB_LOSS_ENUM, 0) TRB_N_ROLLER_LOSSES };
+enum { TRB_LAST_ROLLER_LOSS = TRB_N_ROLLER_LOSSES - 1, TRB_HUB_LOSSES(TRB_LOSS_ENUM, 0) TRB_N_LOSSES };
 #undef TRB_LOSS_ENUM
-      TRB_N_LOSSES
-};
 
 enum {
-  /* Those before it have a quadrature in every model, later ones only up to the last one whose effect is on: a state without them is as long
-   * as ever, and measures that are means over all of its entries stay the same. */
-  TRB_N_USUAL_LOSSES = TRB_LOSS_drag,
-  /* Those of pairs with a roller come first: what a roller does to the right-hand side has no others. */
-  TRB_N_ROLLER_LOSSES = TRB_LOSS_drag + 1
-};
-
-enum {
-  TRB_TORQUE_none = -1,
 #define TRB_TORQUE_ENUM(X, name, text) TRB_TORQUE_##name,
   TRB_TORQUES(TRB_TORQUE_ENUM, 0)
 #undef TRB_TORQUE_ENUM
       TRB_N_TORQUES
 };
+
+/* Quadratures of the energy audit (docs/theory/energy.md#quadratures): works, then losses; each has its field of the same name in a record. */
+#define TRB_QUADRATURE_OF_WORK(X, name, text) X(work_##name)
+#define TRB_QUADRATURE_OF_LOSS(X, name, sense, is_on, text) X(loss_##name)
+#define TRB_QUADRATURES(X) TRB_WORKS(TRB_QUADRATURE_OF_WORK, X) TRB_LOSSES(TRB_QUADRATURE_OF_LOSS, X)
+
+enum {
+#define TRB_QUADRATURE_ENUM(name) TRB_Q_##name,
+  TRB_QUADRATURES(TRB_QUADRATURE_ENUM)
+#undef TRB_QUADRATURE_ENUM
+      TRB_N_QUADRATURES
+};
+
+/* The first loss. */
+enum { TRB_Q_losses = TRB_N_QUADRATURES - TRB_N_LOSSES };
+
+/* How a row of a system says where it books: the number of an entry of a list, counted from 1. */
+#define TRB_BOOK(entry) (1 + (entry))
 
 typedef enum trb_sense { TRB_SENSE_TAKES, TRB_SENSE_EITHER } trb_sense;
 

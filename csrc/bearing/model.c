@@ -216,6 +216,8 @@ static void fill_land(trb_model *m)
     m->land_station[k] *= 0.5 * p->land_width;
     m->land_weight[k] *= 0.5 * p->land_width;
   }
+  m->guide[TRB_RACE_OUTER] = (trb_guide){p->land_outer_radius, 1};
+  m->guide[TRB_RACE_INNER] = (trb_guide){p->land_inner_radius, 0};
   m->land_place = p->land_offset - p->cage_offset;
   m->land_palmgren = exp(trb_line_log_load(0.0, modulus, p->land_width));
   m->land_film = m->film && p->land_fill > 0.0;
@@ -234,8 +236,19 @@ static void fill_constants(trb_model *m)
   m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
   m->log_viscosity = log(p->viscosity);
   m->log_thermal = log(p->viscosity * trb_max(p->temperature_coefficient, 1e-30) / p->conductivity);
-  m->rib_film_shape = trb_film_point_shape(g->rib_ry / g->rib_rx);
-  m->rib_film_rigid = trb_film_point_rigid_factor(g->rib_ry / g->rib_rx);
+  m->back_rib = (trb_rib){.face = m->surfaces.rib,
+                          .race = m->surfaces.race[TRB_RACE_INNER],
+                          .end = m->surfaces.large_end,
+                          .normal_lean = fabs(sin(g->rib_normal_angle - g->roller_axis_angle)),
+                          .edge_low = p->rib_edge_low,
+                          .edge_high = p->rib_edge_high,
+                          .stiffness = g->rib_stiffness,
+                          .semi_axis_rolling = g->rib_semi_axis_rolling,
+                          .semi_axis_across = g->rib_semi_axis_across,
+                          .rx = g->rib_rx,
+                          .film_shape = trb_film_point_shape(g->rib_ry / g->rib_rx),
+                          .film_rigid = trb_film_point_rigid_factor(g->rib_ry / g->rib_rx),
+                          .roughness = p->roughness_rib};
   const int dry = p->lubrication == TRB_LUBRICATION_DRY, full = p->lubrication == TRB_LUBRICATION_FULL;
   m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);
   m->pocket_friction = dry ? p->dry_friction > 0.0 : !(full && p->traction == TRB_TRACTION_NONE);
@@ -245,8 +258,12 @@ static void fill_constants(trb_model *m)
 /* Up to the last one whose effect is on. */
 static int losses_of(const trb_params *p)
 {
-  if (p->guidance != TRB_GUIDANCE_ROLLERS) return TRB_N_LOSSES;
-  return p->oil_fill > 0.0 ? TRB_N_ROLLER_LOSSES : TRB_N_USUAL_LOSSES;
+  int last = 0;
+#define LAST_ON(X, name, sense, is_on, text) \
+  if (is_on) last = TRB_LOSS_##name;
+  TRB_LOSSES(LAST_ON, 0)
+#undef LAST_ON
+  return last + 1;
 }
 
 static double *doubles(size_t count) { return trb_zeros(count, sizeof(double)); }
@@ -262,6 +279,8 @@ static int allocate(trb_model *m)
   ok &= (m->pocket_axes = calloc((size_t)m->n_rollers, sizeof *m->pocket_axes)) != NULL;
   ok &= (m->pocket_origin = calloc((size_t)m->n_rollers, sizeof *m->pocket_origin)) != NULL;
   for (int race = 0; race < TRB_N_RACES; race++) {
+    m->race[race].race = race;
+    m->race[race].cone = &m->surfaces.race[race];
     ok &= (m->race[race].weight = doubles(lanes)) != NULL;
     ok &= (m->race[race].log_radius = doubles(lanes)) != NULL;
     ok &= (m->race[race].radius = doubles(lanes)) != NULL;

@@ -22,13 +22,38 @@ enum { TRB_LAND_STRIPS = 6 };
 /* Nodes along one contact are padded to a multiple of this, so that no scalar remainder runs. */
 #define TRB_LANE_PAD 8
 
-/* What belongs to the nodes of a contact line and is the same for all rollers. Arrays of n_lanes. */
+/* A raceway, and what belongs to the nodes of a contact line on it and is the same for all rollers. Arrays of n_lanes. */
 typedef struct trb_race_nodes {
-  double *weight;       /* quadrature weight along the contact, m; 0 in padding */
-  double *log_radius;   /* ln Re */
-  double *radius;       /* Re, m */
-  double *roller_share; /* Re/R1: share of the roller in the pair's curvature */
+  int             race;         /* TRB_RACE_OUTER or TRB_RACE_INNER: place of its contacts in results */
+  const trb_cone *cone;         /* about the ring's axis */
+  double         *weight;       /* quadrature weight along the contact, m; 0 in padding */
+  double         *log_radius;   /* ln Re */
+  double         *radius;       /* Re, m */
+  double         *roller_share; /* Re/R1: share of the roller in the pair's curvature */
 } trb_race_nodes;
+
+/* A conical rib of a ring, and the spherical end of a roller that meets it. */
+typedef struct trb_rib {
+  trb_cone   face;              /* about the ring's axis */
+  trb_cone   race;              /* raceway beside it, from which heights are counted */
+  trb_sphere end;               /* of the roller, from its centre of mass */
+  double     normal_lean;       /* sine of the angle between the nominal contact's normal and the roller's axis */
+  double     edge_low;          /* heights of its edges above the raceway, m */
+  double     edge_high;         /* m */
+  double     stiffness;         /* K of the Hertz law Q = K d^1.5, N/m^1.5 */
+  double     semi_axis_rolling; /* of the contact ellipse, per cube root of load, m/N^(1/3) */
+  double     semi_axis_across;  /* m/N^(1/3) */
+  double     rx;                /* equivalent radius along rolling, m */
+  double     film_shape;        /* factor of eq. 12 */
+  double     film_rigid;        /* factor of eq. 13 */
+  double     roughness;         /* composite rms, m */
+} trb_rib;
+
+/* A land of a ring that guides the cage. */
+typedef struct trb_guide {
+  double radius; /* m */
+  int    inside; /* 1: the cage runs inside the land */
+} trb_guide;
 
 typedef struct trb_pocket_face {
   trb_polygon surface;          /* in the frame of its pocket; its normal points towards the roller */
@@ -54,16 +79,16 @@ typedef struct trb_model {
   trb_pocket_face *faces;      /* all faces, grouped by pocket */
   int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
   /* constants of the laws */
-  double     log_modulus;                   /* ln E' */
-  double     log_palmgren;                  /* ln of the load per length of roller and ring at d = 1 m */
-  double     pocket_palmgren;               /* load per length of roller and cage at d = 1 m */
-  double     wall_stiffness;                /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
-  double     axis_sine, axis_cosine;        /* of the roller axis' angle */
-  double     log_g;                         /* ln G */
-  double     log_viscosity;                 /* ln eta0 */
-  double     log_thermal;                   /* ln(eta0 beta/k') */
-  double     rib_film_shape;                /* factor of eq. 12 */
-  double     rib_film_rigid;                /* factor of eq. 13 */
+  double     log_modulus;            /* ln E' */
+  double     log_palmgren;           /* ln of the load per length of roller and ring at d = 1 m */
+  double     pocket_palmgren;        /* load per length of roller and cage at d = 1 m */
+  double     wall_stiffness;         /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
+  double     axis_sine, axis_cosine; /* of the roller axis' angle */
+  double     log_g;                  /* ln G */
+  double     log_viscosity;          /* ln eta0 */
+  double     log_thermal;            /* ln(eta0 beta/k') */
+  trb_rib    back_rib;
+  trb_guide  guide[TRB_N_RACES];            /* lands, by the raceway of their ring */
   trb_frame *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
   trb_vec3  *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
   double     land_station[TRB_LAND_STRIPS]; /* of the guiding surface's strips, from its middle, m */
@@ -75,7 +100,6 @@ typedef struct trb_model {
   int        pocket_friction;               /* any friction in the pockets */
   int        film;                          /* films are needed */
   int        n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
-  unsigned   pairs_left_out;                /* bit by row of the table of pairs (contact/pair.h): pairs that do not act; 0: none */
 } trb_model;
 
 /* A checked, immutable copy of everything given. deviation: a roller's diameter over nominal, n_rollers values; faces: n_faces rows. */

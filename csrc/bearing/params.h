@@ -73,7 +73,7 @@
   X(eyring_stress,            "Pa",     1e3,    1e9,    "tau0: characteristic shear stress") \
   X(shear_modulus_floor,      "Pa",     1,      1e10,   "smallest limiting shear modulus Ginf") \
   X(oil_density,              "kg/m3",  1,      3000,   "density of the oil") \
-  X(starvation_factor,        "1",      1e-4,   1,      "factor of every film thickness") \
+  X(starvation_factor,        "1",      1e-4,   1,      "factor of every film thickness and of rolling resistance") \
   /* friction */ \
   X(lambda_boundary,          "1",      0,      100,    "film parameter below which friction is boundary") \
   X(lambda_full,              "1",      1e-3,   100,    "film parameter above which friction is full film") \
@@ -96,7 +96,7 @@
   X(lubrication,              "choice",      0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
   X(traction,                 "choice",      0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
   X(thermal,                  "choice",      0,      1,      "thermal reduction of films") \
-  X(rolling_resistance,       "choice",      0,      1,      "EHL rolling resistance") \
+  X(rolling_resistance,       "choice",      0,      5,      "EHL rolling resistance: 0 off, 1 Zhou-Hoeprich, 2 Goksem-Hargreaves, 3 Aihara, 4 Matsuyama, 5 Biboulet-Houpert") \
   X(rolling_pressure_force,   "choice",      0,      1,      "pressure force of the rolling film on the roller") \
   X(back_rib,                 "choice",      0,      1,      "large end against the back-face rib") \
   X(front_rib,                "choice",      0,      1,      "small end against the front rib") \

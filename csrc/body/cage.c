@@ -5,8 +5,9 @@
 
 static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, third = {0, 0, 1};
 
-void trb_cage_pose_unpack(const trb_model *m, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
+static void cage_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
 {
+  (void)body;
   const double turn_cos = cos(y[TRB_CAGE_psi]), turn_sin = sin(y[TRB_CAGE_psi]);
   pose->x = trb_v(y[TRB_CAGE_x], y[TRB_CAGE_y], m->geometry.centre_plane + m->params.cage_offset + y[TRB_CAGE_z]);
   pose->frame = trb_tilted_frame(y[TRB_CAGE_skew], y[TRB_CAGE_tilt]);
@@ -18,9 +19,10 @@ void trb_cage_pose_unpack(const trb_model *m, const trb_drive *drive, const doub
   pose->omega = trb_from_frame(&pose->frame, pose->omega_frame);
 }
 
-static void cage_rates(const trb_model *m, const trb_drive *drive, const trb_rigid_pose *c, const double *y, const trb_wrench *load,
-                       double *rates)
+static void cage_rates(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *c, const double *y,
+                       const trb_wrench *load, double *rates)
 {
+  (void)body;
   memset(rates, 0, TRB_CAGE_SIZE * sizeof *rates);
   if (m->params.with_cage <= 0.0) return;
   const double         w = drive->frame_speed, per_mass = 1.0 / m->params.cage_mass;
@@ -60,16 +62,15 @@ static trb_rigid cage_motion(const trb_rigid_pose *cage, int coordinate)
   }
 }
 
-static int always(const trb_model *m)
+static double cage_mass(const trb_model *m, const trb_body *body)
 {
-  (void)m;
-  return 1;
+  (void)body;
+  return m->params.with_cage > 0.0 ? m->params.cage_mass : 0.0;
 }
 
-static double cage_mass(const trb_model *m) { return m->params.with_cage > 0.0 ? m->params.cage_mass : 0.0; }
-
-static double cage_kinetic(const trb_model *m, const trb_rigid_pose *c)
+static double cage_kinetic(const trb_model *m, const trb_body *body, const trb_rigid_pose *c)
 {
+  (void)body;
   if (m->params.with_cage <= 0.0) return 0.0;
   return trb_kinetic(m->params.cage_mass, m->params.cage_inertia_axial, m->params.cage_inertia_transverse, c->v, c->omega_frame);
 }
@@ -78,14 +79,12 @@ static double cage_kinetic(const trb_model *m, const trb_rigid_pose *c)
 static const trb_coordinate coordinates[TRB_CAGE_SIZE] = {TRB_CAGE_STATE(COORDINATE)};
 #undef COORDINATE
 
-const trb_hub_kind trb_hub_cage = {.name = "cage",
-                                   .body = TRB_BODY_CAGE,
-                                   .size = TRB_CAGE_SIZE,
-                                   .coordinates = coordinates,
-                                   .skew = TRB_CAGE_skew,
-                                   .is_on = always,
-                                   .pose = trb_cage_pose_unpack,
-                                   .rates = cage_rates,
-                                   .motion = cage_motion,
-                                   .mass = cage_mass,
-                                   .kinetic = cage_kinetic};
+const trb_body_kind trb_body_cage = {.name = "rigid cage",
+                                     .size = TRB_CAGE_SIZE,
+                                     .coordinates = coordinates,
+                                     .skew = TRB_CAGE_skew,
+                                     .pose = cage_pose,
+                                     .rates = cage_rates,
+                                     .motion = cage_motion,
+                                     .mass = cage_mass,
+                                     .kinetic = cage_kinetic};

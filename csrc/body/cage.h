@@ -1,9 +1,9 @@
-/* The cage: rigid, six degrees of freedom: a body of the hub. Its coordinates with their tolerances, its pose, its rates under a load. In
- * a bearing without a cage they are there and stand still. */
+/* The cage: rigid, six degrees of freedom. Its coordinates with their tolerances, its pose, its rates under a load. In a bearing without a
+ * cage they are there and stand still. */
 #ifndef TRB_BODY_CAGE_H
 #define TRB_BODY_CAGE_H
 
-#include "body/hub.h"
+#include "body/body.h"
 
 /* X(name, unit kind, text), as for rollers. */
 #define TRB_CAGE_STATE(X) \
@@ -27,8 +27,6 @@ enum {
       TRB_CAGE_SIZE
 };
 
-void trb_cage_pose_unpack(const trb_model *m, const trb_drive *drive, const double *y, trb_rigid_pose *pose);
-
-extern const trb_hub_kind trb_hub_cage;
+extern const trb_body_kind trb_body_cage;
 
 #endif

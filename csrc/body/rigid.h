@@ -8,8 +8,10 @@
 typedef enum trb_tolerance {
   TRB_TOL_POSITION,
   TRB_TOL_ANGLE,
+  TRB_TOL_LEAN, /* an angle that moves a load along a contact */
   TRB_TOL_VELOCITY,
   TRB_TOL_SPIN,
+  TRB_TOL_LEAN_RATE,
   TRB_TOL_QUADRATURE,
   TRB_N_TOLERANCES
 } trb_tolerance;
@@ -26,17 +28,17 @@ static inline void trb_add_wrench(trb_wrench *to, const trb_wrench *w)
   to->moment = trb_add(to->moment, w->moment);
 }
 
-/* Kinds of bodies that act on each other. */
-typedef enum trb_body { TRB_BODY_ROLLER, TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE, TRB_BODY_OIL, TRB_N_BODIES } trb_body;
-
 /* Place and motion of a rigid body of the hub, in R. */
 typedef struct trb_rigid_pose {
   trb_vec3  x;           /* centre of mass, from the apex, m */
   trb_frame frame;       /* n, t, a; does not turn with the body */
-  trb_frame body;        /* axes that turn with it; through those of the cage pocket j stands at 2 pi j/Z */
+  trb_frame body;        /* axes that turn with it; in those of a cage pocket j stands at 2 pi j/Z */
   trb_vec3  v;           /* inertial velocity, m/s */
   trb_vec3  omega;       /* inertial angular velocity, rad/s */
   trb_vec3  omega_frame; /* the same in (n, t, a) */
+  double    moving;      /* kinetic energy of what moves within the body, J */
+  double    stored;      /* elastic energy within the body, J */
+  double    lost;        /* power that is lost within it, W */
 } trb_rigid_pose;
 
 /* A rigid motion, about a body's centre of mass. */

@@ -2,7 +2,7 @@
 #ifndef TRB_BODY_ROLLER_H
 #define TRB_BODY_ROLLER_H
 
-#include "body/ring.h"
+#include "body/drive.h"
 #include "laws/smooth.h"
 
 /* X(name, unit kind, text): kind is the tolerance that the entry is integrated to. */
@@ -10,13 +10,13 @@
   X(r,       POSITION, "radius of the centre of mass, minus nominal, m") \
   X(psi,     ANGLE,    "orbit angle, minus nominal place and kinematic cage angle, rad") \
   X(z,       POSITION, "axial position of the centre of mass, minus nominal, m") \
-  X(skew,    ANGLE,    "axis turned in the tangential direction, rad") \
-  X(tilt,    ANGLE,    "axis turned in the axial plane, minus nominal, rad") \
+  X(skew,    LEAN,     "axis turned in the tangential direction, rad") \
+  X(tilt,    LEAN,     "axis turned in the axial plane, minus nominal, rad") \
   X(v_r,     VELOCITY, "radial velocity, m/s") \
   X(v_t,     VELOCITY, "tangential velocity, minus kinematic, m/s") \
   X(v_z,     VELOCITY, "axial velocity, m/s") \
-  X(omega_n, SPIN,     "angular velocity along n, minus kinematic, rad/s") \
-  X(omega_t, SPIN,     "angular velocity along t, rad/s") \
+  X(omega_n, LEAN_RATE, "angular velocity along n, minus kinematic, rad/s") \
+  X(omega_t, LEAN_RATE, "angular velocity along t, rad/s") \
   X(omega_a, SPIN,     "angular velocity along the axis, minus kinematic, rad/s")
 
 enum {
@@ -39,18 +39,18 @@ typedef struct trb_roller_pose {
   trb_vec3  omega_frame;  /* the same in (n, t, a) */
 } trb_roller_pose;
 
-/* Velocities of pure rolling; the state holds offsets from them. */
+/* Velocities of pure rolling at a speed of the shaft; the state holds offsets from them. */
 typedef struct trb_rolling {
   double v_t;     /* tangential velocity of a roller, m/s */
   double omega_n; /* rad/s */
   double omega_a; /* rad/s */
 } trb_rolling;
 
-static inline trb_rolling trb_pure_rolling(const trb_model *m, double shaft_speed)
+static inline trb_rolling trb_pure_rolling(const trb_model *m, double speed)
 {
   const trb_geometry *g = &m->geometry;
-  const double        orbit = g->cage_speed_ratio * shaft_speed;
-  return (trb_rolling){orbit * g->roller_centre_radius, -orbit * m->axis_sine, orbit * m->axis_cosine - g->roller_spin_ratio * shaft_speed};
+  const double        orbit = g->cage_speed_ratio * speed;
+  return (trb_rolling){orbit * g->roller_centre_radius, -orbit * m->axis_sine, orbit * m->axis_cosine - g->roller_spin_ratio * speed};
 }
 
 static inline double trb_nominal_angle(const trb_model *m, int roller) { return 2.0 * TRB_PI * roller / m->n_rollers; }

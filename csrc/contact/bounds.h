@@ -3,12 +3,12 @@
 #ifndef TRB_CONTACT_BOUNDS_H
 #define TRB_CONTACT_BOUNDS_H
 
-#include "body/state.h"
+#include "body/roller.h"
 
 /* What a roller's motion does to the interference with a ring, at most. */
 typedef struct trb_margin_arm {
   double arm;           /* largest distance of what can touch from the roller's centre of mass, m */
-  double ring;          /* and from the inner ring's centre, m */
+  double ring;          /* and from the other body's reference point, m */
   int    on_end;        /* 1: the contact is on the roller's end, its normal nearly along the roller's axis */
   double normal_sine;   /* of an end: of the angle between the normal and the bearing axis */
   double normal_lean;   /* of an end: sine of the angle between the normal and the roller's axis */
@@ -23,14 +23,14 @@ typedef struct trb_hold_arms {
   double off;           /* distance of the contact's centre of curvature from the ring's axis, m: skew moves it round the ring */
 } trb_hold_arms;
 
-/* Coordinates that come first in a roller's and in the cage's state. */
-enum { TRB_CLEARANCE_ROLLER = TRB_ROLLER_tilt + 1, TRB_CLEARANCE_CAGE = TRB_CAGE_psi + 1 };
+/* Coordinates that come first in the state of a roller, and of a rigid body: its place (three), then its turns. */
+enum { TRB_CLEARANCE_ROLLER = TRB_ROLLER_tilt + 1, TRB_CLEARANCE_BODY = 6 };
 
 /* The longest way by which a unit of each coordinate moves what may touch, m/m or m/rad. The centre of the large end's sphere is far
  * from the roller, so ends have longer arms than the flank, whose gap is the smaller one. */
 typedef struct trb_clearance_arms {
   double roller[TRB_CLEARANCE_ROLLER];
-  double cage[TRB_CLEARANCE_CAGE];
+  double body[TRB_CLEARANCE_BODY];
 } trb_clearance_arms;
 
 /* Displacements and gaps up to which the arms of clearances are proven, m. */

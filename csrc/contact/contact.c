@@ -41,7 +41,21 @@ static trb_status choose_variant(const char *name, int *variant, trb_message *me
   return TRB_OK;
 }
 
-trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_workspace **work, trb_message *message)
+/* Neighbouring pairs of the same kind make a batch. */
+static void choose(const trb_pair *pairs, int n_pairs, trb_workspace *work)
+{
+  for (int i = 0; i < n_pairs; i++) {
+    const int hub = pairs[i].kind->between != NULL;
+    if (!pairs[i].on) continue;
+    int       *n = hub ? &work->n_hub : &work->n_batches;
+    trb_batch *batches = hub ? work->hub : work->batches, *last = *n > 0 ? &batches[*n - 1] : NULL;
+    if (hub || last == NULL || last->pairs[0]->kind != pairs[i].kind || last->n == TRB_MOST_TOGETHER) last = &batches[(*n)++];
+    last->index[last->n] = i;
+    last->pairs[last->n++] = &pairs[i];
+  }
+}
+
+trb_status trb_workspace_create(const trb_pair *pairs, int n_pairs, const char *variant, trb_workspace **work, trb_message *message)
 {
   int chosen;
   *work = NULL;
@@ -56,7 +70,7 @@ trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_wor
   }
   w->lanes = lanes;
   w->variant = chosen;
-  trb_pairs_choose(m, w);
+  choose(pairs, n_pairs, w);
   *work = w;
   return TRB_OK;
 }
@@ -70,20 +84,20 @@ void trb_workspace_free(trb_workspace *work)
 
 static size_t lane_total(const trb_model *m) { return (size_t)TRB_N_LANE_FIELDS * TRB_N_RACES * (size_t)m->n_rollers * (size_t)m->n_lanes; }
 
-trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message)
+trb_status trb_detail_create(const trb_model *m, const trb_pair *pairs, int n_pairs, trb_detail **detail, trb_message *message)
 {
   const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
   trb_detail  *d = calloc(1, sizeof *d);
   *detail = NULL;
   if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
+  for (int i = 0; i < n_pairs; i++) d->n_points += pairs[i].kind->is_point;
   d->lanes = calloc(lane_total(m), sizeof(double));
   d->raceway = calloc(TRB_N_RACES * rollers, sizeof *d->raceway);
-  d->rib = calloc(rollers, sizeof *d->rib);
-  d->front_rib = calloc(rollers, sizeof *d->front_rib);
+  d->points = calloc((size_t)d->n_points * rollers + 1, sizeof *d->points);
   d->pocket_force = calloc(slots, sizeof(double));
   d->pocket_friction = calloc(slots, sizeof(double));
   d->pocket_interference = calloc(slots, sizeof(double));
-  if (!d->lanes || !d->raceway || !d->rib || !d->front_rib || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
+  if (!d->lanes || !d->raceway || !d->points || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
     trb_detail_free(d);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
   }
@@ -96,8 +110,7 @@ void trb_detail_free(trb_detail *detail)
   if (detail == NULL) return;
   free(detail->lanes);
   free(detail->raceway);
-  free(detail->rib);
-  free(detail->front_rib);
+  free(detail->points);
   free(detail->pocket_force);
   free(detail->pocket_friction);
   free(detail->pocket_interference);
@@ -109,8 +122,7 @@ void trb_detail_clear(const trb_model *m, trb_detail *detail)
   const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
   if (detail->lanes != NULL) memset(detail->lanes, 0, lane_total(m) * sizeof(double));
   memset(detail->raceway, 0, TRB_N_RACES * rollers * sizeof *detail->raceway);
-  memset(detail->rib, 0, rollers * sizeof *detail->rib);
-  memset(detail->front_rib, 0, rollers * sizeof *detail->front_rib);
+  memset(detail->points, 0, (size_t)detail->n_points * rollers * sizeof *detail->points);
   memset(detail->pocket_force, 0, slots * sizeof(double));
   memset(detail->pocket_friction, 0, slots * sizeof(double));
   for (size_t i = 0; i < slots && detail->pocket_interference != NULL; i++) detail->pocket_interference[i] = -INFINITY;

@@ -1,25 +1,19 @@
-/* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is;
- * contact/pairs.c lists all of them.
+/* What contacts read, and what they give (docs/theory/contacts.md). contact/pair.h says what a pair of bodies is; a system lists those that
+ * it has (system/system.h).
  *
- * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on roller, inner ring and cage, elastic energy and
- * the power lost, by kind. A pair without a roller adds to the loads of the hub, which is made of all other bodies (body/hub.h). A pair
- * does not depend on time and stores nothing between calls. */
+ * A pair reads the poses of an instant and adds to the loads of each roller: wrenches on the roller and on the other body, elastic energy
+ * and the power lost, by mechanism. A pair without a roller adds to the loads that the other bodies have in common. A pair does not depend
+ * on time and stores nothing between calls. */
 #ifndef TRB_CONTACT_CONTACT_H
 #define TRB_CONTACT_CONTACT_H
 
+#include "bearing/losses.h"
 #include "bearing/model.h"
-#include "body/state.h"
+#include "body/body.h"
+#include "body/roller.h"
 
-/* The pairs of bodies that can act on each other, a row each: X(name). Row `name` is trb_pair_<name>, at the end of the pair's file. The
- * rows are evaluated in this order. */
-#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket) X(inner_land) X(outer_land)
-
-enum {
-#define TRB_PAIR_ENUM(name) TRB_PAIR_##name,
-  TRB_PAIRS(TRB_PAIR_ENUM)
-#undef TRB_PAIR_ENUM
-      TRB_N_PAIRS
-};
+/* Most pairs and most bodies of a bearing: a roller keeps a word of bits for its pairs, and a wrench for each body that it may touch. */
+enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6 };
 
 /* What was evaluated, counted; an effect that is off stays at zero. X(name, text) */
 #define TRB_COUNTERS(X) \
@@ -66,8 +60,9 @@ typedef enum trb_mechanism {
   TRB_N_MECHANISMS
 } trb_mechanism;
 
-/* What the two bodies of a pair do to each other. Wrenches on a roller and on the rings are in the roller's cylindrical frame, those on the
- * cage and of pairs without a roller in R; moments are about the centre of mass, the inner ring's centre, the apex for the outer ring. */
+/* What the two bodies of a pair do to each other. Wrenches on a roller and on bodies without coordinates are in the roller's cylindrical
+ * frame, those on bodies with coordinates and of pairs without a roller in R; moments are about the centre of mass, or the reference point
+ * of a body without coordinates. */
 typedef struct trb_load {
   trb_wrench on_a, on_b;
   double     elastic;                  /* J */
@@ -77,22 +72,22 @@ typedef struct trb_load {
 
 /* The sum over pairs that act on a roller, or over those without a roller. */
 typedef struct trb_loads {
-  trb_wrench on[TRB_N_BODIES];
-  double     elastic;               /* J */
-  double     margin[TRB_N_PAIRS];   /* of slow pairs: least distance of the contact from its onset or end, m */
-  double     torque[TRB_N_TORQUES]; /* shares of the torque on the inner ring about its axis, N m */
-  double     power[TRB_N_LOSSES];   /* lost, W */
+  trb_wrench roller;
+  trb_wrench on[TRB_MOST_BODIES];    /* on each body of the system */
+  double     elastic;                /* J */
+  double     margin[TRB_MOST_PAIRS]; /* of slow pairs: least distance of the contact from its onset or end, m */
+  double     torque[TRB_N_TORQUES];  /* shares of the torque on the driven ring about its axis, N m */
+  double     power[TRB_N_LOSSES];    /* lost, W */
 } trb_loads;
 
 /* All that the contacts read at an instant. */
 typedef struct trb_instant {
   const trb_drive       *drive;   /* what is prescribed */
   const trb_roller_pose *rollers; /* n_rollers */
-  const trb_ring        *rings;   /* TRB_N_RINGS */
-  const trb_rigid_pose  *cage;    /* NULL without a cage */
+  const trb_body_at     *bodies;  /* of the system */
   const int             *chosen;  /* rollers to evaluate, ascending */
   int                    n;       /* how many */
-  const unsigned        *apart;   /* n_rollers: bits of the rows of the table of pairs that are proven not to touch; NULL: none is */
+  const unsigned        *apart;   /* n_rollers: bits of the pairs that are proven not to touch; NULL: none is */
 } trb_instant;
 
 /* A point contact, as users look into it. X(name, unit, text) */
@@ -140,54 +135,17 @@ typedef struct trb_contact_view {
   double load, pressure, film, film_parameter, slide_roll, traction, friction, height, overhang;
 } trb_contact_view;
 
-struct trb_lanes;
-
 /* Intermediate quantities, stored if a caller wants to look at them; NULL while integrating. */
 typedef struct trb_detail {
   double           *lanes;               /* [lane field][race][roller][node of n_lanes]; or NULL: the views alone */
   trb_contact_view *raceway;             /* [race][roller] */
-  trb_point_detail *rib;                 /* n_rollers */
-  trb_point_detail *front_rib;           /* n_rollers */
+  trb_point_detail *points;              /* [pair with a point contact, in their order][roller] */
   double           *pocket_force;        /* [roller][slot], N */
   double           *pocket_friction;     /* [roller][slot], N */
   double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
   trb_land_detail   land;
+  int               n_points; /* pairs with a point contact */
 } trb_detail;
-
-struct trb_pair;
-struct trb_batch;
-
-enum { TRB_MOST_TOGETHER = 2 };
-/* Rows of the table that one function evaluates together. */
-typedef struct trb_batch {
-  const struct trb_pair *pairs[TRB_MOST_TOGETHER];
-  int                    index[TRB_MOST_TOGETHER]; /* their rows */
-  int                    n;
-} trb_batch;
-
-/* Scratch of one thread, and the pairs that the model has. */
-typedef struct trb_workspace {
-  struct trb_lanes *lanes;                /* scratch of the raceway kernel */
-  int               variant;              /* kernel variant, index into trb_kernel_variants */
-  trb_batch         batches[TRB_N_PAIRS]; /* pairs with a roller that are on */
-  int               n_batches;
-  int               hub[TRB_N_PAIRS]; /* rows of the pairs without a roller that are on */
-  int               n_hub;
-  trb_counters      counters; /* of this workspace */
-} trb_workspace;
-
-/* variant: name of a kernel variant, "" for the fastest that this machine runs. */
-trb_status trb_workspace_create(const trb_model *m, const char *variant, trb_workspace **work, trb_message *message);
-void       trb_workspace_free(trb_workspace *work);
-
-/* Zero the chosen rollers' loads and sum every pair that the scene has. */
-void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
-
-/* Zero the chosen rollers' loads and sum the slow pairs only. */
-void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads);
-
-/* Zero the loads of the hub and sum the pairs without a roller; wrenches in R. detail may be NULL. */
-void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
 
 /* Slopes of the wrench on a roller, about its centre of mass, with its motion relative to the other body: one column for a translation
  * along each axis, then one for a turn about each axis, with the other body at rest. That the normal turns at an edge is left out: this
@@ -205,10 +163,5 @@ typedef struct trb_gaps {
 } trb_gaps;
 
 static inline int trb_gaps_clear(const trb_gaps *gaps) { return gaps->of[TRB_GAP_FLANK] > 0.0 && gaps->of[TRB_GAP_ENDS] > 0.0; }
-
-/* Buffers of every intermediate quantity; freed by trb_detail_free. */
-trb_status trb_detail_create(const trb_model *m, trb_detail **detail, trb_message *message);
-void       trb_detail_free(trb_detail *detail);
-void       trb_detail_clear(const trb_model *m, trb_detail *detail);
 
 #endif

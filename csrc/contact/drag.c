@@ -23,13 +23,8 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
   }
 }
 
-static int is_on(const trb_model *m) { return m->params.oil_fill > 0.0 && m->params.drag_coefficient > 0.0; }
-
-const trb_pair trb_pair_drag = {.name = "drag",
-                                .text = "roller in the mixture of oil and air",
-                                .a = TRB_BODY_ROLLER,
-                                .b = TRB_BODY_OIL,
-                                .pace = TRB_PACE_SLOW,
-                                .is_on = is_on,
-                                .evaluate = evaluate,
-                                .books = {.loss = TRB_LOSES_BY_SLIDING(drag), .torque = TRB_NO_TORQUE}};
+const trb_pair_kind trb_pair_drag = {.name = "drag",
+                                     .shape = {TRB_SHAPE_NONE, TRB_SHAPE_NONE},
+                                     .pace = TRB_PACE_SLOW,
+                                     .mechanisms = TRB_LOSES(TRB_BY_SLIDING),
+                                     .evaluate = evaluate};

@@ -9,18 +9,18 @@
 #include "contact/pair.h"
 #include "surface/circle.h"
 
-static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_batch *batch,
+static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_pair *pair, int row,
                         trb_counters *counters, trb_loads *to, trb_point_detail *c)
 {
   const trb_vec3   a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
-  const trb_circle circle = m->surfaces.front_rib[edge];
+  const trb_circle circle = ((const trb_circle *)pair->own)[edge];
 
   const trb_circle_meeting meeting =
       trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
   const double d = meeting.depth;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
-  to->margin[batch->index[0]] = trb_min(to->margin[batch->index[0]], fabs(d));
+  to->margin[row] = trb_min(to->margin[row], fabs(d));
   if (!(d > 0.0)) return;
   counters->front_rib_contacts++;
   const trb_vec3  point = trb_circle_deepest(&meeting, circle.radius), arm = trb_sub(point, r->x), ring_arm = trb_sub(point, ring->centre);
@@ -36,37 +36,39 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
       .elastic = 0.4 * elastic * d,
       .lost = {[TRB_BY_SLIDING] = drag * trb_dot(touch.sliding, touch.sliding), [TRB_BY_DAMPING] = (q - elastic) * touch.rate},
       .torque = {[TRB_BY_SLIDING] = -trb_dot(torque, ring->axis)}};
-  trb_add_load(batch->pairs[0], &load, to);
+  trb_add_load(pair, &load, to);
   c->load += q;
   c->friction += q * mu;
   c->friction_coefficient = mu;
   c->sliding_speed = touch.speed;
 }
 
-void trb_contact_front_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                           trb_detail *detail)
+static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
+                     trb_detail *detail)
 {
-  for (int k = 0; k < at->n; k++) {
-    const int        j = at->chosen[k];
-    trb_point_detail c = {0};
-    for (int edge = 0; edge < 2; edge++)
-      edge_on_end(m, &at->rollers[j], &at->rings[TRB_RING_INNER].in_frame[j], edge, batch, &work->counters, &loads[j], &c);
-    if (detail != NULL) detail->front_rib[j] = c;
-  }
+  for (int i = 0; i < batch->n; i++)
+    for (int k = 0; k < at->n; k++) {
+      const int        j = at->chosen[k];
+      trb_point_detail c = {0};
+      for (int edge = 0; edge < 2; edge++)
+        edge_on_end(m, &at->rollers[j], &trb_pair_ring(batch->pairs[i], at)[j], edge, batch->pairs[i], batch->index[i], &work->counters,
+                    &loads[j], &c);
+      if (detail != NULL) trb_pair_points(m, batch->pairs[i], detail)[j] = c;
+    }
 }
 
-static int is_on(const trb_model *m) { return m->params.front_rib > 0.0; }
-
-static trb_margin_arm margin_of(const trb_model *m)
+static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
 {
+  (void)pair;
   const trb_geometry *g = &m->geometry;
   const double        arm = hypot(fabs(g->small_end_station) + fabs(g->roller_mass_offset), g->outer_race_radius);
   return (trb_margin_arm){.arm = arm, .ring = arm + g->outer_race_radius + m->params.total_length};
 }
 
 /* The deepest point wanders round the end: the arm is that of the rib's edge. */
-static trb_hold_arms hold_of(const trb_model *m)
+static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 {
+  (void)pair;
   const double arm = 2.0 * m->geometry.roller_centre_radius;
   return (trb_hold_arms){1.0, 1.0, arm, arm, m->params.total_length + m->params.roller_diameter, 1e-12};
 }
@@ -74,28 +76,26 @@ static trb_hold_arms hold_of(const trb_model *m)
 static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                     trb_detail *detail, double share, trb_contact_look *looks)
 {
-  trb_contact_front_rib(m, at, batch, work, loads, detail);
-  for (int k = 0; k < at->n; k++) {
-    const trb_point_detail *c = &detail->front_rib[at->chosen[k]];
+  evaluate(m, at, batch, work, loads, detail);
+  for (int k = 0; k < at->n * batch->n; k++) {
+    const trb_point_detail *c = &trb_pair_points(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
     looks[k] = (trb_contact_look){.load = c->load, .way = c->interference > 0.0 ? -1.0 : trb_look_way(c, share), .speed = INFINITY};
   }
 }
 
-static void view_of(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
+static void view_of(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view)
 {
-  (void)m;
-  *view = (trb_contact_view){.load = detail->front_rib[roller].load};
+  *view = (trb_contact_view){.load = trb_pair_points(m, pair, detail)[roller].load};
 }
 
-const trb_pair trb_pair_front_rib = {.name = "front_rib",
-                                     .text = "roller's small end on the front rib",
-                                     .a = TRB_BODY_ROLLER,
-                                     .b = TRB_BODY_INNER_RING,
-                                     .pace = TRB_PACE_SLOW,
-                                     .is_on = is_on,
-                                     .evaluate = trb_contact_front_rib,
-                                     .margin = margin_of,
-                                     .hold = hold_of,
-                                     .look = look_at,
-                                     .view = view_of,
-                                     .books = {.loss = TRB_LOSES_BY_SLIDING(front_rib), .torque = TRB_TURNS_BY_SLIDING(front_rib)}};
+/* Its own parameters: two circles (surface/circle.h), the edges of the face. */
+const trb_pair_kind trb_pair_front_rib = {.name = "end on a plane rib",
+                                          .shape = {TRB_SHAPE_PLANE, TRB_SHAPE_CIRCLES},
+                                          .pace = TRB_PACE_SLOW,
+                                          .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
+                                          .is_point = 1,
+                                          .evaluate = evaluate,
+                                          .margin = margin_of,
+                                          .hold = hold_of,
+                                          .look = look_at,
+                                          .view = view_of};

@@ -104,8 +104,9 @@ static inline trb_load trb_load_of_output(const trb_race_output *out)
 typedef void trb_raceway_kernel(const trb_model *m, const trb_race_input *inputs, int n, trb_lanes *lanes, trb_counters *counters,
                                 trb_race_output *outputs);
 
-/* The large ends of the chosen rollers on the rib: each roller has one lane and one output. */
-typedef void trb_rib_kernel(const trb_model *m, const trb_instant *at, trb_lanes *lanes, trb_counters *counters, trb_race_output *outputs);
+/* Ends of the chosen rollers on a rib: each roller has one lane and one output. ring: of each roller, in its frame. */
+typedef void trb_rib_kernel(const trb_model *m, const trb_rib *rib, const trb_instant *at, const trb_ring_pose *ring, trb_lanes *lanes,
+                            trb_counters *counters, trb_race_output *outputs);
 
 trb_raceway_kernel trb_raceway_kernel_scalar, trb_raceway_kernel_base, trb_raceway_kernel_avx2, trb_raceway_kernel_avx512;
 trb_rib_kernel     trb_rib_kernel_scalar, trb_rib_kernel_base, trb_rib_kernel_avx2, trb_rib_kernel_avx512;

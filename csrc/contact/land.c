@@ -97,20 +97,22 @@ static void contact_on_strip(meeting *w, double station, double width)
   w->seen.friction += q * mu;
 }
 
-static meeting meeting_of(const trb_model *m, const trb_instant *at, int inside)
+static meeting meeting_of(const trb_model *m, const trb_pair *pair, const trb_instant *at)
 {
+  const trb_guide *guide = pair->own;
   return (meeting){.m = m,
-                   .cage = at->cage,
-                   .ring = trb_ring_in(at->rings, inside ? TRB_RING_OUTER : TRB_RING_INNER, at->drive->cosine, at->drive->sine),
-                   .inside = inside,
-                   .radius = inside ? m->params.land_outer_radius : m->params.land_inner_radius,
+                   .cage = &at->bodies[pair->a].pose,
+                   .ring = trb_body_in(&at->bodies[pair->b], at->drive->cosine, at->drive->sine),
+                   .inside = guide->inside,
+                   .radius = guide->radius,
                    .seen = {.gap = INFINITY}};
 }
 
-static void meet(const trb_model *m, const trb_instant *at, int inside, trb_counters *counters, trb_load *load, trb_detail *detail)
+static void meet(const trb_model *m, const trb_pair *pair, const trb_instant *at, trb_counters *counters, trb_load *load,
+                 trb_detail *detail)
 {
   const trb_params *p = &m->params;
-  meeting           w = meeting_of(m, at, inside);
+  meeting           w = meeting_of(m, pair, at);
   w.counters = counters;
   w.load = load;
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
@@ -126,21 +128,11 @@ static void meet(const trb_model *m, const trb_instant *at, int inside, trb_coun
   detail->land = w.seen;
 }
 
-static void evaluate_inner(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail)
-{
-  meet(m, at, 0, counters, load, detail);
-}
-
-static void evaluate_outer(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail)
-{
-  meet(m, at, 1, counters, load, detail);
-}
-
 /* Of the strip that is nearest to the land. A hit deepens as that of the cage's mass on a spring that is as stiff as the contact is at an
  * interference of 1 um. */
-static trb_approach approach_of(const trb_model *m, const trb_instant *at, int inside)
+static trb_approach approach_of(const trb_model *m, const trb_pair *pair, const trb_instant *at)
 {
-  const meeting w = meeting_of(m, at, inside);
+  const meeting w = meeting_of(m, pair, at);
   const double  stiffness = m->land_palmgren * m->params.land_width * pow(1e-6, TRB_PALMGREN_EXPONENT - 1.0);
   trb_approach  found = {.left = INFINITY, .rise = sqrt(m->params.cage_mass / stiffness)};
   for (int k = 0; k < TRB_LAND_STRIPS; k++) {
@@ -154,37 +146,9 @@ static trb_approach approach_of(const trb_model *m, const trb_instant *at, int i
   return found;
 }
 
-static trb_approach approach_inner(const trb_model *m, const trb_instant *at) { return approach_of(m, at, 0); }
-static trb_approach approach_outer(const trb_model *m, const trb_instant *at) { return approach_of(m, at, 1); }
-
-static int is_on_inner(const trb_model *m) { return m->params.with_cage > 0.0 && m->params.guidance == TRB_GUIDANCE_INNER_LAND; }
-static int is_on_outer(const trb_model *m) { return m->params.with_cage > 0.0 && m->params.guidance == TRB_GUIDANCE_OUTER_LAND; }
-
-#define LOSSES \
-  .loss = {[TRB_BY_SLIDING] = TRB_LOSS_land, \
-           [TRB_BY_ROLLING] = TRB_LOSS_none, \
-           [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_none, \
-           [TRB_BY_DAMPING] = TRB_LOSS_damping, \
-           [TRB_BY_FILM] = TRB_LOSS_land_film}
-
-const trb_pair trb_pair_inner_land = {.name = "inner_land",
-                                      .text = "cage on a land of the inner ring",
-                                      .a = TRB_BODY_CAGE,
-                                      .b = TRB_BODY_INNER_RING,
-                                      .is_on = is_on_inner,
-                                      .between = evaluate_inner,
-                                      .approach = approach_inner,
-                                      .books = {LOSSES, .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_land,
-                                                                   [TRB_BY_ROLLING] = TRB_TORQUE_none,
-                                                                   [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none,
-                                                                   [TRB_BY_DAMPING] = TRB_TORQUE_none,
-                                                                   [TRB_BY_FILM] = TRB_TORQUE_land}}};
-
-const trb_pair trb_pair_outer_land = {.name = "outer_land",
-                                      .text = "cage in a land of the outer ring",
-                                      .a = TRB_BODY_CAGE,
-                                      .b = TRB_BODY_OUTER_RING,
-                                      .is_on = is_on_outer,
-                                      .between = evaluate_outer,
-                                      .approach = approach_outer,
-                                      .books = {LOSSES, .torque = TRB_NO_TORQUE}};
+/* Its own parameters: trb_guide. */
+const trb_pair_kind trb_pair_land = {.name = "cage on a land",
+                                     .shape = {TRB_SHAPE_CYLINDER, TRB_SHAPE_LAND},
+                                     .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING) | TRB_LOSES(TRB_BY_FILM),
+                                     .between = meet,
+                                     .approach = approach_of};

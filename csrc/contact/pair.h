@@ -1,5 +1,6 @@
-/* A pair: two bodies that act on each other, a row of the table of contact/pairs.c. Everything that evaluates forces, their slopes, records
- * or peaks loops over the rows that are on and names none: what a pair can do stands in its row. */
+/* A pair: two bodies that act on each other. A pair is an instance of a kind, with the numbers of its bodies in the system and parameters
+ * of its own; a kind is a file with a row at its end. Everything that evaluates forces, their slopes, records or peaks loops over the pairs
+ * that are on and names none: what a pair can do stands in its kind. */
 #ifndef TRB_CONTACT_PAIR_H
 #define TRB_CONTACT_PAIR_H
 
@@ -13,26 +14,41 @@
  * are proven not to touch. */
 typedef enum trb_pace { TRB_PACE_SLOW, TRB_PACE_FAST } trb_pace;
 
-/* Where the pair's mechanisms are booked: entries of the lists of bearing/losses.h, or none. */
+/* Where the pair's mechanisms are booked: TRB_BOOK of an entry of the lists of bearing/losses.h; 0: nowhere. */
 typedef struct trb_bookings {
   int loss[TRB_N_MECHANISMS];
-  int torque[TRB_N_MECHANISMS]; /* share of the torque on the inner ring */
+  int torque[TRB_N_MECHANISMS]; /* share of the torque on the driven ring */
 } trb_bookings;
 
-#define TRB_NO_TORQUE {TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none, TRB_TORQUE_none}
-/* Of a pair that only slides and damps. */
-#define TRB_LOSES_BY_SLIDING(name) \
-  {[TRB_BY_SLIDING] = TRB_LOSS_##name, \
-   [TRB_BY_ROLLING] = TRB_LOSS_none, \
-   [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_none, \
-   [TRB_BY_DAMPING] = TRB_LOSS_damping, \
-   [TRB_BY_FILM] = TRB_LOSS_none}
-#define TRB_TURNS_BY_SLIDING(name) \
-  {[TRB_BY_SLIDING] = TRB_TORQUE_##name, \
-   [TRB_BY_ROLLING] = TRB_TORQUE_none, \
-   [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none, \
-   [TRB_BY_DAMPING] = TRB_TORQUE_none, \
-   [TRB_BY_FILM] = TRB_TORQUE_none}
+/* Adds what a load loses by each mechanism to a list of losses. */
+static inline void trb_book_losses(const trb_bookings *books, const trb_load *load, double *losses)
+{
+  for (int by = 0; by < TRB_N_MECHANISMS; by++)
+    if (books->loss[by] != 0) losses[books->loss[by] - 1] += load->lost[by];
+}
+
+typedef struct trb_pair trb_pair;
+
+enum { TRB_MOST_TOGETHER = 2 };
+/* Pairs of one kind that one function evaluates together. */
+typedef struct trb_batch {
+  const trb_pair *pairs[TRB_MOST_TOGETHER];
+  int             index[TRB_MOST_TOGETHER]; /* their numbers in the system */
+  int             n;
+} trb_batch;
+
+struct trb_lanes;
+
+/* Scratch of one thread, and the pairs that are on. */
+typedef struct trb_workspace {
+  struct trb_lanes *lanes;                   /* scratch of the raceway kernel */
+  int               variant;                 /* kernel variant, index into trb_kernel_variants */
+  trb_batch         batches[TRB_MOST_PAIRS]; /* pairs with a roller that are on */
+  int               n_batches;
+  trb_batch         hub[TRB_MOST_PAIRS]; /* pairs without a roller that are on, each for itself */
+  int               n_hub;
+  trb_counters      counters; /* of this workspace */
+} trb_workspace;
 
 /* A roller's contact as peaks see it, and how far it holds. */
 typedef struct trb_contact_look {
@@ -50,11 +66,11 @@ typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const 
 typedef void trb_pair_look(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                            trb_detail *detail, double share, trb_contact_look *looks);
 /* A roller's contact out of a detail. */
-typedef void trb_pair_view(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view);
+typedef void trb_pair_view(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view);
 /* Load between one roller and the other body of a fast pair. The load is written only where they may touch, or if the detail asks for
  * interferences; the same holds for the slopes, which may be NULL. Forces are added to those in the detail. */
-typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
-                                trb_slopes *slopes, trb_detail *detail);
+typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_pair *pair, const trb_instant *at, int roller, trb_counters *counters,
+                                trb_load *load, trb_slopes *slopes, trb_detail *detail);
 
 /* How near the bodies of a pair without a roller are to a contact, and how hard it would be. */
 typedef struct trb_approach {
@@ -64,20 +80,34 @@ typedef struct trb_approach {
 } trb_approach;
 
 /* Load between the bodies of a pair without a roller, evaluated at every instant; wrenches in R. The load is zero before. */
-typedef void trb_pair_between(const trb_model *m, const trb_instant *at, trb_counters *counters, trb_load *load, trb_detail *detail);
+typedef void trb_pair_between(const trb_model *m, const trb_pair *pair, const trb_instant *at, trb_counters *counters, trb_load *load,
+                              trb_detail *detail);
 
-typedef struct trb_pair {
-  const char *name;
-  const char *text;
-  trb_body    a, b;  /* the bodies; a is the roller where there is one */
-  trb_pace    pace;  /* of pairs with a roller */
-  int         seats; /* 1: under load it holds a roller along the roller's axis */
-  int (*is_on)(const trb_model *m);
+/* What a surface is, and what its shape points to. */
+typedef enum trb_shape {
+  TRB_SHAPE_NONE,     /* the whole body */
+  TRB_SHAPE_FLANK,    /* chain of spheres of the rollers (trb_model) */
+  TRB_SHAPE_SPHERE,   /* end of the rollers: trb_sphere */
+  TRB_SHAPE_PLANE,    /* end of the rollers: double, its place */
+  TRB_SHAPE_RACE,     /* cone with the nodes of a contact line: trb_race_nodes */
+  TRB_SHAPE_CONE,     /* bounded conical face: trb_rib */
+  TRB_SHAPE_CIRCLES,  /* plane face between two circles: trb_circle[2] */
+  TRB_SHAPE_POCKETS,  /* lists of bounded faces (trb_model) */
+  TRB_SHAPE_CYLINDER, /* that the cage carries (trb_model) */
+  TRB_SHAPE_LAND      /* that guides it: trb_guide */
+} trb_shape;
+
+typedef struct trb_pair_kind {
+  const char        *name;
+  trb_shape          shape[2];   /* of the surfaces that it joins */
+  trb_pace           pace;       /* of pairs with a roller */
+  int                seats;      /* 1: under load it holds a roller along the roller's axis */
+  unsigned           mechanisms; /* by which it loses energy: TRB_LOSES of each */
+  int                is_point;   /* 1: a point contact, which has a row of details */
   trb_pair_evaluate *evaluate;
-  trb_bookings       books;
   /* of slow pairs */
-  trb_margin_arm (*margin)(const trb_model *m);
-  trb_hold_arms (*hold)(const trb_model *m);
+  trb_margin_arm (*margin)(const trb_model *m, const trb_pair *pair);
+  trb_hold_arms (*hold)(const trb_model *m, const trb_pair *pair);
   trb_pair_look *look;
   trb_pair_view *view;
   /* of fast pairs */
@@ -88,19 +118,36 @@ typedef struct trb_pair {
   double (*stiffness)(const trb_model *m, double depth);                 /* load over interference at an interference, N/m */
   /* of pairs without a roller, which have nothing of the others */
   trb_pair_between *between;
-  trb_approach (*approach)(const trb_model *m, const trb_instant *at); /* NULL: they do not touch */
-} trb_pair;
+  trb_approach (*approach)(const trb_model *m, const trb_pair *pair, const trb_instant *at); /* NULL: they do not touch */
+} trb_pair_kind;
+
+#define TRB_LOSES(mechanism) (1U << (mechanism))
+
+/* Body a of a pair with a roller. */
+enum { TRB_ROLLERS = -1 };
+
+/* A pair of a system. */
+struct trb_pair {
+  const trb_pair_kind *kind;
+  const char          *name;
+  const char          *text;
+  int                  surface[2]; /* numbers of the surfaces in the system */
+  int                  a, b;       /* and of their bodies; a is TRB_ROLLERS where there is a roller */
+  int                  on;         /* 0: an effect of the scene leaves it out, and nothing evaluates it */
+  int                  point;      /* number of its row of details, of a point contact */
+  const void          *own;        /* parameters, as its kind says */
+  trb_bookings         books;
+};
 
 /* Adds what a pair does to the sums. */
 static inline void trb_add_load(const trb_pair *pair, const trb_load *load, trb_loads *to)
 {
-  trb_add_wrench(&to->on[pair->a], &load->on_a);
+  trb_add_wrench(pair->a == TRB_ROLLERS ? &to->roller : &to->on[pair->a], &load->on_a);
   trb_add_wrench(&to->on[pair->b], &load->on_b);
   to->elastic += load->elastic;
-  for (int by = 0; by < TRB_N_MECHANISMS; by++) {
-    if (pair->books.loss[by] != TRB_LOSS_none) to->power[pair->books.loss[by]] += load->lost[by];
-    if (pair->books.torque[by] != TRB_TORQUE_none) to->torque[pair->books.torque[by]] += load->torque[by];
-  }
+  trb_book_losses(&pair->books, load, to->power);
+  for (int by = 0; by < TRB_N_MECHANISMS; by++)
+    if (pair->books.torque[by] != 0) to->torque[pair->books.torque[by] - 1] += load->torque[by];
 }
 
 /* Change of velocity that films and damping of a contact with a ring may bear, m/s. */
@@ -117,24 +164,37 @@ static inline double trb_look_way(const trb_point_detail *c, double share)
   return c->interference > 0.0 ? share * c->interference / 1.5 : -c->interference;
 }
 
-#define TRB_PAIR_DECLARE(name) extern const trb_pair trb_pair_##name;
-TRB_PAIRS(TRB_PAIR_DECLARE)
-#undef TRB_PAIR_DECLARE
+/* The pose of a pair's other body in the frame of each roller. */
+static inline const trb_ring_pose *trb_pair_ring(const trb_pair *pair, const trb_instant *at) { return at->bodies[pair->b].in_frame; }
 
-extern const trb_pair *const trb_pair_table[TRB_N_PAIRS];
+/* Its row of details, one a roller. */
+static inline trb_point_detail *trb_pair_points(const trb_model *m, const trb_pair *pair, const trb_detail *detail)
+{
+  return detail->points + (size_t)pair->point * (size_t)m->n_rollers;
+}
 
-/* Whether a row is on: its effect is, and the model does not leave it out. */
-int trb_pair_is_on(const trb_model *m, int row);
-/* Bodies of a pair. */
-static inline int trb_pair_joins(const trb_pair *pair, trb_body body) { return pair->a == body || pair->b == body; }
-/* Puts the rows that are on into a workspace. */
-void trb_pairs_choose(const trb_model *m, trb_workspace *work);
-/* Whether a pair that is on holds rollers along their axes. */
-int trb_pairs_seat(const trb_model *m);
-/* For rows without a switch. */
-int trb_pair_always(const trb_model *m);
+/* variant: name of a kernel variant, "" for the fastest that this machine runs. */
+trb_status trb_workspace_create(const trb_pair *pairs, int n_pairs, const char *variant, trb_workspace **work, trb_message *message);
+void       trb_workspace_free(trb_workspace *work);
 
-trb_pair_evaluate trb_contact_raceway, trb_contact_rib, trb_contact_front_rib, trb_contact_pocket;
+/* Zero the chosen rollers' loads and sum every pair that is on. */
+void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
+
+/* Zero the chosen rollers' loads and sum the slow pairs only. */
+void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
+
+/* Zero the loads and sum the pairs without a roller; wrenches in R. detail may be NULL. */
+void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
+
+/* Buffers of every intermediate quantity; freed by trb_detail_free. */
+trb_status trb_detail_create(const trb_model *m, const trb_pair *pairs, int n_pairs, trb_detail **detail, trb_message *message);
+void       trb_detail_free(trb_detail *detail);
+void       trb_detail_clear(const trb_model *m, trb_detail *detail);
+
+/* The kinds. */
+extern const trb_pair_kind trb_pair_raceway, trb_pair_rib, trb_pair_front_rib, trb_pair_drag, trb_pair_pocket, trb_pair_land;
+
+trb_pair_evaluate trb_contact_pocket;
 trb_pair_touch    trb_contact_pocket_of;
 
 #endif

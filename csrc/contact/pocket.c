@@ -253,23 +253,24 @@ static void note_gap(trb_gaps *gaps, const trb_pocket_face *f, double gap)
   *of = trb_min(*of, gap);
 }
 
-trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_instant *at, int roller, trb_counters *counters, trb_load *load,
-                               trb_slopes *slopes, trb_detail *detail)
+trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_pair *pair, const trb_instant *at, int roller, trb_counters *counters,
+                               trb_load *load, trb_slopes *slopes, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
+  const trb_rigid_pose  *cage = &at->bodies[pair->b].pose;
   const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
   const trb_gaps         far = {{INFINITY, INFINITY}};
   const int              exact = detail != NULL && detail->pocket_interference != NULL;
   pocket_view            p;
   trb_gaps               gaps = far;
-  view_places(m, r, at->cage, roller, &p);
+  view_places(m, r, cage, roller, &p);
   counters->pocket_tests += end - first;
   for (const trb_pocket_face *f = first; f < end; f++) note_gap(&gaps, f, face_gap(m, f, &p, roller));
   if (trb_gaps_clear(&gaps) && !exact) {
     counters->pocket_culled += end - first;
     return gaps;
   }
-  view_motions(r, at->cage, &m->pocket_origin[roller], &p);
+  view_motions(r, cage, &m->pocket_origin[roller], &p);
   memset(load, 0, sizeof *load);
   if (slopes != NULL) *slopes = (trb_slopes){.axes = p.axes};
   p.slopes = slopes;
@@ -298,7 +299,7 @@ void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_bat
   for (int k = 0; k < at->n; k++) {
     trb_load load;
     if (at->apart != NULL && at->apart[at->chosen[k]] >> batch->index[0] & 1U) continue;
-    const trb_gaps gaps = trb_contact_pocket_of(m, at, at->chosen[k], &work->counters, &load, NULL, detail);
+    const trb_gaps gaps = trb_contact_pocket_of(m, batch->pairs[0], at, at->chosen[k], &work->counters, &load, NULL, detail);
     if (!trb_gaps_clear(&gaps)) trb_add_load(batch->pairs[0], &load, &loads[at->chosen[k]]);
   }
 }

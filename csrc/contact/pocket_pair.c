@@ -1,4 +1,4 @@
-/* The pocket's row of the table of pairs: where it is on, and what bounds the change of its gaps. */
+/* The kind of a roller in its pocket, and what bounds the change of its gaps. */
 #include <math.h>
 
 #include "contact/pair.h"
@@ -51,8 +51,6 @@ static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
   arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));
 }
 
-static int is_on(const trb_model *m) { return m->first_face[m->n_rollers] > 0; }
-
 static int faces_of(const trb_model *m, int roller) { return m->first_face[roller + 1] - m->first_face[roller]; }
 
 static void count_clear(const trb_model *m, int roller, trb_counters *to)
@@ -67,16 +65,13 @@ static double stiffness_of(const trb_model *m, double depth)
   return m->pocket_palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
 }
 
-const trb_pair trb_pair_pocket = {.name = "pocket",
-                                  .text = "roller in its pocket of the cage",
-                                  .a = TRB_BODY_ROLLER,
-                                  .b = TRB_BODY_CAGE,
-                                  .pace = TRB_PACE_FAST,
-                                  .is_on = is_on,
-                                  .evaluate = trb_contact_pocket,
-                                  .touch = trb_contact_pocket_of,
-                                  .surfaces = faces_of,
-                                  .count_clear = count_clear,
-                                  .clearance = clearance_of,
-                                  .stiffness = stiffness_of,
-                                  .books = {.loss = TRB_LOSES_BY_SLIDING(pocket), .torque = TRB_NO_TORQUE}};
+const trb_pair_kind trb_pair_pocket = {.name = "roller in a pocket",
+                                       .shape = {TRB_SHAPE_NONE, TRB_SHAPE_POCKETS},
+                                       .pace = TRB_PACE_FAST,
+                                       .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
+                                       .evaluate = trb_contact_pocket,
+                                       .touch = trb_contact_pocket_of,
+                                       .surfaces = faces_of,
+                                       .count_clear = count_clear,
+                                       .clearance = clearance_of,
+                                       .stiffness = stiffness_of};

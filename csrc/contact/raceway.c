@@ -6,17 +6,16 @@
 #include "contact/pair.h"
 #include "laws/line_contact.h"
 
-static int race_of(const trb_pair *pair) { return pair->b == TRB_BODY_OUTER_RING ? TRB_RACE_OUTER : TRB_RACE_INNER; }
+static const trb_race_nodes *nodes_of(const trb_pair *pair) { return pair->own; }
 
-static trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, int race)
+static trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair)
 {
-  const int ring = race == TRB_RACE_OUTER ? TRB_RING_OUTER : TRB_RING_INNER;
   return (trb_race_input){&at->rollers[roller],
-                          &at->rings[ring].in_frame[roller],
-                          &m->surfaces.race[race],
+                          &trb_pair_ring(pair, at)[roller],
+                          nodes_of(pair)->cone,
                           m->centre + (size_t)roller * (size_t)m->n_lanes,
                           m->sphere + (size_t)roller * (size_t)m->n_lanes,
-                          &m->race[race]};
+                          nodes_of(pair)};
 }
 
 static void add_output(const trb_race_output *out, const trb_pair *pair, int row, trb_loads *loads)
@@ -27,20 +26,21 @@ static void add_output(const trb_race_output *out, const trb_pair *pair, int row
 }
 
 /* One contact alone; its nodes are the first lanes of the workspace, if it is loaded. */
-static void raceway_of(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, trb_race_output *output)
+static void raceway_of(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work,
+                       trb_race_output *output)
 {
-  const trb_race_input input = race_input(m, at, roller, race);
+  const trb_race_input input = race_input(m, at, roller, pair);
   trb_kernel_variants[work->variant].raceway(m, &input, 1, work->lanes, &work->counters, output);
 }
 
 /* A contact of a roller with a race. */
 typedef struct contact {
-  int             roller, race, row;
+  int             roller, row;
   const trb_pair *pair;
 } contact;
 
 /* Sums over the nodes of a contact, which are the lanes from `first` on; means are weighted by load. */
-static trb_contact_view view_of(const trb_model *m, const trb_lanes *l, int first)
+static trb_contact_view sum_of(const trb_model *m, const trb_lanes *l, int first)
 {
   trb_contact_view out = {0};
   for (int k = first; k < first + m->n_nodes; k++) {
@@ -81,16 +81,16 @@ static void fill_detail(const trb_model *m, const contact *contacts, const trb_l
   int first = 0;
   for (int c = 0; c < n; c++) {
     if (!outputs[c].loaded) continue;
-    const size_t place = (size_t)contacts[c].race * (size_t)m->n_rollers + (size_t)contacts[c].roller;
-    detail->raceway[place] = view_of(m, lanes, first);
+    const size_t place = (size_t)nodes_of(contacts[c].pair)->race * (size_t)m->n_rollers + (size_t)contacts[c].roller;
+    detail->raceway[place] = sum_of(m, lanes, first);
     if (detail->lanes != NULL) copy_lanes_of(m, lanes, first, place, detail);
     first += m->n_lanes;
   }
 }
 
 /* The races of a roller follow each other, so that a tile has both. */
-void trb_contact_raceway(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                         trb_detail *detail)
+static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
+                     trb_detail *detail)
 {
   enum { MOST = TRB_TILE_LANES / TRB_LANE_PAD };
   const int       total = at->n * batch->n, per_tile = m->n_lanes < TRB_TILE_FILL ? TRB_TILE_FILL / m->n_lanes : 1;
@@ -101,8 +101,8 @@ void trb_contact_raceway(const trb_model *m, const trb_instant *at, const trb_ba
     const int n = total - first < per_tile ? total - first : per_tile;
     for (int c = 0; c < n; c++) {
       const int side = (first + c) % batch->n;
-      contacts[c] = (contact){at->chosen[(first + c) / batch->n], race_of(batch->pairs[side]), batch->index[side], batch->pairs[side]};
-      inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].race);
+      contacts[c] = (contact){at->chosen[(first + c) / batch->n], batch->index[side], batch->pairs[side]};
+      inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].pair);
     }
     trb_kernel_variants[work->variant].raceway(m, inputs, n, work->lanes, &work->counters, outputs);
     for (int c = 0; c < n; c++) add_output(&outputs[c], contacts[c].pair, contacts[c].row, &loads[contacts[c].roller]);
@@ -119,29 +119,33 @@ static double chain_length(const trb_model *m)
   return length;
 }
 
-static trb_margin_arm margin_of(const trb_model *m)
+static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
 {
+  (void)pair;
   const double chain = chain_length(m);
   return (trb_margin_arm){.arm = chain, .ring = chain + m->geometry.outer_race_radius + m->params.total_length};
 }
 
-/* Of both races. */
-static trb_hold_arms hold_of(const trb_model *m)
+static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 {
   const double    chain = chain_length(m);
-  const trb_cone *outer = &m->surfaces.race[TRB_RACE_OUTER], *inner = &m->surfaces.race[TRB_RACE_INNER];
-  return (trb_hold_arms){fmax(fabs(outer->cosine), fabs(inner->cosine)),     fmax(fabs(outer->sine), fabs(inner->sine)), chain, chain,
-                         m->params.total_length + m->params.roller_diameter, 0.5 * m->geometry.roller_centre_radius};
+  const trb_cone *race = nodes_of(pair)->cone;
+  return (trb_hold_arms){fabs(race->cosine),
+                         fabs(race->sine),
+                         chain,
+                         chain,
+                         m->params.total_length + m->params.roller_diameter,
+                         0.5 * m->geometry.roller_centre_radius};
 }
 
-static void look_at_race(const trb_model *m, const trb_instant *at, int roller, int race, trb_workspace *work, double share,
+static void look_at_race(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work, double share,
                          trb_contact_look *look)
 {
   const trb_lanes *l = work->lanes;
   double           parameter = 0.0, slope = 0.0, slowest = INFINITY;
   trb_race_output  out;
   *look = (trb_contact_look){.way = -1.0};
-  raceway_of(m, at, roller, race, work, &out);
+  raceway_of(m, at, roller, pair, work, &out);
   for (int k = 0; out.loaded && k < m->n_nodes; k++) {
     const double q = l->load[k];
     if (!(q > 0.0)) continue;
@@ -163,47 +167,22 @@ static void look_at_races(const trb_model *m, const trb_instant *at, const trb_b
   (void)loads;
   (void)detail;
   for (int k = 0; k < at->n; k++)
-    for (int i = 0; i < batch->n; i++) look_at_race(m, at, at->chosen[k], race_of(batch->pairs[i]), work, share, &looks[k * batch->n + i]);
+    for (int i = 0; i < batch->n; i++) look_at_race(m, at, at->chosen[k], batch->pairs[i], work, share, &looks[k * batch->n + i]);
 }
 
-static void view_outer(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
+static void view_of(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view)
 {
-  *view = detail->raceway[TRB_RACE_OUTER * m->n_rollers + roller];
+  *view = detail->raceway[nodes_of(pair)->race * m->n_rollers + roller];
 }
 
-static void view_inner(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
-{
-  *view = detail->raceway[TRB_RACE_INNER * m->n_rollers + roller];
-}
-
-#define RACEWAY \
-  .a = TRB_BODY_ROLLER, .pace = TRB_PACE_SLOW, .is_on = trb_pair_always, .evaluate = trb_contact_raceway, .margin = margin_of, \
-  .hold = hold_of, .look = look_at_races
-
-const trb_pair trb_pair_outer = {.name = "outer",
-                                 .text = "roller on the outer raceway",
-                                 RACEWAY,
-                                 .b = TRB_BODY_OUTER_RING,
-                                 .view = view_outer,
-                                 .books = {.loss = {[TRB_BY_SLIDING] = TRB_LOSS_traction_outer,
-                                                    [TRB_BY_ROLLING] = TRB_LOSS_rolling,
-                                                    [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_rolling_pressure,
-                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping,
-                                                    [TRB_BY_FILM] = TRB_LOSS_none},
-                                           .torque = TRB_NO_TORQUE}};
-
-const trb_pair trb_pair_inner = {.name = "inner",
-                                 .text = "roller on the inner raceway",
-                                 RACEWAY,
-                                 .b = TRB_BODY_INNER_RING,
-                                 .view = view_inner,
-                                 .books = {.loss = {[TRB_BY_SLIDING] = TRB_LOSS_traction_inner,
-                                                    [TRB_BY_ROLLING] = TRB_LOSS_rolling,
-                                                    [TRB_BY_ROLLING_PRESSURE] = TRB_LOSS_rolling_pressure,
-                                                    [TRB_BY_DAMPING] = TRB_LOSS_damping,
-                                                    [TRB_BY_FILM] = TRB_LOSS_none},
-                                           .torque = {[TRB_BY_SLIDING] = TRB_TORQUE_traction,
-                                                      [TRB_BY_ROLLING] = TRB_TORQUE_rolling,
-                                                      [TRB_BY_ROLLING_PRESSURE] = TRB_TORQUE_none,
-                                                      [TRB_BY_DAMPING] = TRB_TORQUE_none,
-                                                      [TRB_BY_FILM] = TRB_TORQUE_none}}};
+/* Its own parameters: trb_race_nodes. */
+const trb_pair_kind trb_pair_raceway = {.name = "flank on a raceway",
+                                        .shape = {TRB_SHAPE_FLANK, TRB_SHAPE_RACE},
+                                        .pace = TRB_PACE_SLOW,
+                                        .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_ROLLING) |
+                                                      TRB_LOSES(TRB_BY_ROLLING_PRESSURE) | TRB_LOSES(TRB_BY_DAMPING),
+                                        .evaluate = evaluate,
+                                        .margin = margin_of,
+                                        .hold = hold_of,
+                                        .look = look_at_races,
+                                        .view = view_of};

@@ -86,18 +86,31 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
-/* (10) rolling resistance (docs/theory/lubrication.md#rolling-resistance). */
+/* The loop of rolling resistance once per form of law, so that the choice is made outside; share and law may use log_w and log_u. */
+#define TRB_ROLLING_LOOP(share, law) \
+  TRB_PADDED(n); \
+  TRB_LANES for (int i = 0; i < n; i++) \
+  { \
+    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->log_d[i] - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i]; \
+    const double force = (share) * l->radius[i] * l->weight[i] * l->thermal_factor[i] * scale * (law); \
+    l->rolling[i] = l->interference[i] > 0.0 ? force : 0.0; \
+  }
+
+/* Rolling resistance (docs/theory/lubrication.md#rolling-resistance). A starved inlet makes less of it, as it makes less film (Zhou &
+ * Hoeprich 1991, eq. 23). */
 static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
 {
   const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
-  const double per_alpha = 1.0 / m->params.pressure_coefficient, band = m->params.rolling_blend;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-  {
-    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->log_d[i] - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i];
-    const double share = trb_rolling_share(l->film_elastic[i] / l->film_rigid[i], band);
-    const double force = share * l->radius[i] * l->weight[i] * l->thermal_factor[i] * per_alpha * trb_rolling_line(log_w, log_u, log_g);
-    l->rolling[i] = l->interference[i] > 0.0 ? force : 0.0;
+  const double starvation = m->params.starvation_factor;
+  if (m->params.rolling_resistance == TRB_ROLLING_BIBOULET_HOUPERT) {
+    const double scale = starvation * m->geometry.effective_modulus;
+    TRB_ROLLING_LOOP(1.0, trb_rolling_biboulet_houpert(log_w, log_u))
+  } else {
+    const trb_rolling_power power = trb_rolling_power_of((int)m->params.rolling_resistance);
+    const double            scale = starvation / m->params.pressure_coefficient, factor = power.factor * exp(power.material * log_g);
+    const double            band = m->params.rolling_blend;
+    TRB_ROLLING_LOOP(trb_rolling_share(l->film_elastic[i] / l->film_rigid[i], band),
+                     (factor * trb_rolling_power_at(power, log_w, log_u, log_g)))
   }
 }
 

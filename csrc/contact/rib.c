@@ -1,4 +1,4 @@
-/* Roller large end on the inner ring's back-face rib: a sphere on a cone, one point of maximum interference
+/* A roller's spherical end on a conical rib of a ring, as the large end on the back-face rib: one point of maximum interference
  * (docs/theory/contacts.md#large-end-on-the-back-face-rib). */
 #include <math.h>
 
@@ -6,27 +6,29 @@
 #include "contact/pair.h"
 #include "laws/smooth.h"
 
-/* Height of a contact point above the inner raceway. */
-static double height_of(const trb_model *m, const trb_ring_pose *ring, trb_vec3 point)
+static const trb_rib *rib_of(const trb_pair *pair) { return pair->own; }
+
+/* Height of a contact point above the raceway beside the rib. */
+static double height_of(const trb_rib *rib, const trb_ring_pose *ring, trb_vec3 point)
 {
-  const trb_cone *race = &m->surfaces.race[TRB_RACE_INNER];
+  const trb_cone *race = &rib->race;
   return -trb_cone_at(race, ring->axis, trb_sub(point, trb_cone_point(race, ring->centre, ring->axis))).beyond;
 }
 
 /* Share of the ellipse's axis across rolling that lies below the rib's lower or above its upper edge. */
-static double overhang(const trb_model *m, double load, double height)
+static double overhang(const trb_rib *rib, double load, double height)
 {
-  const double semi = m->geometry.rib_semi_axis_across * cbrt(load);
-  const double below = trb_clamp(m->params.rib_edge_low - (height - semi), 0.0, 2.0 * semi);
-  const double above = trb_clamp(height + semi - m->params.rib_edge_high, 0.0, 2.0 * semi);
+  const double semi = rib->semi_axis_across * cbrt(load);
+  const double below = trb_clamp(rib->edge_low - (height - semi), 0.0, 2.0 * semi);
+  const double above = trb_clamp(height + semi - rib->edge_high, 0.0, 2.0 * semi);
   return semi > 0.0 ? trb_min((below + above) / (2.0 * semi), 1.0) : 0.0;
 }
 
-static void fill_detail(const trb_model *m, const trb_ring_pose *ring, int lane, const trb_lanes *l, const trb_race_output *out,
-                        trb_point_detail *c)
+static void fill_detail(const trb_model *m, const trb_rib *rib, const trb_ring_pose *ring, int lane, const trb_lanes *l,
+                        const trb_race_output *out, trb_point_detail *c)
 {
-  *c =
-      (trb_point_detail){.interference = l->interference[lane], .height = height_of(m, ring, trb_v(l->px[lane], l->py[lane], l->pz[lane]))};
+  *c = (trb_point_detail){.interference = l->interference[lane],
+                          .height = height_of(rib, ring, trb_v(l->px[lane], l->py[lane], l->pz[lane]))};
   if (!out->loaded) return;
   c->load = -trb_dot(out->force, trb_v(l->nx[lane], l->ny[lane], l->nz[lane]));
   c->pressure = l->pressure[lane];
@@ -35,7 +37,7 @@ static void fill_detail(const trb_model *m, const trb_ring_pose *ring, int lane,
   c->slide_roll = l->slide_roll[lane];
   c->friction_coefficient = l->friction_coefficient[lane];
   c->friction = c->load * c->friction_coefficient;
-  c->overhang = overhang(m, c->load, c->height);
+  c->overhang = overhang(rib, c->load, c->height);
   if (!m->film) return;
   c->film_elastic = l->film_elastic[lane];
   c->film_rigid = l->film_rigid[lane];
@@ -44,45 +46,50 @@ static void fill_detail(const trb_model *m, const trb_ring_pose *ring, int lane,
   c->film_parameter = l->film_parameter[lane];
 }
 
-void trb_contact_rib(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                     trb_detail *detail)
+static void evaluate_one(const trb_model *m, const trb_instant *at, const trb_pair *pair, int row, trb_workspace *work, trb_loads *loads,
+                         trb_detail *detail)
 {
-  const int       row = batch->index[0];
-  trb_race_output outputs[TRB_TILE_LANES];
-  trb_kernel_variants[work->variant].rib(m, at, work->lanes, &work->counters, outputs);
+  const trb_ring_pose *ring = trb_pair_ring(pair, at);
+  trb_race_output      outputs[TRB_TILE_LANES];
+  trb_kernel_variants[work->variant].rib(m, rib_of(pair), at, ring, work->lanes, &work->counters, outputs);
   for (int k = 0; k < at->n; k++) {
     const int              j = at->chosen[k];
     const trb_race_output *out = &outputs[k];
     trb_loads             *to = &loads[j];
-    if (detail != NULL) fill_detail(m, &at->rings[TRB_RING_INNER].in_frame[j], k, work->lanes, out, &detail->rib[j]);
+    if (detail != NULL) fill_detail(m, rib_of(pair), &ring[j], k, work->lanes, out, &trb_pair_points(m, pair, detail)[j]);
     to->margin[row] = trb_min(to->margin[row], fabs(out->depth));
     if (!out->loaded) continue;
     const trb_load load = trb_load_of_output(out);
-    trb_add_load(batch->pairs[0], &load, to);
+    trb_add_load(pair, &load, to);
   }
 }
 
-static int is_on(const trb_model *m) { return m->params.back_rib > 0.0; }
+static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
+                     trb_detail *detail)
+{
+  for (int i = 0; i < batch->n; i++) evaluate_one(m, at, batch->pairs[i], batch->index[i], work, loads, detail);
+}
 
-static trb_margin_arm margin_of(const trb_model *m)
+static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
 {
   const trb_geometry *g = &m->geometry;
-  const trb_sphere   *end = &m->surfaces.large_end;
+  const trb_rib      *rib = rib_of(pair);
+  const trb_sphere   *end = &rib->end;
   const double        arm = fabs(end->place);
   return (trb_margin_arm){.arm = arm,
                           .ring = arm + g->outer_race_radius + m->params.total_length,
                           .on_end = 1,
-                          .normal_sine = fabs(m->surfaces.rib.cosine),
-                          .normal_lean = fabs(sin(g->rib_normal_angle - g->roller_axis_angle)),
+                          .normal_sine = fabs(rib->face.cosine),
+                          .normal_lean = rib->normal_lean,
                           .sphere_offset = fabs(g->roller_centre_radius + end->place * m->axis_sine)};
 }
 
 /* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
-static trb_hold_arms hold_of(const trb_model *m)
+static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 {
   const trb_geometry *g = &m->geometry;
-  const trb_cone     *face = &m->surfaces.rib;
-  const double        station = m->surfaces.large_end.place;
+  const trb_cone     *face = &rib_of(pair)->face;
+  const double        station = rib_of(pair)->end.place;
   const double        lean = fabs(face->cosine * m->axis_cosine + face->sine * m->axis_sine);
   return (trb_hold_arms){fabs(face->cosine),
                          fabs(face->sine),
@@ -95,9 +102,9 @@ static trb_hold_arms hold_of(const trb_model *m)
 static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                     trb_detail *detail, double share, trb_contact_look *looks)
 {
-  trb_contact_rib(m, at, batch, work, loads, detail);
-  for (int k = 0; k < at->n; k++) {
-    const trb_point_detail *c = &detail->rib[at->chosen[k]];
+  evaluate(m, at, batch, work, loads, detail);
+  for (int k = 0; k < at->n * batch->n; k++) {
+    const trb_point_detail *c = &trb_pair_points(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
     looks[k] = (trb_contact_look){.load = c->load,
                                   .pressure = c->pressure,
                                   .film_parameter = c->film_parameter,
@@ -106,10 +113,9 @@ static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *
   }
 }
 
-static void view_of(const trb_model *m, const trb_detail *detail, int roller, trb_contact_view *view)
+static void view_of(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view)
 {
-  const trb_point_detail *c = &detail->rib[roller];
-  (void)m;
+  const trb_point_detail *c = &trb_pair_points(m, pair, detail)[roller];
   *view = (trb_contact_view){.load = c->load,
                              .pressure = c->pressure,
                              .film = c->film,
@@ -120,16 +126,15 @@ static void view_of(const trb_model *m, const trb_detail *detail, int roller, tr
                              .overhang = c->overhang};
 }
 
-const trb_pair trb_pair_rib = {.name = "rib",
-                               .text = "roller's large end on the back-face rib",
-                               .a = TRB_BODY_ROLLER,
-                               .b = TRB_BODY_INNER_RING,
-                               .pace = TRB_PACE_SLOW,
-                               .seats = 1,
-                               .is_on = is_on,
-                               .evaluate = trb_contact_rib,
-                               .margin = margin_of,
-                               .hold = hold_of,
-                               .look = look_at,
-                               .view = view_of,
-                               .books = {.loss = TRB_LOSES_BY_SLIDING(rib), .torque = TRB_TURNS_BY_SLIDING(rib)}};
+/* Its own parameters: trb_rib. */
+const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
+                                    .shape = {TRB_SHAPE_SPHERE, TRB_SHAPE_CONE},
+                                    .pace = TRB_PACE_SLOW,
+                                    .seats = 1,
+                                    .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
+                                    .is_point = 1,
+                                    .evaluate = evaluate,
+                                    .margin = margin_of,
+                                    .hold = hold_of,
+                                    .look = look_at,
+                                    .view = view_of};

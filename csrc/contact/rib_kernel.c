@@ -1,4 +1,4 @@
-/* Large ends on the back-face rib, all chosen rollers at once; each roller has one lane. The loops of films and friction are those of
+/* Spherical ends on a conical rib, all chosen rollers at once; each roller has one lane. The loops of films and friction are those of
  * the raceways (docs/theory/contacts.md#large-end-on-the-back-face-rib). */
 #include <math.h>
 
@@ -7,14 +7,13 @@
 #define TRB_KERNEL_NAME TRB_JOIN(trb_rib_kernel_, TRB_KERNEL_VARIANT)
 
 /* Deepest point of the end's sphere in the rib's cone, and the velocities there. */
-static void pass_geometry(const trb_model *m, const trb_instant *at, trb_lanes *l)
+static void pass_geometry(const trb_rib *rib, const trb_instant *at, const trb_ring_pose *rings, trb_lanes *l)
 {
-  const trb_cone       face = m->surfaces.rib;
-  const trb_sphere     end = m->surfaces.large_end;
-  const trb_ring_pose *inner = at->rings[TRB_RING_INNER].in_frame;
+  const trb_cone   face = rib->face;
+  const trb_sphere end = rib->end;
   for (int j = 0; j < at->n; j++) {
     const trb_roller_pose *r = &at->rollers[at->chosen[j]];
-    const trb_ring_pose   *ring = &inner[at->chosen[j]];
+    const trb_ring_pose   *ring = &rings[at->chosen[j]];
     const trb_vec3         centre = trb_axpy(r->x, end.place, r->frame.a);
     const trb_cone_foot    foot = trb_cone_at(&face, ring->axis, trb_sub(centre, trb_cone_point(&face, ring->centre, ring->axis)));
     const double           d = end.radius + foot.beyond;
@@ -43,10 +42,10 @@ static void pad(int n, int padded, trb_lanes *l)
 }
 
 /* Hertz: Q = K d^1.5, semi-axis along rolling and largest pressure with Q^(1/3). */
-static void pass_load(const trb_model *m, int n, trb_lanes *l)
+static void pass_load(const trb_rib *rib, int n, trb_lanes *l)
 {
-  const double stiffness = m->geometry.rib_stiffness, log_stiffness = log(stiffness), rolling = m->geometry.rib_semi_axis_rolling;
-  const double per_area = 1.5 / (TRB_PI * rolling * m->geometry.rib_semi_axis_across);
+  const double stiffness = rib->stiffness, log_stiffness = log(stiffness), rolling = rib->semi_axis_rolling;
+  const double per_area = 1.5 / (TRB_PI * rolling * rib->semi_axis_across);
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -60,11 +59,11 @@ static void pass_load(const trb_model *m, int n, trb_lanes *l)
 }
 
 /* (12) and (13), or (12) alone, before the thermal factor. */
-static void pass_film(const trb_model *m, int n, trb_lanes *l)
+static void pass_film(const trb_model *m, const trb_rib *rib, int n, trb_lanes *l)
 {
-  const double log_rx = log(m->geometry.rib_rx), rx = m->geometry.rib_rx, log_g = m->log_g, shape = m->rib_film_shape;
-  const double base_w = log(m->geometry.rib_stiffness) - m->log_modulus - 2.0 * log_rx, base_u = m->log_viscosity - m->log_modulus - log_rx;
-  const double rigid = m->params.rib_film > 0.0 ? 0.0 : rx * m->rib_film_rigid;
+  const double log_rx = log(rib->rx), rx = rib->rx, log_g = m->log_g, shape = rib->film_shape;
+  const double base_w = log(rib->stiffness) - m->log_modulus - 2.0 * log_rx, base_u = m->log_viscosity - m->log_modulus - log_rx;
+  const double rigid = m->params.rib_film > 0.0 ? 0.0 : rx * rib->film_rigid;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -96,13 +95,13 @@ static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_r
   out->power_damping = (load - elastic) * l->approach[j];
 }
 
-void TRB_KERNEL_NAME(const trb_model *m, const trb_instant *at, trb_lanes *l, trb_counters *counters, trb_race_output *outputs)
+void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *at, const trb_ring_pose *rings, trb_lanes *l,
+                     trb_counters *counters, trb_race_output *outputs)
 {
-  const trb_ring_pose *inner = at->rings[TRB_RING_INNER].in_frame;
-  const int            n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
-  const trb_pass_kind  kind = {TRB_POINT_MEAN_PRESSURE, m->params.roughness_rib};
+  const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
+  const trb_pass_kind kind = {TRB_POINT_MEAN_PRESSURE, rib->roughness};
   if (n == 0) return;
-  pass_geometry(m, at, l);
+  pass_geometry(rib, at, rings, l);
   pad(n, all, l);
   counters->rib_tests += n;
   int touching = 0;
@@ -110,10 +109,10 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_instant *at, trb_lanes *l, tr
   for (int j = 0; j < n; j++) outputs[j] = (trb_race_output){.depth = l->interference[j]};
   if (touching == 0) return;
   counters->rib_contacts += touching;
-  pass_load(m, all, l);
+  pass_load(rib, all, l);
   pass_speeds(m, all, l);
   if (m->film) {
-    pass_film(m, all, l);
+    pass_film(m, rib, all, l);
     counters->film_nodes += all;
     if (m->params.thermal > 0.0) {
       pass_thermal(m, all, l);
@@ -124,5 +123,5 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_instant *at, trb_lanes *l, tr
   if (m->friction) pass_friction(m, &kind, all, l, counters);
   if (m->params.damping > 0.0) counters->damping_nodes += touching;
   for (int j = 0; j < n; j++)
-    if (l->interference[j] > 0.0) sum_roller(m, &at->rollers[at->chosen[j]], &inner[at->chosen[j]], j, l, &outputs[j]);
+    if (l->interference[j] > 0.0) sum_roller(m, &at->rollers[at->chosen[j]], &rings[at->chosen[j]], j, l, &outputs[j]);
 }

@@ -11,6 +11,8 @@
 #include "laws/traction.h"
 #include "laws/viscosity.h"
 
+#define ROLLING(law) trb_rolling_line(TRB_ROLLING_##law, log(x[0]), log(x[1]), log(x[2]))
+
 /* X(name, number of arguments, their names, text, expression in x[]) */
 #define TRB_LAWS(X) \
   X(line_load, 3, "interference effective_modulus length", "Palmgren (1): load per length of a line contact, N/m", \
@@ -44,7 +46,11 @@
   X(traction_muraki_kimura, 2, "sigma d", "(7)-(8) Muraki & Kimura: S of mu = tau0 S/pmean", trb_traction_muraki_kimura(x[0], x[1])) \
   X(boundary_share, 3, "film_parameter lambda_boundary lambda_full", "(2) share of boundary friction", trb_boundary_share(x[0], x[1], x[2])) \
   X(slide_roll_cage, 2, "sliding_speed entrainment_speed", "slide-roll ratio of surfaces that do not roll", trb_slide_roll_cage(x[0], x[1])) \
-  X(rolling_line, 3, "W U G", "(10) Zhou & Hoeprich 1991: alpha0 F/(Re l phi_T)", trb_rolling_line(log(x[0]), log(x[1]), log(x[2]))) \
+  X(rolling_line, 3, "W U G", "(10) Zhou & Hoeprich 1991: alpha0 F/(Re l phi_T)", ROLLING(ZHOU_HOEPRICH)) \
+  X(rolling_goksem_hargreaves, 3, "W U G", "Goksem & Hargreaves 1978: alpha0 F/(Re l phi_T)", ROLLING(GOKSEM_HARGREAVES)) \
+  X(rolling_aihara, 3, "W U G", "Aihara 1987: alpha0 F/(Re l phi_T)", ROLLING(AIHARA)) \
+  X(rolling_matsuyama, 3, "W U G", "Matsuyama 2004: alpha0 F/(Re l phi_T)", ROLLING(MATSUYAMA)) \
+  X(rolling_biboulet_houpert, 3, "W U G", "Biboulet & Houpert 2010: alpha0 F/(Re l phi_T)", ROLLING(BIBOULET_HOUPERT)) \
   X(rolling_share, 2, "elastic_over_rigid half_width", "share of rolling resistance about the change of regime", trb_rolling_share(x[0], x[1])) \
   X(profile_crowned, 2, "station radius", "drop of an arc, m", trb_profile_crowned(x[0], x[1])) \
   X(profile_logarithmic, 7, "station length k1 k2 zm load effective_modulus", "logarithmic drop, m", \

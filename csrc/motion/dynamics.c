@@ -11,55 +11,54 @@ static int choose_fast(trb_dynamics *d)
   for (int i = 0; i < d->work->n_batches; i++)
     for (int k = 0; k < d->work->batches[i].n; k++) {
       const trb_pair *pair = d->work->batches[i].pairs[k];
-      if (pair->pace != TRB_PACE_FAST) continue;
+      if (pair->kind->pace != TRB_PACE_FAST) continue;
       trb_fast_pair *fast = &d->fast[d->n_fast];
       fast->pair = pair;
       fast->row = d->work->batches[i].index[k];
       fast->clearances = calloc((size_t)d->model->n_rollers, sizeof *fast->clearances);
       if (fast->clearances == NULL) return 0;
       d->n_fast++;
-      pair->clearance(d->model, fast->arms);
+      pair->kind->clearance(d->model, fast->arms);
     }
   return 1;
 }
 
-/* Rings that rest have the same pose in the frames of all rollers, for good. */
-static int make_rings(trb_dynamics *d)
+void trb_dynamics_place(trb_dynamics *d)
 {
-  trb_rings_place(d->model, &d->drive, d->rings);
-  for (int r = 0; r < TRB_N_RINGS; r++) {
-    trb_ring *ring = &d->rings[r];
-    ring->in_frame = calloc((size_t)d->model->n_rollers, sizeof *ring->in_frame);
-    if (ring->in_frame == NULL) return 0;
-    for (int j = 0; j < d->model->n_rollers; j++) ring->in_frame[j] = ring->pose;
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_body_kind *kind = d->system->bodies[b].kind;
+    if (kind->place != NULL) kind->place(d->model, &d->drive, &d->bodies[b].ring);
+  }
+}
+
+/* Bodies that rest have the same pose in the frames of all rollers, for good. */
+static int make_bodies(trb_dynamics *d)
+{
+  for (int b = 0; b < d->system->n_bodies; b++) d->bodies[b].rests = d->system->bodies[b].kind->rests;
+  trb_dynamics_place(d);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    trb_body_at *body = &d->bodies[b];
+    if (d->system->bodies[b].kind->place == NULL) continue;
+    body->in_frame = calloc((size_t)d->model->n_rollers, sizeof *body->in_frame);
+    if (body->in_frame == NULL) return 0;
+    for (int j = 0; j < d->model->n_rollers; j++) body->in_frame[j] = body->ring;
   }
   return 1;
 }
 
-/* The bodies of the hub that the model has, and where the state has their entries and the tail. */
-static void place_bodies(trb_dynamics *d)
-{
-  int at = trb_state_hub(d->model);
-  for (int k = 0; k < trb_n_hub_kinds; k++) {
-    const trb_hub_kind *kind = trb_hub_table[k];
-    if (!kind->is_on(d->model)) continue;
-    d->bodies[d->n_bodies++] = (trb_hub_body){.kind = kind, .first = at};
-    at += kind->size;
-  }
-  d->spin = trb_state_spin(d->model);
-  d->quadrature = trb_state_quadrature(d->model);
-}
-
-trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
+trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
                                trb_message *message)
 {
+  const trb_model *m = system->model;
   *dynamics = NULL;
   trb_dynamics *d = calloc(1, sizeof *d);
   if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   const size_t n = (size_t)m->n_rollers;
+  d->system = system;
   d->model = m;
   d->motion = motion;
-  place_bodies(d);
+  d->spin = trb_state_spin(system);
+  d->quadrature = trb_state_quadrature(system);
   d->rollers = calloc(n, sizeof *d->rollers);
   d->loads = calloc(n, sizeof *d->loads);
   d->everyone = calloc(n, sizeof *d->everyone);
@@ -67,12 +66,12 @@ trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, con
   d->exact = calloc(n, sizeof *d->exact);
   d->near = calloc(n, sizeof *d->near);
   trb_status status = TRB_OK;
-  if (!make_rings(d) || d->rollers == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
+  if (!make_bodies(d) || d->rollers == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
       d->near == NULL) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   } else {
     for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
-    status = trb_workspace_create(m, variant, &d->work, message);
+    status = trb_workspace_create(system->pairs, system->n_pairs, variant, &d->work, message);
     if (status == TRB_OK && !choose_fast(d)) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   }
   if (status != TRB_OK) {
@@ -88,7 +87,7 @@ void trb_dynamics_free(trb_dynamics *d)
   if (d == NULL) return;
   trb_workspace_free(d->work);
   free(d->rollers);
-  for (int r = 0; r < TRB_N_RINGS; r++) free(d->rings[r].in_frame);
+  for (int b = 0; b < d->system->n_bodies; b++) free(d->bodies[b].in_frame);
   free(d->loads);
   free(d->everyone);
   for (int f = 0; f < d->n_fast; f++) free(d->fast[f].clearances);
@@ -104,21 +103,23 @@ void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y)
   const trb_drive *drive = &d->drive;
   trb_roller_pose_unpack(d->model, drive, roller, y, r);
   const double cosine = drive->cosine * r->cosine - drive->sine * r->sine, sine = drive->sine * r->cosine + drive->cosine * r->sine;
-  for (int i = 0; i < TRB_N_RINGS; i++)
-    if (!trb_ring_table[i]->rests) d->rings[i].in_frame[roller] = trb_ring_pose_in_frame(&d->rings[i].pose, cosine, sine);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    trb_body_at *body = &d->bodies[b];
+    if (body->in_frame != NULL && !body->rests) body->in_frame[roller] = trb_ring_pose_in_frame(&body->ring, cosine, sine);
+  }
 }
 
 void trb_dynamics_drive(trb_dynamics *d, double time)
 {
   trb_motion_at(d->motion, d->model, time, &d->drive);
-  trb_rings_place(d->model, &d->drive, d->rings);
+  trb_dynamics_place(d);
 }
 
 void trb_dynamics_pose_hub(trb_dynamics *d, const double *y)
 {
-  for (int b = 0; b < d->n_bodies; b++) {
-    trb_hub_body *body = &d->bodies[b];
-    body->kind->pose(d->model, &d->drive, y + body->first, &body->pose);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_body *body = &d->system->bodies[b];
+    if (body->size > 0) body->kind->pose(d->model, body, &d->drive, y + body->first, &d->bodies[b].pose);
   }
 }
 
@@ -131,8 +132,7 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
 {
-  return (trb_instant){&d->drive,   d->rollers,          d->rings, d->model->params.with_cage > 0.0 ? trb_dynamics_cage(d) : NULL,
-                       d->everyone, d->model->n_rollers, NULL};
+  return (trb_instant){&d->drive, d->rollers, d->bodies, d->everyone, d->model->n_rollers, NULL};
 }
 
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail) { trb_dynamics_loads_of(d, NULL, detail); }
@@ -145,6 +145,12 @@ void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *d
   trb_contact_hub(d->model, &at, d->work, &d->hub, detail);
 }
 
+/* The part of a state that belongs to the other body of a fast pair. */
+static const double *of_body(const trb_dynamics *d, const trb_fast_pair *fast, const double *y)
+{
+  return y + d->system->bodies[fast->pair->b].first;
+}
+
 void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
 {
   const trb_model *m = d->model;
@@ -152,17 +158,14 @@ void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
     for (int j = 0; j < m->n_rollers; j++)
-      if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(j), y + trb_state_cage(m)))
-        apart[j] |= 1U << fast->row;
+      if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(j), of_body(d, fast, y))) apart[j] |= 1U << fast->row;
   }
 }
 
-/* Books what a ring's drive puts in against a wrench; pose and wrench in the same frame. */
-static void add_work(const trb_dynamics *d, int ring, const trb_ring_pose *pose, const trb_loads *loads, double *quadratures)
+/* Books what a body's drive puts in against a wrench; pose and wrench in the same frame. */
+static void add_work(const trb_dynamics *d, int body, const trb_ring_pose *pose, const trb_loads *loads, double *quadratures)
 {
-  const trb_ring_kind *kind = trb_ring_table[ring];
-  if (kind->power == NULL) return;
-  const trb_ring_power power = kind->power(pose, &d->drive, &loads->on[kind->body]);
+  const trb_drive_power power = d->system->bodies[body].kind->power(pose, &d->drive, &loads->on[body]);
   quadratures[TRB_Q_work_shaft] += power.shaft;
   quadratures[TRB_Q_work_ring] += power.place;
 }
@@ -174,31 +177,31 @@ void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads
   memset(quadratures, 0, TRB_FLOW_N_QUADRATURES * sizeof *flow);
   quadratures[TRB_Q_work_gravity] = trb_roller_inertia(d->model, &d->drive, r, flow, &flow[TRB_FLOW_spin]);
   d->work->counters.gravity_bodies += trb_has_gravity(&d->drive);
-  trb_roller_response(d->model, r, &loads->on[TRB_BODY_ROLLER], flow);
+  trb_roller_response(d->model, r, &loads->roller, flow);
   for (int k = 0; k < TRB_N_ROLLER_LOSSES; k++) quadratures[TRB_Q_losses + k] += loads->power[k];
-  for (int i = 0; i < TRB_N_RINGS; i++) add_work(d, i, &d->rings[i].in_frame[roller], loads, quadratures);
+  for (int b = 0; b < d->system->n_bodies; b++)
+    if (d->system->bodies[b].kind->power != NULL) add_work(d, b, &d->bodies[b].in_frame[roller], loads, quadratures);
 }
 
 void trb_dynamics_start(trb_dynamics *d, double *rates)
 {
   const trb_model *m = d->model;
   double          *q = rates + d->quadrature;
-  memset(q, 0, (size_t)trb_n_quadratures(m) * sizeof *q);
-  for (int b = 0; b < d->n_bodies; b++) {
-    trb_hub_body *body = &d->bodies[b];
-    const double  mass = body->kind->mass(m);
-    body->load = (trb_wrench){{0, 0, 0}, {0, 0, 0}};
-    if (!trb_has_gravity(&d->drive) || mass <= 0.0) continue;
+  memset(q, 0, (size_t)trb_n_quadratures(d->system) * sizeof *q);
+  memset(d->on_body, 0, sizeof d->on_body);
+  for (int b = 0; b < d->system->n_bodies && trb_has_gravity(&d->drive); b++) {
+    const trb_body *body = &d->system->bodies[b];
+    const double    mass = body->size > 0 ? body->kind->mass(m, body) : 0.0;
+    if (mass <= 0.0) continue;
     d->work->counters.gravity_bodies++;
-    q[TRB_Q_work_gravity] += mass * trb_dot(trb_gravity_in(&d->drive, 1.0, 0.0), body->pose.v);
+    q[TRB_Q_work_gravity] += mass * trb_dot(trb_gravity_in(&d->drive, 1.0, 0.0), d->bodies[b].pose.v);
   }
 }
 
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates)
 {
-  const trb_model *m = d->model;
-  const int        all = trb_n_quadratures(m), n = all < TRB_FLOW_N_QUADRATURES ? all : TRB_FLOW_N_QUADRATURES;
-  double          *q = rates + d->quadrature;
+  const int all = trb_n_quadratures(d->system), n = all < TRB_FLOW_N_QUADRATURES ? all : TRB_FLOW_N_QUADRATURES;
+  double   *q = rates + d->quadrature;
   memcpy(rates + trb_state_roller(roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
   rates[d->spin + roller] = flow[TRB_FLOW_spin];
   for (int k = 0; k < n; k++) q[k] += flow[TRB_FLOW_quadrature + k];
@@ -215,9 +218,9 @@ unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)
   unsigned         near = 0;
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
-    if (fast->pair->surfaces(m, roller) == 0) continue;
-    if (trb_clearance_holds(&fast->clearances[roller], fast->arms, y + trb_state_roller(roller), y + trb_state_cage(m)))
-      fast->pair->count_clear(m, roller, &d->work->counters);
+    if (fast->pair->kind->surfaces(m, roller) == 0) continue;
+    if (trb_clearance_holds(&fast->clearances[roller], fast->arms, y + trb_state_roller(roller), of_body(d, fast, y)))
+      fast->pair->kind->count_clear(m, roller, &d->work->counters);
     else near |= 1U << f;
   }
   return near;
@@ -227,8 +230,8 @@ trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double 
 {
   const trb_instant at = trb_dynamics_instant(d);
   trb_fast_pair    *pair = &d->fast[fast];
-  const trb_gaps    gaps = pair->pair->touch(d->model, &at, roller, &d->work->counters, load, slopes, detail);
-  trb_clearance_set(d->model, &pair->clearances[roller], &gaps, y + trb_state_roller(roller), y + trb_state_cage(d->model));
+  const trb_gaps    gaps = pair->pair->kind->touch(d->model, pair->pair, &at, roller, &d->work->counters, load, slopes, detail);
+  trb_clearance_set(d->model, &pair->clearances[roller], &gaps, y + trb_state_roller(roller), of_body(d, pair, y));
   return gaps;
 }
 
@@ -241,11 +244,15 @@ void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double 
     const trb_gaps gaps = trb_dynamics_touch(d, f, roller, y, &load, NULL, NULL);
     if (trb_gaps_clear(&gaps)) continue;
     trb_roller_response(d->model, &d->rollers[roller], &load.on_a, flow);
-    for (int by = 0; by < TRB_N_MECHANISMS; by++)
-      if (pair->books.loss[by] != TRB_LOSS_none) flow[TRB_FLOW_quadrature + TRB_Q_losses + pair->books.loss[by]] += load.lost[by];
-    trb_hub_body *const body = trb_dynamics_body(d, pair->b);
-    if (body != NULL) trb_add_wrench(&body->load, &load.on_b);
+    trb_book_losses(&pair->books, &load, flow + TRB_FLOW_quadrature + TRB_Q_losses);
+    trb_add_wrench(&d->on_body[pair->b], &load.on_b);
   }
+}
+
+void trb_dynamics_book_bodies(const trb_dynamics *d, double *losses)
+{
+  for (int b = 0; b < d->system->n_bodies; b++)
+    if (d->system->bodies[b].loss != 0) losses[d->system->bodies[b].loss - 1] += d->bodies[b].pose.lost;
 }
 
 void trb_dynamics_add_hub(trb_dynamics *d, double *rates)
@@ -254,18 +261,21 @@ void trb_dynamics_add_hub(trb_dynamics *d, double *rates)
   double           *q = rates + d->quadrature;
   if (d->work->n_hub == 0) return;
   trb_contact_hub(d->model, &at, d->work, &d->hub, NULL);
-  for (int b = 0; b < d->n_bodies; b++) trb_add_wrench(&d->bodies[b].load, &d->hub.on[d->bodies[b].kind->body]);
   for (int k = 0; k < d->model->n_losses; k++) q[TRB_Q_losses + k] += d->hub.power[k];
-  for (int r = 0; r < TRB_N_RINGS; r++) {
-    const trb_ring_pose pose = trb_ring_in(d->rings, r, d->drive.cosine, d->drive.sine);
-    add_work(d, r, &pose, &d->hub, q);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    trb_add_wrench(&d->on_body[b], &d->hub.on[b]);
+    if (d->system->bodies[b].kind->power == NULL) continue;
+    const trb_ring_pose pose = trb_body_in(&d->bodies[b], d->drive.cosine, d->drive.sine);
+    add_work(d, b, &pose, &d->hub, q);
   }
 }
 
 void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
 {
-  for (int b = 0; b < d->n_bodies; b++) {
-    const trb_hub_body *body = &d->bodies[b];
-    body->kind->rates(d->model, &d->drive, &body->pose, y + body->first, &body->load, rates + body->first);
+  trb_dynamics_book_bodies(d, rates + d->quadrature + TRB_Q_losses);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_body *body = &d->system->bodies[b];
+    if (body->size == 0) continue;
+    body->kind->rates(d->model, body, &d->drive, &d->bodies[b].pose, y + body->first, &d->on_body[b], rates + body->first);
   }
 }

@@ -5,6 +5,7 @@
 
 #include "motion/clearance.h"
 #include "motion/ring_motion.h"
+#include "system/system.h"
 
 /* A roller's share of the right-hand side: rates of its state, of its spin angle, and its powers in the quadratures
  * (docs/theory/energy.md#quadratures). It is affine in the loads: a part from inertia and gravity, and a part that is linear in the
@@ -20,33 +21,25 @@ enum {
 /* A pair that is evaluated at every instant, and what is proven of every roller in it. */
 typedef struct trb_fast_pair {
   const trb_pair    *pair;
-  int                row;        /* of the table of pairs */
+  int                row;        /* its number in the system */
   trb_clearance     *clearances; /* n_rollers */
   trb_clearance_arms arms[TRB_N_GAPS];
 } trb_fast_pair;
 
-/* A body of the hub. */
-typedef struct trb_hub_body {
-  const trb_hub_kind *kind;
-  int                 first; /* of its entries of the state */
-  trb_rigid_pose      pose;  /* at the last state evaluated */
-  trb_wrench          load;  /* sum of the right-hand side under way, in R */
-} trb_hub_body;
-
 typedef struct trb_dynamics {
-  const trb_model  *model;
+  const trb_system *system;
+  const trb_model  *model; /* of the system's bearing */
   const trb_motion *motion;
   trb_workspace    *work;
-  trb_drive         drive;                /* at the last time evaluated */
-  trb_roller_pose  *rollers;              /* at the last state evaluated */
-  trb_ring          rings[TRB_N_RINGS];   /* at the last time evaluated, and in the frames of the last state evaluated */
-  trb_hub_body      bodies[TRB_N_BODIES]; /* of the hub, in the order of the state */
-  int               n_bodies;
-  int               spin, quadrature; /* where the tail of the state begins, and its quadratures */
-  trb_loads        *loads;            /* of every roller */
-  trb_loads         hub;              /* of pairs without a roller, in R; zero where there are none */
-  int              *everyone;         /* 0, 1, ...: all rollers */
-  trb_fast_pair     fast[TRB_N_PAIRS];
+  trb_drive         drive;                    /* at the last time evaluated */
+  trb_roller_pose  *rollers;                  /* at the last state evaluated */
+  trb_body_at       bodies[TRB_MOST_BODIES];  /* of the system, at the last time and state evaluated */
+  trb_wrench        on_body[TRB_MOST_BODIES]; /* load of the right-hand side under way on each of them, in R */
+  int               spin, quadrature;         /* where the tail of the state begins, and its quadratures */
+  trb_loads        *loads;                    /* of every roller */
+  trb_loads         hub;                      /* of pairs without a roller, in R; zero where there are none */
+  int              *everyone;                 /* 0, 1, ...: all rollers */
+  trb_fast_pair     fast[TRB_MOST_PAIRS];
   int               n_fast;
   double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
   int      *exact;                /* rollers to evaluate exactly */
@@ -54,12 +47,14 @@ typedef struct trb_dynamics {
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */
-trb_status trb_dynamics_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
+trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
                                trb_message *message);
 void       trb_dynamics_free(trb_dynamics *dynamics);
 
-/* What is prescribed at a time, and where the rings are then; kept in the dynamics. */
+/* What is prescribed at a time, and where bodies without coordinates are then; kept in the dynamics. */
 void trb_dynamics_drive(trb_dynamics *d, double time);
+/* Bodies without coordinates where the drive that is kept puts them. */
+void trb_dynamics_place(trb_dynamics *d);
 /* Poses at (t, y), kept in the dynamics. */
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
 /* Poses of the bodies of the hub only. */
@@ -70,23 +65,13 @@ void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_rolle
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
 /* The same without the pairs that are proven not to touch, which changes no bit of the loads; apart: see trb_dynamics_apart, may be NULL. */
 void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *detail);
-/* What is proven of a state y near those that were evaluated last: of every roller, bits of the rows of the table of pairs in which it
- * touches nothing. */
+/* What is proven of a state y near those that were evaluated last: of every roller, bits of the pairs in which it touches
+ * nothing. */
 void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart);
 /* What the contacts read. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
-
-/* A body of the hub; NULL: the model does not have it. */
-static inline trb_hub_body *trb_dynamics_body(trb_dynamics *d, trb_body body)
-{
-  for (int b = 0; b < d->n_bodies; b++)
-    if (d->bodies[b].kind->body == body) return &d->bodies[b];
-  return NULL;
-}
-/* The pose of the cage, which is the first body of the hub in every model. */
-static inline const trb_rigid_pose *trb_dynamics_cage(const trb_dynamics *d) { return &d->bodies[0].pose; }
 
 /* A right-hand side is made in four steps: start it, put in the flow of each roller, add the pairs without a roller, put in the rates of
  * the hub. */
@@ -102,6 +87,8 @@ trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double 
 void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow);
 /* Adds the loads of pairs without a roller to those of the hub's bodies and their powers to the quadratures of the rates. */
 void trb_dynamics_add_hub(trb_dynamics *d, double *rates);
+/* Adds what bodies lose in themselves, at the poses kept, to a list of losses. */
+void trb_dynamics_book_bodies(const trb_dynamics *d, double *losses);
 void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates);
 
 #endif

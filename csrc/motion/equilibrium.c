@@ -4,12 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/pair.h"
+#include "system/system.h"
 
 /* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from USUAL_STEPS on it ends
  * at a balance that is good enough for a run, TRB_FAIR_SHARE of the largest load. It goes on so long only where less than
- * TRB_NEAR_SHARE of the largest load is unbalanced then: under a load that nothing carries the ring moves away for ever. */
-enum { USUAL_STEPS = 300, MOST_STEPS = 3000 };
+ * TRB_NEAR_SHARE of the largest load is unbalanced then: under a load that nothing carries the ring moves away for ever. From a guess
+ * close by it takes a few steps, or never ends there. */
+enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
 #define TRB_FAIR_SHARE 1e-5
 #define TRB_NEAR_SHARE 1e-2
 /* Unbalanced force that counts as balanced: this share of the largest load, and at least this force, N. */
@@ -21,26 +22,29 @@ enum { USUAL_STEPS = 300, MOST_STEPS = 3000 };
 #define TRB_STEP_LENGTH 1e-10
 #define TRB_STEP_ANGLE 1e-8
 
+/* Coordinates of a roller and of the ring, short within this file. */
+enum { N = TRB_ROLLER_FREEDOMS, R = TRB_RING_FREEDOMS };
+
 typedef struct solver {
   const trb_model *m;
   trb_equilibrium *e;
   trb_dynamics    *d;
-  double          *forces;  /* per roller (3): generalised force */
-  double          *ring;    /* per roller (5): generalised force on the ring */
+  double          *forces;  /* per roller (N): generalised force */
+  double          *ring;    /* per roller (R): generalised force on the ring */
   double          *shifted; /* the same after a difference */
   double          *ring_shifted;
-  double          *own;                                              /* per roller (3x3) stiffness */
-  double          *to_ring;                                          /* per roller (3x5): d force of roller / d ring */
-  double          *from_ring;                                        /* per roller (5x3): d force on ring / d roller */
-  double          *solved;                                           /* per roller (3x6): own^-1 [to_ring, force] */
-  double          *trial;                                            /* per roller (3) */
+  double          *own;                                              /* per roller (N x N) stiffness */
+  double          *to_ring;                                          /* per roller (N x R): d force of roller / d ring */
+  double          *from_ring;                                        /* per roller (R x N): d force on ring / d roller */
+  double          *solved;                                           /* per roller (N x (R + 1)): own^-1 [to_ring, force] */
+  double          *trial;                                            /* per roller (N) */
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS]; /* of the ring at fixed rollers */
   double           total[TRB_RING_FREEDOMS];                         /* generalised force on the ring with its load */
   double           energy;
-  int              seated; /* a pair holds rollers along their axes */
+  int              held[N]; /* coordinates of the rollers that nothing but friction, or nothing at all, moves */
 } solver;
 
-static const double difference[TRB_ROLLER_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE};
+static const double difference[N] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE, TRB_STEP_ANGLE};
 static const double ring_difference[TRB_RING_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE,
                                                           TRB_STEP_ANGLE};
 
@@ -52,13 +56,14 @@ static void place(solver *s, const double *rollers, const double *displacement)
   const double     still[2] = {0.0, 0.0};
   memset(drive, 0, sizeof *drive);
   drive->cosine = 1.0;
-  trb_ring_place(m, trb_v(displacement[0], displacement[1], displacement[2]), trb_v(0, 0, 0), displacement + 3, still, 0.0, drive);
-  trb_rings_place(m, drive, s->d->rings);
+  trb_drive_place(m, trb_v(displacement[0], displacement[1], displacement[2]), trb_v(0, 0, 0), displacement + 3, still, 0.0, drive);
+  trb_dynamics_place(s->d);
   for (int j = 0; j < m->n_rollers; j++) {
     double y[TRB_ROLLER_SIZE] = {0};
-    y[TRB_ROLLER_r] = rollers[3 * j];
-    y[TRB_ROLLER_z] = rollers[3 * j + 1];
-    y[TRB_ROLLER_tilt] = rollers[3 * j + 2];
+    y[TRB_ROLLER_r] = rollers[N * j];
+    y[TRB_ROLLER_z] = rollers[N * j + 1];
+    y[TRB_ROLLER_tilt] = rollers[N * j + 2];
+    y[TRB_ROLLER_skew] = rollers[N * j + 3];
     y[TRB_ROLLER_psi] = s->e->angles[j] - trb_nominal_angle(m, j);
     trb_dynamics_pose_roller(s->d, j, y);
   }
@@ -74,20 +79,25 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
   /* gyroscopic moment: rate of the angular momentum of a roller that spins and orbits */
   const double gyro = orbit * cos(g->roller_axis_angle) * g->roller_inertia_transverse * rolling.omega_n -
                       rolling.omega_n * g->roller_inertia_axial * rolling.omega_a;
+  /* the same for a skewed roller, about n */
+  const double spin = orbit * cos(g->roller_axis_angle) * g->roller_inertia_axial * rolling.omega_a;
   double       energy = 0.0;
   place(s, rollers, displacement);
-  trb_instant at = trb_dynamics_instant(s->d);
-  at.cage = NULL;
-  trb_contact_all(m, &at, s->d->work, s->d->loads, NULL);
+  const trb_instant at = trb_dynamics_instant(s->d);
+  trb_contact_slow(m, &at, s->d->work, s->d->loads, NULL);
   for (int j = 0; j < m->n_rollers; j++) {
-    const trb_wrench      *l = &s->d->loads[j].on[TRB_BODY_ROLLER], *on_ring = &s->d->loads[j].on[TRB_BODY_INNER_RING];
+    const trb_wrench      *l = &s->d->loads[j].roller, *on_ring = &s->d->loads[j].on[s->d->system->driven];
     const trb_roller_pose *r = &s->d->rollers[j];
-    const double           moment = trb_dot(l->moment, r->frame.t);
-    forces[3 * j] = l->force.x + g->roller_mass * orbit * orbit * r->radius;
-    /* without a pair that seats it nothing but friction holds a roller along its axis: it is held where it is */
-    forces[3 * j + 1] = s->seated ? l->force.z : 0.0;
-    forces[3 * j + 2] = moment - gyro;
-    energy += s->d->loads[j].elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[3 * j + 2];
+    double                *f = forces + (size_t)N * j;
+    f[0] = l->force.x + g->roller_mass * orbit * orbit * r->radius;
+    f[1] = l->force.z;
+    /* tilt turns about the tangent of the orbit, skew against the normal n of the roller's frame */
+    f[2] = l->moment.y - gyro;
+    f[3] = -trb_dot(l->moment, r->frame.n) - spin * sin(rollers[N * j + 3]);
+    for (int i = 0; i < N; i++)
+      if (s->held[i]) f[i] = 0.0;
+    energy += s->d->loads[j].elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[N * j + 2] -
+              spin * cos(rollers[N * j + 3]);
     const trb_vec3 force = trb_turn_z(on_ring->force, r->cosine, r->sine), torque = trb_turn_z(on_ring->moment, r->cosine, r->sine);
     double        *q = ring + TRB_RING_FREEDOMS * j;
     q[0] = force.x, q[1] = force.y, q[2] = force.z, q[3] = torque.x, q[4] = torque.y;
@@ -107,10 +117,10 @@ static void sum_ring(solver *s)
 /* Largest unbalanced force; moments as forces at half the contact's length or at the pitch radius. */
 static double imbalance(const solver *s)
 {
-  const double arm[TRB_ROLLER_FREEDOMS] = {1.0, 1.0, 0.5 * s->m->params.effective_length};
+  const double half = 0.5 * s->m->params.effective_length, arm[N] = {1.0, 1.0, half, half};
   double       worst = 0.0;
   for (int j = 0; j < s->m->n_rollers; j++)
-    for (int i = 0; i < TRB_ROLLER_FREEDOMS; i++) worst = fmax(worst, fabs(s->forces[3 * j + i]) / arm[i]);
+    for (int i = 0; i < TRB_ROLLER_FREEDOMS; i++) worst = fmax(worst, fabs(s->forces[N * j + i]) / arm[i]);
   for (int i = 0; i < TRB_RING_FREEDOMS; i++) worst = fmax(worst, fabs(s->total[i]) / (i < 3 ? 1.0 : 0.5 * s->m->params.pitch_diameter));
   return worst;
 }
@@ -123,11 +133,11 @@ static void differentiate(solver *s)
   memset(s->stiffness, 0, sizeof s->stiffness);
   for (int c = 0; c < TRB_ROLLER_FREEDOMS; c++) {
     memcpy(s->trial, s->e->rollers, (size_t)n * TRB_ROLLER_FREEDOMS * sizeof(double));
-    for (int j = 0; j < n; j++) s->trial[3 * j + c] += difference[c];
+    for (int j = 0; j < n; j++) s->trial[N * j + c] += difference[c];
     (void)evaluate(s, s->trial, s->e->displacement, s->shifted, s->ring_shifted);
     for (int j = 0; j < n; j++) {
-      for (int i = 0; i < 3; i++) s->own[9 * j + 3 * i + c] = -(s->shifted[3 * j + i] - s->forces[3 * j + i]) / difference[c];
-      for (int i = 0; i < 5; i++) s->from_ring[15 * j + 3 * i + c] = -(s->ring_shifted[5 * j + i] - s->ring[5 * j + i]) / difference[c];
+      for (int i = 0; i < N; i++) s->own[N * N * j + N * i + c] = -(s->shifted[N * j + i] - s->forces[N * j + i]) / difference[c];
+      for (int i = 0; i < R; i++) s->from_ring[N * R * j + N * i + c] = -(s->ring_shifted[R * j + i] - s->ring[R * j + i]) / difference[c];
     }
   }
   for (int c = 0; c < TRB_RING_FREEDOMS; c++) {
@@ -135,8 +145,8 @@ static void differentiate(solver *s)
     moved[c] += ring_difference[c];
     (void)evaluate(s, s->e->rollers, moved, s->shifted, s->ring_shifted);
     for (int j = 0; j < n; j++) {
-      for (int i = 0; i < 3; i++) s->to_ring[15 * j + 5 * i + c] = -(s->shifted[3 * j + i] - s->forces[3 * j + i]) / ring_difference[c];
-      for (int i = 0; i < 5; i++) s->stiffness[5 * i + c] -= (s->ring_shifted[5 * j + i] - s->ring[5 * j + i]) / ring_difference[c];
+      for (int i = 0; i < N; i++) s->to_ring[N * R * j + R * i + c] = -(s->shifted[N * j + i] - s->forces[N * j + i]) / ring_difference[c];
+      for (int i = 0; i < R; i++) s->stiffness[R * i + c] -= (s->ring_shifted[R * j + i] - s->ring[R * j + i]) / ring_difference[c];
     }
   }
 }
@@ -178,40 +188,44 @@ static int newton_step(solver *s, double damping, double *step_rollers, double *
 {
   const int    n = s->m->n_rollers;
   const double contact = 1e9, arm = 0.5 * s->m->params.effective_length, radius = 0.5 * s->m->params.pitch_diameter;
-  const double roller_scale[3] = {contact, contact, contact * arm * arm / 3.0};
-  const double ring_scale[5] = {contact, contact, contact, contact * radius * radius, contact * radius * radius};
-  double       ring[5 * 6];
-  for (int i = 0; i < 5; i++) {
-    for (int c = 0; c < 5; c++) ring[6 * i + c] = s->stiffness[5 * i + c];
-    ring[6 * i + i] += damping * ring_scale[i];
-    ring[6 * i + 5] = s->total[i];
+  const double turn = contact * arm * arm / 3.0, roller_scale[N] = {contact, contact, turn, turn};
+  const double ring_scale[R] = {contact, contact, contact, contact * radius * radius, contact * radius * radius};
+  enum { WIDTH = N + R + 1 };
+  double ring[R * (R + 1)];
+  for (int i = 0; i < R; i++) {
+    for (int c = 0; c < R; c++) ring[(R + 1) * i + c] = s->stiffness[R * i + c];
+    ring[(R + 1) * i + i] += damping * ring_scale[i];
+    ring[(R + 1) * i + R] = s->total[i];
   }
   for (int j = 0; j < n; j++) {
-    double a[3 * 9];
-    for (int i = 0; i < 3; i++) {
-      for (int c = 0; c < 3; c++) a[9 * i + c] = s->own[9 * j + 3 * i + c];
-      a[9 * i + i] += damping * roller_scale[i];
-      for (int c = 0; c < 5; c++) a[9 * i + 3 + c] = s->to_ring[15 * j + 5 * i + c];
-      a[9 * i + 8] = s->forces[3 * j + i];
+    double        a[N * WIDTH];
+    double       *solved = s->solved + (size_t)j * N * (R + 1);
+    const double *from_ring = s->from_ring + (size_t)j * N * R;
+    for (int i = 0; i < N; i++) {
+      for (int c = 0; c < N; c++) a[WIDTH * i + c] = s->own[N * N * j + N * i + c];
+      a[WIDTH * i + i] += damping * roller_scale[i];
+      for (int c = 0; c < R; c++) a[WIDTH * i + N + c] = s->to_ring[N * R * j + R * i + c];
+      a[WIDTH * i + N + R] = s->forces[N * j + i];
+      if (s->held[i]) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
     }
-    if (!s->seated) hold_row(a + 9, 9, 1);
-    if (!eliminate(a, 3, 6)) return 0;
-    for (int i = 0; i < 3; i++)
-      for (int c = 0; c < 6; c++) s->solved[18 * j + 6 * i + c] = a[9 * i + 3 + c];
-    for (int i = 0; i < 5; i++)
-      for (int q = 0; q < 3; q++)
-        for (int c = 0; c < 6; c++) ring[6 * i + c] -= s->from_ring[15 * j + 3 * i + q] * s->solved[18 * j + 6 * q + c];
+    if (!eliminate(a, N, R + 1)) return 0;
+    for (int i = 0; i < N; i++)
+      for (int c = 0; c <= R; c++) solved[(R + 1) * i + c] = a[WIDTH * i + N + c];
+    for (int i = 0; i < R; i++)
+      for (int q = 0; q < N; q++)
+        for (int c = 0; c <= R; c++) ring[(R + 1) * i + c] -= from_ring[N * i + q] * solved[(R + 1) * q + c];
   }
-  for (int i = 0; i < 5; i++)
-    if (s->e->fixed[i]) hold_row(ring + 6 * i, 6, i);
-  if (!eliminate(ring, 5, 1)) return 0;
+  for (int i = 0; i < R; i++)
+    if (s->e->fixed[i]) hold_row(ring + (size_t)(R + 1) * i, R + 1, i);
+  if (!eliminate(ring, R, 1)) return 0;
   /* what is held does not move by rounding either */
-  for (int i = 0; i < 5; i++) step_ring[i] = s->e->fixed[i] ? 0.0 : ring[6 * i + 5];
+  for (int i = 0; i < R; i++) step_ring[i] = s->e->fixed[i] ? 0.0 : ring[(R + 1) * i + R];
   for (int j = 0; j < n; j++)
-    for (int i = 0; i < 3; i++) {
-      double value = s->solved[18 * j + 6 * i + 5];
-      for (int c = 0; c < 5; c++) value -= s->solved[18 * j + 6 * i + c] * step_ring[c];
-      step_rollers[3 * j + i] = value;
+    for (int i = 0; i < N; i++) {
+      const double *solved = s->solved + (size_t)j * N * (R + 1) + (size_t)i * (R + 1);
+      double        value = solved[R];
+      for (int c = 0; c < R; c++) value -= solved[c] * step_ring[c];
+      step_rollers[N * j + i] = value;
     }
   return 1;
 }
@@ -222,7 +236,7 @@ static double shorten(const solver *s, const double *step_rollers, const double 
   const double most = 5e-5, arm = 0.5 * s->m->params.effective_length, radius = 0.5 * s->m->params.pitch_diameter;
   double       longest = 0.0;
   for (int j = 0; j < s->m->n_rollers; j++)
-    for (int i = 0; i < 3; i++) longest = fmax(longest, fabs(step_rollers[3 * j + i]) * (i < 2 ? 1.0 : arm));
+    for (int i = 0; i < N; i++) longest = fmax(longest, fabs(step_rollers[N * j + i]) * (i < 2 ? 1.0 : arm));
   for (int i = 0; i < 5; i++) longest = fmax(longest, fabs(step_ring[i]) * (i < 3 ? 1.0 : radius));
   return longest > most ? most / longest : 1.0;
 }
@@ -231,7 +245,7 @@ static double largest_load(const solver *s)
 {
   double largest = 0.0;
   for (int i = 0; i < 3; i++) largest = fmax(largest, fabs(s->e->load[i]));
-  for (int j = 0; j < s->m->n_rollers; j++) largest = fmax(largest, fabs(s->d->loads[j].on[TRB_BODY_ROLLER].force.x));
+  for (int j = 0; j < s->m->n_rollers; j++) largest = fmax(largest, fabs(s->d->loads[j].roller.force.x));
   return largest;
 }
 
@@ -250,6 +264,7 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
     e->residual = off;
     if (off < fmax(TRB_BALANCE_FORCE, TRB_BALANCE_SHARE * largest_load(s))) return TRB_OK;
     if (e->iterations >= USUAL_STEPS && is_fair(s, off)) return TRB_OK;
+    if (e->warm && e->iterations == WARM_STEPS) break;
     if (e->iterations == USUAL_STEPS && !(off < TRB_NEAR_SHARE * largest_load(s))) break;
     if (!known) differentiate(s);
     int          accepted = 0;
@@ -261,7 +276,7 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
         continue;
       }
       const double scale = shorten(s, step_rollers, step_ring);
-      for (int i = 0; i < 3 * n; i++) s->trial[i] = e->rollers[i] + scale * step_rollers[i];
+      for (int i = 0; i < N * n; i++) s->trial[i] = e->rollers[i] + scale * step_rollers[i];
       for (int i = 0; i < 5; i++) ring_trial[i] = e->displacement[i] + scale * step_ring[i];
       const double energy = evaluate(s, s->trial, ring_trial, s->shifted, s->ring_shifted);
       double       keep_total[5];
@@ -274,7 +289,7 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
       accepted = isfinite(energy) && isfinite(next) && (energy < s->energy - 1e-13 * fabs(s->energy) || next < off);
       if (accepted) {
         s->shifted = old_forces, s->ring_shifted = old_ring;
-        memcpy(e->rollers, s->trial, (size_t)(3 * n) * sizeof(double));
+        memcpy(e->rollers, s->trial, (size_t)(N * n) * sizeof(double));
         memcpy(e->displacement, ring_trial, sizeof ring_trial);
         s->energy = energy;
         off = next;
@@ -302,31 +317,36 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
 /* Normal loads of the contacts at the solution. */
 static trb_status read_loads(solver *s, trb_message *message)
 {
-  trb_detail *detail;
-  trb_status  status = trb_detail_create(s->m, &detail, message);
+  const trb_system *system = s->d->system;
+  trb_detail       *detail;
+  trb_status        status = trb_detail_create(s->m, system->pairs, system->n_pairs, &detail, message);
   if (status != TRB_OK) return status;
   trb_detail_clear(s->m, detail);
   place(s, s->e->rollers, s->e->displacement);
-  trb_instant at = trb_dynamics_instant(s->d);
-  at.cage = NULL;
-  trb_contact_all(s->m, &at, s->d->work, s->d->loads, detail);
+  const trb_instant at = trb_dynamics_instant(s->d);
+  trb_contact_slow(s->m, &at, s->d->work, s->d->loads, detail);
   for (int j = 0; j < s->m->n_rollers; j++)
     for (int row = 0; row < TRB_EQUILIBRIUM_LOADS; row++) {
+      const trb_pair  *pair = &system->pairs[row];
       trb_contact_view view = {0};
-      trb_pair_table[row]->view(s->m, detail, j, &view);
+      pair->kind->view(s->m, pair, detail, j, &view);
       s->e->loads[TRB_EQUILIBRIUM_LOADS * j + row] = view.load;
     }
   trb_detail_free(detail);
   return TRB_OK;
 }
 
-trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_message *message)
+trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, trb_message *message)
 {
-  const size_t n = (size_t)m->n_rollers;
-  solver       s = {.m = m, .e = e, .seated = trb_pairs_seat(m)};
-  trb_status   status = trb_dynamics_create(m, NULL, "scalar", &s.d, message);
+  const trb_model *m = system->model;
+  const size_t     n = (size_t)m->n_rollers;
+  solver           s = {.m = m, .e = e};
+  /* without a pair that seats it nothing but friction holds a roller along its axis; in planar motion it does not skew */
+  s.held[1] = !trb_system_seats(system);
+  s.held[3] = m->params.planar > 0.0;
+  trb_status status = trb_dynamics_create(system, NULL, "scalar", &s.d, message);
   if (status != TRB_OK) return status;
-  enum { DOUBLES = 3 + 5 + 3 + 5 + 9 + 15 + 15 + 18 + 3 + 3 };
+  enum { DOUBLES = N + R + N + R + N * N + N * R + N * R + N * (R + 1) + N + N };
   double *block = calloc(n * DOUBLES, sizeof(double));
   double  step_ring[TRB_RING_FREEDOMS] = {0};
   if (block == NULL) {
@@ -335,7 +355,7 @@ trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_mes
   }
   double        *at = block,
          **const parts[] = {&s.forces, &s.ring, &s.shifted, &s.ring_shifted, &s.own, &s.to_ring, &s.from_ring, &s.solved, &s.trial};
-  const size_t   sizes[] = {3, 5, 3, 5, 9, 15, 15, 18, 3};
+  const size_t   sizes[] = {N, R, N, R, N * N, N * R, N * R, N * (R + 1), N};
   for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
     *parts[i] = at;
     at += n * sizes[i];

@@ -1,7 +1,7 @@
 /* Static equilibrium at speed: where the inner ring and the rollers settle under a load, without friction, gravity or cage
  * (docs/theory/motion.md#equilibrium-of-the-ring).
  *
- * Unknowns: (r, z, tilt) of each roller and five coordinates of the ring (dx, dy, dz, rx, ry), each free under its load or prescribed.
+ * Unknowns: (r, z, tilt, skew) of each roller and five coordinates of the ring (dx, dy, dz, rx, ry), each free under its load or prescribed.
  * Rollers are coupled only through the ring, so a Newton step solves one small system for each roller and one of five equations.
  * Contacts are gradients of an energy: steps are damped until the total potential falls (Levenberg-Marquardt). */
 #ifndef TRB_MOTION_EQUILIBRIUM_H
@@ -9,7 +9,7 @@
 
 #include "motion/dynamics.h"
 
-enum { TRB_RING_FREEDOMS = 5, TRB_ROLLER_FREEDOMS = 3, TRB_EQUILIBRIUM_LOADS = 3 };
+enum { TRB_RING_FREEDOMS = 5, TRB_ROLLER_FREEDOMS = 4, TRB_EQUILIBRIUM_LOADS = 3 };
 
 typedef struct trb_equilibrium {
   double  load[TRB_RING_FREEDOMS];         /* in: force (3), N, and moment about x, y (2), N m, applied to the ring */
@@ -18,12 +18,12 @@ typedef struct trb_equilibrium {
   double  shaft_speed;                     /* in: rad/s */
   double *angles;                          /* in: orbit angles of the rollers, rad */
   int     warm;                            /* in: 1 where displacement and rollers are a guess close to the solution */
-  double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt) offsets */
+  double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt, skew) offsets */
   double *loads;      /* out: n_rollers rows of normal loads of the first three pairs (outer, inner, rib), N; NULL: not wanted */
   double  residual;   /* out: largest unbalanced force, N */
   int     iterations; /* out */
 } trb_equilibrium;
 
-trb_status trb_equilibrium_solve(const trb_model *m, trb_equilibrium *e, trb_message *message);
+trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, trb_message *message);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "bearing/losses.h"
 #include "contact/contact.h"
+#include "system/tapered.h"
 
 typedef enum trb_field_kind {
   TRB_FIELD_SCALAR,      /* ()        */
@@ -51,9 +52,9 @@ typedef enum trb_field_kind {
 
 /* Of the lists of bearing/losses.h. */
 #define TRB_FIELD_OF_TORQUE(X, name, text) X(inner_torque_##name, torque, SCALAR, "N m", "share of " text " in the shaft's torque")
-#define TRB_FIELD_OF_POWER(X, name, sense, text) X(power_##name, power, SCALAR, "W", "loss " text)
+#define TRB_FIELD_OF_POWER(X, name, sense, is_on, text) X(power_##name, power, SCALAR, "W", "loss " text)
 #define TRB_FIELD_OF_WORK(X, name, text) X(work_##name, energy, SCALAR, "J", text)
-#define TRB_FIELD_OF_LOSS(X, name, sense, text) X(loss_##name, energy, SCALAR, "J", "energy lost " text)
+#define TRB_FIELD_OF_LOSS(X, name, sense, is_on, text) X(loss_##name, energy, SCALAR, "J", "energy lost " text)
 
 #define TRB_FIELDS(X) \
   X(time,                        time,     SCALAR,      "s",     "time") \

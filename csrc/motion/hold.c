@@ -6,12 +6,31 @@
 /* Across the bearing's axis. */
 static double across(trb_vec3 v) { return fabs(v.x) + fabs(v.y); }
 
-trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_ring_pose *ring)
+trb_hold_ring trb_hold_ring_of(const trb_system *system, const trb_body_at *bodies)
 {
-  const double outside = 2.0 * m->geometry.roller_centre_radius;
+  const trb_model *m = system->model;
+  const double     outside = 2.0 * m->geometry.roller_centre_radius;
   /* what meets the ring, and the centres of its curvature: that of the large end is far away, near the axis */
-  const double far = outside + fabs(m->surfaces.large_end.place) + m->params.total_length;
-  return (trb_hold_ring){across(ring->centre) + far * across(ring->axis), across(ring->velocity) + outside * across(ring->omega)};
+  const double  far = outside + fabs(m->surfaces.large_end.place) + m->params.total_length;
+  trb_hold_ring most = {0.0, 0.0};
+  for (int b = 0; b < system->n_bodies; b++) {
+    const trb_ring_pose *ring = &bodies[b].ring;
+    if (system->bodies[b].kind->place == NULL) continue;
+    most.place = fmax(most.place, across(ring->centre) + far * across(ring->axis));
+    most.speed = fmax(most.speed, across(ring->velocity) + outside * across(ring->omega));
+  }
+  return most;
+}
+
+trb_hold_arms trb_hold_arms_of(const trb_model *m, const trb_batch *batch)
+{
+  trb_hold_arms most = batch->pairs[0]->kind->hold(m, batch->pairs[0]);
+  for (int i = 1; i < batch->n && i < TRB_MOST_TOGETHER; i++) {
+    const trb_hold_arms arms = batch->pairs[i]->kind->hold(m, batch->pairs[i]);
+    most = (trb_hold_arms){fmax(most.radial, arms.radial), fmax(most.axial, arms.axial), fmax(most.tilt, arms.tilt),
+                           fmax(most.skew, arms.skew),     fmax(most.reach, arms.reach), fmin(most.off, arms.off)};
+  }
+  return most;
 }
 
 void trb_hold_set(const double *y_roller, double turn, double way, double speed, trb_hold *hold)

@@ -7,6 +7,7 @@
 #define TRB_MOTION_HOLD_H
 
 #include "contact/bounds.h"
+#include "system/system.h"
 
 typedef struct trb_hold {
   double way;   /* displacement up to which it holds, m; negative: it does not hold */
@@ -16,13 +17,16 @@ typedef struct trb_hold {
   double turn; /* of the roller about the bearing's axis, rad */
 } trb_hold;
 
-/* How far the ring is off the bearing's axis, which a roller sees turning as it orbits. */
+/* How far a ring is off the bearing's axis, which a roller sees turning as it orbits. */
 typedef struct trb_hold_ring {
   double place; /* m */
   double speed; /* m/s */
 } trb_hold_ring;
 
-trb_hold_ring trb_hold_ring_of(const trb_model *m, const trb_ring_pose *ring);
+/* The largest over all bodies of a system. */
+trb_hold_ring trb_hold_ring_of(const trb_system *system, const trb_body_at *bodies);
+/* Of pairs that are held together: whatever bounds one of them bounds all. */
+trb_hold_arms trb_hold_arms_of(const trb_model *m, const trb_batch *batch);
 /* turn: of the roller about the bearing's axis, rad. */
 void trb_hold_set(const double *y_roller, double turn, double way, double speed, trb_hold *hold);
 int  trb_hold_holds(const trb_hold *hold, const trb_hold_arms *arms, const trb_hold_ring *ring, const double *y_roller, double turn);

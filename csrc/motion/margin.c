@@ -2,13 +2,14 @@
 
 #include <math.h>
 
-trb_margin_arms trb_margin_arms_of(const trb_model *m)
+trb_margin_arms trb_margin_arms_of(const trb_system *system)
 {
   trb_margin_arms arms = {.n = 0};
-  for (int row = 0; row < TRB_N_PAIRS; row++) {
-    if (trb_pair_table[row]->margin == NULL || !trb_pair_is_on(m, row)) continue;
-    arms.of[arms.n] = trb_pair_table[row]->margin(m);
-    arms.row[arms.n++] = row;
+  for (int i = 0; i < system->n_pairs; i++) {
+    const trb_pair *pair = &system->pairs[i];
+    if (pair->kind->margin == NULL || !pair->on) continue;
+    arms.of[arms.n] = pair->kind->margin(system->model, pair);
+    arms.row[arms.n++] = i;
   }
   return arms;
 }
@@ -27,9 +28,16 @@ static double turned_on_end(const trb_margin_arm *a, const double *place, const 
   return arm * (skewed * (sine + skew + lean) + tilted * (a->normal_lean + sine + tilt + lean));
 }
 
-trb_ring_offset trb_ring_offset_of(const trb_ring_pose *ring)
+trb_ring_offset trb_ring_offset_of(const trb_system *system, const trb_body_at *bodies)
 {
-  return (trb_ring_offset){.lean = hypot(ring->axis.x, ring->axis.y), .aside = hypot(ring->centre.x, ring->centre.y)};
+  trb_ring_offset most = {0.0, 0.0};
+  for (int b = 0; b < system->n_bodies; b++) {
+    const trb_ring_pose *ring = &bodies[b].ring;
+    if (system->bodies[b].kind->place == NULL) continue;
+    most.lean = fmax(most.lean, hypot(ring->axis.x, ring->axis.y));
+    most.aside = fmax(most.aside, hypot(ring->centre.x, ring->centre.y));
+  }
+  return most;
 }
 
 int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *ring, const double *margin, double share, const double *place,

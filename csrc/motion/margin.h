@@ -10,12 +10,12 @@
 #ifndef TRB_MOTION_MARGIN_H
 #define TRB_MOTION_MARGIN_H
 
-#include "contact/pair.h"
+#include "system/system.h"
 
 /* Of the slow pairs that are on. */
 typedef struct trb_margin_arms {
-  trb_margin_arm of[TRB_N_PAIRS];
-  int            row[TRB_N_PAIRS]; /* in the table of pairs */
+  trb_margin_arm of[TRB_MOST_PAIRS];
+  int            row[TRB_MOST_PAIRS]; /* number of the pair in the system */
   int            n;
 } trb_margin_arms;
 
@@ -25,10 +25,11 @@ typedef struct trb_ring_offset {
   double aside; /* of the reference point from the bearing's axis, m */
 } trb_ring_offset;
 
-trb_margin_arms trb_margin_arms_of(const trb_model *m);
-trb_ring_offset trb_ring_offset_of(const trb_ring_pose *ring);
+trb_margin_arms trb_margin_arms_of(const trb_system *system);
+/* The largest over all bodies of a system. */
+trb_ring_offset trb_ring_offset_of(const trb_system *system, const trb_body_at *bodies);
 /* Whether every contact is proven to change its interference by less than a share of its margin. place: the roller's state at which the
- * margins, one a row of the table of pairs, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
+ * margins, one a pair, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
 int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *ring, const double *margin, double share, const double *place,
                      const double *step, double turn);
 

@@ -28,10 +28,11 @@ static const struct {
 
 struct trb_peak_look {
   trb_model     normal; /* the model without friction; its arrays are those of the model */
-  trb_dynamics *d;      /* of `normal` */
+  trb_system    system; /* of `normal` */
+  trb_dynamics *d;      /* of that system */
   trb_detail   *detail; /* of ribs */
   trb_hold     *holds;  /* of every batch of slow pairs, which are held together, n_rollers each */
-  trb_hold_arms arms[TRB_N_PAIRS];
+  trb_hold_arms arms[TRB_MOST_PAIRS];
   int          *posed; /* per roller: its pose is that of this look */
   int           offset[TRB_N_PEAK_QUANTITIES + 1];
 };
@@ -56,29 +57,32 @@ trb_peak_sizes trb_peak_look_sizes(const trb_model *m)
                           trb_peak_look_offset(m, TRB_N_PEAK_QUANTITIES)};
 }
 
-trb_status trb_peak_look_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_peak_look **look,
+trb_status trb_peak_look_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_peak_look **look,
                                 trb_message *message)
 {
-  const size_t n = (size_t)m->n_rollers;
+  const trb_model *m = system->model;
+  const size_t     n = (size_t)m->n_rollers;
   *look = NULL;
   trb_peak_look *p = calloc(1, sizeof *p);
   if (p == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
   p->normal = *m;
+  p->system = *system;
+  p->system.model = &p->normal;
   p->normal.friction = p->normal.pocket_friction = 0;
   p->normal.params.rolling_resistance = 0.0;
-  p->holds = calloc(TRB_N_PAIRS * n, sizeof *p->holds);
+  p->holds = calloc(TRB_MOST_PAIRS * n, sizeof *p->holds);
   p->posed = calloc(n, sizeof *p->posed);
   trb_status status = p->holds != NULL && p->posed != NULL ? TRB_OK : trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
-  if (status == TRB_OK) status = trb_dynamics_create(&p->normal, motion, variant, &p->d, message);
-  if (status == TRB_OK) status = trb_detail_create(m, &p->detail, message);
+  if (status == TRB_OK) status = trb_dynamics_create(&p->system, motion, variant, &p->d, message);
+  if (status == TRB_OK) status = trb_detail_create(m, system->pairs, system->n_pairs, &p->detail, message);
   if (status != TRB_OK) {
     trb_peak_look_free(p);
     return status;
   }
   trb_detail_clear(m, p->detail);
   for (int i = 0; i < p->d->work->n_batches; i++) {
-    const trb_pair *pair = p->d->work->batches[i].pairs[0];
-    if (pair->look != NULL) p->arms[i] = pair->hold(m);
+    const trb_batch *batch = &p->d->work->batches[i];
+    if (batch->pairs[0]->kind->look != NULL) p->arms[i] = trb_hold_arms_of(m, batch);
   }
   for (int i = 0; i <= TRB_N_PEAK_QUANTITIES; i++) p->offset[i] = trb_peak_look_offset(m, i);
   trb_peak_look_forget(p);
@@ -98,7 +102,7 @@ void trb_peak_look_free(trb_peak_look *look)
 
 void trb_peak_look_forget(trb_peak_look *look)
 {
-  for (int i = 0; i < TRB_N_PAIRS * look->normal.n_rollers; i++) look->holds[i].way = -1.0;
+  for (int i = 0; i < TRB_MOST_PAIRS * look->normal.n_rollers; i++) look->holds[i].way = -1.0;
 }
 
 /* Places of the values of a quantity. */
@@ -137,7 +141,7 @@ static void pose(trb_peak_look *p, int j, const double *y)
   p->posed[j] = 1;
 }
 
-/* Pairs without a roller; the cage's pose is kept. */
+/* Pairs without a roller; the poses of the bodies are kept. */
 static void look_at_hub(trb_peak_look *p, double *values)
 {
   const trb_instant at = trb_dynamics_instant(p->d);
@@ -155,11 +159,11 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
   int              chosen[TRB_TILE_LANES];
   trb_contact_look looks[TRB_TILE_LANES * TRB_MOST_TOGETHER];
 
-  const trb_hold_ring ring = trb_hold_ring_of(m, &d->rings[TRB_RING_INNER].pose);
+  const trb_hold_ring ring = trb_hold_ring_of(d->system, d->bodies);
   at.chosen = chosen;
   for (int i = 0; i < d->work->n_batches; i++) {
     const trb_batch *batch = &d->work->batches[i];
-    if (batch->pairs[0]->look == NULL) continue;
+    if (batch->pairs[0]->kind->look == NULL) continue;
     at.n = 0;
     for (int j = 0; j < z; j++) {
       if (trb_hold_holds(&p->holds[i * z + j], &p->arms[i], &ring, y + trb_state_roller(j), turn_of(p, j, y))) continue;
@@ -168,20 +172,17 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
       chosen[at.n++] = j;
     }
     if (at.n == 0) continue;
-    batch->pairs[0]->look(m, &at, batch, d->work, d->loads, p->detail, TRB_PEAK_SHARE, looks);
+    batch->pairs[0]->kind->look(m, &at, batch, d->work, d->loads, p->detail, TRB_PEAK_SHARE, looks);
     for (int k = 0; k < at.n; k++) put(p, i, chosen[k], &looks[k * batch->n], y, values);
   }
 }
 
 static void look_at_fast(trb_peak_look *p, const double *y, double *values)
 {
-  const trb_model  *m = &p->normal;
-  const trb_instant at = trb_dynamics_instant(p->d);
-  trb_detail        forces = *p->detail;
-  double           *to = of(p, TRB_PEAK_pocket_force, values);
+  const trb_model *m = &p->normal;
+  trb_detail       forces = *p->detail;
+  double          *to = of(p, TRB_PEAK_pocket_force, values);
   memset(to, 0, (size_t)(m->n_rollers * m->n_slots) * sizeof *to);
-  if (at.cage == NULL) return;
-  trb_dynamics_pose_hub(p->d, y);
   forces.pocket_force = to;
   forces.pocket_interference = NULL;
   for (int j = 0; j < m->n_rollers; j++) {
@@ -217,12 +218,13 @@ static int ring_rests(const trb_ring_pose *a, const trb_ring_pose *b)
 
 void trb_peak_look_at(trb_peak_look *look, double time, const double *y, double *values)
 {
-  trb_ring before[TRB_N_RINGS];
-  memcpy(before, look->d->rings, sizeof before);
+  trb_body_at before[TRB_MOST_BODIES];
+  memcpy(before, look->d->bodies, sizeof before);
   trb_dynamics_drive(look->d, time);
-  for (int r = 0; r < TRB_N_RINGS; r++)
-    if (!ring_rests(&before[r].pose, &look->d->rings[r].pose)) trb_peak_look_forget(look);
+  for (int b = 0; b < look->system.n_bodies; b++)
+    if (!ring_rests(&before[b].ring, &look->d->bodies[b].ring)) trb_peak_look_forget(look);
   memset(look->posed, 0, (size_t)look->normal.n_rollers * sizeof *look->posed);
+  trb_dynamics_pose_hub(look->d, y);
   look_at_fast(look, y, values);
   look_at_hub(look, values);
   look_at_slow(look, y, values);

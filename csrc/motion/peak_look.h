@@ -29,7 +29,7 @@ extern const trb_peak_quantity trb_peak_quantities[TRB_N_PEAK_QUANTITIES];
 
 typedef struct trb_peak_look trb_peak_look;
 
-trb_status trb_peak_look_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_peak_look **look,
+trb_status trb_peak_look_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_peak_look **look,
                                 trb_message *message);
 void       trb_peak_look_free(trb_peak_look *look);
 

@@ -52,8 +52,10 @@ struct trb_peaks {
   double        *between;
 };
 
-trb_status trb_peaks_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_peaks **peaks, trb_message *message)
+trb_status trb_peaks_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_peaks **peaks,
+                            trb_message *message)
 {
+  const trb_model *m = system->model;
   *peaks = NULL;
   trb_peaks *p = calloc(1, sizeof *p);
   if (p == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
@@ -62,7 +64,7 @@ trb_status trb_peaks_create(const trb_model *m, const trb_motion *motion, const 
   const size_t all = (size_t)p->n.all, track = (size_t)trb_peak_track_length(&p->n);
   p->block = trb_zeros(1 + 2 * all + 3 * track, sizeof(double));
   trb_status status = p->block != NULL ? TRB_OK : trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
-  if (status == TRB_OK) status = trb_peak_look_create(m, motion, variant, &p->look, message);
+  if (status == TRB_OK) status = trb_peak_look_create(system, motion, variant, &p->look, message);
   if (status != TRB_OK) {
     trb_peaks_free(p);
     return status;

@@ -34,7 +34,8 @@ int trb_peak_offset(const trb_model *m, int field);
 
 typedef struct trb_peaks trb_peaks;
 
-trb_status trb_peaks_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_peaks **peaks, trb_message *message);
+trb_status trb_peaks_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_peaks **peaks,
+                            trb_message *message);
 void       trb_peaks_free(trb_peaks *peaks);
 
 /* Start at an instant of the last step, whose end is given too. */

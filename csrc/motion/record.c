@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "body/cage.h"
 #include "contact/pair.h"
 #include "motion/audit.h"
 
@@ -100,7 +101,7 @@ static void put_cage(writer *w, const double *y)
   const trb_dynamics   *d = w->d;
   const trb_model      *m = d->model;
   const trb_drive      *drive = &d->drive;
-  const trb_rigid_pose *c = trb_dynamics_cage(d);
+  const trb_rigid_pose *c = &d->bodies[TRB_BODY_CAGE].pose;
   const trb_vec3  plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage_rail_offset);
   const trb_vec3  axis = from_r(drive, c->frame.a), centre = from_r(drive, c->x);
   const trb_frame body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};
@@ -159,8 +160,10 @@ static const struct {
 static void put_contacts(writer *w, int j)
 {
   trb_contact_view views[TRB_N_PAIRS] = {{0}};
-  for (int row = 0; row < TRB_N_PAIRS; row++)
-    if (trb_pair_table[row]->view != NULL) trb_pair_table[row]->view(w->d->model, &w->seen, j, &views[row]);
+  for (int row = 0; row < TRB_N_PAIRS; row++) {
+    const trb_pair *pair = &w->d->system->pairs[row];
+    if (pair->kind->view != NULL) pair->kind->view(w->d->model, pair, &w->seen, j, &views[row]);
+  }
   for (size_t i = 0; i < sizeof contact_fields / sizeof contact_fields[0]; i++)
     w->at[contact_fields[i].field][j] = *(const double *)((const char *)&views[contact_fields[i].pair] + contact_fields[i].from);
 }
@@ -175,7 +178,7 @@ static void put_land(writer *w)
 
 /* Fields of the lists of bearing/losses.h. */
 #define TORQUE(X, name, text) TRB_FIELD_AT_inner_torque_##name,
-#define POWER(X, name, sense, text) TRB_FIELD_AT_power_##name,
+#define POWER(X, name, sense, is_on, text) TRB_FIELD_AT_power_##name,
 #define QUADRATURE(name) TRB_FIELD_AT_##name,
 static const int torque_fields[] = {TRB_TORQUES(TORQUE, 0)};
 static const int power_fields[] = {TRB_LOSSES(POWER, 0)};
@@ -195,7 +198,7 @@ static void put_ring(writer *w)
     const trb_wrench *on_ring = &l->on[TRB_BODY_INNER_RING];
     force = trb_add(force, from_orbit(&d->drive, &d->rollers[j], on_ring->force));
     moment = trb_add(moment, from_orbit(&d->drive, &d->rollers[j], on_ring->moment));
-    all += trb_dot(on_ring->moment, d->rings[TRB_RING_INNER].in_frame[j].axis);
+    all += trb_dot(on_ring->moment, d->bodies[TRB_BODY_INNER_RING].in_frame[j].axis);
     outer += l->on[TRB_BODY_OUTER_RING].moment.z;
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += l->torque[k];
   }
@@ -204,7 +207,7 @@ static void put_ring(writer *w)
     const trb_vec3    hub_moment = from_r(&d->drive, on_ring->moment);
     force = trb_add(force, from_r(&d->drive, on_ring->force));
     moment = trb_add(moment, hub_moment);
-    all += trb_dot(hub_moment, d->rings[TRB_RING_INNER].pose.axis);
+    all += trb_dot(hub_moment, d->bodies[TRB_BODY_INNER_RING].ring.axis);
     outer += d->hub.on[TRB_BODY_OUTER_RING].moment.z;
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += d->hub.torque[k];
   }
@@ -220,9 +223,10 @@ static void put_ring(writer *w)
 static void put_energy(writer *w, const double *quadratures)
 {
   const trb_dynamics *d = w->d;
-  double              total = 0.0;
+  double              total = 0.0, within[TRB_N_LOSSES] = {0};
+  trb_dynamics_book_bodies(d, within);
   for (int k = 0; k < TRB_N_LOSSES; k++) {
-    double power = 0.0;
+    double power = within[k];
     for (int j = 0; j < d->model->n_rollers; j++) power += d->loads[j].power[k];
     power += d->hub.power[k];
     w->at[power_fields[k]][0] = power;
@@ -231,7 +235,7 @@ static void put_energy(writer *w, const double *quadratures)
   PUT(power_loss, 0) = total;
   PUT(kinetic_energy, 0) = trb_audit_kinetic(d);
   PUT(elastic_energy, 0) = trb_audit_elastic(d);
-  for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = k < trb_n_quadratures(d->model) ? quadratures[k] : 0.0;
+  for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = k < trb_n_quadratures(d->system) ? quadratures[k] : 0.0;
 }
 
 void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record)
@@ -253,14 +257,14 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
   PUT(time, 0) = time;
   PUT(shaft_angle, 0) = d->drive.shaft_angle;
   PUT(shaft_speed, 0) = d->drive.shaft_speed;
-  put_cage(w, y + trb_state_cage(m));
+  put_cage(w, y + d->system->bodies[TRB_BODY_CAGE].first);
   put_land(w);
   for (int j = 0; j < m->n_rollers; j++) {
-    put_roller(w, j, y + trb_state_roller(j), y[trb_state_spin(m) + j]);
+    put_roller(w, j, y + trb_state_roller(j), y[d->spin + j]);
     put_contacts(w, j);
   }
   memcpy(&PUT(pocket_force, 0), it.seen.pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
   memcpy(&PUT(pocket_friction, 0), it.seen.pocket_friction, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
   put_ring(w);
-  put_energy(w, y + trb_state_quadrature(m));
+  put_energy(w, y + d->quadrature);
 }

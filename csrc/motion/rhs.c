@@ -27,7 +27,7 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
   at.chosen = d->exact;
   at.n = n_exact;
   if (n_exact == 0) return;
-  trb_contact_slow(d->model, &at, d->work, d->loads);
+  trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
   for (int k = 0; k < n_exact; k++) {
     const int j = d->exact[k];
     trb_dynamics_roller_flow(d, j, &d->loads[j], d->flows[j]);

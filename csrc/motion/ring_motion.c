@@ -1,8 +1,29 @@
 #include "motion/ring_motion.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Whether the time of a knot is above that of the knot before it, or the same, once: a kink or a step. */
+static int follows(const double *table, int i)
+{
+  const double *row = table + (size_t)i * TRB_MOTION_COLUMNS, *before = row - TRB_MOTION_COLUMNS;
+  if (row[0] > before[0]) return 1;
+  return row[0] == before[0] && i > 1 && before[-TRB_MOTION_COLUMNS] < row[0];
+}
+
+/* The first and the last knot are joints whatever they say, and so are the two of a kink. */
+static void find_joints(trb_motion *m)
+{
+  for (int i = 1; i < m->n; i++) {
+    const double *row = m->table + (size_t)i * TRB_MOTION_COLUMNS;
+    const int     kink = row[0] == row[-TRB_MOTION_COLUMNS];
+    m->joint[i] = row[TRB_MOTION_SMOOTH] > 0.0 && !kink && i < m->n - 1 ? m->joint[i - 1] : i;
+  }
+  m->next[m->n - 1] = m->n;
+  for (int i = m->n - 2; i >= 0; i--) m->next[i] = m->joint[i + 1] == i + 1 ? i + 1 : m->next[i + 1];
+}
 
 trb_status trb_motion_create(const double *table, int n, trb_motion **motion, trb_message *message)
 {
@@ -12,8 +33,8 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
     if (!isfinite(table[i]))
       return trb_fail(message, TRB_ERR_INPUT, "motion: knot %d, column %d is not finite", i / TRB_MOTION_COLUMNS, i % TRB_MOTION_COLUMNS);
   for (int i = 1; i < n; i++)
-    if (!(table[i * TRB_MOTION_COLUMNS] > table[(i - 1) * TRB_MOTION_COLUMNS]))
-      return trb_fail(message, TRB_ERR_INPUT, "motion: time of knot %d = %g s: must be above the one before", i,
+    if (!follows(table, i))
+      return trb_fail(message, TRB_ERR_INPUT, "motion: time of knot %d = %g s: must be above the one before, or twice the same", i,
                       table[i * TRB_MOTION_COLUMNS]);
   trb_motion *m = calloc(1, sizeof *m);
   if (m == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for prescribed motion");
@@ -21,7 +42,9 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
   m->tail = n - 1;
   m->table = malloc((size_t)n * TRB_MOTION_COLUMNS * sizeof(double));
   m->angle = calloc((size_t)n, sizeof(double));
-  if (m->table == NULL || m->angle == NULL) {
+  m->joint = calloc((size_t)n, sizeof(int));
+  m->next = calloc((size_t)n, sizeof(int));
+  if (m->table == NULL || m->angle == NULL || m->joint == NULL || m->next == NULL) {
     trb_motion_free(m);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for prescribed motion");
   }
@@ -31,6 +54,7 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
     const int     c = 1 + 2 * TRB_CHANNEL_shaft_speed;
     m->angle[i] = m->angle[i - 1] + h * (0.5 * (a[c] + b[c]) + h * (a[c + 1] - b[c + 1]) / 12.0);
   }
+  find_joints(m);
   *motion = m;
   return TRB_OK;
 }
@@ -40,6 +64,8 @@ void trb_motion_free(trb_motion *motion)
   if (motion == NULL) return;
   free(motion->table);
   free(motion->angle);
+  free(motion->joint);
+  free(motion->next);
   free(motion);
 }
 
@@ -49,8 +75,10 @@ static double        first_time(const trb_motion *motion) { return knot(motion, 
 static double        last_time(const trb_motion *motion) { return knot(motion, motion->n - 1); }
 static int           repeats(const trb_motion *motion) { return motion->tail < motion->n - 1; }
 
-/* Times of knots that belong together differ by rounding at most: this share of an interval. */
+/* Times of knots that belong together differ by rounding at most: by this share of an interval, and by a few units in the last place of
+ * the times themselves, which are as large as the histories' times are. */
 #define TRB_SAME_TIME 1e-9
+static double same_time(double interval, double time) { return TRB_SAME_TIME * interval + 8.0 * DBL_EPSILON * fabs(time); }
 
 trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *message)
 {
@@ -59,14 +87,17 @@ trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *mes
   int           tail = last - 1;
   if (!(period > 0.0) || last < 1)
     return trb_fail(message, TRB_ERR_INPUT, "motion: period = %g s: must be > 0, with at least two knots", period);
-  while (tail > 0 && end[0] - knot(motion, tail) < period * (1.0 - TRB_SAME_TIME)) tail--;
-  if (fabs(end[0] - knot(motion, tail) - period) > TRB_SAME_TIME * period)
+  const double off = same_time(period, fmax(fabs(first_time(motion)), fabs(end[0])));
+  while (tail > 0 && end[0] - knot(motion, tail) < period - off) tail--;
+  if (fabs(end[0] - knot(motion, tail) - period) > off)
     return trb_fail(message, TRB_ERR_INPUT, "motion: period = %g s: there must be a knot this long before the last one", period);
-  for (int c = 1; c < TRB_MOTION_COLUMNS; c++)
+  for (int c = 1; c < TRB_MOTION_SMOOTH; c++)
     if (row_of(motion, tail)[c] != end[c])
       return trb_fail(message, TRB_ERR_INPUT, "motion: column %d is %g at the start of the period and %g at its end: must be the same", c,
                       row_of(motion, tail)[c], end[c]);
   motion->tail = tail;
+  motion->table[(size_t)tail * TRB_MOTION_COLUMNS + TRB_MOTION_SMOOTH] = 0.0;
+  find_joints(motion);
   return TRB_OK;
 }
 
@@ -77,13 +108,9 @@ static double time_in_table(const trb_motion *motion, double time, double *turns
   if (!repeats(motion) || time < last_time(motion)) return time;
   const double begin = knot(motion, motion->tail), period = last_time(motion) - begin;
   *turns = floor((time - begin) / period);
-  double inside = time - *turns * period;
-  /* rounding never leaves a time just before the last knot, from where no step could get on */
-  if (inside >= last_time(motion) - TRB_SAME_TIME * (last_time(motion) - knot(motion, motion->n - 2))) {
-    inside -= period;
-    *turns += 1.0;
-  }
-  return fmax(inside, begin);
+  const double inside = time - *turns * period;
+  /* by rounding it may lie a little outside of the part that repeats */
+  return fmin(fmax(inside, begin), last_time(motion));
 }
 
 typedef struct hermite {
@@ -112,7 +139,7 @@ static double channel_integral(const double *a, int channel, double s, double h)
               (0.25 * s4 - s3 / 3.0) * h * b[c + 1]);
 }
 
-/* Parts of an interval between two knots at whose ends a step ends; steps that it takes at least where these are no shorter than a step that
+/* Parts of what lies between two joints at whose ends a step ends; steps that it takes at least where these are no shorter than a step that
  * bearings take at usual speeds, s. */
 enum { STEPS_AN_INTERVAL = 8, STEPS_FOR_POWERS = 32 };
 static const double usual_step = 5e-5;
@@ -129,28 +156,46 @@ static int interval_of(const trb_motion *motion, double time)
   return low;
 }
 
+/* What lies between two joints: how long it is, and how far a time lies from its end, s. A time just before a joint, by rounding, belongs
+ * to what comes after that joint: from there no step could get on. */
+typedef struct stretch {
+  double length, left;
+} stretch;
+
+static stretch stretch_at(const trb_motion *motion, double time)
+{
+  double       turns;
+  const double inside = time_in_table(motion, time, &turns);
+  int          end = motion->next[interval_of(motion, inside)], begin = motion->joint[end - 1];
+  double       length = knot(motion, end) - knot(motion, begin), left = knot(motion, end) - inside;
+  for (int i = 0; i < 2 * motion->n && left <= same_time(length, time); i++) {
+    if (end == motion->n - 1) {
+      if (!repeats(motion)) break;
+      left += knot(motion, motion->joint[motion->tail]) - knot(motion, end);
+      end = motion->joint[motion->tail];
+    }
+    begin = end;
+    end = motion->next[begin];
+    length = knot(motion, end) - knot(motion, begin);
+    left += length;
+  }
+  return left > 0.0 ? (stretch){length, left} : (stretch){length, length};
+}
+
 double trb_motion_stop(const trb_motion *motion, double time)
 {
-  double turns;
   if (motion->n == 1 || (time >= last_time(motion) && !repeats(motion))) return INFINITY;
   if (time < first_time(motion)) return first_time(motion);
-  double       inside = time_in_table(motion, time, &turns);
-  const double shift = turns * (last_time(motion) - knot(motion, motion->tail));
-  int          low = interval_of(motion, inside);
-  /* in a repetition a step that ended at a knot may lie before it by rounding */
-  if (turns > 0.0 && low + 2 < motion->n && knot(motion, low + 1) - inside < TRB_SAME_TIME * (knot(motion, low + 1) - knot(motion, low)))
-    inside = knot(motion, ++low);
-  const double next = knot(motion, low + 1), part = inside + (next - knot(motion, low)) / STEPS_AN_INTERVAL;
-  /* no sliver of a step is left before the knot */
-  return shift + (part < next - 0.5 * (part - inside) ? part : next);
+  const stretch at = stretch_at(motion, time);
+  const double  part = at.length / STEPS_AN_INTERVAL;
+  /* counted from the time itself, so that no rounding comes between; no sliver of a step is left before the joint */
+  return time + (part < at.left - 0.5 * part ? part : at.left);
 }
 
 double trb_motion_longest_step(const trb_motion *motion, double time)
 {
-  double turns;
   if (motion->n == 1 || time < first_time(motion) || (time >= last_time(motion) && !repeats(motion))) return INFINITY;
-  const int    low = interval_of(motion, time_in_table(motion, time, &turns));
-  const double length = knot(motion, low + 1) - knot(motion, low);
+  const double length = stretch_at(motion, time).length;
   return fmax(length / STEPS_FOR_POWERS, fmin(length / STEPS_AN_INTERVAL, usual_step));
 }
 
@@ -196,16 +241,17 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
   const double ratio = m->geometry.cage_speed_ratio;
   drive->time = time;
   drive->shaft_speed = c[TRB_CHANNEL_shaft_speed].value;
-  drive->shaft_rate = c[TRB_CHANNEL_shaft_speed].rate;
+  drive->rolling_speed = c[TRB_CHANNEL_shaft_speed].value;
+  drive->rolling_rate = c[TRB_CHANNEL_shaft_speed].rate;
   drive->frame_angle = ratio * drive->shaft_angle;
-  drive->frame_speed = ratio * drive->shaft_speed;
-  drive->frame_rate = ratio * drive->shaft_rate;
+  drive->frame_speed = ratio * drive->rolling_speed;
+  drive->frame_rate = ratio * drive->rolling_rate;
   drive->cosine = cos(drive->frame_angle);
   drive->sine = sin(drive->frame_angle);
   drive->gravity = trb_v(c[TRB_CHANNEL_gravity_x].value, c[TRB_CHANNEL_gravity_y].value, c[TRB_CHANNEL_gravity_z].value);
   const double rotation[2] = {c[TRB_CHANNEL_rotation_x].value, c[TRB_CHANNEL_rotation_y].value};
   const double rate[2] = {c[TRB_CHANNEL_rotation_x].rate, c[TRB_CHANNEL_rotation_y].rate};
-  trb_ring_place(m, trb_v(c[TRB_CHANNEL_displacement_x].value, c[TRB_CHANNEL_displacement_y].value, c[TRB_CHANNEL_displacement_z].value),
-                 trb_v(c[TRB_CHANNEL_displacement_x].rate, c[TRB_CHANNEL_displacement_y].rate, c[TRB_CHANNEL_displacement_z].rate),
-                 rotation, rate, drive->shaft_speed, drive);
+  trb_drive_place(m, trb_v(c[TRB_CHANNEL_displacement_x].value, c[TRB_CHANNEL_displacement_y].value, c[TRB_CHANNEL_displacement_z].value),
+                  trb_v(c[TRB_CHANNEL_displacement_x].rate, c[TRB_CHANNEL_displacement_y].rate, c[TRB_CHANNEL_displacement_z].rate),
+                  rotation, rate, drive->shaft_speed, drive);
 }

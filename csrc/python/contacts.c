@@ -7,8 +7,9 @@
 #include "contact/kernels.h"
 
 /* Every lane field of the raceways, shape (race, roller, node), and every field of the ribs, shape (roller,). */
-static int put_detail(const trb_model *m, const trb_detail *detail, PyObject *out)
+static int put_detail(const trb_system *system, const trb_detail *detail, PyObject *out)
 {
+  const trb_model *m = system->model;
 #define NAME(name, unit, text) #name,
   static const char *const lanes[] = {TRB_LANE_FIELDS(NAME)}, *const points[] = {TRB_POINT_FIELDS(NAME)};
 #undef NAME
@@ -25,13 +26,15 @@ static int put_detail(const trb_model *m, const trb_detail *detail, PyObject *ou
     if (trb_put(out, key, array) != 0) return -1;
   }
   const int count = (int)(sizeof(trb_point_detail) / sizeof(double));
-  for (int f = 0; f < 2 * count; f++) {
-    const trb_point_detail *from = f < count ? detail->rib : detail->front_rib;
+  for (int f = 0; f < system->n_pairs * count; f++) {
+    const trb_pair *pair = &system->pairs[f / count];
+    if (!pair->kind->is_point) continue;
+    const trb_point_detail *from = trb_pair_points(m, pair, detail);
     PyObject               *array = trb_vector(NULL, m->n_rollers);
     if (array == NULL) return -1;
     for (int j = 0; j < m->n_rollers; j++) ((double *)PyArray_DATA((PyArrayObject *)array))[j] = ((const double *)&from[j])[f % count];
     char key[64];
-    (void)PyOS_snprintf(key, sizeof key, "%s_%s", f < count ? "rib" : "front_rib", points[f % count]);
+    (void)PyOS_snprintf(key, sizeof key, "%s_%s", pair->name, points[f % count]);
     if (trb_put(out, key, array) != 0) return -1;
   }
   const double *pocket[] = {detail->pocket_force, detail->pocket_friction, detail->pocket_interference};
@@ -53,8 +56,8 @@ static int put_loads(const trb_model *m, const trb_loads *loads, PyObject *out)
     const char *key;
     size_t      offset;
     int         width;
-  } parts[] = {{"force", offsetof(trb_loads, on[TRB_BODY_ROLLER].force), 3},
-               {"moment", offsetof(trb_loads, on[TRB_BODY_ROLLER].moment), 3},
+  } parts[] = {{"force", offsetof(trb_loads, roller.force), 3},
+               {"moment", offsetof(trb_loads, roller.moment), 3},
                {"ring_force", offsetof(trb_loads, on[TRB_BODY_INNER_RING].force), 3},
                {"ring_moment", offsetof(trb_loads, on[TRB_BODY_INNER_RING].moment), 3},
                {"outer_force", offsetof(trb_loads, on[TRB_BODY_OUTER_RING].force), 3},
@@ -92,7 +95,7 @@ static int put_hub(const trb_model *m, const trb_detail *detail, const trb_loads
 #undef PUT_LAND
   static const struct {
     const char *key;
-    trb_body    body;
+    int         body;
   } bodies[] = {{"cage", TRB_BODY_CAGE}, {"ring", TRB_BODY_INNER_RING}, {"outer", TRB_BODY_OUTER_RING}};
   for (size_t b = 0; b < sizeof bodies / sizeof bodies[0]; b++) {
     char key[64];
@@ -105,8 +108,9 @@ static int put_hub(const trb_model *m, const trb_detail *detail, const trb_loads
   return trb_put(out, "hub_power", trb_vector(hub->power, m->n_losses));
 }
 
-int trb_put_contacts(const trb_model *m, const trb_detail *detail, const trb_loads *loads, const trb_loads *hub, PyObject *out)
+int trb_put_contacts(const trb_system *system, const trb_detail *detail, const trb_loads *loads, const trb_loads *hub, PyObject *out)
 {
-  if (put_detail(m, detail, out) != 0 || put_loads(m, loads, out) != 0) return -1;
+  const trb_model *m = system->model;
+  if (put_detail(system, detail, out) != 0 || put_loads(m, loads, out) != 0) return -1;
   return put_hub(m, detail, hub, out);
 }

@@ -14,13 +14,14 @@
 #include <numpy/arrayobject.h>
 
 #include "bearing/model.h"
-#include "contact/contact.h"
 #include "base/status.h"
+#include "system/tapered.h"
 
 typedef struct model_object {
   PyObject_HEAD
-  trb_model *model;
-  char       variant[16]; /* kernel variant in use */
+  trb_model  *model;
+  trb_system *system;      /* of the model */
+  char        variant[16]; /* kernel variant in use */
 } model_object;
 
 /* Types are made when the module is first loaded, from their specifications: with the stable ABI there are no static ones. */
@@ -41,6 +42,6 @@ PyObject *trb_vector(const double *values, npy_intp n);
 /* Put a new reference under a key and give it up; -1 on error. */
 int trb_put(PyObject *dictionary, const char *key, PyObject *value);
 /* Put everything that is known of the contacts at a state into a dictionary, by name; -1 on error. */
-int trb_put_contacts(const trb_model *m, const trb_detail *detail, const trb_loads *loads, const trb_loads *hub, PyObject *out);
+int trb_put_contacts(const trb_system *system, const trb_detail *detail, const trb_loads *loads, const trb_loads *hub, PyObject *out);
 
 #endif

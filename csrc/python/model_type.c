@@ -17,6 +17,7 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
   PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL;
   model_object  *self = NULL;
   trb_model     *model = NULL;
+  trb_system    *system = NULL;
   trb_workspace *work = NULL;
   trb_message    message = {TRB_OK, ""};
   trb_status     status = TRB_OK;
@@ -31,12 +32,15 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
       status = trb_model_create(PyArray_DATA(params), PyArray_DATA(deviation), (int)PyArray_DIM(deviation, 0), PyArray_DATA(faces),
                                 (int)PyArray_DIM(faces, 0), &model, &message);
     /* a workspace tells whether the variant runs, and which one "" stands for */
-    if (status == TRB_OK) status = trb_workspace_create(model, variant, &work, &message);
+    if (status == TRB_OK) status = trb_system_tapered(model, &system, &message);
+    if (status == TRB_OK) status = trb_workspace_create(system->pairs, system->n_pairs, variant, &work, &message);
     if (status == TRB_OK) self = (model_object *)PyType_GenericAlloc(type, 0);
     if (self != NULL) {
       self->model = model;
+      self->system = system;
       (void)PyOS_snprintf(self->variant, sizeof self->variant, "%s", trb_kernel_variants[work->variant].name);
     } else {
+      trb_system_free(system);
       trb_model_free(model);
       if (status != TRB_OK) (void)trb_raise(status, &message);
     }
@@ -50,6 +54,7 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
 
 static void model_dealloc(PyObject *object)
 {
+  trb_system_free(((model_object *)object)->system);
   trb_model_free(((model_object *)object)->model);
   trb_release(object);
 }
@@ -60,7 +65,7 @@ static PyObject *get_number(PyObject *self, void *closure)
   const char      *name = closure;
   if (strcmp(name, "n_rollers") == 0) return PyLong_FromLong(m->n_rollers);
   if (strcmp(name, "n_slots") == 0) return PyLong_FromLong(m->n_slots);
-  if (strcmp(name, "n_state") == 0) return PyLong_FromLong(trb_state_size(m));
+  if (strcmp(name, "n_state") == 0) return PyLong_FromLong(trb_state_size(((model_object *)self)->system));
   if (strcmp(name, "peak_length") == 0) return PyLong_FromLong(trb_peak_offset(m, TRB_N_PEAK_FIELDS));
   return PyLong_FromLong(trb_record_offset(m, TRB_N_FIELDS));
 }
@@ -112,21 +117,21 @@ static PyObject *state_layout(PyObject *self, PyObject *none)
 #define NAME(name, kind, text) #name,
   static const char *const roller[] = {TRB_ROLLER_STATE(NAME)};
 #undef NAME
-  const trb_model *m = ((model_object *)self)->model;
-  PyObject        *list = PyList_New(0);
+  const trb_system *s = ((model_object *)self)->system;
+  PyObject         *list = PyList_New(0);
   (void)none;
-  const int width = trb_hub_width(m), total = TRB_ROLLER_SIZE + width + 2;
+  const int width = s->hub_width, total = TRB_ROLLER_SIZE + width + 2;
   for (int i = 0; list != NULL && i < total; i++) {
     PyObject *row;
     if (i < TRB_ROLLER_SIZE)
-      row = Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), i, m->n_rollers, TRB_ROLLER_SIZE);
+      row = Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), i, s->model->n_rollers, TRB_ROLLER_SIZE);
     else if (i < TRB_ROLLER_SIZE + width) {
-      int                       coordinate;
-      const trb_hub_kind *const kind = trb_hub_kind_at(m, i - TRB_ROLLER_SIZE, &coordinate);
-      PyObject                 *name = PyUnicode_FromFormat("%s_%s", kind->name, kind->coordinates[coordinate].name);
-      row = Py_BuildValue("(Ni())", name, trb_state_hub(m) + i - TRB_ROLLER_SIZE);
-    } else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(m), m->n_rollers);
-    else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(m), trb_n_quadratures(m));
+      const int       at = trb_state_hub(s) + i - TRB_ROLLER_SIZE;
+      int             coordinate;
+      const trb_body *body = trb_state_body(s, at, &coordinate);
+      row = Py_BuildValue("(Ni())", PyUnicode_FromFormat("%s_%s", body->name, body->coordinates[coordinate].name), at);
+    } else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(s), s->model->n_rollers);
+    else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(s), trb_n_quadratures(s));
     if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
     Py_XDECREF(row);
   }
@@ -157,37 +162,40 @@ static PyObject *columns(const double *values, int rows, int width)
 
 static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 {
-  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", NULL};
+  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", NULL};
   const trb_model *m = ((model_object *)self)->model;
   PyObject        *load, *fixed, *displacement, *angles, *rollers = Py_None;
   trb_equilibrium  e = {0};
   trb_message      message = {TRB_OK, ""};
   double           held[TRB_RING_FREEDOMS];
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|O", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers))
+  int              with_loads = 0;
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Op", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
+                                   &with_loads))
     return NULL;
   if (read_doubles(load, "load", TRB_RING_FREEDOMS, e.load) != 0 || read_doubles(fixed, "fixed", TRB_RING_FREEDOMS, held) != 0 ||
       read_doubles(displacement, "displacement", TRB_RING_FREEDOMS, e.displacement) != 0)
     return NULL;
   for (int i = 0; i < TRB_RING_FREEDOMS; i++) e.fixed[i] = held[i] != 0.0;
   const size_t n = (size_t)m->n_rollers;
-  double      *block = PyMem_Calloc(n * 7, sizeof(double));
+  double      *block = PyMem_Calloc(n * (1 + TRB_ROLLER_FREEDOMS + TRB_EQUILIBRIUM_LOADS), sizeof(double));
   if (block == NULL) return PyErr_NoMemory();
   e.angles = block;
   e.rollers = block + n;
   PyObject *out = NULL;
   e.warm = rollers != Py_None;
-  e.loads = e.warm ? NULL : block + 4 * n;
+  double *const loads = e.rollers + TRB_ROLLER_FREEDOMS * n;
+  e.loads = e.warm && !with_loads ? NULL : loads;
   if (read_doubles(angles, "angles", m->n_rollers, e.angles) == 0 &&
-      (!e.warm || read_doubles(rollers, "rollers", 3 * m->n_rollers, e.rollers) == 0)) {
+      (!e.warm || read_doubles(rollers, "rollers", TRB_ROLLER_FREEDOMS * m->n_rollers, e.rollers) == 0)) {
     trb_status status;
     Py_BEGIN_ALLOW_THREADS
-    status = trb_equilibrium_solve(m, &e, &message);
+    status = trb_equilibrium_solve(((model_object *)self)->system, &e, &message);
     Py_END_ALLOW_THREADS
     if (status != TRB_OK) (void)trb_raise(status, &message);
     else
       out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
-                          columns(e.rollers, m->n_rollers, 3), "loads", columns(block + 4 * n, m->n_rollers, 3), "residual", e.residual,
-                          "iterations", e.iterations);
+                          columns(e.rollers, m->n_rollers, TRB_ROLLER_FREEDOMS), "loads",
+                          columns(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations);
   }
   PyMem_Free(block);
   return out;

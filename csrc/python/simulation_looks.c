@@ -63,7 +63,7 @@ PyObject *trb_python_contacts(PyObject *object, PyObject *args)
   trb_detail_clear(s->model, s->detail);
   trb_dynamics_loads(s->onlooker, s->detail);
   PyObject *out = PyDict_New();
-  if (out != NULL && trb_put_contacts(s->model, s->detail, s->onlooker->loads, &s->onlooker->hub, out) != 0) Py_CLEAR(out);
+  if (out != NULL && trb_put_contacts(s->system, s->detail, s->onlooker->loads, &s->onlooker->hub, out) != 0) Py_CLEAR(out);
   trb_python_leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;

@@ -14,7 +14,7 @@ typedef struct simulation_object {
   int                stepping; /* that thread is in the integrator, or is about to be */
 } simulation_object;
 
-static inline const trb_model *trb_python_model_of(const simulation_object *self) { return ((model_object *)self->model)->model; }
+static inline const trb_system *trb_python_system_of(const simulation_object *self) { return ((model_object *)self->model)->system; }
 
 /* A state of the model's length (new reference); NULL with an error. */
 PyArrayObject *trb_python_state_array(const simulation_object *self, PyObject *object);

@@ -57,7 +57,7 @@ PyObject *trb_python_whole_peaks(PyObject *object, PyObject *value)
   const double       time = PyFloat_AsDouble(value);
   if ((time == -1.0 && PyErr_Occurred()) || trb_python_enter(self, 0) != 0) return NULL;
   const trb_peaks *peaks = self->simulation->peaks;
-  PyObject        *out = trb_vector(NULL, peaks != NULL ? trb_peak_offset(trb_python_model_of(self), TRB_N_PEAK_FIELDS) : 0);
+  PyObject        *out = trb_vector(NULL, peaks != NULL ? trb_peak_offset(trb_python_system_of(self)->model, TRB_N_PEAK_FIELDS) : 0);
   if (out != NULL && peaks != NULL) trb_peaks_whole(peaks, time, PyArray_DATA((PyArrayObject *)out));
   trb_python_leave(self, 0);
   return out;

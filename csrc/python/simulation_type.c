@@ -35,8 +35,8 @@ static int read_settings(PyObject *dictionary, trb_settings *settings, const cha
 PyArrayObject *trb_python_state_array(const simulation_object *self, PyObject *object)
 {
   PyArrayObject *state = trb_array(object, 1, "state");
-  if (state != NULL && PyArray_DIM(state, 0) != trb_state_size(trb_python_model_of(self))) {
-    PyErr_Format(PyExc_ValueError, "state: %d values needed, %d given", trb_state_size(trb_python_model_of(self)),
+  if (state != NULL && PyArray_DIM(state, 0) != trb_state_size(trb_python_system_of(self))) {
+    PyErr_Format(PyExc_ValueError, "state: %d values needed, %d given", trb_state_size(trb_python_system_of(self)),
                  (int)PyArray_DIM(state, 0));
     Py_CLEAR(state);
   }
@@ -73,7 +73,7 @@ static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *ke
     if (status == TRB_OK && period != 0.0) status = trb_motion_repeat(self->motion, period, &message);
     if (status == TRB_OK && isfinite(angle_time)) trb_motion_set_angle(self->motion, angle_time, angle);
     if (status == TRB_OK)
-      status = trb_simulation_create(trb_python_model_of(self), self->motion, kind, ((model_object *)model)->variant, &settings, time,
+      status = trb_simulation_create(trb_python_system_of(self), self->motion, kind, ((model_object *)model)->variant, &settings, time,
                                      PyArray_DATA(state), &self->simulation, &message);
     if (status != TRB_OK) {
       (void)trb_raise(status, &message);

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "stepping/sundials_context.h"
+
 trb_arrow *trb_arrow_of(SUNMatrix matrix) { return matrix->content; }
 
 static SUNMatrix_ID matrix_id(SUNMatrix matrix)
@@ -20,7 +22,7 @@ static void matrix_destroy(SUNMatrix matrix)
 
 SUNMatrix trb_arrow_matrix(int n_rollers, int hub_width, SUNContext context)
 {
-  SUNMatrix  matrix = SUNMatNewEmpty(context);
+  SUNMatrix  matrix = trb_sundials_has_room(1) ? SUNMatNewEmpty(context) : NULL;
   trb_arrow *arrow = NULL;
   if (matrix == NULL) return NULL;
   if (trb_arrow_create(n_rollers, hub_width, &arrow, NULL) != TRB_OK) {
@@ -79,7 +81,7 @@ static int solver_free(SUNLinearSolver solver)
 
 SUNLinearSolver trb_arrow_linear_solver(int n_rollers, int hub_width, int variant, SUNContext context)
 {
-  SUNLinearSolver    solver = SUNLinSolNewEmpty(context);
+  SUNLinearSolver    solver = trb_sundials_has_room(1) ? SUNLinSolNewEmpty(context) : NULL;
   trb_arrow_factors *factors = NULL;
   if (solver == NULL) return NULL;
   if (trb_arrow_factors_create(n_rollers, hub_width, variant, &factors, NULL) != TRB_OK) {

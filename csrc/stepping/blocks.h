@@ -3,10 +3,10 @@
 #ifndef TRB_STEPPING_BLOCKS_H
 #define TRB_STEPPING_BLOCKS_H
 
-#include "body/state.h"
+#include "motion/dynamics.h"
 
 /* TRB_NP: a roller's entries, padded; TRB_TANGENT_IN: a roller's state and the angle of the frame; TRB_TANGENT_OUT: its flow, padded. */
-enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = 24 };
+enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = TRB_FLOW_ROOM };
 
 /* The hub: all bodies that are not rolling elements, with `width` coordinates together. The width is known when a simulation is made.
  * Columns of the hub's length are padded by zeros to a multiple of TRB_NP, their room, so that loops over them have no remainder. The

@@ -35,11 +35,11 @@ static trb_load loads_of(const trb_coupling *k, trb_wrench change, trb_vec3 shif
   return load;
 }
 
-void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_hub_kind *kind, const trb_rigid_pose *body,
+void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_body *other, const trb_rigid_pose *body,
                         const trb_load *load)
 {
   k->roller = roller;
-  k->kind = kind;
+  k->other = other;
   k->body = body;
   k->arm = trb_sub(roller->x, to_roller(k, body->x));
   k->force = load->on_a.force;
@@ -60,8 +60,8 @@ trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate)
 
 trb_load trb_coupling_of_body(const trb_coupling *k, int coordinate)
 {
-  const int       is_place = trb_is_place(&k->kind->coordinates[coordinate]);
-  const trb_rigid motion = k->kind->motion(k->body, coordinate);
+  const int       is_place = trb_is_place(&k->other->coordinates[coordinate]);
+  const trb_rigid motion = k->other->kind->motion(k->body, coordinate);
   const trb_vec3  shift = trb_scale(-1.0, to_roller(k, motion.shift)), turn = trb_scale(-1.0, to_roller(k, motion.turn));
   trb_wrench      change = wrench_of(k, (trb_rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
   if (!is_place) return loads_of(k, change, none);

@@ -3,21 +3,21 @@
 #ifndef TRB_STEPPING_COUPLING_H
 #define TRB_STEPPING_COUPLING_H
 
-#include "body/hub.h"
+#include "body/body.h"
 #include "contact/pair.h"
 
 /* All vectors are in the roller's cylindrical frame. */
 typedef struct trb_coupling {
   const trb_roller_pose *roller;
-  const trb_hub_kind    *kind; /* of the other body */
-  const trb_rigid_pose  *body;
+  const trb_body        *other;         /* body */
+  const trb_rigid_pose  *body;          /* its pose */
   trb_vec3               arm;           /* from the body's centre of mass to the roller's, m */
   trb_vec3               force, moment; /* on the roller, about its centre of mass, N and N m */
   trb_slopes             slopes;
 } trb_coupling;
 
 /* Sets bodies and load; the slopes must be there before. */
-void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_hub_kind *kind, const trb_rigid_pose *body,
+void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const trb_body *other, const trb_rigid_pose *body,
                         const trb_load *load);
 /* Slope of the loads of both with a coordinate of the roller, and of the other body. */
 trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate);

@@ -1,9 +1,9 @@
 /* An impact is followed well if the errors of a step are small beside the speed at which the bodies meet and beside the interference
  * that follows from it, and not beside numbers that are the same for all impacts (docs/theory/numerics.md#impacts). So while a roller
- * may meet its pocket within the next steps, or touches it, the tolerances of roller and cage are multiplied by a factor: a share of
+ * may meet its pocket within the next steps, or touches it, the tolerances of both bodies are multiplied by a factor: a share of
  * that speed over the absolute tolerance of velocities, or of that interference over the absolute tolerance of positions, whichever is
  * less, between a least factor and 1. The speed is the largest since they met, as it passes through zero during contact. The same holds
- * for the cage and a land. */
+ * for pairs without a roller. */
 #include "stepping/impact.h"
 
 #include <math.h>
@@ -17,9 +17,10 @@ static const double ahead = 3.0;
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message)
 {
   const size_t n = (size_t)m->n_rollers;
-  impacts->speed = trb_zeros(n + TRB_N_PAIRS, sizeof *impacts->speed);
+  impacts->speed = trb_zeros(n + TRB_MOST_PAIRS, sizeof *impacts->speed);
   impacts->factor = trb_zeros(n + 1, sizeof *impacts->factor);
-  if (impacts->speed == NULL || impacts->factor == NULL) {
+  impacts->bodies = trb_zeros(TRB_MOST_BODIES, sizeof *impacts->bodies);
+  if (impacts->speed == NULL || impacts->factor == NULL || impacts->bodies == NULL) {
     trb_impacts_free(impacts);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the impacts of %d rollers", m->n_rollers);
   }
@@ -31,29 +32,44 @@ void trb_impacts_free(trb_impacts *impacts)
 {
   free(impacts->speed);
   free(impacts->factor);
-  *impacts = (trb_impacts){NULL, NULL};
+  free(impacts->bodies);
+  *impacts = (trb_impacts){NULL, NULL, NULL};
 }
 
 void trb_impacts_forget(const trb_model *m, trb_impacts *impacts)
 {
-  for (int j = 0; j < m->n_rollers + TRB_N_PAIRS; j++) impacts->speed[j] = INFINITY;
+  for (int j = 0; j < m->n_rollers + TRB_MOST_PAIRS; j++) impacts->speed[j] = INFINITY;
   for (int j = 0; j <= m->n_rollers; j++) impacts->factor[j] = 1.0;
 }
 
-/* Speed of a roller's centre of mass relative to its pocket. */
-static double closing_speed(const trb_roller_pose *r, const trb_rigid_pose *cage)
+/* Speed of a roller's centre of mass relative to the point of another body that is there. */
+static double closing_speed(const trb_roller_pose *r, const trb_rigid_pose *body)
 {
-  const trb_vec3 arm = trb_sub(trb_turn_z(r->x, r->cosine, r->sine), cage->x);
-  const trb_vec3 pocket = trb_add(cage->v, trb_cross(cage->omega, arm));
-  return trb_norm(trb_sub(r->v, trb_turn_z(pocket, r->cosine, -r->sine)));
+  const trb_vec3 arm = trb_sub(trb_turn_z(r->x, r->cosine, r->sine), body->x);
+  const trb_vec3 there = trb_add(body->v, trb_cross(body->omega, arm));
+  return trb_norm(trb_sub(r->v, trb_turn_z(there, r->cosine, -r->sine)));
 }
 
-/* Largest interference of a roller and the cage that meet, over their speed: one over the natural frequency of both masses on a linear
+/* Largest interference of a roller and another body that meet, over their speed: one over the natural frequency of both masses on a linear
  * spring, which is as stiff as the contact of a flank is at an interference of 1 um. */
-static double rise_of(const trb_model *m, const trb_pair *pair)
+static double rise_of(const trb_dynamics *d, const trb_pair *pair)
 {
-  const double roller = m->geometry.roller_mass, cage = m->params.cage_mass, stiffness = pair->stiffness(m, 1e-6);
-  return sqrt(roller * cage / ((roller + cage) * stiffness));
+  const trb_model *m = d->model;
+  const trb_body  *other = &d->system->bodies[pair->b];
+  const double     roller = m->geometry.roller_mass, body = other->kind->mass(m, other);
+  return sqrt(roller * body / ((roller + body) * pair->kind->stiffness(m, 1e-6)));
+}
+
+/* Where the bodies are that may be hit; those of the dynamics are at another instant. */
+static void place(trb_impacts *impacts, const trb_dynamics *d, const trb_drive *drive, const double *y)
+{
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_body *body = &d->system->bodies[b];
+    trb_body_at    *at = &impacts->bodies[b];
+    at->rests = body->kind->rests;
+    if (body->kind->place != NULL) body->kind->place(d->model, drive, &at->ring);
+    if (body->size > 0) body->kind->pose(d->model, body, drive, y + body->first, &at->pose);
+  }
 }
 
 /* Factor of the tolerances of two bodies. most: the largest speed since they met, which is kept. */
@@ -74,10 +90,10 @@ static double factor_of_hub(trb_impacts *impacts, const trb_dynamics *d, const t
 {
   double least = 1.0;
   for (int i = 0; i < d->work->n_hub; i++) {
-    const trb_pair *pair = trb_pair_table[d->work->hub[i]];
-    if (pair->approach == NULL) continue;
-    const trb_approach now = pair->approach(d->model, at);
-    least = trb_min(least, factor_of(&now, step, measure, &impacts->speed[d->model->n_rollers + d->work->hub[i]]));
+    const trb_pair *pair = d->work->hub[i].pairs[0];
+    if (pair->kind->approach == NULL) continue;
+    const trb_approach now = pair->kind->approach(d->model, pair, at);
+    least = trb_min(least, factor_of(&now, step, measure, &impacts->speed[d->model->n_rollers + d->work->hub[i].index[0]]));
   }
   return least;
 }
@@ -86,37 +102,29 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
                       const trb_impact_measure *measure)
 {
   const trb_model *m = d->model;
-  const double    *y_cage = y + trb_state_cage(m);
   trb_drive        drive;
-  trb_rigid_pose   cage;
-  double           rise[TRB_N_PAIRS], least = 1.0;
-  int              posed = 0;
-  for (int f = 0; f < d->n_fast; f++) rise[f] = rise_of(m, d->fast[f].pair);
+  double           rise[TRB_MOST_PAIRS], least = 1.0;
+  if (d->n_fast > 0 || d->work->n_hub > 0) {
+    trb_motion_at(motion, m, time, &drive);
+    place(impacts, d, &drive, y);
+  }
+  for (int f = 0; f < d->n_fast; f++) rise[f] = rise_of(d, d->fast[f].pair);
   for (int j = 0; j < m->n_rollers; j++) {
     const double *y_roller = y + trb_state_roller(j);
     impacts->factor[j] = 1.0;
     for (int f = 0; f < d->n_fast; f++) {
       const trb_fast_pair *fast = &d->fast[f];
-      if (fast->pair->surfaces(m, j) == 0) continue;
-      if (!posed) {
-        trb_motion_at(motion, m, time, &drive);
-        trb_cage_pose_unpack(m, &drive, y_cage, &cage);
-        posed = 1;
-      }
-      trb_roller_pose r;
+      trb_roller_pose      r;
+      if (fast->pair->kind->surfaces(m, j) == 0) continue;
       trb_roller_pose_unpack_centre(m, &drive, j, y_roller, &r);
-      const double       left = trb_clearance_left(&fast->clearances[j], fast->arms, y_roller, y_cage);
-      const trb_approach now = {.left = left, .speed = closing_speed(&r, &cage), .rise = rise[f]};
+      const double       left = trb_clearance_left(&fast->clearances[j], fast->arms, y_roller, y + d->system->bodies[fast->pair->b].first);
+      const trb_approach now = {.left = left, .speed = closing_speed(&r, &impacts->bodies[fast->pair->b].pose), .rise = rise[f]};
       impacts->factor[j] = trb_min(impacts->factor[j], factor_of(&now, step, measure, &impacts->speed[j]));
     }
     least = trb_min(least, impacts->factor[j]);
   }
   if (d->work->n_hub > 0) {
-    trb_motion_at(motion, m, time, &drive);
-    trb_cage_pose_unpack(m, &drive, y_cage, &cage);
-    trb_ring rings[TRB_N_RINGS] = {0};
-    trb_rings_place(m, &drive, rings);
-    const trb_instant at = {.drive = &drive, .rings = rings, .cage = &cage};
+    const trb_instant at = {.drive = &drive, .bodies = impacts->bodies};
     least = trb_min(least, factor_of_hub(impacts, d, &at, step, measure));
   }
   impacts->factor[m->n_rollers] = least;

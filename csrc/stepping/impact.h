@@ -1,15 +1,16 @@
-/* Tolerances of a roller and the cage that are about to hit each other or are in contact: smaller where the impact is gentle. */
+/* Tolerances of bodies that are about to hit each other or are in contact: smaller where the impact is gentle. */
 #ifndef TRB_STEPPING_IMPACT_H
 #define TRB_STEPPING_IMPACT_H
 
 #include "motion/dynamics.h"
 
-/* Speeds at which rollers met their pockets, and the cage its land. */
+/* Speeds at which bodies met. */
 typedef struct trb_impacts {
-  /* of each roller relative to its pocket: when they met, or now if they are about to, m/s; INFINITY: they are apart. Then the same for
-   * each row of the table of pairs, of those without a roller */
-  double *speed;
-  double *factor; /* of the tolerances: one for each roller, then that of the cage */
+  /* of each roller relative to the body that it hits: when they met, or now if they are about to, m/s; INFINITY: they are apart. Then the
+   * same for each pair without a roller, by its number in the system */
+  double      *speed;
+  double      *factor; /* of the tolerances: one for each roller, then that of the hub */
+  trb_body_at *bodies; /* scratch */
 } trb_impacts;
 
 trb_status trb_impacts_create(const trb_model *m, trb_impacts *impacts, trb_message *message);

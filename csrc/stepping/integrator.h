@@ -10,19 +10,20 @@
   X(rtol,           1e-3,  1e-12, 0.1,  "relative tolerance of velocities") \
   X(atol_position,  9e-10, 1e-16, 1e-2, "tolerance of positions, m") \
   X(atol_angle,     9e-8,  1e-14, 1e-1, "tolerance of angles, rad") \
+  X(lean_share,     1,     1e-3,  1e6,  "tolerance of a roller's skew and tilt over that of angles") \
   X(atol_velocity,  3e-4,  1e-14, 10,   "tolerance of velocities, m/s") \
   X(atol_spin,      3e-2,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
   X(max_order,      2,     1,     5,    "highest order of BDF") \
   X(erk_order,      5,     2,     8,    "order of the explicit method") \
-  X(rings_age,      1e-2,  0,     1e3,  "bearing time after which the part of the Jacobian from raceways and ribs is computed again, s") \
+  X(rings_age,      2e-2,  0,     1e3,  "bearing time after which the part of the Jacobian from raceways and ribs is computed again, s") \
   X(rings_uses,     20,    1,     1e6,  "number of Jacobians after which that part is computed again") \
   X(rings_share,    0.1,   0,     1,    "share of a step's tolerance by which forces of raceways and ribs may be wrong between exact evaluations") \
-  X(jacobian_every, 51,    1,     1e6,  "most steps between evaluations of the part of the Jacobian from pockets") \
+  X(jacobian_every, 10,    1,     1e6,  "most steps between evaluations of the part of the Jacobian from pockets") \
   X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \
-  X(newton_share,   0.1,   1e-6,  1,    "share of the step's tolerance to which the equations of a step must hold") \
+  X(newton_share,   0.25,  1e-6,  1,    "share of the step's tolerance to which the equations of a step must hold") \
   X(newton_iterations, 6,  2,     12,   "most iterations of Newton's method before it is given up") \
   X(margin_share,   0.5,   0,     0.9,  "share of a contact's interference or gap that may be used up while a tangent is followed") \
-  X(slip_share,     1e-3,  0,     0.1,  "share of the mean rolling speed by which a roller's slip may change while a tangent is followed") \
+  X(slip_share,     3e-3,  0,     0.1,  "share of the mean rolling speed by which a roller's slip may change while a tangent is followed") \
   X(slow_share,     10,    1e-3,  1e6,  "absolute tolerances of velocities are at most this times rtol times the mean rolling speed") \
   X(impact_share,   0.03,  1e-4,  1e3,  "share of an impact's speed and interference that roller and cage may be off in a step") \
   X(impact_least,   4e-3,  1e-6,  1,    "smallest factor of their absolute tolerances for that") \

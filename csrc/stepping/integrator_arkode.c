@@ -39,8 +39,8 @@ static trb_status erk_create(trb_integrator *it, trb_message *message)
   const trb_status status = trb_sundials_open(&self->sundials, message);
   if (status != TRB_OK) return status;
   self->y = trb_sundials_vector(&self->sundials, it->n, it->y);
-  self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
-  if (self->y != NULL) self->memory = ERKStepCreate(rates, it->time, self->y, self->sundials.context);
+  if (self->y != NULL) self->scratch = N_VClone(self->y);
+  if (self->y != NULL && trb_sundials_has_room_for(it->n)) self->memory = ERKStepCreate(rates, it->time, self->y, self->sundials.context);
   if (!self->y || !self->scratch || !self->memory) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   trb_sundials_quiet_erk(&self->sundials, self->memory);
   CHECK(TRB_ARK(SetUserData)(self->memory, it));
@@ -133,7 +133,7 @@ static int erk_worst(trb_integrator *it)
   double largest = 0.0;
   if (TRB_ARK(GetEstLocalErrors)(self->memory, self->scratch) != ARK_SUCCESS) return -1;
   const double *error = N_VGetArrayPointer(self->scratch);
-  for (int i = 0; i < trb_state_main_size(it->dynamics->model); i++) {
+  for (int i = 0; i < trb_state_main_size(it->dynamics->system); i++) {
     const double scaled = fabs(error[i]) / (it->relative[i] * fabs(it->y[i]) + it->scale[i]);
     if (scaled > largest || !isfinite(scaled)) {
       largest = scaled;

@@ -89,6 +89,7 @@ static trb_status failed(bdf *self, const char *what, trb_message *message)
 static trb_status configure(trb_integrator *it, trb_message *message)
 {
   bdf *self = it->self;
+  if (!trb_sundials_has_room_for(it->n)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   CHECK(CVodeInit(self->memory, rates, it->time, self->y));
   CHECK(CVodeSetUserData(self->memory, it));
   CHECK(CVodeWFtolerances(self->memory, weights));
@@ -109,7 +110,7 @@ static trb_status configure(trb_integrator *it, trb_message *message)
 static trb_status bdf_create(trb_integrator *it, trb_message *message)
 {
   const trb_model *m = it->dynamics->model;
-  const int        hub_width = trb_hub_width(m);
+  const int        hub_width = it->dynamics->system->hub_width;
   bdf             *self = calloc(1, sizeof *self);
   if (self == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   it->self = self;
@@ -117,9 +118,9 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->filled_at = -INFINITY;
   trb_status status = trb_sundials_open(&self->sundials, message);
   if (status != TRB_OK) return status;
-  const trb_body_entries entries = trb_body_entries_of(m);
+  const trb_body_entries entries = trb_body_entries_of(it->dynamics->system);
   self->y = trb_vector_over(it->y, it->n, &entries, it->dynamics->work->variant, self->sundials.context);
-  self->scratch = N_VNew_Serial((sunindextype)it->n, self->sundials.context);
+  if (self->y != NULL) self->scratch = N_VClone(self->y);
   self->matrix = trb_arrow_matrix(m->n_rollers, hub_width, self->sundials.context);
   self->solver = trb_arrow_linear_solver(m->n_rollers, hub_width, it->dynamics->work->variant, self->sundials.context);
   if (self->y != NULL)
@@ -129,7 +130,7 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   trb_sundials_quiet_cvode(&self->sundials, self->memory);
-  status = trb_jacobian_create(m, it->motion, it->variant, &self->jacobian, message);
+  status = trb_jacobian_create(it->dynamics->system, it->motion, it->variant, &self->jacobian, message);
   return status == TRB_OK ? configure(it, message) : status;
 }
 
@@ -232,7 +233,7 @@ static int bdf_worst(trb_integrator *it)
   double largest = 0.0;
   if (CVodeGetEstLocalErrors(self->memory, self->scratch) != CV_SUCCESS) return -1;
   const double *error = N_VGetArrayPointer(self->scratch);
-  for (int i = 0; i < trb_state_main_size(it->dynamics->model); i++) {
+  for (int i = 0; i < trb_state_main_size(it->dynamics->system); i++) {
     const double scaled = fabs(error[i]) / (it->relative[i] * fabs(it->y[i]) + it->scale[i]);
     if (scaled > largest || !isfinite(scaled)) {
       largest = scaled;

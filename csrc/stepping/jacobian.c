@@ -6,21 +6,21 @@
 #include "base/memory.h"
 #include "stepping/coupling.h"
 
-trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
+trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message)
 {
   trb_jacobian *j = calloc(1, sizeof *j);
   *jacobian = NULL;
   if (j == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
-  trb_status status = trb_dynamics_create(m, motion, variant, &j->d, message);
+  trb_status status = trb_dynamics_create(system, motion, variant, &j->d, message);
   if (status == TRB_OK) {
-    const size_t width = (size_t)trb_hub_width(m);
-    j->moved = calloc((size_t)trb_state_size(m), sizeof *j->moved);
+    const size_t width = (size_t)system->hub_width;
+    j->moved = calloc((size_t)trb_state_size(system), sizeof *j->moved);
     j->rates = trb_zeros(3 * width, sizeof *j->rates);
     j->changes = trb_zeros(width, sizeof *j->changes);
     if (j->moved == NULL || j->rates == NULL || j->changes == NULL)
       status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
-    else status = trb_tangents_create(m, &j->tangents, message);
+    else status = trb_tangents_create(system, &j->tangents, message);
   }
   if (status != TRB_OK) {
     trb_jacobian_free(j);
@@ -48,29 +48,31 @@ static void roller_response(const trb_dynamics *d, int roller, const trb_wrench 
   trb_roller_response(d->model, &d->rollers[roller], load, rates);
 }
 
-/* Rates of a body of the hub, at its pose, under a load. */
-static void body_rates(const trb_dynamics *d, const trb_hub_body *body, const double *y, const trb_wrench *load, double *rates)
+/* Rates of a body, at its pose, under a load; hub: rates of the whole hub, where they are put. */
+static void body_rates(const trb_dynamics *d, int body, const double *y, const trb_wrench *load, double *hub)
 {
-  body->kind->rates(d->model, &d->drive, &body->pose, y + body->first, load, rates);
+  const trb_body *is = &d->system->bodies[body];
+  if (is->size == 0) return;
+  is->kind->rates(d->model, is, &d->drive, &d->bodies[body].pose, y + is->first, load, hub + is->first - trb_state_hub(d->system));
 }
 
 /* Adds what a fast pair in contact gives to its roller's block, to both borders and to the slopes of the loads of the other body. still:
  * rates of the hub without loads. */
-static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, const trb_hub_body *body, const double *y, const double *still,
-                     trb_arrow *arrow)
+static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, int other, const double *y, const double *still, trb_arrow *arrow)
 {
   const trb_dynamics *d = jac->d;
+  const trb_body     *body = &d->system->bodies[other];
   trb_arrow_block    *block = &arrow->rollers[j];
   trb_arrow_border   *border = &arrow->borders[j];
-  const int           size = body->kind->size, first = body->first - trb_state_hub(d->model);
+  const int           size = body->size, first = body->first - trb_state_hub(d->system);
   double             *rates = jac->rates, change[TRB_NR];
   for (int c = 0; c < TRB_NR; c++) {
     const trb_load load = trb_coupling_of_roller(k, c);
     double        *from = border->from + c * arrow->room + first;
     roller_response(d, j, &load.on_a, change);
-    body_rates(d, body, y, &load.on_b, rates);
+    body_rates(d, other, y, &load.on_b, rates);
     for (int i = 0; i < TRB_NR; i++) block->own[c][i] += change[i];
-    for (int i = 0; i < size; i++) from[i] += rates[i] - still[first + i];
+    for (int i = 0; i < size; i++) from[i] += rates[first + i] - still[first + i];
   }
   for (int c = 0; c < size; c++) {
     const trb_load load = trb_coupling_of_body(k, c);
@@ -87,14 +89,12 @@ static void hub_rates(trb_jacobian *jac, const double *y, int moved, int at, dou
 {
   trb_dynamics     *d = jac->d;
   const trb_instant instant = trb_dynamics_instant(d);
-  const int         hub = trb_state_hub(d->model);
   if (d->work->n_hub > 0) trb_contact_hub(d->model, &instant, d->work, &d->hub, NULL);
-  for (int b = 0; b < d->n_bodies; b++) {
-    const trb_hub_body *body = &d->bodies[b];
-    trb_wrench          load = body->load;
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    trb_wrench load = d->on_body[b];
     if (b == moved) load = (trb_wrench){trb_axpy(load.force, h, jac->changes[at].force), trb_axpy(load.moment, h, jac->changes[at].moment)};
-    if (d->work->n_hub > 0) trb_add_wrench(&load, &d->hub.on[body->kind->body]);
-    body_rates(d, body, y, &load, rates + body->first - hub);
+    if (d->work->n_hub > 0) trb_add_wrench(&load, &d->hub.on[b]);
+    body_rates(d, b, y, &load, rates);
   }
 }
 
@@ -103,22 +103,23 @@ static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
   const trb_model *m = d->model;
-  const int        hub = trb_state_hub(m);
+  const int        hub = trb_state_hub(d->system);
   double          *rates = jac->rates, *base = rates + arrow->width;
   hub_rates(jac, y, -1, 0, 0.0, base);
-  for (int b = 0; b < d->n_bodies; b++) {
-    trb_hub_body *body = &d->bodies[b];
-    double       *own = jac->moved + body->first;
-    for (int c = 0; c < body->kind->size; c++) {
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_body *body = &d->system->bodies[b];
+    double         *own = jac->moved + body->first;
+    if (body->size == 0) continue;
+    for (int c = 0; c < body->size; c++) {
       const int    at = body->first - hub + c;
-      const double was = own[c], h = trb_difference[body->kind->coordinates[c].tolerance], per = 1.0 / h;
+      const double was = own[c], h = trb_difference[body->coordinates[c].tolerance], per = 1.0 / h;
       own[c] = was + h;
-      body->kind->pose(m, &d->drive, own, &body->pose);
+      body->kind->pose(m, body, &d->drive, own, &d->bodies[b].pose);
       hub_rates(jac, jac->moved, b, at, h, rates);
       for (int i = 0; i < arrow->width; i++) arrow->hub[at * arrow->room + i] = per * (rates[i] - base[i]);
       own[c] = was;
     }
-    body->kind->pose(m, &d->drive, own, &body->pose);
+    body->kind->pose(m, body, &d->drive, own, &d->bodies[b].pose);
   }
 }
 
@@ -131,16 +132,15 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
   border->coupled = 0;
   for (int f = 0; f < d->n_fast; f++) {
     const trb_pair *pair = d->fast[f].pair;
-    trb_hub_body   *body = trb_dynamics_body(d, pair->b);
     trb_coupling    k;
     trb_load        load;
-    const trb_gaps  gaps = pair->touch(d->model, &at, j, &d->work->counters, &load, &k.slopes, NULL);
-    if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0) || body == NULL) continue;
+    const trb_gaps  gaps = pair->kind->touch(d->model, pair, &at, j, &d->work->counters, &load, &k.slopes, NULL);
+    if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0)) continue;
     if (!border->coupled) trb_arrow_clear_border(arrow, j);
     border->coupled = 1;
-    trb_coupling_place(&k, &d->rollers[j], body->kind, &body->pose, &load);
-    trb_add_wrench(&body->load, &load.on_b);
-    add_fast(jac, j, &k, body, y, still, arrow);
+    trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[pair->b], &d->bodies[pair->b].pose, &load);
+    trb_add_wrench(&d->on_body[pair->b], &load.on_b);
+    add_fast(jac, j, &k, pair->b, y, still, arrow);
   }
 }
 
@@ -150,7 +150,7 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   const trb_model *m = d->model;
   double          *still = jac->rates + 2 * arrow->width;
   const trb_wrench none = {{0, 0, 0}, {0, 0, 0}};
-  memcpy(jac->moved, y, (size_t)trb_state_size(m) * sizeof *y);
+  memcpy(jac->moved, y, (size_t)trb_state_size(d->system) * sizeof *y);
   trb_dynamics_pose(d, time, y);
   if (fresh || !jac->tangents->has_slopes) {
     trb_tangents_differentiate(jac->tangents, d, y, jac->moved);
@@ -159,10 +159,8 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   for (int j = 0; j < m->n_rollers; j++)
     for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[j].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
   memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
-  for (int b = 0; b < d->n_bodies; b++) {
-    d->bodies[b].load = none;
-    body_rates(d, &d->bodies[b], y, &none, still + d->bodies[b].first - trb_state_hub(m));
-  }
+  memset(d->on_body, 0, sizeof d->on_body);
+  for (int b = 0; b < d->system->n_bodies; b++) body_rates(d, b, y, &none, still);
   for (int j = 0; j < m->n_rollers; j++) fill_fast(jac, j, y, still, arrow);
   hub_block(jac, y, arrow);
 }

@@ -20,7 +20,7 @@ typedef struct trb_jacobian {
   long          rings_evaluations;
 } trb_jacobian;
 
-trb_status trb_jacobian_create(const trb_model *m, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
+trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message);
 void       trb_jacobian_free(trb_jacobian *jacobian);
 /* fresh: compute the part of the rings again, too. */

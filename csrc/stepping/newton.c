@@ -13,6 +13,9 @@
  * F must also have fallen by a correction, or be negligible. Else a slope that is too large leaves nearly all of it in every step: steps
  * of nanoseconds then carry the same error on for ever, each of them within the tolerance.
  *
+ * What a first correction leaves of F is measured. Where the share is large, slopes are taken again. Where it is small F is evaluated again
+ * all the same: the integrals of losses and works have no slopes, so that they hold only where F was evaluated last.
+ *
  * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
  * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
  * the method gets away from two points between which the plain one would jump for ever.
@@ -29,11 +32,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stepping/sundials_context.h"
+
 /* Largest share of the last correction that the next one may repeat before it is prolonged no further: by 1/(1 - most_kept) at most. */
 static const double most_kept = 0.95;
 /* What the equations lack is accepted below the first share of the tolerance; else it must also have fallen to the second share by a
  * correction. */
-static const double negligible = 0.1, contraction = 0.3;
+static const double negligible = 0.04, contraction = 0.3;
+/* Slopes are taken again where a first correction leaves more than this share, after so many solves at least. */
+static const double poor = 0.2;
+enum { between_renewals = 50 };
 /* A correction that grows beyond this multiple of the first one diverges. */
 static const double divergence = 1e3;
 /* Weight of the present solve in the share of solves that fail, and the share above which bodies are taken one by one: not in the course of
@@ -43,7 +51,7 @@ static const double present = 0.03, often = 0.3;
 enum { most_renewals = 8 };
 /* Share of solves that fail above which the equations must hold to a share of the tolerance in any case. Where friction is that steep, what
  * a step lacks within the tolerance is a force that makes as much energy as the bearing loses. */
-static const double sometimes = 0.1, tiny = 0.01;
+static const double sometimes = 0.1, tiny = 0.004;
 /* Where that was in vain it is left out for one failed solve, then for twice as many each time, at most for so many. */
 enum { longest_pause = 64 };
 
@@ -63,6 +71,7 @@ typedef struct newton {
   int     has_best;             /* whether the last iterations came to a point after their first correction */
   int     pause, paused;        /* failed solves for which that is left out, and those that went by */
   double  failing;              /* share of solves that failed, the last ones counting most */
+  int     is_poor, since;       /* whether a first correction left too much, and solves since slopes were last taken again for that */
 } newton;
 
 /* Entries of a body. */
@@ -158,6 +167,9 @@ static int holds(const newton *self, double off, double before, double tolerance
   return off <= negligible * tolerance || (off <= tolerance && off <= contraction * before);
 }
 
+/* What the first correction of a solve left is known. */
+static void measure(newton *self, double off, double before) { self->is_poor = off / before > poor && self->since >= between_renewals; }
+
 /* one_by_one: the bodies, and the best points after the first correction are kept. */
 static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int one_by_one, void *memory)
 {
@@ -176,6 +188,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     const double *const weight = N_VGetArrayPointer(weights);
     /* what the equations lack, in the mean over all entries */
     const double off = sqrt(product(self->n, delta, delta, weight) / self->n);
+    if (m == 1) measure(self, off, before);
     if (one_by_one && m > 0) remember(self, N_VGetArrayPointer(correction), delta, weight);
     for (int i = 0; i < self->n; i++) delta[i] = -delta[i];
     const int flag = self->solve(self->delta, memory);
@@ -215,14 +228,16 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
   int     bad = 0, current = 0;
   (void)start;
   self->iterations = self->failures = 0;
+  self->since++;
   for (;;) {
     const int one_by_one = self->failing > often;
     int       flag = self->residual(correction, self->delta, memory);
     if (flag != 0) return flag;
-    if (setup || bad) {
-      flag = self->setup(bad, &current, memory);
+    if (setup || bad || self->is_poor) {
+      flag = self->setup(bad || self->is_poor, &current, memory);
       if (flag != 0) return flag;
     }
+    if (bad || self->is_poor) self->since = self->is_poor = 0;
     flag = iterate(self, correction, weights, tolerance, one_by_one && current, memory);
     if (flag > 0 && one_by_one && current && self->paused++ >= self->pause) {
       flag = renew(self, correction, weights, tolerance, memory);
@@ -308,7 +323,11 @@ int trb_newton_troubled(SUNNonlinearSolver solver)
   return self->troubled || self->failing > sometimes;
 }
 
-int trb_newton_renewing(SUNNonlinearSolver solver) { return ((newton *)solver->content)->renewing; }
+int trb_newton_renewing(SUNNonlinearSolver solver)
+{
+  const newton *self = solver->content;
+  return self->renewing || self->is_poor;
+}
 
 void trb_newton_forget(SUNNonlinearSolver solver)
 {
@@ -316,11 +335,12 @@ void trb_newton_forget(SUNNonlinearSolver solver)
   self->troubled = 0;
   self->failing = 0.0;
   self->pause = self->paused = 0;
+  self->is_poor = self->since = 0;
 }
 
 SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_main, int n_bodies, int size, SUNContext context)
 {
-  SUNNonlinearSolver solver = SUNNonlinSolNewEmpty(context);
+  SUNNonlinearSolver solver = trb_sundials_has_room(1) ? SUNNonlinSolNewEmpty(context) : NULL;
   if (solver == NULL) return NULL;
   newton *self = calloc(1, sizeof *self);
   solver->content = self;

@@ -19,28 +19,30 @@ static trb_status check_settings(const trb_settings *settings, trb_message *mess
 }
 
 /* Name of a state entry, for a person, as the text of a message. */
-static void describe(const trb_model *m, int index, trb_message *out)
+static void describe(const trb_system *system, int index, trb_message *out)
 {
 #define TRB_STATE_NAME(name, kind, what) #name " (" what ")",
   static const char *const roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_NAME)};
 #undef TRB_STATE_NAME
   if (index < 0) (void)trb_fail(out, TRB_OK, "no single quantity");
-  else if (index < trb_state_hub(m)) (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
-  else if (index < trb_state_main_size(m)) {
-    int                       coordinate;
-    const trb_hub_kind *const kind = trb_hub_kind_at(m, index - trb_state_hub(m), &coordinate);
-    const trb_coordinate     *is = &kind->coordinates[coordinate];
-    (void)trb_fail(out, TRB_OK, "%s, %s (%s)", kind->name, is->name, is->text);
-  } else (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(m));
+  else if (index < trb_state_hub(system))
+    (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
+  else if (index < trb_state_main_size(system)) {
+    int                   coordinate;
+    const trb_body       *body = trb_state_body(system, index, &coordinate);
+    const trb_coordinate *is = &body->coordinates[coordinate];
+    (void)trb_fail(out, TRB_OK, "%s, %s (%s)", body->name, is->name, is->text);
+  } else (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(system));
 }
 
-static trb_status check_state(const trb_model *m, double time, const double *state, trb_message *message)
+static trb_status check_state(const trb_system *system, double time, const double *state, trb_message *message)
 {
-  trb_message what;
+  const trb_model *m = system->model;
+  trb_message      what;
   if (!isfinite(time)) return trb_fail(message, TRB_ERR_STATE, "time = %g: must be finite", time);
-  for (int i = 0; i < trb_state_size(m); i++)
+  for (int i = 0; i < trb_state_size(system); i++)
     if (!isfinite(state[i])) {
-      describe(m, i, &what);
+      describe(system, i, &what);
       return trb_fail(message, TRB_ERR_STATE, "state[%d] = %g, %.200s: must be finite", i, state[i], what.text);
     }
   for (int j = 0; j < m->n_rollers; j++) {
@@ -49,11 +51,11 @@ static trb_status check_state(const trb_model *m, double time, const double *sta
       return trb_fail(message, TRB_ERR_STATE, "roller %d: r = %g m, skew = %g rad: beyond what the coordinates hold", j, y[TRB_ROLLER_r],
                       y[TRB_ROLLER_skew]);
   }
-  for (int i = trb_state_hub(m); i < trb_state_main_size(m); i++) {
-    int                       coordinate;
-    const trb_hub_kind *const kind = trb_hub_kind_at(m, i - trb_state_hub(m), &coordinate);
-    if (coordinate == kind->skew && fabs(state[i]) > 1.5)
-      return trb_fail(message, TRB_ERR_STATE, "%s: skew = %g rad: beyond what the coordinates hold", kind->name, state[i]);
+  for (int b = 0; b < system->n_bodies; b++) {
+    const trb_body *body = &system->bodies[b];
+    if (body->size == 0 || body->kind->skew < 0) continue;
+    const double skew = state[body->first + body->kind->skew];
+    if (fabs(skew) > 1.5) return trb_fail(message, TRB_ERR_STATE, "%s: skew = %g rad: beyond what the coordinates hold", body->name, skew);
   }
   return TRB_OK;
 }
@@ -69,8 +71,8 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
 {
   trb_integrator *it = &s->integrator;
   trb_status      status;
-  it->n = trb_state_size(s->model);
-  it->n_main = trb_state_main_size(s->model);
+  it->n = trb_state_size(s->system);
+  it->n_main = trb_state_main_size(s->system);
   it->y = trb_zeros((size_t)it->n + TRB_VECTOR_ROOM, sizeof(double));
   it->scale = trb_zeros((size_t)it->n, sizeof(double));
   it->relative = trb_zeros((size_t)it->n, sizeof(double));
@@ -78,9 +80,9 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   s->apart = calloc((size_t)s->model->n_rollers, sizeof *s->apart);
   if (!it->y || !it->scale || !it->relative || !s->between || !s->apart)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
-  if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->dynamics, message)) != TRB_OK) return status;
-  if ((status = trb_dynamics_create(s->model, s->motion, variant, &s->onlooker, message)) != TRB_OK) return status;
-  if ((status = trb_detail_create(s->model, &s->detail, message)) != TRB_OK) return status;
+  if ((status = trb_dynamics_create(s->system, s->motion, variant, &s->dynamics, message)) != TRB_OK) return status;
+  if ((status = trb_dynamics_create(s->system, s->motion, variant, &s->onlooker, message)) != TRB_OK) return status;
+  if ((status = trb_detail_create(s->model, s->system->pairs, s->system->n_pairs, &s->detail, message)) != TRB_OK) return status;
   it->dynamics = s->dynamics;
   it->motion = s->motion;
   it->variant = variant;
@@ -88,17 +90,18 @@ static trb_status open_parts(trb_simulation *s, const char *variant, trb_message
   return trb_impacts_create(s->model, &it->impacts, message);
 }
 
-trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant,
+trb_status trb_simulation_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
                                  const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
                                  trb_message *message)
 {
   *simulation = NULL;
   trb_status status = check_settings(settings, message);
   if (status != TRB_OK) return status;
-  if ((status = check_state(m, time, state, message)) != TRB_OK) return status;
+  if ((status = check_state(system, time, state, message)) != TRB_OK) return status;
   trb_simulation *s = calloc(1, sizeof *s);
   if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
-  s->model = m;
+  s->system = system;
+  s->model = system->model;
   s->motion = motion;
   s->previous = time;
   s->integrator.settings = *settings;
@@ -137,7 +140,7 @@ void trb_simulation_free(trb_simulation *s)
 
 trb_status trb_simulation_set_state(trb_simulation *s, double time, const double *state, trb_message *message)
 {
-  const trb_status status = check_state(s->model, time, state, message);
+  const trb_status status = check_state(s->system, time, state, message);
   if (status != TRB_OK) return status;
   memmove(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
   s->integrator.time = s->previous = time;
@@ -162,7 +165,7 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
     return TRB_OK;
   }
   trb_message what, cause = *message;
-  describe(s->model, it->kind->worst(it), &what);
+  describe(s->system, it->kind->worst(it), &what);
   memcpy(it->y, s->between, (size_t)it->n * sizeof(double));
   it->time = from;
   return trb_fail(message, status, "at t = %.9g s: %.200s; largest error: %.200s", from, cause.text, what.text);
@@ -181,7 +184,7 @@ trb_status trb_simulation_state_at(trb_simulation *s, double time, double *y, tr
 trb_status trb_simulation_begin_peaks(trb_simulation *s, double time, trb_message *message)
 {
   trb_status status = trb_simulation_state_at(s, time, s->between, message);
-  if (status == TRB_OK && s->peaks == NULL) status = trb_peaks_create(s->model, s->motion, s->integrator.variant, &s->peaks, message);
+  if (status == TRB_OK && s->peaks == NULL) status = trb_peaks_create(s->system, s->motion, s->integrator.variant, &s->peaks, message);
   if (status == TRB_OK) trb_peaks_begin(s->peaks, time, s->between, s->integrator.time, s->integrator.y);
   return status;
 }

@@ -1,4 +1,4 @@
-/* A simulation owns what changes: dynamics, state, integrator, buffers of a record. The model and the motion are shared and const. */
+/* A simulation owns what changes: dynamics, state, integrator, buffers of a record. The system and the motion are shared and const. */
 #ifndef TRB_STEPPING_SIMULATION_H
 #define TRB_STEPPING_SIMULATION_H
 
@@ -8,7 +8,8 @@
 #include "stepping/recorder.h"
 
 typedef struct trb_simulation {
-  const trb_model  *model;
+  const trb_system *system;
+  const trb_model  *model; /* of the system's bearing */
   const trb_motion *motion;
   trb_dynamics     *dynamics; /* of the integration */
   trb_dynamics     *onlooker; /* of records and of what users ask about states, so that the integration is not disturbed */
@@ -22,7 +23,7 @@ typedef struct trb_simulation {
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */
-trb_status trb_simulation_create(const trb_model *m, const trb_motion *motion, const char *kind, const char *variant,
+trb_status trb_simulation_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
                                  const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
                                  trb_message *message);
 void       trb_simulation_free(trb_simulation *s);

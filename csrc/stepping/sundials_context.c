@@ -27,6 +27,7 @@ trb_status trb_sundials_open(trb_sundials *sundials, trb_message *message)
 {
   sundials->text[0] = '\0';
   sundials->context = NULL;
+  if (!trb_sundials_has_room(1)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   if (SUNContext_Create(TRB_SUN_NO_COMM, &sundials->context) != 0 || sundials->context == NULL)
     return trb_fail(message, TRB_ERR_SOLVER, "SUNDIALS: no context");
 #if TRB_SUNDIALS_AT_LEAST(7, 0)
@@ -42,6 +43,11 @@ void trb_sundials_close(trb_sundials *sundials)
 {
   if (sundials->context != NULL) (void)SUNContext_Free(&sundials->context);
   sundials->context = NULL;
+}
+
+N_Vector trb_sundials_vector(trb_sundials *sundials, int n, double *values)
+{
+  return trb_sundials_has_room(1) ? N_VMake_Serial((sunindextype)n, values, sundials->context) : NULL;
 }
 
 void trb_sundials_quiet_cvode(trb_sundials *sundials, void *memory)

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
+const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-8, 1e-7, 1e-5, 1e-5, 1.0};
 
 /* Turn of the frame R that counts as one tolerance, and turn by which slopes over it are computed, rad. */
 static const double turn_unit = 1e-3, turn_difference = 1e-5;
@@ -22,7 +22,7 @@ static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, 
 /* Losses by sliding and damping are never negative. Near zero, where they curve most, a tangent could make them so: they are bounded. */
 static void set_bounds(trb_tangents *t)
 {
-#define SENSE(X, name, sense, text) TRB_SENSE_##sense,
+#define SENSE(X, name, sense, is_on, text) TRB_SENSE_##sense,
   static const trb_sense senses[] = {TRB_LOSSES(SENSE, 0)};
 #undef SENSE
   for (int i = 0; i < TRB_TANGENT_OUT; i++) t->least[i] = t->anything[i] = -INFINITY;
@@ -30,10 +30,11 @@ static void set_bounds(trb_tangents *t)
     if (senses[k] == TRB_SENSE_TAKES) t->least[TRB_FLOW_quadrature + TRB_Q_losses + k] = 0.0;
 }
 
-trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message)
+trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents, trb_message *message)
 {
-  const size_t  n = (size_t)m->n_rollers;
-  trb_tangents *t = calloc(1, sizeof *t);
+  const trb_model *m = system->model;
+  const size_t     n = (size_t)m->n_rollers;
+  trb_tangents    *t = calloc(1, sizeof *t);
   *tangents = NULL;
   if (t != NULL) {
     t->model = m;
@@ -44,7 +45,7 @@ trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
-  t->arms = trb_margin_arms_of(m);
+  t->arms = trb_margin_arms_of(system);
   set_bounds(t);
   *tangents = t;
   return TRB_OK;
@@ -68,7 +69,7 @@ void trb_tangents_forget(trb_tangents *t)
 static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
 {
   const trb_instant at = trb_dynamics_instant(d);
-  trb_contact_slow(d->model, &at, d->work, d->loads);
+  trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
   for (int j = 0; j < d->model->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
     double       flow[TRB_FLOW_SIZE];
@@ -92,7 +93,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   const trb_model  *m = d->model;
   const trb_instant at = trb_dynamics_instant(d);
   const double      time = d->drive.time, frame_speed = d->drive.frame_speed;
-  trb_contact_slow(m, &at, d->work, d->loads);
+  trb_contact_slow(m, &at, d->work, d->loads, NULL);
   for (int j = 0; j < m->n_rollers; j++) {
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
@@ -101,7 +102,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
   }
   for (int c = 0; c < TRB_NR; c++) {
-    const double h = trb_difference[trb_state_tolerance(m, c)];
+    const double h = trb_difference[trb_state_tolerance(d->system, c)];
     for (int j = 0; j < m->n_rollers; j++) {
       double *entry = &moved[trb_state_roller(j) + c];
       *entry = y[trb_state_roller(j) + c] + h;
@@ -209,7 +210,7 @@ static void begin(void *self, const trb_dynamics *d, double time)
 {
   trb_tangents *t = self;
   t->under_way = trb_motion_under_way(d->motion, time);
-  t->offset = trb_ring_offset_of(&d->rings[TRB_RING_INNER].pose);
+  t->offset = trb_ring_offset_of(d->system, d->bodies);
   for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
 }
 

@@ -24,20 +24,19 @@
 
 /* Index of the angle of the frame R in an origin. */
 enum { TRB_TANGENT_TURN = TRB_NR };
-_Static_assert(TRB_TANGENT_IN == TRB_NR + 1 && (int)TRB_FLOW_ROOM == (int)TRB_TANGENT_OUT,
-               "room for a roller's state, an angle and its flow");
+_Static_assert(TRB_TANGENT_IN == TRB_NR + 1, "room for a roller's state and an angle");
 
 typedef struct trb_tangent {
   double slope[TRB_TANGENT_IN][TRB_TANGENT_OUT]; /* column by column, with Broyden's corrections */
   double found[TRB_NR][TRB_NR];                  /* slopes of the rates as differences gave them, column by column */
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
-  double per[TRB_TANGENT_IN]; /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
-  double reach;               /* distance up to which it is used */
-  double margin[TRB_N_PAIRS]; /* of the contacts at the origin, m */
-  double usual;               /* for how many evaluations an origin is used: running mean */
-  int    served;              /* for how many this one was */
-  int    known;               /* 0: there is no origin */
+  double per[TRB_TANGENT_IN];    /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
+  double reach;                  /* distance up to which it is used */
+  double margin[TRB_MOST_PAIRS]; /* of the contacts at the origin, m */
+  double usual;                  /* for how many evaluations an origin is used: running mean */
+  int    served;                 /* for how many this one was */
+  int    known;                  /* 0: there is no origin */
 } trb_tangent;
 
 typedef struct trb_tangents {
@@ -47,7 +46,7 @@ typedef struct trb_tangents {
   const struct trb_tangent_measure *measure;                          /* of the evaluation under way */
   int                               under_way;                        /* the prescribed motion is: everything is exact */
   int                              *beyond;                           /* scratch: whether a bound of the tangent is passed */
-  trb_ring_offset                   offset;                           /* of the inner ring, in this evaluation */
+  trb_ring_offset                   offset;                           /* of the rings, in this evaluation */
   trb_margin_arms                   arms;                             /* what bounds the change of an interference */
   double                            time;                             /* at which slopes were last evaluated, s */
   int                               has_slopes;                       /* whether they were at all */
@@ -66,7 +65,7 @@ typedef struct trb_tangent_measure {
  * and large beside rounding. */
 extern const double trb_difference[TRB_N_TOLERANCES];
 
-trb_status trb_tangents_create(const trb_model *m, trb_tangents **tangents, trb_message *message);
+trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents, trb_message *message);
 void       trb_tangents_free(trb_tangents *tangents);
 /* Forget origins, reaches and slopes. */
 void trb_tangents_forget(trb_tangents *tangents);

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "stepping/sundials_context.h"
+
 typedef void use_function(N_Vector v);
 
 static use_function *const variants[] = {
@@ -15,11 +17,11 @@ static use_function *const variants[] = {
 #endif
 };
 
-trb_body_entries trb_body_entries_of(const trb_model *m)
+trb_body_entries trb_body_entries_of(const trb_system *system)
 {
-  trb_body_entries entries = {.n_rollers = m->n_rollers};
-  for (int k = 0; k < trb_n_hub_kinds; k++)
-    if (trb_hub_table[k]->is_on(m)) entries.size[entries.n_bodies++] = trb_hub_table[k]->size;
+  trb_body_entries entries = {.n_rollers = system->model->n_rollers};
+  for (int b = 0; b < system->n_bodies; b++)
+    if (system->bodies[b].size > 0) entries.size[entries.n_bodies++] = system->bodies[b].size;
   return entries;
 }
 
@@ -37,7 +39,7 @@ static N_Vector clone(N_Vector v)
 
 N_Vector trb_vector_over(double *values, int n, const trb_body_entries *entries, int variant, SUNContext context)
 {
-  N_Vector v = N_VMake_Serial(n, values, context);
+  N_Vector v = trb_sundials_has_room(1) ? N_VMake_Serial(n, values, context) : NULL;
   if (v == NULL) return NULL;
   memcpy(values + n, entries, sizeof *entries);
   v->ops->nvclone = clone;

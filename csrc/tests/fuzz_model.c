@@ -71,12 +71,14 @@ static void set_up(trial *t, const uint8_t *data, size_t size)
 }
 
 /* A few steps, a record, a look at the counters. */
-static void step_on(const trb_model *m, const trial *t, const trb_motion *motion, const double *state)
+static void step_on(const trb_system *system, const trial *t, const trb_motion *motion, const double *state)
 {
-  trb_message     message = {TRB_OK, ""};
-  trb_simulation *s = NULL;
-  trb_settings    settings = t->settings;
-  if (trb_simulation_create(m, motion, t->explicit_method > 0.0 ? "erk" : "bdf", "", &settings, 0.0, state, &s, &message) != TRB_OK) return;
+  const trb_model *m = system->model;
+  trb_message      message = {TRB_OK, ""};
+  trb_simulation  *s = NULL;
+  trb_settings     settings = t->settings;
+  if (trb_simulation_create(system, motion, t->explicit_method > 0.0 ? "erk" : "bdf", "", &settings, 0.0, state, &s, &message) != TRB_OK)
+    return;
   double *record = malloc((size_t)trb_record_offset(m, TRB_N_FIELDS) * sizeof *record);
   if (record != NULL) {
     const double time = 1e-3;
@@ -89,12 +91,14 @@ static void step_on(const trb_model *m, const trial *t, const trb_motion *motion
 }
 
 /* The equilibrium under any load and any guess. */
-static void settle(const trb_model *m, const trial *t)
+static void settle(const trb_system *system, const trial *t)
 {
-  const size_t    n = (size_t)m->n_rollers;
-  trb_message     message = {TRB_OK, ""};
-  trb_equilibrium e = {.shaft_speed = t->shaft_speed};
-  e.angles = calloc(n, sizeof *e.angles), e.rollers = calloc(3 * n, sizeof *e.rollers), e.loads = calloc(3 * n, sizeof *e.loads);
+  const trb_model *m = system->model;
+  const size_t     n = (size_t)m->n_rollers;
+  trb_message      message = {TRB_OK, ""};
+  trb_equilibrium  e = {.shaft_speed = t->shaft_speed};
+  e.angles = calloc(n, sizeof *e.angles), e.rollers = calloc(TRB_ROLLER_FREEDOMS * n, sizeof *e.rollers);
+  e.loads = calloc(TRB_EQUILIBRIUM_LOADS * n, sizeof *e.loads);
   for (int i = 0; i < TRB_RING_FREEDOMS; i++) {
     e.load[i] = t->load[i];
     e.fixed[i] = t->fixed[i] > 0.0;
@@ -102,28 +106,29 @@ static void settle(const trb_model *m, const trial *t)
   }
   if (e.angles != NULL && e.rollers != NULL && e.loads != NULL) {
     for (size_t j = 0; j < n; j++) e.angles[j] = 2.0 * TRB_PI * (double)j / (double)n;
-    if (trb_equilibrium_solve(m, &e, &message) != TRB_OK && message.text[0] == '\0') __builtin_trap(); /* refused without a reason */
+    if (trb_equilibrium_solve(system, &e, &message) != TRB_OK && message.text[0] == '\0') __builtin_trap(); /* refused without a reason */
   }
   free(e.angles);
   free(e.rollers);
   free(e.loads);
 }
 
-static void try(const trb_model *m, const trial *t)
+static void try(const trb_system *system, const trial *t)
 {
-  const int   n = m->n_rollers;
-  trb_message message = {TRB_OK, ""};
-  trb_motion *motion = NULL;
+  const trb_model *m = system->model;
+  const int        n = m->n_rollers;
+  trb_message      message = {TRB_OK, ""};
+  trb_motion      *motion = NULL;
   if (t->settled > 0.0) {
-    settle(m, t);
+    settle(system, t);
     return;
   }
-  double *state = calloc((size_t)trb_state_size(m), sizeof *state);
+  double *state = calloc((size_t)trb_state_size(system), sizeof *state);
   if (state != NULL && trb_motion_create(t->motion, 2, &motion, &message) == TRB_OK) {
     for (int j = 0; j < n; j++) state[trb_state_roller(j) + TRB_ROLLER_v_t] = 130.0 * m->geometry.roller_centre_radius;
     for (int i = 0; i < 64; i++)
-      if (t->state_scale[i] != 0.0) state[i * 7 % trb_state_size(m)] += t->state_scale[i];
-    step_on(m, t, motion, state);
+      if (t->state_scale[i] != 0.0) state[i * 7 % trb_state_size(system)] += t->state_scale[i];
+    step_on(system, t, motion, state);
   }
   trb_motion_free(motion);
   free(state);
@@ -134,6 +139,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   static trial t;
   trb_message  message = {TRB_OK, ""};
   trb_model   *m = NULL;
+  trb_system  *system;
   set_up(&t, data, size);
   const int n = t.params.n_rollers >= 0.0 && t.params.n_rollers <= MOST_ROLLERS ? (int)t.params.n_rollers : MOST_ROLLERS;
   if (trb_model_create(&t.params, t.deviation, n, t.faces, RIG_FACES, &m, &message) != TRB_OK) {
@@ -141,7 +147,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     return 0;
   }
   /* what takes long and shows nothing more */
-  if (m->n_rollers <= 24 && m->n_nodes <= 24) try(m, &t);
+  if (m->n_rollers <= 24 && m->n_nodes <= 24) {
+    if (trb_system_tapered(m, &system, &message) != TRB_OK) __builtin_trap();
+    try(system, &t);
+    trb_system_free(system);
+  }
   trb_model_free(m);
   return 0;
 }

@@ -92,6 +92,25 @@ trb_model *rig_model(const trb_params *params)
   exit(1);
 }
 
+trb_system *rig_system(const trb_params *params)
+{
+  trb_model  *model = rig_model(params);
+  trb_system *system;
+  trb_message message = {TRB_OK, ""};
+  if (trb_system_tapered(model, &system, &message) == TRB_OK) return system;
+  printf("%s\n", message.text);
+  exit(1);
+}
+
+void rig_free(trb_system *system)
+{
+  trb_model *model = (trb_model *)system->model; /* made by rig_system */
+  trb_system_free(system);
+  trb_model_free(model);
+}
+
+int rig_cage(const trb_system *system) { return system->bodies[TRB_BODY_CAGE].first; }
+
 trb_motion *rig_motion(double displacement_z, double shaft_speed)
 {
   double      row[TRB_MOTION_COLUMNS] = {0};
@@ -111,42 +130,44 @@ trb_settings rig_settings(void)
   return settings;
 }
 
-double rig_state(const trb_model *m, double axial_load, double shaft_speed, double *state)
+double rig_state(const trb_system *system, double axial_load, double shaft_speed, double *state)
 {
-  double          angles[200], rollers[600] = {0}, loads[600];
-  trb_message     message = {TRB_OK, ""};
-  trb_equilibrium e = {.load = {0, 0, -axial_load, 0, 0},
-                       .fixed = {0, 0, 0, 1, 1},
-                       .shaft_speed = shaft_speed,
-                       .angles = angles,
-                       .rollers = rollers,
-                       .loads = loads};
+  const trb_model *m = system->model;
+  double           angles[200], rollers[200 * TRB_ROLLER_FREEDOMS] = {0}, loads[200 * TRB_EQUILIBRIUM_LOADS];
+  trb_message      message = {TRB_OK, ""};
+  trb_equilibrium  e = {.load = {0, 0, -axial_load, 0, 0},
+                        .fixed = {0, 0, 0, 1, 1},
+                        .shaft_speed = shaft_speed,
+                        .angles = angles,
+                        .rollers = rollers,
+                        .loads = loads};
   for (int j = 0; j < m->n_rollers; j++) angles[j] = trb_nominal_angle(m, j);
-  if (trb_equilibrium_solve(m, &e, &message) != TRB_OK) {
+  if (trb_equilibrium_solve(system, &e, &message) != TRB_OK) {
     printf("%s\n", message.text);
     exit(1);
   }
-  for (int i = 0; i < trb_state_size(m); i++) state[i] = 0.0;
+  for (int i = 0; i < trb_state_size(system); i++) state[i] = 0.0;
   const double orbit = m->geometry.cage_speed_ratio * shaft_speed, angle = m->geometry.roller_axis_angle;
   for (int j = 0; j < m->n_rollers; j++) {
-    double      *y = state + trb_state_roller(j);
-    const double tilt = rollers[3 * j + 2];
-    y[TRB_ROLLER_r] = rollers[3 * j], y[TRB_ROLLER_z] = rollers[3 * j + 1], y[TRB_ROLLER_tilt] = tilt;
-    y[TRB_ROLLER_v_t] = orbit * rollers[3 * j];
+    double       *y = state + trb_state_roller(j);
+    const double *at = rollers + (size_t)TRB_ROLLER_FREEDOMS * (size_t)j, tilt = at[2];
+    y[TRB_ROLLER_r] = at[0], y[TRB_ROLLER_z] = at[1], y[TRB_ROLLER_tilt] = tilt;
+    y[TRB_ROLLER_v_t] = orbit * at[0];
     y[TRB_ROLLER_omega_n] = -orbit * (sin(angle + tilt) - sin(angle)), y[TRB_ROLLER_omega_a] = orbit * (cos(angle + tilt) - cos(angle));
   }
   return e.displacement[2];
 }
 
-void rig_disturb(const trb_model *m, unsigned long long *seed, double *state)
+void rig_disturb(const trb_system *system, unsigned long long *seed, double *state)
 {
+  const trb_model    *m = system->model;
   static const double roller[TRB_ROLLER_SIZE] = {5e-7, 2e-4, 1e-6, 2e-4, 2e-5, 1e-3, 2e-2, 1e-3, 2.0, 2.0, 8.0};
   static const double cage[TRB_CAGE_SIZE] = {2e-5, 2e-5, 2e-5, 3e-4, 3e-4, 3e-4, 1e-2, 1e-2, 1e-2, 1.0, 1.0, 1.0};
   for (int j = 0; j < m->n_rollers; j++)
     for (int i = 0; i < TRB_ROLLER_SIZE; i++) state[trb_state_roller(j) + i] += roller[i] * rig_random(seed);
-  for (int i = 0; i < TRB_CAGE_SIZE; i++) state[trb_state_cage(m) + i] += cage[i] * rig_random(seed);
+  for (int i = 0; i < TRB_CAGE_SIZE; i++) state[rig_cage(system) + i] += cage[i] * rig_random(seed);
   /* beyond what rollers at their places allow: 0.108 mm */
-  state[trb_state_cage(m) + TRB_CAGE_x] += 1.2e-4;
+  state[rig_cage(system) + TRB_CAGE_x] += 1.2e-4;
 }
 
 /* Largest force of a roller on the cage at a state. */
@@ -161,7 +182,7 @@ static double largest_push(trb_dynamics *d, const double *y)
 
 void rig_draw_back(trb_dynamics *d, double most, const double *to, double *y)
 {
-  const int n = trb_state_main_size(d->model);
+  const int n = trb_state_main_size(d->system);
   for (int step = 0; step < 4000 && largest_push(d, y) > most; step++)
     for (int i = 0; i < n; i++) y[i] += 1e-3 * (to[i] - y[i]);
 }

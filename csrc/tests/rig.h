@@ -2,9 +2,11 @@
 #ifndef TRB_TESTS_RIG_H
 #define TRB_TESTS_RIG_H
 
+#include "body/cage.h"
 #include "motion/rhs.h"
 #include "stepping/arrow.h"
 #include "stepping/simulation.h"
+#include "system/tapered.h"
 
 enum { RIG_FACES = 4, RIG_SLICES = 24 };
 
@@ -14,13 +16,18 @@ trb_params rig_params(void);
 void rig_faces(const trb_params *params, trb_face faces[RIG_FACES]);
 /* A model of the parameters with the rig's faces and equal rollers; ends the program where that fails. */
 trb_model *rig_model(const trb_params *params);
+/* A system of such a model; rig_free frees both. */
+trb_system *rig_system(const trb_params *params);
+void        rig_free(trb_system *system);
+/* Where the coordinates of the cage begin in a state. */
+int rig_cage(const trb_system *system);
 /* A ring held at a displacement along z, at a speed, with gravity along -y. */
 trb_motion  *rig_motion(double displacement_z, double shaft_speed);
 trb_settings rig_settings(void);
 /* Equilibrium under an axial load; gives the ring's displacement along z and fills a state of pure rolling. */
-double rig_state(const trb_model *m, double axial_load, double shaft_speed, double *state);
+double rig_state(const trb_system *system, double axial_load, double shaft_speed, double *state);
 /* Disturb a state: rollers about it, velocities at some slip, the cage against its rollers so that pockets touch. */
-void rig_disturb(const trb_model *m, unsigned long long *seed, double *state);
+void rig_disturb(const trb_system *system, unsigned long long *seed, double *state);
 
 /* Uniform over -1 to 1. */
 double rig_random(unsigned long long *seed);

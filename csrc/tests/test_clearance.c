@@ -17,19 +17,20 @@ static trb_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touch
   trb_counters counters = {0};
   trb_dynamics_pose(d, 0.0, y);
   const trb_instant at = trb_dynamics_instant(d);
-  const trb_gaps    gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, &load, NULL, NULL);
+  const trb_gaps    gaps = trb_contact_pocket_of(d->model, &d->system->pairs[TRB_PAIR_pocket], &at, roller, &counters, &load, NULL, NULL);
   *touches = trb_norm(load.on_b.force) > 0.0 || counters.pocket_nodes > 0;
   return gaps;
 }
 
 /* From a state without contact, on along a random direction of all coordinates until the clearance ends. */
-static void walk(const trb_model *m, trb_dynamics *d, const double *start, const double *unit, int *held, int *reached)
+static void walk(const trb_system *system, trb_dynamics *d, const double *start, const double *unit, int *held, int *reached)
 {
+  const trb_model   *m = system->model;
   trb_clearance_arms arms[TRB_N_GAPS];
   double             direction[MOST] = {0}, y[MOST];
   trb_pair_pocket.clearance(m, arms);
   const int only = (int)(11.0 * (0.5 + 0.5 * rig_random(&seed))), alone = rig_random(&seed) > 0.0;
-  for (int i = 0; i < TRB_CLEARANCE_CAGE; i++) direction[trb_state_cage(m) + i] = unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
+  for (int i = 0; i < TRB_CLEARANCE_BODY; i++) direction[rig_cage(system) + i] = unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
   for (int j = 0; j < m->n_rollers; j++)
     for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++) direction[trb_state_roller(j) + i] = unit[i] * rig_random(&seed);
   for (int j = 0; j < m->n_rollers; j++) {
@@ -38,18 +39,18 @@ static void walk(const trb_model *m, trb_dynamics *d, const double *start, const
     memcpy(y, start, sizeof y);
     const trb_gaps gaps = gaps_at(d, j, y, &touches);
     CHECK(!(trb_gaps_clear(&gaps) && touches));
-    trb_clearance_set(m, &c, &gaps, y + trb_state_roller(j), y + trb_state_cage(m));
+    trb_clearance_set(m, &c, &gaps, y + trb_state_roller(j), y + rig_cage(system));
     if (!trb_gaps_clear(&gaps)) {
-      CHECK(!trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + trb_state_cage(m)));
+      CHECK(!trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + rig_cage(system)));
       continue;
     }
     for (double along = 0.0; along < 40.0; along += 0.02) {
-      for (int i = 0; i < TRB_CLEARANCE_CAGE; i++)
+      for (int i = 0; i < TRB_CLEARANCE_BODY; i++)
         if (!alone || only == TRB_CLEARANCE_ROLLER + i)
-          y[trb_state_cage(m) + i] = start[trb_state_cage(m) + i] + along * direction[trb_state_cage(m) + i];
+          y[rig_cage(system) + i] = start[rig_cage(system) + i] + along * direction[rig_cage(system) + i];
       for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++)
         if (!alone || only == i) y[trb_state_roller(j) + i] = start[trb_state_roller(j) + i] + along * direction[trb_state_roller(j) + i];
-      const int      holds = trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + trb_state_cage(m));
+      const int      holds = trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + rig_cage(system));
       const trb_gaps now = gaps_at(d, j, y, &touches);
       if (holds) {
         ++*held;
@@ -66,32 +67,33 @@ static void walk(const trb_model *m, trb_dynamics *d, const double *start, const
 static void check_scene(const trb_params *params)
 {
   /* so that each coordinate alone moves surfaces by some tens of micrometres */
-  static const double unit[TRB_CLEARANCE_ROLLER + TRB_CLEARANCE_CAGE] = {2e-5, 5e-4, 2e-5, 1e-3, 1e-3, 2e-5, 2e-5, 2e-5, 5e-4, 5e-4, 5e-4};
+  static const double unit[TRB_CLEARANCE_ROLLER + TRB_CLEARANCE_BODY] = {2e-5, 5e-4, 2e-5, 1e-3, 1e-3, 2e-5, 2e-5, 2e-5, 5e-4, 5e-4, 5e-4};
   const double        speed = 100 * TRB_PI;
-  trb_model          *m = rig_model(params);
+  trb_system         *system = rig_system(params);
   trb_dynamics       *d;
   double              y[MOST], start[MOST];
-  trb_motion         *motion = rig_motion(rig_state(m, 4930.0, speed, y), speed);
+  trb_motion         *motion = rig_motion(rig_state(system, 4930.0, speed, y), speed);
   int                 held = 0, reached = 0;
-  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   for (int trial = 0; trial < 12; trial++) {
     memcpy(start, y, sizeof start);
-    if (trial % 3 == 0) rig_disturb(m, &seed, start);
-    for (int i = 0; i < TRB_CLEARANCE_CAGE; i++) start[trb_state_cage(m) + i] += unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
-    walk(m, d, start, unit, &held, &reached);
+    if (trial % 3 == 0) rig_disturb(system, &seed, start);
+    for (int i = 0; i < TRB_CLEARANCE_BODY; i++) start[rig_cage(system) + i] += unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
+    walk(system, d, start, unit, &held, &reached);
   }
   CHECK(held > 1000);
   CHECK(reached > 50);
   trb_dynamics_free(d);
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 /* Not a number, and displacements beyond those that the arms are made for, prove nothing. */
 static void test_limits(void)
 {
   const trb_params   p = rig_params();
-  trb_model         *m = rig_model(&p);
+  trb_system        *system = rig_system(&p);
+  const trb_model   *m = system->model;
   trb_clearance_arms arms[TRB_N_GAPS];
   const trb_gaps     near = {{1e-4, 1e-4}}, unknown = {{1e-4, (double)NAN}};
   double             roller[TRB_ROLLER_SIZE] = {0}, cage[TRB_CAGE_SIZE] = {0};
@@ -107,7 +109,7 @@ static void test_limits(void)
   cage[TRB_CAGE_psi] = 0.0, cage[TRB_CAGE_x] = 1.0;
   trb_clearance_set(m, &c, &near, roller, cage);
   CHECK(!trb_clearance_holds(&c, arms, roller, cage));
-  trb_model_free(m);
+  rig_free(system);
 }
 
 int main(void)

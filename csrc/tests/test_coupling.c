@@ -34,13 +34,13 @@ static int loads_at(trb_dynamics *d, int roller, const double *y, trb_load *load
   trb_counters counters = {0};
   trb_dynamics_pose(d, 0.01, y);
   const trb_instant at = trb_dynamics_instant(d);
-  const trb_gaps    gaps = trb_contact_pocket_of(d->model, &at, roller, &counters, load, slopes, NULL);
+  const trb_gaps    gaps = trb_contact_pocket_of(d->model, &d->system->pairs[TRB_PAIR_pocket], &at, roller, &counters, load, slopes, NULL);
   return !trb_gaps_clear(&gaps) && trb_norm(load->on_b.force) > 0.0;
 }
 
-static int entry_of(const trb_model *m, int roller, int column)
+static int entry_of(const trb_system *system, int roller, int column)
 {
-  return column < TRB_ROLLER_SIZE ? trb_state_roller(roller) + column : trb_state_cage(m) + column - TRB_ROLLER_SIZE;
+  return column < TRB_ROLLER_SIZE ? trb_state_roller(roller) + column : rig_cage(system) + column - TRB_ROLLER_SIZE;
 }
 
 static int is_place(int column) { return column < TRB_ROLLER_SIZE ? column < TRB_ROLLER_v_r : column - TRB_ROLLER_SIZE < TRB_CAGE_v_x; }
@@ -48,14 +48,14 @@ static int is_place(int column) { return column < TRB_ROLLER_SIZE ? column < TRB
 /* Central differences by a micrometre's thousandth; 0 where the roller leaves its pocket within them. */
 static int differentiate(trb_dynamics *d, int roller, const double *y, double (*slopes)[ROWS])
 {
-  static const double share[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-6, 1e-4, 0};
-  const trb_model    *m = d->model;
+  static const double share[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-8, 1e-6, 1e-4, 1e-4, 0};
+  const trb_system   *system = d->system;
   double              moved[512], low[ROWS], high[ROWS];
   trb_load            load;
-  memcpy(moved, y, (size_t)trb_state_size(m) * sizeof *y);
+  memcpy(moved, y, (size_t)trb_state_size(system) * sizeof *y);
   for (int c = 0; c < COLUMNS; c++) {
-    const int    at = entry_of(m, roller, c);
-    const double h = share[trb_state_tolerance(m, at)];
+    const int    at = entry_of(system, roller, c);
+    const double h = share[trb_state_tolerance(system, at)];
     for (int side = 0; side < 2; side++) {
       moved[at] = y[at] + (side == 0 ? -h : h);
       if (!loads_at(d, roller, moved, &load, NULL)) return 0;
@@ -73,14 +73,14 @@ typedef struct bound {
   double place, velocity;
 } bound;
 
-static void compare(const trb_model *m, int roller, double (*found)[ROWS], double (*exact)[ROWS], const bound *b)
+static void compare(const trb_system *system, int roller, double (*found)[ROWS], double (*exact)[ROWS], const bound *b)
 {
   for (int places = 0; places < 2; places++)
     for (int i = 0; i < ROWS; i++) {
       double largest = 0.0, off = 0.0;
       for (int c = 0; c < COLUMNS; c++) {
-        const trb_tolerance kind = trb_state_tolerance(m, entry_of(m, roller, c));
-        const double        unit = kind == TRB_TOL_ANGLE || kind == TRB_TOL_SPIN ? 100.0 : 1.0;
+        const trb_tolerance kind = trb_state_tolerance(system, entry_of(system, roller, c));
+        const double        unit = kind != TRB_TOL_POSITION && kind != TRB_TOL_VELOCITY ? 100.0 : 1.0;
         if (is_place(c) != places) continue;
         largest = fmax(largest, unit * fabs(exact[c][i]));
         off = fmax(off, unit * fabs(found[c][i] - exact[c][i]));
@@ -92,35 +92,36 @@ static void compare(const trb_model *m, int roller, double (*found)[ROWS], doubl
 /* most: force of a roller on the cage, N; shift: of the cage along the axis, which its ends take up, m. */
 static void check_scene(const trb_params *params, double most, double shift, const bound *b)
 {
-  const double  speed = 100 * TRB_PI;
-  trb_model    *m = rig_model(params);
-  double        start[512], y[512], found[COLUMNS][ROWS], exact[COLUMNS][ROWS];
-  trb_motion   *motion = rig_motion(rig_state(m, 4930.0, speed, start), speed);
-  trb_dynamics *d;
-  int           checked = 0;
-  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  const double     speed = 100 * TRB_PI;
+  trb_system      *system = rig_system(params);
+  const trb_model *m = system->model;
+  double           start[512], y[512], found[COLUMNS][ROWS], exact[COLUMNS][ROWS];
+  trb_motion      *motion = rig_motion(rig_state(system, 4930.0, speed, start), speed);
+  trb_dynamics    *d;
+  int              checked = 0;
+  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   for (int trial = 0; trial < 40; trial++) {
     memcpy(y, start, sizeof y);
-    rig_disturb(m, &seed, y);
-    y[trb_state_cage(m) + TRB_CAGE_z] += shift;
+    rig_disturb(system, &seed, y);
+    y[rig_cage(system) + TRB_CAGE_z] += shift;
     rig_draw_back(d, most, start, y);
     for (int j = 0; j < m->n_rollers; j++) {
       trb_load     load;
       trb_coupling k;
       if (!differentiate(d, j, y, exact) || !loads_at(d, j, y, &load, &k.slopes)) continue;
-      trb_coupling_place(&k, &d->rollers[j], &trb_hub_cage, trb_dynamics_cage(d), &load);
+      trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[TRB_BODY_CAGE], &d->bodies[TRB_BODY_CAGE].pose, &load);
       for (int c = 0; c < COLUMNS; c++) {
         const trb_load slope = c < TRB_ROLLER_SIZE ? trb_coupling_of_roller(&k, c) : trb_coupling_of_body(&k, c - TRB_ROLLER_SIZE);
         rows_of(&d->rollers[j].frame, &slope, found[c]);
       }
-      compare(m, j, found, exact, b);
+      compare(system, j, found, exact, b);
       checked++;
     }
   }
   CHECK(checked > 30);
   trb_dynamics_free(d);
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 int main(void)

@@ -171,12 +171,14 @@ int main(void)
   trb_params   p = rig_params();
   static bench b;
   p.lubrication = TRB_LUBRICATION_DRY, p.dry_friction = 0.1, p.rolling_resistance = 0.0, p.damping = 0.0;
-  trb_model *m = rig_model(&p);
+  trb_system      *system = rig_system(&p);
+  const trb_model *m = system->model;
   CHECK(m->n_lanes <= MOST);
   for (int v = 0; v < trb_n_kernel_variants; v++) {
     if (!trb_kernel_runs(v)) continue;
     b = (bench){.m = m, .variant = v};
-    if (!CHECK(trb_workspace_create(m, trb_kernel_variants[v].name, &b.work, NULL) == TRB_OK)) return check_report();
+    if (!CHECK(trb_workspace_create(system->pairs, system->n_pairs, trb_kernel_variants[v].name, &b.work, NULL) == TRB_OK))
+      return check_report();
     for (int race = 0; race < TRB_N_RACES; race++) {
       test_square(&b, race);
       test_leaning(&b, race);
@@ -185,6 +187,6 @@ int main(void)
     }
     trb_workspace_free(b.work);
   }
-  trb_model_free(m);
+  rig_free(system);
   return check_report();
 }

@@ -1,9 +1,9 @@
-/* The hub takes a second body. This program has a table of the hub of its own, which the linker takes instead of that of body/hub.c: the
- * cage, and a weight on a damped spring that carries the land of the inner ring. The weight has three coordinates and their velocities, and
- * it is there only while a switch says so. Nothing else of the core knows of it. */
+/* The hub takes a second body: a weight on a damped spring, which is put into a system beside the cage and carries the land of the inner
+ * ring. The weight has three coordinates and their velocities; its land is where the inner ring is. Nothing else of the core knows of it. */
 #include <stdlib.h>
 
 #include "body/cage.h"
+#include "body/ring.h"
 #include "check.h"
 #include "contact/kernels.h"
 #include "rig.h"
@@ -16,29 +16,24 @@ enum { X, Y, Z, V_X, V_Y, V_Z, WEIGHT_SIZE };
 enum { ROOM = 600, MOST = 12 * TRB_NR + TRB_CAGE_SIZE + WEIGHT_SIZE };
 
 static const double mass = 0.7, stiffness = 7e5, damping = 40.0;
-static int          present; /* whether models have the weight */
 
-static int is_present(const trb_model *m)
+static void pose_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
 {
   (void)m;
-  return present;
-}
-
-static void pose_of(const trb_model *m, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
-{
-  (void)m;
+  (void)body;
   (void)drive;
   memset(pose, 0, sizeof *pose);
   pose->x = trb_v(y[X], y[Y], y[Z]);
   pose->v = trb_v(y[V_X], y[V_Y], y[V_Z]);
 }
 
-static void rates_of(const trb_model *m, const trb_drive *drive, const trb_rigid_pose *pose, const double *y, const trb_wrench *load,
-                     double *rates)
+static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *pose, const double *y,
+                     const trb_wrench *load, double *rates)
 {
   const trb_vec3 gravity = trb_gravity_in(drive, 1.0, 0.0), held = trb_scale(-stiffness, pose->x);
   const trb_vec3 force = trb_add(trb_axpy(held, -damping, pose->v), load->force);
   (void)m;
+  (void)body;
   for (int i = 0; i < 3; i++) rates[i] = y[V_X + i];
   rates[V_X] = force.x / mass + gravity.x, rates[V_Y] = force.y / mass + gravity.y, rates[V_Z] = force.z / mass + gravity.z;
 }
@@ -50,14 +45,16 @@ static trb_rigid motion_of(const trb_rigid_pose *pose, int coordinate)
   return (trb_rigid){trb_v(along[0], along[1], along[2]), trb_v(0, 0, 0)};
 }
 
-static double mass_of(const trb_model *m)
+static double mass_of(const trb_model *m, const trb_body *body)
 {
+  (void)body;
   (void)m;
   return mass;
 }
 
-static double kinetic_of(const trb_model *m, const trb_rigid_pose *pose)
+static double kinetic_of(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose)
 {
+  (void)body;
   (void)m;
   return 0.5 * mass * trb_dot(pose->v, pose->v);
 }
@@ -67,30 +64,37 @@ static const trb_coordinate coordinates[WEIGHT_SIZE] = {
     {"z", TRB_TOL_POSITION, "third place, m"},         {"v_x", TRB_TOL_VELOCITY, "first velocity, m/s"},
     {"v_y", TRB_TOL_VELOCITY, "second velocity, m/s"}, {"v_z", TRB_TOL_VELOCITY, "third velocity, m/s"}};
 
-static const trb_hub_kind weight = {.name = "weight",
-                                    .body = TRB_BODY_INNER_RING,
-                                    .size = WEIGHT_SIZE,
-                                    .coordinates = coordinates,
-                                    .skew = -1,
-                                    .is_on = is_present,
-                                    .pose = pose_of,
-                                    .rates = rates_of,
-                                    .motion = motion_of,
-                                    .mass = mass_of,
-                                    .kinetic = kinetic_of};
+/* Puts the weight in, or takes it out. */
+static void set_present(trb_system *system, int present)
+{
+  static trb_body_kind weight;
+  weight = (trb_body_kind){.name = "weight",
+                           .place = trb_ring_prescribed.place,
+                           .power = trb_ring_prescribed.power,
+                           .size = WEIGHT_SIZE,
+                           .coordinates = coordinates,
+                           .skew = -1,
+                           .pose = pose_of,
+                           .rates = rates_of,
+                           .motion = motion_of,
+                           .mass = mass_of,
+                           .kinetic = kinetic_of};
+  system->bodies[TRB_N_BODIES] = (trb_body){.kind = &weight, .name = "weight"};
+  system->n_bodies = TRB_N_BODIES + present;
+  system->surfaces[system->pairs[TRB_PAIR_inner_land].surface[1]].body = present ? TRB_N_BODIES : TRB_BODY_INNER_RING;
+  CHECK(trb_system_finish(system, NULL) == TRB_OK);
+}
 
-const trb_hub_kind *const trb_hub_table[] = {&trb_hub_cage, &weight};
-const int                 trb_n_hub_kinds = 2;
-
-static const double       unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-5, 1e-3, 1.0};
+static const double       unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-7, 1e-5, 1e-3, 1e-3, 1.0};
 static unsigned long long seed = 5;
 static double             dense[MOST][MOST], found[MOST][MOST];
 
 /* A bearing whose cage is guided by the inner ring's land, with the weight and without it, at the same state; tail and hub moved up. */
 typedef struct scene {
-  trb_model  *model;
-  trb_motion *motion;
-  double      y[ROOM];
+  trb_system      *system;
+  const trb_model *model;
+  trb_motion      *motion;
+  double           y[ROOM];
 } scene;
 
 static scene open_scene(void)
@@ -98,32 +102,33 @@ static scene open_scene(void)
   trb_params p = rig_params();
   scene      s = {0};
   p.guidance = TRB_GUIDANCE_INNER_LAND, p.damping = 1;
-  s.model = rig_model(&p);
-  s.motion = rig_motion(rig_state(s.model, 4930.0, 100 * TRB_PI, s.y), 100 * TRB_PI);
+  s.system = rig_system(&p);
+  s.model = s.system->model;
+  s.motion = rig_motion(rig_state(s.system, 4930.0, 100 * TRB_PI, s.y), 100 * TRB_PI);
   return s;
 }
 
 static void close_scene(scene *s)
 {
   trb_motion_free(s->motion);
-  trb_model_free(s->model);
+  rig_free(s->system);
 }
 
-static int weight_at(const trb_model *m) { return trb_state_cage(m) + TRB_CAGE_SIZE; }
+static int weight_at(const trb_system *system) { return rig_cage(system) + TRB_CAGE_SIZE; }
 
 static void test_layout(void)
 {
   scene s = open_scene();
-  present = 0;
-  const int without = trb_state_size(s.model);
-  CHECK(trb_hub_width(s.model) == TRB_CAGE_SIZE);
-  present = 1;
-  CHECK(trb_hub_width(s.model) == TRB_CAGE_SIZE + WEIGHT_SIZE);
-  CHECK(trb_state_size(s.model) == without + WEIGHT_SIZE);
-  CHECK(trb_state_spin(s.model) == weight_at(s.model) + WEIGHT_SIZE);
+  set_present(s.system, 0);
+  const int without = trb_state_size(s.system);
+  CHECK(s.system->hub_width == TRB_CAGE_SIZE);
+  set_present(s.system, 1);
+  CHECK(s.system->hub_width == TRB_CAGE_SIZE + WEIGHT_SIZE);
+  CHECK(trb_state_size(s.system) == without + WEIGHT_SIZE);
+  CHECK(trb_state_spin(s.system) == weight_at(s.system) + WEIGHT_SIZE);
   for (int i = 0; i < WEIGHT_SIZE; i++)
-    CHECK(trb_state_tolerance(s.model, weight_at(s.model) + i) == (i < V_X ? TRB_TOL_POSITION : TRB_TOL_VELOCITY));
-  CHECK(trb_state_tolerance(s.model, trb_state_spin(s.model)) == TRB_TOL_QUADRATURE);
+    CHECK(trb_state_tolerance(s.system, weight_at(s.system) + i) == (i < V_X ? TRB_TOL_POSITION : TRB_TOL_VELOCITY));
+  CHECK(trb_state_tolerance(s.system, trb_state_spin(s.system)) == TRB_TOL_QUADRATURE);
   close_scene(&s);
 }
 
@@ -133,20 +138,20 @@ static void test_rates(void)
   scene         s = open_scene();
   double        with[ROOM] = {0}, rates[ROOM], alone[ROOM], energy[2];
   trb_dynamics *d;
-  const int     at = weight_at(s.model);
-  present = 0;
-  const int size = trb_state_size(s.model);
-  rig_disturb(s.model, &seed, s.y);
-  if (!CHECK(trb_dynamics_create(s.model, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  const int     at = weight_at(s.system);
+  set_present(s.system, 0);
+  const int size = trb_state_size(s.system);
+  rig_disturb(s.system, &seed, s.y);
+  if (!CHECK(trb_dynamics_create(s.system, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
   trb_rhs(d, NULL, 0.01, s.y, alone);
   energy[0] = trb_audit_kinetic(d);
   const trb_vec3 on_ring = d->hub.on[TRB_BODY_INNER_RING].force;
   trb_dynamics_free(d);
-  present = 1;
+  set_present(s.system, 1);
   memcpy(with, s.y, (size_t)at * sizeof *with);
   memcpy(with + at + WEIGHT_SIZE, s.y + at, (size_t)(size - at) * sizeof *with);
   for (int i = 0; i < WEIGHT_SIZE; i++) with[at + i] = i < V_X ? 1e-5 * (i + 1) : 0.1 * i;
-  if (!CHECK(trb_dynamics_create(s.model, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_dynamics_create(s.system, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
   trb_rhs(d, NULL, 0.01, with, rates);
   energy[1] = trb_audit_kinetic(d);
   const trb_vec3 gravity = trb_gravity_in(&d->drive, 1.0, 0.0), v = trb_v(with[at + V_X], with[at + V_Y], with[at + V_Z]);
@@ -154,13 +159,13 @@ static void test_rates(void)
   /* rollers, cage, spin angles and losses have the same bits */
   for (int i = 0; i < at; i++) CHECK(rates[i] == alone[i]);
   for (int i = at; i < size; i++)
-    if (i != trb_state_quadrature(s.model) - WEIGHT_SIZE + TRB_Q_work_gravity) CHECK(rates[i + WEIGHT_SIZE] == alone[i]);
+    if (i != trb_state_quadrature(s.system) - WEIGHT_SIZE + TRB_Q_work_gravity) CHECK(rates[i + WEIGHT_SIZE] == alone[i]);
   /* the weight moves as its row says, under the land's force on the ring and under gravity, which does work on it */
   CHECK(trb_norm(on_ring) > 1.0);
   for (int i = 0; i < V_X; i++) CHECK(rates[at + i] == with[at + V_X + i]);
   CHECK_NEAR(rates[at + V_X], (on_ring.x - stiffness * with[at + X] - damping * v.x) / mass + gravity.x, 1e-9 * fabs(rates[at + V_X]));
   CHECK_NEAR(rates[at + V_Y], (on_ring.y - stiffness * with[at + Y] - damping * v.y) / mass + gravity.y, 1e-9 * fabs(rates[at + V_Y]));
-  const int    work = trb_state_quadrature(s.model) + TRB_Q_work_gravity;
+  const int    work = trb_state_quadrature(s.system) + TRB_Q_work_gravity;
   const double more = mass * trb_dot(gravity, v), before = alone[work - WEIGHT_SIZE];
   CHECK_NEAR(rates[work] - before, more, 1e-9 * fabs(more) + 1e-12 * fabs(before));
   CHECK_NEAR(energy[1] - energy[0], 0.5 * mass * trb_dot(v, v), 1e-9 * energy[1]);
@@ -175,23 +180,23 @@ static void test_jacobian(void)
   trb_dynamics *d;
   trb_jacobian *jac;
   trb_arrow    *a;
-  present = 1;
-  const int n = trb_state_main_size(s.model), hub = trb_state_hub(s.model), at = weight_at(s.model);
-  rig_disturb(s.model, &seed, s.y);
-  if (!CHECK(trb_dynamics_create(s.model, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_jacobian_create(s.model, s.motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(s.model->n_rollers, trb_hub_width(s.model), &a, NULL) == TRB_OK)) return;
+  set_present(s.system, 1);
+  const int n = trb_state_main_size(s.system), hub = trb_state_hub(s.system), at = weight_at(s.system);
+  rig_disturb(s.system, &seed, s.y);
+  if (!CHECK(trb_dynamics_create(s.system, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_jacobian_create(s.system, s.motion, "scalar", &jac, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(s.model->n_rollers, s.system->hub_width, &a, NULL) == TRB_OK)) return;
   trb_jacobian_fill(jac, 0.01, s.y, 1, a);
   rig_expand(a, MOST, &found[0][0]);
   for (int c = 0; c < n; c++) {
-    const double of = unit[trb_state_tolerance(s.model, c)], was = s.y[c];
+    const double of = unit[trb_state_tolerance(s.system, c)], was = s.y[c];
     s.y[c] = was + 0.05 * of;
     trb_rhs(d, NULL, 0.01, s.y, high);
     s.y[c] = was - 0.05 * of;
     trb_rhs(d, NULL, 0.01, s.y, low);
     s.y[c] = was;
     for (int i = 0; i < n; i++) {
-      const double per = unit[trb_state_tolerance(s.model, i)];
+      const double per = unit[trb_state_tolerance(s.system, i)];
       dense[i][c] = (high[i] - low[i]) / 0.1 / per;
       found[i][c] *= of / per;
     }
@@ -218,14 +223,14 @@ static void test_steps(const char *kind)
   trb_message     message = {TRB_OK, ""};
   trb_simulation *sim;
   double          y[ROOM] = {0};
-  present = 1;
   settings.rtol = 1e-6, settings.atol_position = 1e-12, settings.atol_velocity = 1e-7, settings.atol_angle = 1e-10,
   settings.atol_spin = 1e-5;
-  trb_model  *m = rig_model(&p);
-  trb_motion *motion = rig_motion(rig_state(m, 4930.0, 100 * TRB_PI, y), 100 * TRB_PI);
-  const int   at = weight_at(m);
+  trb_system *system = rig_system(&p);
+  set_present(system, 1);
+  trb_motion *motion = rig_motion(rig_state(system, 4930.0, 100 * TRB_PI, y), 100 * TRB_PI);
+  const int   at = weight_at(system);
   y[at + Z] = 1e-4;
-  if (!CHECK(trb_simulation_create(m, motion, kind, "", &settings, 0.0, y, &sim, &message) == TRB_OK)) return;
+  if (!CHECK(trb_simulation_create(system, motion, kind, "", &settings, 0.0, y, &sim, &message) == TRB_OK)) return;
   while (sim->integrator.time < 5e-3)
     if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
   const double t = sim->integrator.time, decay = 0.5 * damping / mass, omega = sqrt(stiffness / mass - decay * decay);
@@ -235,10 +240,10 @@ static void test_steps(const char *kind)
   trb_simulation_free(sim);
   /* what is wrong is said in the weight's name */
   y[at + V_Y] = NAN;
-  CHECK(trb_simulation_create(m, motion, kind, "", &settings, 0.0, y, &sim, &message) != TRB_OK);
+  CHECK(trb_simulation_create(system, motion, kind, "", &settings, 0.0, y, &sim, &message) != TRB_OK);
   CHECK_SAYS(message.text, "weight, v_y (second velocity, m/s)");
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 /* The norm of a vector is that of the body whose mean is largest, each body of the hub for itself; and not a number if an entry is not. */
@@ -247,9 +252,9 @@ static void test_norm(void)
   double       values[ROOM] = {0}, weights[ROOM];
   scene        s = open_scene();
   trb_sundials sundials = {0};
-  present = 1;
-  const int              n = trb_state_size(s.model), at = weight_at(s.model);
-  const trb_body_entries entries = trb_body_entries_of(s.model);
+  set_present(s.system, 1);
+  const int              n = trb_state_size(s.system), at = weight_at(s.system);
+  const trb_body_entries entries = trb_body_entries_of(s.system);
   if (!CHECK(trb_sundials_open(&sundials, NULL) == TRB_OK)) return;
   for (int variant = 0; variant < trb_n_kernel_variants; variant++) {
     if (!trb_kernel_runs(variant)) continue;

@@ -10,33 +10,34 @@
 enum { MOST = 12 * TRB_NR + TRB_CAGE_SIZE };
 
 /* Tolerances of a run, by kind: what makes rows and columns comparable. */
-static const double       unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-5, 1e-3, 1.0};
+static const double       unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-7, 1e-5, 1e-3, 1e-3, 1.0};
 static unsigned long long seed = 5;
 static double             dense[MOST][MOST], found[MOST][MOST];
 
 /* d rates / d state by central differences with a share of the unit, in units of the tolerances, row over column. */
 static void differentiate(trb_dynamics *d, double time, const double *y, double share)
 {
-  const trb_model *m = d->model;
-  const int        n = trb_state_main_size(m), size = trb_state_size(m);
-  double          *moved = malloc(3 * (size_t)size * sizeof *moved), *low = moved + size, *high = low + size;
+  const trb_system *system = d->system;
+  const int         n = trb_state_main_size(system), size = trb_state_size(system);
+  double           *moved = malloc(3 * (size_t)size * sizeof *moved), *low = moved + size, *high = low + size;
   if (moved == NULL) exit(1);
   memcpy(moved, y, (size_t)size * sizeof *y);
   for (int c = 0; c < n; c++) {
-    const double scale = unit[trb_state_tolerance(m, c)], h = share * scale;
+    const double scale = unit[trb_state_tolerance(system, c)], h = share * scale;
     moved[c] = y[c] + h;
     trb_rhs(d, NULL, time, moved, high);
     moved[c] = y[c] - h;
     trb_rhs(d, NULL, time, moved, low);
     moved[c] = y[c];
-    for (int i = 0; i < n; i++) dense[i][c] = (high[i] - low[i]) / (2.0 * h) * scale / unit[trb_state_tolerance(m, i)];
+    for (int i = 0; i < n; i++) dense[i][c] = (high[i] - low[i]) / (2.0 * h) * scale / unit[trb_state_tolerance(system, i)];
   }
   free(moved);
 }
 
-static void expand(const trb_model *m, const trb_arrow *a)
+static void expand(const trb_system *system, const trb_arrow *a)
 {
-  const int n = trb_state_main_size(m), cage = trb_state_cage(m);
+  const trb_model *m = system->model;
+  const int        n = trb_state_main_size(system), cage = rig_cage(system);
   memset(found, 0, sizeof found);
   for (int j = 0; j < m->n_rollers; j++)
     for (int i = 0; i < TRB_NR; i++) {
@@ -49,21 +50,27 @@ static void expand(const trb_model *m, const trb_arrow *a)
   for (int i = 0; i < TRB_CAGE_SIZE; i++)
     for (int c = 0; c < TRB_CAGE_SIZE; c++) found[cage + i][cage + c] = a->hub[c * a->room + i];
   for (int i = 0; i < n; i++)
-    for (int c = 0; c < n; c++) found[i][c] *= unit[trb_state_tolerance(m, c)] / unit[trb_state_tolerance(m, i)];
+    for (int c = 0; c < n; c++) found[i][c] *= unit[trb_state_tolerance(system, c)] / unit[trb_state_tolerance(system, i)];
 }
 
-static int body_of(const trb_model *m, int i) { return i < trb_state_cage(m) ? i / TRB_NR : m->n_rollers; }
+static int body_of(const trb_system *system, int i)
+{
+  const trb_model *m = system->model;
+  return i < rig_cage(system) ? i / TRB_NR : m->n_rollers;
+}
 
 /* Entries of two bodies that do not couple are exactly zero in both; the others agree relative to the largest of their row. */
-static void compare(const trb_model *m, double tolerance)
+static void compare(const trb_system *system, double tolerance)
 {
-  const int n = trb_state_main_size(m);
+  const trb_model *m = system->model;
+  const int        n = trb_state_main_size(system);
   for (int i = 0; i < n; i++) {
     double largest = 0.0, off = 0.0;
     for (int c = 0; c < n; c++) {
       largest = fmax(largest, fabs(dense[i][c]));
       off = fmax(off, fabs(found[i][c] - dense[i][c]));
-      if (body_of(m, i) != body_of(m, c) && body_of(m, i) < m->n_rollers && body_of(m, c) < m->n_rollers) CHECK(dense[i][c] == 0.0);
+      if (body_of(system, i) != body_of(system, c) && body_of(system, i) < m->n_rollers && body_of(system, c) < m->n_rollers)
+        CHECK(dense[i][c] == 0.0);
     }
     CHECK_NEAR(off, 0.0, tolerance * largest + 1e-9);
   }
@@ -72,36 +79,37 @@ static void compare(const trb_model *m, double tolerance)
 /* most: force of a roller on the cage, N. Loads over radii, which the slopes of pockets leave out, grow with it. */
 static void check_scene(const trb_params *params, double load, double most, int touching, double tolerance)
 {
-  trb_model    *m = rig_model(params);
-  double        y[512], start[512];
-  const double  speed = 100 * TRB_PI;
-  trb_motion   *motion = rig_motion(rig_state(m, load, speed, y), speed);
-  trb_dynamics *d;
-  trb_jacobian *jac;
-  trb_arrow    *arrow;
-  int           coupled = 0;
-  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_jacobian_create(m, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(m->n_rollers, trb_hub_width(m), &arrow, NULL) == TRB_OK)) return;
+  trb_system      *system = rig_system(params);
+  const trb_model *m = system->model;
+  double           y[512], start[512];
+  const double     speed = 100 * TRB_PI;
+  trb_motion      *motion = rig_motion(rig_state(system, load, speed, y), speed);
+  trb_dynamics    *d;
+  trb_jacobian    *jac;
+  trb_arrow       *arrow;
+  int              coupled = 0;
+  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(m->n_rollers, system->hub_width, &arrow, NULL) == TRB_OK)) return;
   memcpy(start, y, sizeof start);
-  rig_disturb(m, &seed, y);
+  rig_disturb(system, &seed, y);
   rig_draw_back(d, most, start, y);
   trb_jacobian_fill(jac, 0.01, y, 1, arrow);
   for (int j = 0; j < m->n_rollers; j++) coupled += arrow->borders[j].coupled;
   CHECK(coupled >= touching);
-  expand(m, arrow);
+  expand(system, arrow);
   differentiate(d, 0.01, y, 0.05);
-  compare(m, tolerance);
+  compare(system, tolerance);
   /* what the rings do is kept where it need not be fresh: at the same state it is the same */
   trb_jacobian_fill(jac, 0.01, y, 0, arrow);
   CHECK(jac->rings_evaluations == 1);
-  expand(m, arrow);
-  compare(m, tolerance);
+  expand(system, arrow);
+  compare(system, tolerance);
   trb_jacobian_free(jac);
   trb_arrow_free(arrow);
   trb_dynamics_free(d);
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 /* As impacts are, and with loads of kilonewtons. */

@@ -31,8 +31,11 @@ static void near_vector(const char *what, const char *variant, trb_vec3 value, t
   near(what, variant, value.z, expected.z, scale, bound);
 }
 
-static void compare(const trb_model *m, const char *variant, const trb_dynamics *exact, const trb_dynamics *other, const trb_detail *detail)
+static void compare(const trb_system *system, const char *variant, const trb_dynamics *exact, const trb_dynamics *other,
+                    const trb_detail *detail)
 {
+  const trb_model        *m = system->model;
+  const trb_point_detail *ribs = trb_pair_points(m, &system->pairs[TRB_PAIR_rib], detail);
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_loads *a = &exact->loads[j], *b = &other->loads[j];
     double           load = 1.0, deepest = 0.0, speed = 1e-3;
@@ -41,11 +44,11 @@ static void compare(const trb_model *m, const char *variant, const trb_dynamics 
       const double *v = trb_detail_lane(m, detail, TRB_LANE_mean_speed, race, j);
       for (int k = 0; k < m->n_lanes; k++) load += q[k], deepest = fmax(deepest, d[k]), speed = fmax(speed, v[k]);
     }
-    load += detail->rib[j].load;
-    if (detail->rib[j].interference > 0.0) deepest = fmin(fmax(deepest, 1e-7), detail->rib[j].interference);
+    load += ribs[j].load;
+    if (ribs[j].interference > 0.0) deepest = fmin(fmax(deepest, 1e-7), ribs[j].interference);
     const double bound = ROUNDINGS * DBL_EPSILON * LENGTH / fmax(deepest, 1e-7), arm = 0.5 * m->params.pitch_diameter;
-    near_vector("force", variant, b->on[TRB_BODY_ROLLER].force, a->on[TRB_BODY_ROLLER].force, load, bound);
-    near_vector("moment", variant, b->on[TRB_BODY_ROLLER].moment, a->on[TRB_BODY_ROLLER].moment, load * arm, bound);
+    near_vector("force", variant, b->roller.force, a->roller.force, load, bound);
+    near_vector("moment", variant, b->roller.moment, a->roller.moment, load * arm, bound);
     near_vector("ring_force", variant, b->on[TRB_BODY_INNER_RING].force, a->on[TRB_BODY_INNER_RING].force, load, bound);
     near_vector("ring_moment", variant, b->on[TRB_BODY_INNER_RING].moment, a->on[TRB_BODY_INNER_RING].moment, load * arm, bound);
     near_vector("outer_force", variant, b->on[TRB_BODY_OUTER_RING].force, a->on[TRB_BODY_OUTER_RING].force, load, bound);
@@ -63,7 +66,7 @@ static void check_choice(trb_dynamics *d)
   trb_instant      at = trb_dynamics_instant(d);
   trb_loads        all[12], some[12];
   int              chosen[12], taken[12] = {0};
-  trb_contact_slow(m, &at, d->work, all);
+  trb_contact_slow(m, &at, d->work, all, NULL);
   memset(some, 0x55, sizeof some);
   at.chosen = chosen;
   at.n = 0;
@@ -71,7 +74,7 @@ static void check_choice(trb_dynamics *d)
     taken[j] = rig_random(&seed) > 0.3;
     if (taken[j]) chosen[at.n++] = j;
   }
-  trb_contact_slow(m, &at, d->work, some);
+  trb_contact_slow(m, &at, d->work, some, NULL);
   for (int j = 0; j < m->n_rollers; j++) {
     const double *one = (const double *)&all[j], *other = (const double *)&some[j];
     trb_loads     untouched;
@@ -83,16 +86,19 @@ static void check_choice(trb_dynamics *d)
 
 static void check_scene(const char *name, const trb_params *params, double speed)
 {
-  trb_model    *m = rig_model(params);
-  double        y[512];
-  trb_motion   *motion = rig_motion(rig_state(m, 4930.0, speed, y), speed);
-  trb_detail   *detail;
-  trb_dynamics *exact;
-  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &exact, NULL) == TRB_OK && trb_detail_create(m, &detail, NULL) == TRB_OK)) return;
+  trb_system      *system = rig_system(params);
+  const trb_model *m = system->model;
+  double           y[512];
+  trb_motion      *motion = rig_motion(rig_state(system, 4930.0, speed, y), speed);
+  trb_detail      *detail;
+  trb_dynamics    *exact;
+  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &exact, NULL) == TRB_OK &&
+             trb_detail_create(m, system->pairs, system->n_pairs, &detail, NULL) == TRB_OK))
+    return;
   for (int i = 0; i < 20; i++) {
     double disturbed[512];
     memcpy(disturbed, y, sizeof y);
-    rig_disturb(m, &seed, disturbed);
+    rig_disturb(system, &seed, disturbed);
     trb_detail_clear(m, detail);
     trb_dynamics_pose(exact, 0.01, disturbed);
     trb_dynamics_loads(exact, detail);
@@ -100,10 +106,10 @@ static void check_scene(const char *name, const trb_params *params, double speed
       trb_dynamics *other;
       if (!trb_kernel_runs(v)) continue;
       const char *variant = trb_kernel_variants[v].name;
-      if (!CHECK(trb_dynamics_create(m, motion, variant, &other, NULL) == TRB_OK)) continue;
+      if (!CHECK(trb_dynamics_create(system, motion, variant, &other, NULL) == TRB_OK)) continue;
       trb_dynamics_pose(other, 0.01, disturbed);
       trb_dynamics_loads(other, NULL);
-      compare(m, variant, exact, other, detail);
+      compare(system, variant, exact, other, detail);
       memset(&other->work->counters, 0, sizeof other->work->counters);
       check_choice(other);
       memset(&other->work->counters, 0, sizeof other->work->counters);
@@ -122,13 +128,13 @@ static void check_scene(const char *name, const trb_params *params, double speed
   trb_detail_free(detail);
   trb_dynamics_free(exact);
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 static void test_choice(void)
 {
   const trb_params p = rig_params();
-  trb_model       *m = rig_model(&p);
+  trb_system      *system = rig_system(&p);
   trb_workspace   *work;
   trb_message      message;
   int              fastest = 0;
@@ -137,12 +143,12 @@ static void test_choice(void)
   CHECK(trb_n_kernel_variants >= 2 && trb_n_kernel_variants <= TRB_MAX_KERNEL_VARIANTS);
   CHECK(strcmp(trb_kernel_variants[0].name, "scalar") == 0 && trb_kernel_runs(0) && trb_kernel_runs(1));
   CHECK(!trb_kernel_runs(-1) && !trb_kernel_runs(trb_n_kernel_variants));
-  CHECK(trb_workspace_create(m, "", &work, &message) == TRB_OK && work->variant == fastest);
+  CHECK(trb_workspace_create(system->pairs, system->n_pairs, "", &work, &message) == TRB_OK && work->variant == fastest);
   trb_workspace_free(work);
-  CHECK(trb_workspace_create(m, "mmx", &work, &message) == TRB_ERR_INPUT && work == NULL);
+  CHECK(trb_workspace_create(system->pairs, system->n_pairs, "mmx", &work, &message) == TRB_ERR_INPUT && work == NULL);
   CHECK_SAYS(message.text, "instruction_set = 'mmx'");
   trb_workspace_free(NULL);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 int main(void)

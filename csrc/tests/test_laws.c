@@ -63,7 +63,7 @@ static void test_traction(void)
   CHECK_NEAR(trb_boundary_share(0.5, 0.01, 1.5), 0.09139, 0.5e-5);
   CHECK_NEAR(trb_slide_roll_cage(0.1, 0.05), 0.1 / sqrt(0.0025 + 0.0025), 1e-15);
   CHECK_NEAR(trb_rolling_share(1.0, 0.1), 0.5, 1e-15);
-  CHECK_RELATIVE(trb_rolling_line(log(2e-4), log(1e-10), log(3745)) / 3745, 6.57e-8, 1e-3);
+  CHECK_RELATIVE(trb_rolling_line(TRB_ROLLING_ZHOU_HOEPRICH, log(2e-4), log(1e-10), log(3745)) / 3745, 6.57e-8, 1e-3);
 }
 
 static void test_viscosity(void)

@@ -15,7 +15,7 @@ static void look(trb_dynamics *d, double turn_time, const double *y, trb_loads *
 {
   trb_dynamics_pose(d, turn_time, y);
   const trb_instant at = trb_dynamics_instant(d);
-  trb_contact_slow(d->model, &at, d->work, loads);
+  trb_contact_slow(d->model, &at, d->work, loads, NULL);
 }
 
 /* A step of a roller's coordinates, of a size between nanometres and tens of micrometres. */
@@ -30,18 +30,20 @@ static void disturb(const trb_model *m, double size, double *y)
 static void walk(double aside, double lean, double *held, double *tightest)
 {
   const trb_params params = rig_params();
-  trb_model       *m = rig_model(&params);
+  trb_system      *system = rig_system(&params);
+  const trb_model *m = system->model;
   trb_motion      *motion;
   trb_dynamics    *d;
   double           y[MOST], moved[MOST], table[TRB_MOTION_COLUMNS] = {0};
   trb_loads       *before = calloc((size_t)m->n_rollers, sizeof *before), *after = calloc((size_t)m->n_rollers, sizeof *after);
-  const double     speed = 100.0 * TRB_PI, dz = rig_state(m, 3000.0, speed, y), share = 0.5;
+  const double     speed = 100.0 * TRB_PI, dz = rig_state(system, 3000.0, speed, y), share = 0.5;
   table[1 + 2 * TRB_CHANNEL_displacement_x] = aside;
   table[1 + 2 * TRB_CHANNEL_displacement_z] = dz;
   table[1 + 2 * TRB_CHANNEL_rotation_y] = lean;
   table[1 + 2 * TRB_CHANNEL_shaft_speed] = speed;
-  if (!CHECK(trb_motion_create(table, 1, &motion, NULL) == TRB_OK && trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) return;
-  const trb_margin_arms arms = trb_margin_arms_of(m);
+  if (!CHECK(trb_motion_create(table, 1, &motion, NULL) == TRB_OK && trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK))
+    return;
+  const trb_margin_arms arms = trb_margin_arms_of(system);
   for (int k = 0; k < 3000; k++) {
     memcpy(moved, y, sizeof y);
     disturb(m, 2e-6, moved);
@@ -51,7 +53,7 @@ static void walk(double aside, double lean, double *held, double *tightest)
     disturb(m, pow(10.0, -9.0 + 4.0 * fabs(rig_random(&seed))), moved);
     const double turn = 1e-3 * rig_random(&seed);
     look(d, turn / (m->geometry.cage_speed_ratio * speed), moved, after);
-    const trb_ring_offset offset = trb_ring_offset_of(&d->rings[TRB_RING_INNER].pose);
+    const trb_ring_offset offset = trb_ring_offset_of(system, d->bodies);
     for (int j = 0; j < m->n_rollers; j++) {
       double step[TRB_ROLLER_SIZE];
       for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(j) + c] - place[trb_state_roller(j) + c];
@@ -69,7 +71,7 @@ static void walk(double aside, double lean, double *held, double *tightest)
   free(after);
   trb_dynamics_free(d);
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 int main(void)

@@ -32,11 +32,11 @@ void trb_test_free(void *block)
   free(block);
 }
 
-static trb_params params;
-static trb_model *model;
-static trb_face   faces[RIG_FACES];
-static double     state[512];
-static double     table[TRB_MOTION_COLUMNS];
+static trb_params  params;
+static trb_system *built;
+static trb_face    faces[RIG_FACES];
+static double      state[512];
+static double      table[TRB_MOTION_COLUMNS];
 
 /* Creates, frees what came of it, and gives the status. */
 typedef trb_status attempt(trb_message *message);
@@ -60,10 +60,19 @@ static trb_status make_motion(trb_message *message)
   return status;
 }
 
+static trb_status make_system(trb_message *message)
+{
+  trb_system      *made = NULL;
+  const trb_status status = trb_system_tapered(built->model, &made, message);
+  CHECK((made == NULL) == (status != TRB_OK));
+  trb_system_free(made);
+  return status;
+}
+
 static trb_status make_dynamics(trb_message *message)
 {
   trb_dynamics    *made = NULL;
-  const trb_status status = trb_dynamics_create(model, NULL, "", &made, message);
+  const trb_status status = trb_dynamics_create(built, NULL, "", &made, message);
   CHECK((made == NULL) == (status != TRB_OK));
   trb_dynamics_free(made);
   return status;
@@ -72,7 +81,7 @@ static trb_status make_dynamics(trb_message *message)
 static trb_status make_detail(trb_message *message)
 {
   trb_detail      *made = NULL;
-  const trb_status status = trb_detail_create(model, &made, message);
+  const trb_status status = trb_detail_create(built->model, built->pairs, built->n_pairs, &made, message);
   CHECK((made == NULL) == (status != TRB_OK));
   trb_detail_free(made);
   return status;
@@ -84,7 +93,7 @@ static trb_status make_peaks(trb_message *message)
   trb_peaks  *made = NULL;
   trb_status  status = trb_motion_create(table, 1, &motion, message);
   if (status != TRB_OK) return status;
-  status = trb_peaks_create(model, motion, "", &made, message);
+  status = trb_peaks_create(built, motion, "", &made, message);
   CHECK((made == NULL) == (status != TRB_OK));
   trb_peaks_free(made);
   trb_motion_free(motion);
@@ -93,10 +102,10 @@ static trb_status make_peaks(trb_message *message)
 
 static trb_status solve_equilibrium(trb_message *message)
 {
-  double          angles[12], rollers[36] = {0}, loads[36];
+  double          angles[12], rollers[12 * TRB_ROLLER_FREEDOMS] = {0}, loads[12 * TRB_EQUILIBRIUM_LOADS];
   trb_equilibrium e = {.load = {0, 0, -4930, 0, 0}, .fixed = {0, 0, 0, 1, 1}, .angles = angles, .rollers = rollers, .loads = loads};
-  for (int j = 0; j < 12; j++) angles[j] = trb_nominal_angle(model, j);
-  return trb_equilibrium_solve(model, &e, message);
+  for (int j = 0; j < 12; j++) angles[j] = trb_nominal_angle(built->model, j);
+  return trb_equilibrium_solve(built, &e, message);
 }
 
 static trb_status make_simulation(const char *kind, trb_message *message)
@@ -106,7 +115,7 @@ static trb_status make_simulation(const char *kind, trb_message *message)
   trb_simulation    *made = NULL;
   trb_status         status = trb_motion_create(table, 1, &motion, message);
   if (status != TRB_OK) return status;
-  status = trb_simulation_create(model, motion, kind, "", &settings, 0.0, state, &made, message);
+  status = trb_simulation_create(built, motion, kind, "", &settings, 0.0, state, &made, message);
   CHECK((made == NULL) == (status != TRB_OK));
   trb_simulation_free(made);
   trb_motion_free(motion);
@@ -149,7 +158,7 @@ static void fail_in_steps(void)
   for (long n = 0; hit && n < 50; n++) {
     trb_message     message = {TRB_OK, ""};
     trb_simulation *s = NULL;
-    if (!CHECK(trb_simulation_create(model, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK)) return;
+    if (!CHECK(trb_simulation_create(built, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK)) return;
     CHECK(trb_simulation_step(s, &message) == TRB_OK && trb_simulation_set_state(s, 0.0, state, &message) == TRB_OK);
     const long before = live;
     countdown = n;
@@ -173,10 +182,11 @@ int main(void)
   countdown = -1;
   params = rig_params();
   rig_faces(&params, faces);
-  model = rig_model(&params);
-  table[1 + 2 * TRB_CHANNEL_displacement_z] = rig_state(model, 4930.0, 314.0, state);
+  built = rig_system(&params);
+  table[1 + 2 * TRB_CHANNEL_displacement_z] = rig_state(built, 4930.0, 314.0, state);
   table[1 + 2 * TRB_CHANNEL_shaft_speed] = 314.0;
   fail_each("model", make_model);
+  fail_each("system", make_system);
   fail_each("motion", make_motion);
   fail_each("dynamics", make_dynamics);
   fail_each("detail", make_detail);
@@ -185,6 +195,6 @@ int main(void)
   fail_each("bdf", make_bdf);
   fail_each("erk", make_erk);
   fail_in_steps();
-  trb_model_free(model);
+  rig_free(built);
   return check_report();
 }

@@ -56,6 +56,40 @@ static int solve(N_Vector b, void *memory)
   return 0;
 }
 
+/* Where first corrections leave much of what equations lack, slopes are taken again, and not before fifty solves have gone by. */
+static void test_poor_slopes(trb_sundials *s)
+{
+  double             y[N], zero[N] = {0};
+  problem            p = {.a = {1e-5, 2e-5, -1e-5}, .gamma = 1.0, .n_main = N, .strength = 2e-4, .width = 1e-4, .oil = 1};
+  N_Vector           found = trb_sundials_vector(s, N, y), start = trb_sundials_vector(s, N, zero), weights = N_VClone(found);
+  SUNNonlinearSolver newton = trb_newton_solver(8, found, N, N - 1, 1, s->context);
+  int                last = 0;
+  N_VConst(1.0, weights);
+  CHECK(SUNNonlinSolSetSysFn(newton, residual) == 0 && SUNNonlinSolSetLSetupFn(newton, setup) == 0 &&
+        SUNNonlinSolSetLSolveFn(newton, solve) == 0);
+  for (int i = 0; i < 60; i++) {
+    N_VConst(0.0, found);
+    CHECK(SUNNonlinSolSolve(newton, start, found, weights, 1e-6, i == 0, &p) == 0);
+    CHECK_NEAR(y[1] - p.a[1] - friction(&p, y[1]), 0.0, 1e-6);
+  }
+  CHECK(p.setups == 1);
+
+  /* slopes that are far too small from now on: right all the same, and soon taken again */
+  for (int i = 0; i < N; i++) p.guess[i] = 1e-2;
+  for (int i = 0; i < 40; i++) {
+    N_VConst(0.0, found);
+    p.evaluations = 0;
+    CHECK(SUNNonlinSolSolve(newton, start, found, weights, 1e-6, 0, &p) == 0);
+    CHECK_NEAR(y[1] - p.a[1] - friction(&p, y[1]), 0.0, 1e-6);
+    last = p.evaluations;
+  }
+  CHECK(p.setups == 2 && last <= 3);
+  (void)SUNNonlinSolFree(newton);
+  N_VDestroy(found);
+  N_VDestroy(start);
+  N_VDestroy(weights);
+}
+
 /* Solves from zero a number of times; gives the largest residual of what was accepted in the last solve, or -1. Each entry is a body, but the
  * integral. */
 static double run_again(problem *p, trb_sundials *s, double *found, int times)
@@ -165,6 +199,7 @@ int main(void)
   problem none = {.a = {0.5, 0.5, 0.5}, .gamma = 1.0, .n_main = N, .strength = 0.3, .width = 1e3, .jump = 0.4};
   CHECK(run(&none, &s, y) < 0.0);
   test_renewal(&s);
+  test_poor_slopes(&s);
   test_integral(&s);
   trb_sundials_close(&s);
   return check_report();

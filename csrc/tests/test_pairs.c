@@ -35,31 +35,40 @@ static trb_params params_of_test(void)
 static trb_motion *make_state(double *y)
 {
   const trb_params p = params_of_test();
-  trb_model       *m = rig_model(&p);
+  trb_system      *system = rig_system(&p);
+  const trb_model *m = system->model;
   const double     speed = 100.0 * TRB_PI;
-  trb_motion      *motion = rig_motion(rig_state(m, 4930.0, speed, y), speed);
-  rig_disturb(m, &seed, y);
+  trb_motion      *motion = rig_motion(rig_state(system, 4930.0, speed, y), speed);
+  rig_disturb(system, &seed, y);
   for (int j = 0; j < m->n_rollers; j += 3) y[trb_state_roller(j) + TRB_ROLLER_z] -= 10e-6;
-  trb_model_free(m);
+  rig_free(system);
   return motion;
+}
+
+/* bits: of the rows to leave out. */
+static void leave_out(trb_system *system, unsigned bits)
+{
+  for (int i = 0; i < system->n_pairs; i++)
+    if (bits >> i & 1U) system->pairs[i].on = 0;
 }
 
 static void look(const trb_motion *motion, const double *y, unsigned left_out, seen *s)
 {
   const trb_params p = params_of_test();
-  trb_model       *m = rig_model(&p);
+  trb_system      *system = rig_system(&p);
+  const trb_model *m = system->model;
   trb_dynamics    *d;
   trb_detail      *detail;
   trb_jacobian    *jac;
   trb_peak_look   *peaks;
-  m->pairs_left_out = left_out;
+  leave_out(system, left_out);
   memset(s, 0, sizeof *s);
   s->loads = calloc((size_t)m->n_rollers, sizeof *s->loads);
-  if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d, NULL) == TRB_OK)) exit(1);
-  if (!CHECK(trb_detail_create(m, &detail, NULL) == TRB_OK)) exit(1);
-  if (!CHECK(trb_jacobian_create(m, motion, "scalar", &jac, NULL) == TRB_OK)) exit(1);
-  if (!CHECK(trb_arrow_create(m->n_rollers, trb_hub_width(m), &s->arrow, NULL) == TRB_OK)) exit(1);
-  if (!CHECK(trb_peak_look_create(m, motion, "scalar", &peaks, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_detail_create(m, system->pairs, system->n_pairs, &detail, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_arrow_create(m->n_rollers, system->hub_width, &s->arrow, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_peak_look_create(system, motion, "scalar", &peaks, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_record_offset(m, TRB_N_FIELDS) <= MOST_FIELDS && trb_peak_look_sizes(m).all <= MOST_FIELDS)) exit(1);
   trb_rhs(d, NULL, 0.01, y, s->rates);
   trb_record_fill(d, NULL, 0.01, y, detail, s->record);
@@ -67,12 +76,12 @@ static void look(const trb_motion *motion, const double *y, unsigned left_out, s
   s->hub = d->hub;
   trb_jacobian_fill(jac, 0.01, y, 1, s->arrow);
   trb_peak_look_at(peaks, 0.01, y, s->peaks);
-  s->bounds = trb_margin_arms_of(m).n;
+  s->bounds = trb_margin_arms_of(system).n;
   trb_peak_look_free(peaks);
   trb_jacobian_free(jac);
   trb_detail_free(detail);
   trb_dynamics_free(d);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 static void forget(seen *s)
@@ -81,10 +90,21 @@ static void forget(seen *s)
   trb_arrow_free(s->arrow);
 }
 
-static int is_hub(int row) { return trb_pair_table[row]->between != NULL; }
+/* What is known of a row. */
+static const trb_pair *pair_of(int row)
+{
+  static trb_system *known;
+  if (known == NULL) {
+    const trb_params p = params_of_test();
+    known = rig_system(&p);
+  }
+  return &known->pairs[row];
+}
+
+static int is_hub(int row) { return pair_of(row)->kind->between != NULL; }
 
 /* Whether the bodies of a row touch: only then there is an interference. */
-static int is_contact(int row) { return trb_pair_table[row]->view != NULL || trb_pair_table[row]->touch != NULL || is_hub(row); }
+static int is_contact(int row) { return pair_of(row)->kind->view != NULL || pair_of(row)->kind->touch != NULL || is_hub(row); }
 
 /* a - b = c - d within a share of the largest of the four, and how much a pair makes of it. */
 static double check_share(const char *what, double a, double b, double c, double d, double share, double floor)
@@ -128,7 +148,7 @@ static void check_jacobian(int row, const seen *full, const seen *out, const see
 /* The row's own fields are there with it and zero without it; those of the other rows are as they were. */
 static void check_records(const trb_model *m, int row, const seen *full, const seen *out)
 {
-  const char  *name = is_hub(row) ? "land" : trb_pair_table[row]->name;
+  const char  *name = is_hub(row) ? "land" : pair_of(row)->name;
   const size_t length = strlen(name);
   double       made = 0.0;
   for (int f = 0; f < TRB_N_FIELDS; f++) {
@@ -169,7 +189,7 @@ static void check_hub(int row, const seen *full, const seen *out, const seen *al
   enum { NUMBERS = sizeof(trb_loads) / sizeof(double) };
   const double *a = (const double *)&full->hub, *b = (const double *)&out->hub, *c = (const double *)&alone->hub;
   for (int i = 0; i < NUMBERS; i++) CHECK_NEAR(a[i], b[i] + c[i], 1e-12 * (fabs(b[i]) + fabs(c[i])));
-  CHECK((trb_norm(alone->hub.on[trb_pair_table[row]->b].force) > 1.0) == is_hub(row));
+  CHECK((trb_norm(alone->hub.on[pair_of(row)->b].force) > 1.0) == is_hub(row));
   CHECK(!is_hub(row) || alone->hub.elastic > 0.0);
 }
 
@@ -179,15 +199,15 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_loads *a = &full->loads[j], *b = &out->loads[j], *c = &alone->loads[j];
     CHECK_NEAR(a->elastic, b->elastic + c->elastic, 1e-12 * a->elastic);
-    CHECK_NEAR(trb_norm(trb_sub(trb_sub(a->on[TRB_BODY_ROLLER].force, b->on[TRB_BODY_ROLLER].force), c->on[TRB_BODY_ROLLER].force)), 0.0,
-               1e-9 * (trb_norm(b->on[TRB_BODY_ROLLER].force) + trb_norm(c->on[TRB_BODY_ROLLER].force)) + 1e-9);
+    CHECK_NEAR(trb_norm(trb_sub(trb_sub(a->roller.force, b->roller.force), c->roller.force)), 0.0,
+               1e-9 * (trb_norm(b->roller.force) + trb_norm(c->roller.force)) + 1e-9);
     elastic += c->elastic;
-    force += trb_norm(c->on[TRB_BODY_ROLLER].force);
-    if (trb_pair_table[row]->margin == NULL) continue;
+    force += trb_norm(c->roller.force);
+    if (pair_of(row)->kind->margin == NULL) continue;
     CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
   }
   if (!is_hub(row)) CHECK((elastic > 0.0) == is_contact(row) && force > 1.0);
-  CHECK(full->bounds == out->bounds + (trb_pair_table[row]->margin != NULL) && alone->bounds == full->bounds - out->bounds);
+  CHECK(full->bounds == out->bounds + (pair_of(row)->kind->margin != NULL) && alone->bounds == full->bounds - out->bounds);
 }
 
 /* Loads among the peaks: gone with the row. */
@@ -215,18 +235,19 @@ static unsigned test_rows(void)
   double           y[MOST];
   trb_motion      *motion = make_state(y);
   const trb_params p = params_of_test();
-  trb_model       *m = rig_model(&p);
+  trb_system      *system = rig_system(&p);
+  const trb_model *m = system->model;
   static seen      full, none, out, alone;
   const unsigned   all = (1U << TRB_N_PAIRS) - 1U;
   unsigned         tried = 0;
   look(motion, y, 0, &full);
   look(motion, y, all, &none);
   for (int row = 0; row < TRB_N_PAIRS; row++) {
-    if (!trb_pair_is_on(m, row)) continue;
+    if (!system->pairs[row].on) continue;
     tried |= 1U << row;
     look(motion, y, 1U << row, &out);
     look(motion, y, all & ~(1U << row), &alone);
-    check_rates(&full, &out, &alone, &none, trb_state_size(m));
+    check_rates(&full, &out, &alone, &none, trb_state_size(system));
     check_jacobian(row, &full, &out, &alone, &none, m->n_rollers);
     check_loads(m, row, &full, &out, &alone);
     check_hub(row, &full, &out, &alone);
@@ -234,28 +255,28 @@ static unsigned test_rows(void)
     check_audit(m, &full, &out, &alone);
     check_peaks(m, row, &full, &out);
     for (int j = 0; j < m->n_rollers; j++)
-      if (trb_pair_table[row]->touch != NULL) CHECK(!out.arrow->borders[j].coupled);
+      if (pair_of(row)->kind->touch != NULL) CHECK(!out.arrow->borders[j].coupled);
     forget(&out);
     forget(&alone);
   }
   forget(&full);
   forget(&none);
-  trb_model_free(m);
+  rig_free(system);
   trb_motion_free(motion);
   return tried;
 }
 
 static void run(const trb_params *params, unsigned left_out, const trb_motion *motion, const double *start, double *end)
 {
-  trb_model         *m = rig_model(params);
+  trb_system        *system = rig_system(params);
   const trb_settings settings = rig_settings();
   trb_simulation    *s;
-  m->pairs_left_out = left_out;
-  if (!CHECK(trb_simulation_create(m, motion, "bdf", "scalar", &settings, 0.0, start, &s, NULL) == TRB_OK)) exit(1);
+  leave_out(system, left_out);
+  if (!CHECK(trb_simulation_create(system, motion, "bdf", "scalar", &settings, 0.0, start, &s, NULL) == TRB_OK)) exit(1);
   for (int i = 0; i < 60; i++) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
-  memcpy(end, s->integrator.y, (size_t)trb_state_size(m) * sizeof *end);
+  memcpy(end, s->integrator.y, (size_t)trb_state_size(system) * sizeof *end);
   trb_simulation_free(s);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 /* Where an effect of the scene switches a pair off, a run is the same to the bit without the pair's row. */
@@ -283,15 +304,16 @@ static void test_equilibrium(void)
 {
   trb_params       off = rig_params();
   const trb_params on = rig_params();
-  double           angles[12], rollers[2][36] = {{0}}, loads[2][36];
+  double           angles[12], rollers[2][12 * TRB_ROLLER_FREEDOMS] = {{0}}, loads[2][36];
   off.back_rib = 0;
   for (int k = 0; k < 2; k++) {
-    trb_model      *m = rig_model(k == 0 ? &off : &on);
+    trb_system      *system = rig_system(k == 0 ? &off : &on);
+    const trb_model *m = system->model;
     trb_equilibrium e = {.load = {0, 0, -4930, 0, 0}, .fixed = {0, 0, 0, 1, 1}, .angles = angles, .rollers = rollers[k], .loads = loads[k]};
     for (int j = 0; j < 12; j++) angles[j] = trb_nominal_angle(m, j);
-    if (k == 1) m->pairs_left_out = 1U << TRB_PAIR_rib;
-    CHECK(trb_equilibrium_solve(m, &e, NULL) == TRB_OK);
-    trb_model_free(m);
+    if (k == 1) leave_out(system, 1U << TRB_PAIR_rib);
+    CHECK(trb_equilibrium_solve(system, &e, NULL) == TRB_OK);
+    rig_free(system);
   }
   CHECK(memcmp(rollers[0], rollers[1], sizeof rollers[0]) == 0 && memcmp(loads[0], loads[1], sizeof loads[0]) == 0);
   for (int j = 0; j < 12; j++) CHECK(loads[1][3 * j] > 0.0 && loads[1][3 * j + 2] == 0.0);
@@ -313,8 +335,65 @@ static void test_guidance(void)
   trb_motion_free(motion);
 }
 
+/* Each loss and each share of the torque is booked by some pair. */
+static void test_bookings(void)
+{
+  int losses[TRB_N_LOSSES] = {0}, torques[TRB_N_TORQUES] = {0};
+  for (int row = 0; row < TRB_N_PAIRS; row++)
+    for (int by = 0; by < TRB_N_MECHANISMS; by++) {
+      const int loss = pair_of(row)->books.loss[by], torque = pair_of(row)->books.torque[by];
+      if (loss > 0) losses[loss - 1]++;
+      if (torque > 0) torques[torque - 1]++;
+    }
+  for (int k = 0; k < TRB_N_LOSSES; k++) CHECK(losses[k] > 0);
+  for (int k = 0; k < TRB_N_TORQUES; k++) CHECK(torques[k] > 0);
+}
+
+/* A system whose rows do not fit together is refused, and the message says which row. */
+static void test_refused(void)
+{
+  const trb_params p = params_of_test();
+  trb_message      message = {TRB_OK, ""};
+  trb_system      *system = rig_system(&p);
+  const trb_system good = *system;
+  CHECK(trb_system_body(system, "cage") == TRB_BODY_CAGE && trb_system_body(system, "shaft") == -1);
+  CHECK(trb_system_pair(system, "rib") == TRB_PAIR_rib && trb_system_pair(system, "ribs") == -1);
+  /* a mechanism that is booked nowhere, in a row that acts */
+  system->pairs[TRB_PAIR_rib].books.loss[TRB_BY_DAMPING] = 0;
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "pair rib loses energy by damping, which is booked nowhere");
+  system->pairs[TRB_PAIR_rib].on = 0;
+  CHECK(trb_system_finish(system, &message) == TRB_OK);
+  *system = good;
+  /* a loss for which a roller's part of the right-hand side has no room, and one that the state does not have */
+  system->pairs[TRB_PAIR_rib].books.loss[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_land);
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "pair rib loses energy by sliding, which is booked nowhere");
+  *system = good;
+  system->pairs[TRB_PAIR_pocket].books.torque[TRB_BY_ROLLING] = TRB_BOOK(TRB_TORQUE_rolling);
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "pair pocket books what is lost by rolling, and loses nothing by it");
+  *system = good;
+  /* surfaces */
+  system->pairs[TRB_PAIR_rib].surface[1] = system->pairs[TRB_PAIR_outer].surface[1];
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "is none that a pair of the kind 'spherical end on a conical rib' takes there");
+  *system = good;
+  system->surfaces[system->pairs[TRB_PAIR_pocket].surface[1]].body = TRB_N_BODIES;
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "surface pockets: body 4: must be from -1");
+  *system = good;
+  system->surfaces[system->pairs[TRB_PAIR_pocket].surface[1]].body = TRB_BODY_OUTER_RING;
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "pair pocket: a pair that comes and goes with impacts needs a body with coordinates");
+  *system = good;
+  rig_free(system);
+}
+
 int main(void)
 {
+  test_bookings();
+  test_refused();
   unsigned tried = test_rows();
   guidance = TRB_GUIDANCE_OUTER_LAND;
   tried |= test_rows();

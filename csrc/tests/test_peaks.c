@@ -46,9 +46,10 @@ static void test_track(void)
   }
 }
 
-static trb_model  *m;
-static trb_motion *motion;
-static double      start[512];
+static trb_system      *built;
+static const trb_model *m;
+static trb_motion      *motion;
+static double           start[512];
 
 enum { STEPS = 400 };
 
@@ -58,8 +59,8 @@ static trb_simulation *disturbed(unsigned long long seed)
   trb_simulation    *s = NULL;
   double             state[512];
   memcpy(state, start, sizeof state);
-  rig_disturb(m, &seed, state);
-  CHECK(trb_simulation_create(m, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK);
+  rig_disturb(built, &seed, state);
+  CHECK(trb_simulation_create(built, motion, "bdf", "", &settings, 0.0, state, &s, NULL) == TRB_OK);
   return s;
 }
 
@@ -137,7 +138,7 @@ static void test_restore(void)
   double   *saved = calloc((size_t)saved_length, sizeof *saved);
   if (!CHECK(saved != NULL)) return;
   trb_peaks_save(s->peaks, saved);
-  memcpy(state, s->integrator.y, sizeof(double) * (size_t)trb_state_size(m));
+  memcpy(state, s->integrator.y, sizeof(double) * (size_t)trb_state_size(built));
   const double time = s->integrator.time;
   CHECK(trb_simulation_set_state(other, time, state, NULL) == TRB_OK);
   CHECK(trb_simulation_restore_peaks(other, saved, saved_length - 1, &message) == TRB_ERR_INPUT && other->peaks == NULL);
@@ -164,12 +165,13 @@ int main(void)
 {
   const trb_params p = rig_params();
   const double     speed = 100 * TRB_PI;
-  m = rig_model(&p);
-  motion = rig_motion(rig_state(m, 4930.0, speed, start), speed);
+  built = rig_system(&p);
+  m = built->model;
+  motion = rig_motion(rig_state(built, 4930.0, speed, start), speed);
   test_track();
   test_against_records();
   test_restore();
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(built);
   return check_report();
 }

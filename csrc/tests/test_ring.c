@@ -1,9 +1,10 @@
-/* Contacts, works and records take the rings as their kinds place them. This program has a table of rings of its own, which the linker
- * takes instead of that of body/rings.c: both rings turn at a common speed about the bearing's axis, on top of their usual motion. If
+/* Contacts, works and records take the rings as their kinds place them. The systems of this program have rings of other kinds, which turn
+ * at a common speed about the bearing's axis, on top of their usual motion. If
  * rollers and cage turn with them, all bodies move relative to each other as before: so every contact must give the same forces, losses
  * and energies, and the drives of both rings together must put in the same power, less what the common turn puts into the rollers. */
 #include <stdlib.h>
 
+#include "body/ring.h"
 #include "check.h"
 #include "contact/kernels.h"
 #include "rig.h"
@@ -32,16 +33,14 @@ static void place_inner(const trb_model *m, const trb_drive *drive, trb_ring_pos
   turn_with(pose);
 }
 
-static trb_ring_power power(const trb_ring_pose *pose, const trb_drive *drive, const trb_wrench *on_ring)
+static trb_drive_power power(const trb_ring_pose *pose, const trb_drive *drive, const trb_wrench *on_ring)
 {
   (void)drive;
-  return (trb_ring_power){-trb_dot(on_ring->moment, pose->omega), -trb_dot(on_ring->force, pose->velocity)};
+  return (trb_drive_power){-trb_dot(on_ring->moment, pose->omega), -trb_dot(on_ring->force, pose->velocity)};
 }
 
-static const trb_ring_kind outer = {.name = "outer", .body = TRB_BODY_OUTER_RING, .place = place_outer, .power = power};
-static const trb_ring_kind inner = {.name = "inner", .body = TRB_BODY_INNER_RING, .place = place_inner, .power = power};
-
-const trb_ring_kind *const trb_ring_table[TRB_N_RINGS] = {[TRB_RING_OUTER] = &outer, [TRB_RING_INNER] = &inner};
+static const trb_body_kind outer = {.name = "turning outer ring", .place = place_outer, .power = power};
+static const trb_body_kind inner = {.name = "turning inner ring", .place = place_inner, .power = power};
 
 static unsigned long long seed = 21;
 
@@ -49,8 +48,8 @@ static unsigned long long seed = 21;
 static void turn_state(trb_dynamics *d, double *y)
 {
   const trb_model      *m = d->model;
-  const trb_rigid_pose *cage = trb_dynamics_cage(d);
-  double               *of_cage = y + trb_state_cage(m);
+  const trb_rigid_pose *cage = &d->bodies[TRB_BODY_CAGE].pose;
+  double               *of_cage = y + rig_cage(d->system);
   const trb_vec3        v = trb_cross(turn(), cage->x), omega = trb_to_frame(&cage->frame, turn());
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_roller_pose *r = &d->rollers[j];
@@ -69,6 +68,8 @@ static double into(const trb_wrench *w, trb_vec3 v, trb_vec3 omega) { return trb
 static void check_same(const trb_loads *a, const trb_loads *b, double force)
 {
   double lost = 0.0, more = 0.0;
+  CHECK_NEAR(trb_norm(trb_sub(a->roller.force, b->roller.force)), 0.0, 1e-9 * force);
+  CHECK_NEAR(trb_norm(trb_sub(a->roller.moment, b->roller.moment)), 0.0, 1e-9 * force);
   for (int body = 0; body < TRB_N_BODIES; body++) {
     CHECK_NEAR(trb_norm(trb_sub(a->on[body].force, b->on[body].force)), 0.0, 1e-9 * force);
     CHECK_NEAR(trb_norm(trb_sub(a->on[body].moment, b->on[body].moment)), 0.0, 1e-9 * force);
@@ -87,11 +88,11 @@ static void check_same(const trb_loads *a, const trb_loads *b, double force)
 static double put_in(const trb_dynamics *d, int roller)
 {
   const trb_roller_pose *r = &d->rollers[roller];
-  const trb_rigid_pose  *cage = trb_dynamics_cage(d);
+  const trb_rigid_pose  *cage = &d->bodies[TRB_BODY_CAGE].pose;
   double                 flow[TRB_FLOW_ROOM];
   trb_dynamics_roller_flow(d, roller, &d->loads[roller], flow);
   return flow[TRB_FLOW_quadrature + TRB_Q_work_shaft] + flow[TRB_FLOW_quadrature + TRB_Q_work_ring] -
-         into(&d->loads[roller].on[TRB_BODY_ROLLER], r->v, r->omega) - into(&d->loads[roller].on[TRB_BODY_CAGE], cage->v, cage->omega);
+         into(&d->loads[roller].roller, r->v, r->omega) - into(&d->loads[roller].on[TRB_BODY_CAGE], cage->v, cage->omega);
 }
 
 static void test_common_turn(int guidance)
@@ -101,14 +102,18 @@ static void test_common_turn(int guidance)
   trb_dynamics *d[2];
   p.guidance = guidance;
   p.damping = p.rolling_pressure_force = 1;
-  trb_model  *m = rig_model(&p);
-  trb_motion *motion = rig_motion(rig_state(m, 4930.0, 100 * TRB_PI, still), 100 * TRB_PI);
-  rig_disturb(m, &seed, still);
+  trb_system      *system = rig_system(&p);
+  const trb_model *m = system->model;
+  trb_motion      *motion = rig_motion(rig_state(system, 4930.0, 100 * TRB_PI, still), 100 * TRB_PI);
+  system->bodies[TRB_BODY_OUTER_RING].kind = &outer;
+  system->bodies[TRB_BODY_INNER_RING].kind = &inner;
+  CHECK(trb_system_finish(system, NULL) == TRB_OK);
+  rig_disturb(system, &seed, still);
   /* the cage in the land's film, and out of it */
-  still[trb_state_cage(m) + TRB_CAGE_x] = guidance == TRB_GUIDANCE_INNER_LAND ? 1.001 * p.land_clearance : 0.4 * p.land_clearance;
+  still[rig_cage(system) + TRB_CAGE_x] = guidance == TRB_GUIDANCE_INNER_LAND ? 1.001 * p.land_clearance : 0.4 * p.land_clearance;
   for (int i = 0; i < 2; i++) {
     common = 0.0;
-    if (!CHECK(trb_dynamics_create(m, motion, "scalar", &d[i], NULL) == TRB_OK)) return;
+    if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d[i], NULL) == TRB_OK)) return;
     trb_dynamics_pose(d[i], 0.01, still);
     memcpy(turning, still, sizeof turning);
     common = i == 1 ? 37.0 : 0.0;
@@ -129,40 +134,41 @@ static void test_common_turn(int guidance)
   /* the same for the whole right-hand side, with the cage */
   double gained[2];
   for (int i = 0; i < 2; i++) {
-    const trb_rigid_pose *cage = trb_dynamics_cage(d[i]);
-    const double         *q = rates[i] + trb_state_quadrature(m);
+    const trb_rigid_pose *cage = &d[i]->bodies[TRB_BODY_CAGE].pose;
+    const double         *q = rates[i] + trb_state_quadrature(system);
     gained[i] = q[TRB_Q_work_shaft] + q[TRB_Q_work_ring] - into(&d[i]->hub.on[TRB_BODY_CAGE], cage->v, cage->omega);
     for (int j = 0; j < m->n_rollers; j++) {
       const trb_roller_pose *r = &d[i]->rollers[j];
-      gained[i] -= into(&d[i]->loads[j].on[TRB_BODY_ROLLER], r->v, r->omega);
+      gained[i] -= into(&d[i]->loads[j].roller, r->v, r->omega);
       gained[i] -= into(&d[i]->loads[j].on[TRB_BODY_CAGE], cage->v, cage->omega);
     }
   }
   CHECK_NEAR(gained[1], gained[0], 1e-9 * scale * 40.0);
-  CHECK(fabs(rates[1][trb_state_quadrature(m) + TRB_Q_work_shaft] - rates[0][trb_state_quadrature(m) + TRB_Q_work_shaft]) > 1e-3);
+  CHECK(fabs(rates[1][trb_state_quadrature(system) + TRB_Q_work_shaft] - rates[0][trb_state_quadrature(system) + TRB_Q_work_shaft]) > 1e-3);
   for (int i = 0; i < 2; i++) trb_dynamics_free(d[i]);
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 /* The kinds themselves: the outer ring rests, the inner ring is where the drive says. */
 static void test_kinds(void)
 {
   const trb_params p = rig_params();
-  trb_model       *m = rig_model(&p);
-  trb_drive        drive = {.inner = {{0, 0.6, 0.8}, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, .shaft_speed = 2.0};
+  trb_system      *system = rig_system(&p);
+  const trb_model *m = system->model;
+  trb_drive        drive = {.ring = {{0, 0.6, 0.8}, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, .shaft_speed = 2.0};
   trb_ring_pose    pose;
-  CHECK(trb_ring_at_rest.rests && trb_ring_at_rest.power == NULL && trb_ring_at_rest.body == TRB_BODY_OUTER_RING);
+  CHECK(trb_ring_at_rest.rests && trb_ring_at_rest.power == NULL);
   trb_ring_at_rest.place(m, &drive, &pose);
   CHECK(pose.axis.z == 1.0 && trb_norm(pose.centre) == 0.0 && trb_norm(pose.velocity) == 0.0 && trb_norm(pose.omega) == 0.0);
-  CHECK(!trb_ring_prescribed.rests && trb_ring_prescribed.body == TRB_BODY_INNER_RING);
+  CHECK(!trb_ring_prescribed.rests);
   trb_ring_prescribed.place(m, &drive, &pose);
-  CHECK(memcmp(&pose, &drive.inner, sizeof pose) == 0);
-  const trb_wrench     on_ring = {{1, -1, 2}, {3, 5, -7}};
-  const trb_ring_power taken = trb_ring_prescribed.power(&pose, &drive, &on_ring);
+  CHECK(memcmp(&pose, &drive.ring, sizeof pose) == 0);
+  const trb_wrench      on_ring = {{1, -1, 2}, {3, 5, -7}};
+  const trb_drive_power taken = trb_ring_prescribed.power(&pose, &drive, &on_ring);
   CHECK_NEAR(taken.shaft, -2.0 * (0.6 * 5 - 0.8 * 7), 1e-14);
   CHECK_NEAR(taken.shaft + taken.place, -into(&on_ring, pose.velocity, pose.omega), 1e-14);
-  trb_model_free(m);
+  rig_free(system);
 }
 
 int main(void)

@@ -6,16 +6,17 @@
 #include "check.h"
 #include "rig.h"
 
-static trb_model  *m;
-static trb_motion *motion;
-static double      start[512];
-static trb_message message;
+static trb_system      *built;
+static const trb_model *m;
+static trb_motion      *motion;
+static double           start[512];
+static trb_message      message;
 
 static trb_status create(const char *kind, const char *variant, const trb_settings *settings, double time, const double *state,
                          trb_simulation **s)
 {
   message = (trb_message){TRB_OK, ""};
-  const trb_status status = trb_simulation_create(m, motion, kind, variant, settings, time, state, s, &message);
+  const trb_status status = trb_simulation_create(built, motion, kind, variant, settings, time, state, s, &message);
   CHECK((status == TRB_OK) == (*s != NULL));
   return status;
 }
@@ -46,7 +47,7 @@ static void test_bad_input(void)
   refused("euler", "", &settings, 0.0, start, TRB_ERR_INPUT, "integrator = 'euler': must be 'bdf' or 'erk'");
   refused("bdf", "sse", &settings, 0.0, start, TRB_ERR_INPUT, "instruction_set = 'sse'");
   refused("bdf", "", &settings, NAN, start, TRB_ERR_STATE, "time");
-  for (int i = 0; i < trb_state_size(m); i += 13) {
+  for (int i = 0; i < trb_state_size(built); i += 13) {
     memcpy(state, start, sizeof state);
     state[i] = NAN;
     refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "must be finite");
@@ -55,13 +56,13 @@ static void test_bad_input(void)
   state[trb_state_roller(4) + TRB_ROLLER_v_t] = INFINITY;
   refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "roller 4, v_t (tangential velocity");
   memcpy(state, start, sizeof state);
-  state[trb_state_cage(m) + TRB_CAGE_z] = NAN;
+  state[rig_cage(built) + TRB_CAGE_z] = NAN;
   refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "cage, z (axial position");
   memcpy(state, start, sizeof state);
   state[trb_state_roller(2) + TRB_ROLLER_r] = -1.0;
   refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "roller 2: r = -1 m");
   memcpy(state, start, sizeof state);
-  state[trb_state_cage(m) + TRB_CAGE_skew] = 1.6;
+  state[rig_cage(built) + TRB_CAGE_skew] = 1.6;
   refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "cage: skew = 1.6 rad");
 }
 
@@ -69,7 +70,7 @@ static void test_bad_input(void)
 static void test_outputs(const char *kind, double *end)
 {
   const trb_settings settings = rig_settings();
-  const int          length = trb_record_offset(m, TRB_N_FIELDS), n = trb_state_size(m);
+  const int          length = trb_record_offset(m, TRB_N_FIELDS), n = trb_state_size(built);
   enum { TIMES = 101 };
   double          times[TIMES], last = 1e-4;
   trb_simulation *often, *once;
@@ -114,7 +115,7 @@ static double *rows_of(int beside, int with_peaks, const double *times, int n, l
     done += rows;
   }
   CHECK(s->recorder == NULL);
-  memcpy(end, s->integrator.y, (size_t)trb_state_size(m) * sizeof *end);
+  memcpy(end, s->integrator.y, (size_t)trb_state_size(built) * sizeof *end);
   trb_simulation_free(s);
   return records;
 }
@@ -130,7 +131,7 @@ static void test_beside(void)
     double      *here = rows_of(0, with_peaks, times, TIMES, 7, ends[0]), *there = rows_of(1, with_peaks, times, TIMES, 1000, ends[1]);
     if (here != NULL && there != NULL) {
       CHECK(memcmp(here, there, length * TIMES * sizeof *here) == 0);
-      CHECK(memcmp(ends[0], ends[1], (size_t)trb_state_size(m) * sizeof(double)) == 0);
+      CHECK(memcmp(ends[0], ends[1], (size_t)trb_state_size(built) * sizeof(double)) == 0);
     }
     free(here);
     free(there);
@@ -170,16 +171,16 @@ static void test_failed_step(void)
   settings.atol_position = 1e-16, settings.atol_angle = 1e-14;
   state[trb_state_roller(3) + TRB_ROLLER_v_r] = 5.0;
   if (!CHECK(create("bdf", "", &settings, 0.25, state, &s) == TRB_OK)) return;
-  memcpy(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(m));
+  memcpy(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(built));
   CHECK(trb_simulation_step(s, &message) == TRB_ERR_STEP);
   CHECK_SAYS(message.text, "at t = 0.25 s");
   CHECK_SAYS(message.text, "largest error:");
   CHECK(s->integrator.time == 0.25);
-  CHECK(memcmp(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(m)) == 0);
+  CHECK(memcmp(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(built)) == 0);
   /* a state that is refused changes nothing either */
   state[5] = NAN;
   CHECK(trb_simulation_set_state(s, 0.5, state, &message) == TRB_ERR_STATE);
-  CHECK(s->integrator.time == 0.25 && memcmp(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(m)) == 0);
+  CHECK(s->integrator.time == 0.25 && memcmp(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(built)) == 0);
   CHECK(trb_simulation_set_state(s, 0.5, start, &message) == TRB_OK && s->integrator.time == 0.5);
   trb_simulation_free(s);
   trb_simulation_free(NULL);
@@ -191,14 +192,14 @@ static void test_set_state(const char *kind, double share)
 {
   enum { STEPS = 3000 };
   trb_settings       settings = rig_settings();
-  const int          n = trb_state_size(m);
+  const int          n = trb_state_size(built);
   const size_t       length = sizeof(double) * (size_t)n;
   trb_simulation    *s, *begun;
   double             state[512];
   unsigned long long seed = 7;
   settings.first_step = 1e-5;
   memcpy(state, start, length);
-  rig_disturb(m, &seed, state);
+  rig_disturb(built, &seed, state);
   for (int i = 0; i < n; i++) state[i] = start[i] + share * (state[i] - start[i]);
   if (!CHECK(create(kind, "", &settings, 1.0, state, &s) == TRB_OK)) return;
   for (int i = 0; i < STEPS; i++) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
@@ -221,8 +222,9 @@ int main(void)
   const trb_params p = rig_params();
   const double     speed = 100 * TRB_PI;
   double           bdf[512], erk[512];
-  m = rig_model(&p);
-  motion = rig_motion(rig_state(m, 4930.0, speed, start), speed);
+  built = rig_system(&p);
+  m = built->model;
+  motion = rig_motion(rig_state(built, 4930.0, speed, start), speed);
   test_bad_input();
   test_outputs("bdf", bdf);
   test_outputs("erk", erk);
@@ -232,6 +234,6 @@ int main(void)
   for (int i = 0; i < 6; i++) test_set_state("bdf", pow(10.0, -i));
   test_set_state("erk", 1.0);
   trb_motion_free(motion);
-  trb_model_free(m);
+  rig_free(built);
   return check_report();
 }

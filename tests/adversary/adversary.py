@@ -125,11 +125,14 @@ def say(verdict: dict[str, Any]) -> None:
 
 def report(verdicts: list[dict[str, Any]], seconds: float) -> None:
     counts = Counter((v["kind"], v["status"]) for v in verdicts)
-    statuses = ["right", "warned", "stopped", "refused", "wrong", "hanging", "crashed"]
+    statuses = ["right", "warned", "unjudged", "stopped", "refused", "wrong", "hanging", "crashed"]
     print(f"\n{len(verdicts)} scenes in {seconds / 60:.1f} min")
-    print("kind     " + "".join(f"{s:>10}" for s in statuses))
+    print("kind      " + "".join(f"{s:>10}" for s in statuses))
     for kind in sorted({v["kind"] for v in verdicts}):
-        print(f"{kind:9}" + "".join(f"{counts[kind, s]:10d}" for s in statuses))
+        print(f"{kind:10}" + "".join(f"{counts[kind, s]:10d}" for s in statuses))
+    right = [v for v in verdicts if v["status"] == "right" and v["run"]["warnings"]]
+    vibrating = sum(any("vibrate" in text for text in v["run"]["warnings"]) for v in right)
+    print(f"of the right ones {len(right)} were warned, {vibrating} of vibrations")
     bad = sum(v["status"] in BAD for v in verdicts)
     begun = sum(v["status"] != "refused" for v in verdicts)
     print(f"wrong, hanging or crashed: {bad} of {begun} runs, {1000 * bad / max(begun, 1):.3g} per thousand")

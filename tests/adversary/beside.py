@@ -12,20 +12,18 @@ import warnings
 from typing import Any
 
 import numpy as np
-from judge import bounded_run
+from judge import TIGHT, bounded_run
 from numpy.typing import NDArray
 from random_scenes import KINDS, draw, make
 
 import trbdyn as trb
-from trbdyn.run.options import ACCURACY
 
-TIGHT = {name: 0.1 * value for name, value in ACCURACY["reference"].model_dump().items()}
 WAYS: dict[str, dict[str, Any]] = {
     "fast": {"accuracy": "fast"},
     "standard": {"accuracy": "standard"},
     "reference": {"accuracy": "reference"},
     "reference, forces exact": {"accuracy": "reference", "rings_share": 0.0},
-    "ten times tighter": {"accuracy": "reference", "rings_share": 0.0, **TIGHT},
+    "ten times tighter": TIGHT,
     "explicit, reference": {"accuracy": "reference", "integrator": "erk"},
     "explicit, tighter": {"accuracy": "reference", "integrator": "erk", "rtol": 1e-6},
 }

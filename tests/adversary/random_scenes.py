@@ -53,6 +53,11 @@ ORDINARY: Table = {
     "oil_fill": 0.0,
     "rotating_share": 0.0,
     "rotating_turns": 1.0,
+    "repeating": None,
+    "repeating_hz": 50.0,
+    "repeating_share": 0.2,
+    "pieces": 1,
+    "duration_s": None,
     "guidance": "rollers",
     "land_clearance": 1.0,
     "land_film": 1.0,
@@ -153,7 +158,50 @@ def guided(rng: np.random.Generator) -> Table:
     }
 
 
-KINDS = {"usual": usual, "wide": wide, "guided": guided}
+def light(rng: np.random.Generator) -> Table:
+    """Rollers that hardly any load holds: 10 to 1500 N, half of them combined, half of them in oil that drags, every preset."""
+    table: Table = {
+        "bearing": _one_of(rng, "30310", "32216"),
+        "speed_rpm": _log(rng, 200.0, 4000.0),
+        "axial_load": _log(rng, 10.0, 1500.0),
+        "temperature_c": float(rng.uniform(30.0, 90.0)),
+        "effects": "standard",
+        "accuracy": _one_of(rng, "fast", "fast", "standard", "reference"),
+    }
+    if rng.random() < 0.5:
+        table |= {"radial_share": float(rng.uniform(0.1, 0.95)), "direction_deg": float(rng.uniform(-180.0, 180.0))}
+    if rng.random() < 0.5:
+        table["oil_fill"] = _log(rng, 1e-2, 0.5)
+    return table | _start(rng)
+
+
+def repeating(rng: np.random.Generator) -> Table:
+    """Speeds and loads that repeat, and loads that rotate, without end."""
+    table = usual(rng) | {"speed_rpm": _log(rng, 100.0, 6000.0), "accuracy": _one_of(rng, "fast", "standard")}
+    what = _one_of(rng, "speed", "axial_load", "rotating")
+    if what == "rotating":
+        return table | {"rotating_share": _log(rng, 1e-2, 0.5), "rotating_turns": float(rng.uniform(-2.0, 3.0))}
+    return table | {
+        "repeating": what,
+        "repeating_hz": _log(rng, 2.0, 500.0),
+        "repeating_share": _log(rng, 0.01, 0.5 if what == "speed" else 0.3),
+    }
+
+
+def pieces(rng: np.random.Generator) -> Table:
+    """One simulation that is run in many short pieces."""
+    table = _one_of(rng, light, light, wide)(rng)
+    return table | {"pieces": int(rng.integers(4, 17))}
+
+
+KINDS = {
+    "usual": usual,
+    "wide": wide,
+    "guided": guided,
+    "light": light,
+    "repeating": repeating,
+    "pieces": pieces,
+}
 
 
 def draw(kind: str, seed: int) -> Table:
@@ -181,7 +229,7 @@ def make(table: Table) -> trb.Scene:
     fields: Table = {
         "lubricant": vg100(t["temperature_c"]) if t["oil"] is None else iso_vg(t["oil"], t["temperature_c"]),
         "effects": _effects(t),
-        "speed_rpm": _ramp(t["speed_rpm"], t["end_speed_rpm"], t["history_s"]),
+        "speed_rpm": _quantity(t, "speed", t["speed_rpm"], t["end_speed_rpm"]),
         "misalignment_x": t["misalignment_x"],
         "misalignment_y": t["misalignment_y"],
     }
@@ -189,14 +237,16 @@ def make(table: Table) -> trb.Scene:
         fields["displacement"] = (t["displacement_x"], t["displacement_y"], t["displacement_z"])
     else:
         lowest = min(t["axial_load"], t["end_axial_load"] or math.inf)
+        if t["repeating"] == "axial_load":
+            lowest *= 1.0 - t["repeating_share"]
         fields |= {
-            "axial_load": _ramp(t["axial_load"], t["end_axial_load"], t["history_s"]),
+            "axial_load": _quantity(t, "axial_load", t["axial_load"], t["end_axial_load"]),
             "radial_load": t["radial_share"] * lowest / slope,
             "radial_direction_deg": t["direction_deg"],
         }
         if t["rotating_share"] > 0.0:
             fields["rotating_load"] = trb.RotatingLoad(t["rotating_share"] * lowest / slope, turns=t["rotating_turns"])
-        if t["end_axial_load"] is not None or t["rotating_share"] > 0.0:
+        if t["end_axial_load"] is not None or t["rotating_share"] > 0.0 or t["repeating"] == "axial_load":
             fields["ring"] = "follows"
     return trb.Scene(bearing, start=_start_of(t), **fields)
 
@@ -264,7 +314,11 @@ def _start_of(t: Table) -> trb.Start:
     return trb.Start.equal()
 
 
-def _ramp(begin: float, end: float | None, duration: float) -> float | trb.History:
+def _quantity(t: Table, name: str, begin: float, end: float | None) -> float | trb.History:
+    """A number, a ramp, or a harmonic change of the quantity of this name."""
+    if t["repeating"] == name:
+        return trb.History.harmonic(begin, t["repeating_share"] * abs(begin), frequency_hz=t["repeating_hz"])
+    duration = t["history_s"]
     return begin if end is None else trb.History.ramp(0.2 * duration, 1.2 * duration, begin, end)
 
 

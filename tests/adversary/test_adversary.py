@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,23 +15,40 @@ sys.path.insert(0, str(HERE))
 from judge import bounded_run, judge  # noqa: E402
 from random_scenes import KINDS, draw, make  # noqa: E402
 
-FINE = ("right", "warned", "stopped", "refused")
+FINE = ("right", "warned", "stopped", "refused", "unjudged")
 FOUND = sorted((HERE / "found").glob("*.json"))
 
 
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("kind", sorted(KINDS))
+def _seeds() -> list[Any]:
+    """Five scenes of each kind; of those that take longer two, and the others among the slow tests."""
+    dear = ("light", "pieces", "repeating")
+    return [
+        pytest.param(kind, seed, marks=[pytest.mark.slow] if kind in dear and seed > 1 else [])
+        for kind in sorted(KINDS)
+        for seed in range(5)
+    ]
+
+
+@pytest.mark.parametrize(("kind", "seed"), _seeds())
 def test_random_scenes_are_right_or_say_so(kind, seed):
     verdict = judge(draw(kind, 1000 + seed))
     assert verdict.status in FINE, verdict.broken
 
 
-@pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
+def _case(path: Path) -> Any:
+    marks = [pytest.mark.slow] if json.loads(path.read_text()).get("slow") else []
+    return pytest.param(path, id=path.stem, marks=marks)
+
+
+@pytest.mark.parametrize("path", map(_case, FOUND))
 def test_found_failures_stay_mended(path):
-    """A file may say that an end with a reason is no longer good enough for its scene."""
+    """A file may say that an end with a reason is no longer good enough for its scene, and what the run has to say."""
     found = json.loads(path.read_text())
     verdict = judge(found["scene"])
     assert verdict.status in found.get("fine", FINE), verdict.broken
+    if "says" in found:
+        assert verdict.run is not None
+        assert any(found["says"] in text for text in verdict.run.warnings), verdict.run.warnings
 
 
 def test_the_judge_sees_a_run_that_is_wrong():

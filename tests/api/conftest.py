@@ -12,6 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.model.motion import History
 from trbdyn.results.fields import Field
 from trbdyn.results.result import Result
 
@@ -157,6 +158,12 @@ class StubScene:
         friction=SimpleNamespace(lambda_full=1.5),
     )
     axial_load, radial_load = 4930.0, 0.0
+    rotating_load = None
+    growth = None
+
+    def ring_quantities(self) -> dict[str, Any]:
+        """A load that changes: ratings ask for constant ones."""
+        return {"axial_load": History(times=(0.0, 1.0), values=(1.0, 2.0))}
 
     def to_dict(self) -> dict[str, Any]:
         """Any plain data."""

@@ -31,7 +31,8 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     from types import SimpleNamespace
 
     scene = SimpleNamespace(**{name: getattr(build()[1].scene, name) for name in ("bearing", "effects")})
-    scene.to_dict = dict
+    scene.to_dict, scene.ring_quantities = dict, build()[1].scene.ring_quantities
+    scene.rotating_load = scene.growth = None
     about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
     return run, from_records(run.records, run.layout, **about)
 
@@ -287,7 +288,7 @@ def test_wall_time_of_a_turn_is_what_the_statistics_tell(
 
 def test_torque_and_loss_are_those_of_the_run_and_not_of_its_records() -> None:
     """A cage that collides: means of records every millisecond are off by half a per cent, work over turn is not."""
-    scene = trb.cases.scene_30310(3000.0, 1230.0, start=trb.Start.whirl(0.9))
+    scene = trb.cases.paper_30310(3000.0, 1230.0, start=trb.Start.whirl(0.9))
     coarse, fine = (trb.Simulation(scene).run(revolutions=2, save_every=every).summary() for every in (1e-3, 1e-4))
     for name in ("torque", "power_loss"):
         assert coarse[name] == pytest.approx(fine[name], rel=1e-9)
@@ -301,3 +302,15 @@ def test_turns_are_those_of_all_rollers_and_not_of_the_fastest(build: Callable[.
     about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
     found = from_records(run.records, run.layout, **about).settling()
     assert (found.answer, found.reason) == ("unknown", "only 3.8 turns of the cage")
+
+
+def test_settling_knows_the_cage_by_the_size_of_its_play(build: Callable[..., tuple[Any, Result]]) -> None:
+    """An orbit that grows by a fifth of the play while the rollers stand still is drift; in metres it would be nothing."""
+    run, result = build(n=4001, duration=2.0)
+    clearance = result.clearances.radial
+    grows = np.linspace(0.3, 0.5, 4001)[:, None] * clearance
+    place = run.column("cage_position")
+    place[:, :2] *= grows / np.linalg.norm(place[:, :2], axis=1, keepdims=True)
+    about = {"scene": result.scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
+    found = Result.from_records(run.records, run.layout, **about).settling()
+    assert found.answer == "drifting"

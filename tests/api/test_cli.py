@@ -5,7 +5,9 @@ from __future__ import annotations
 import importlib
 import json
 import math
+import os
 import pkgutil
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +17,7 @@ import pytest
 
 import trbdyn
 from trbdyn.cli import main
+from trbdyn.cli.called import command
 from trbdyn.errors import LoadError, StepError
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
@@ -190,8 +193,8 @@ def test_damaged_case_and_result_files(
     assert "not a TOML file" in capsys.readouterr().err
     assert main(["run", "bad.toml", "--set", "scene.speed_rpm=1"]) == 2
     (tmp_path / "bad.h5").write_bytes(b"\x00" * 1000)
-    for command in ("plot", "info"):
-        assert main([command, "bad.h5"]) == 2
+    for name in ("plot", "info"):
+        assert main([name, "bad.h5"]) == 2
         assert "not an HDF5 file" in capsys.readouterr().err
 
 
@@ -222,3 +225,43 @@ def test_the_module_runs_as_a_program() -> None:
     assert done.returncode == 2
     assert done.stderr.startswith("trbdyn: the following arguments are required: COMMAND")
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_advice_can_be_typed_as_it_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It printed `python -m trbdyn` and `trbdyn`, where the Python of an environment was needed."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "my own.toml"]) == 0
+    advice = capsys.readouterr().out.partition("run it with: ")[2].strip()
+    assert shlex.split(advice)[-2:] == ["run", "my own.toml"]
+    done = subprocess.run(f"{advice} --duration 1e-4 --quiet", shell=True, check=False, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_program_is_named_as_it_was_called(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    place = tmp_path / ".venv" / "bin"
+    place.mkdir(parents=True)
+    for name in ("python", "trbdyn"):
+        (place / name).write_text("")
+        (place / name).chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", os.defpath)
+    monkeypatch.setattr(sys, "executable", str(place / "python"))
+    monkeypatch.setattr(sys, "argv", ["/somewhere/trbdyn/__main__.py"])
+    assert command("resume", "a b.h5") == ".venv/bin/python -m trbdyn resume 'a b.h5'"
+    monkeypatch.setattr(sys, "argv", [".venv/bin/trbdyn"])
+    assert command("run", "x") == ".venv/bin/trbdyn run x"
+    monkeypatch.setenv("PATH", str(place))
+    assert command("run", "x") == "trbdyn run x"
+    monkeypatch.setattr(sys, "argv", ["-c"])
+    assert command("run", "x") == "python -m trbdyn run x"
+
+
+def test_a_stopped_run_says_how_to_go_on(fake: type[FakeSimulation], capsys: pytest.CaptureFixture[str]) -> None:
+    fake.success = False
+    assert main(["run", "rig_30310", "-o", "a.h5", "--quiet"]) == 1
+    assert "go on with" not in capsys.readouterr().err
+    Path("b.h5.checkpoint").write_text("")
+    assert main(["run", "rig_30310", "-o", "b.h5", "--quiet"]) == 1
+    assert "-m trbdyn resume b.h5" in capsys.readouterr().err

@@ -25,7 +25,7 @@ def rig() -> Bearing:
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:
-    return cases.scene_30310()
+    return cases.paper_30310()
 
 
 class TestHistory:
@@ -63,7 +63,7 @@ class TestHistory:
     def test_knot_table_keeps_every_curve(self) -> None:
         histories = [History.table(self.times, self.values), History.ramp(0.2, 0.8, -1.0, 3.0), 7.0]
         table = knot_table(histories)
-        assert table.shape == (6, 7)
+        assert table.shape == (6, 8)
         t = np.linspace(-0.2, 1.0, 2001)
         for channel, quantity in enumerate(histories):
             expected = quantity.value(t) if isinstance(quantity, History) else np.full_like(t, quantity)
@@ -165,8 +165,8 @@ class TestFlatten:
 
     def test_held_ring(self, scene: Scene) -> None:
         table = flatten.motion_table(scene, [1e-6, 2e-6, -3e-6, 9.0, 9.0])
-        assert table.shape == (1, 19)
-        values = dict(zip([name for name, _, _ in _core.motion_table()], table[0, 1::2], strict=True))
+        assert table.shape == (1, 20)
+        values = dict(zip([name for name, _, _ in _core.motion_table()], table[0, 1:-1:2], strict=True))
         assert (values["displacement_x"], values["displacement_y"], values["displacement_z"]) == (1e-6, 2e-6, -3e-6)
         assert (values["rotation_x"], values["rotation_y"]) == (0.0, 0.0)
         assert values["shaft_speed"] == pytest.approx(100 * math.pi)

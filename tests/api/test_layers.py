@@ -11,13 +11,13 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 
 import pytest
 from pydantic import ValidationError
 
 import trbdyn as trb
-from trbdyn import _core, former_names
+from trbdyn import _core
 from trbdyn.base.validation import Model
 from trbdyn.cli import case
 from trbdyn.model.core_table import PARAMETERS, SETTINGS
@@ -41,20 +41,7 @@ def kinds_of(model: type[Model]) -> list[type[Model]]:
     ]
 
 
-@pytest.mark.parametrize("old", sorted(former_names.MODULES))
-def test_a_module_is_found_by_its_old_name(old: str) -> None:
-    module = importlib.import_module(old)
-    assert module is importlib.import_module(former_names.MODULES[old])
-    assert module.__spec__ is not None
-    assert module.__spec__.name == module.__name__ == former_names.MODULES[old]
-
-
-def test_modules_below_a_moved_one_are_not_loaded_twice() -> None:
-    code = "import trbdyn.plotting.style as one, trbdyn.plot.style as two; print(one is two)"
-    assert in_a_new_process(code).split() == ["True"]
-
-
-def test_objects_that_were_pickled_by_the_old_names_can_be_read() -> None:
+def test_pickled_objects_can_be_read() -> None:
     scene = trb.Scene(
         trb.cases.rig_30310(),
         speed_rpm=3000,
@@ -62,18 +49,7 @@ def test_objects_that_were_pickled_by_the_old_names_can_be_read() -> None:
         ring="follows",
     )
     state = Simulation(trb.cases.scene_30310(1000.0, 3080.0)).state
-    text = pickle.dumps((scene, state), protocol=2)  # names as text
-    moved = {
-        "model.bearing": "bearing", "model.roller": "bearing", "model.material": "bearing", "model.scene": "scene",
-        "model.start": "scene", "model.motion": "motion", "model.lubricants.lubricant": "lubricants",
-        "model.lubricants.viscosity": "lubricants", "model.effects": "effects", "run.simulation": "simulation",
-        "model.geometry": "geometry",
-    }  # fmt: skip
-    for new, old in moved.items():
-        text = text.replace(f"trbdyn.{new}\n".encode(), f"trbdyn.{old}\n".encode())
-    assert b"trbdyn.model" not in text.replace(b"trbdyn.model.land", b"")  # which is younger than the layers
-    assert b"trbdyn.run" not in text
-    again, state_again = pickle.loads(text)
+    again, state_again = pickle.loads(pickle.dumps((scene, state)))
     assert again == scene
     assert state_again.time == state.time
 
@@ -81,11 +57,29 @@ def test_objects_that_were_pickled_by_the_old_names_can_be_read() -> None:
 def test_public_modules_are_attributes() -> None:
     for name in ("animation", "cases", "errors", "laws", "lubricants", "observables", "plot", "pocket_shapes", "study"):
         assert isinstance(getattr(trb, name), ModuleType)
-    assert trb.bearing.Scatter is trb.Scatter
     with pytest.raises(AttributeError, match="no attribute 'paper'"):
         _ = trb.paper
     with pytest.raises(ModuleNotFoundError):
         importlib.import_module("trbdyn.paper")
+
+
+@pytest.mark.parametrize("module", [trb, trb.study, trb.plot, trb.cases, trb.pocket_shapes], ids=lambda m: m.__name__)
+def test_completion_shows_what_users_need(module: ModuleType) -> None:
+    """It listed `Any`, `TYPE_CHECKING`, `importlib` and the like."""
+    shown = {name for name in dir(module) if not name.startswith("_")}
+    values = {name: getattr(module, name) for name in shown}
+    modules = {name: value.__name__ for name, value in values.items() if isinstance(value, ModuleType)}
+    named = {name: value.__module__ for name, value in values.items() if isinstance(value, type | FunctionType)}
+    assert {name for name, home in (modules | named).items() if not home.startswith("trbdyn")} == set()
+    assert not shown & {"TYPE_CHECKING", "Any", "importlib", "former_names"}
+    assert len(shown) > 3
+
+
+def test_modules_have_one_name() -> None:
+    """Nothing has been released, so no name of before leads anywhere."""
+    for name in ("plotting", "cases", "bearing"):
+        with pytest.raises(ModuleNotFoundError):
+            importlib.import_module(f"trbdyn.{name}")
 
 
 def test_help_comes_without_numpy_and_pydantic() -> None:
@@ -128,7 +122,13 @@ def test_one_default_for_each_setting() -> None:
         "integrator": "bdf",
         **{
             name: SETTINGS[name].default
-            for name in (*Tolerances.model_fields, "max_order", "first_step", "rings_share", "impact_share")
+            for name in (
+                *Tolerances.model_fields,
+                "max_order",
+                "first_step",
+                "rings_share",
+                "impact_share",
+            )
         },
     }
     assert ACCURACY["standard"].rtol == {row[0]: row[1] for row in _core.setting_table()}["rtol"]
@@ -144,7 +144,7 @@ def test_the_command_line_hands_on_every_option_of_a_case(monkeypatch: pytest.Mo
 
     monkeypatch.setattr(Simulation, "run", look)
     options = RunOptions(duration=1e-3, when_wrong="go_on", integrator="erk", max_order=1, rings_share=0.0)
-    scene = trb.cases.scene_30310(1000.0, 3080.0)
+    scene = trb.cases.paper_30310(1000.0, 3080.0)
     case.simulate(scene, options, tmp_path / "a.h5", quiet=True, overwrite=False)
     assert seen[0].of_simulation() == options.of_simulation()
     assert seen[0].when_wrong == "go_on"

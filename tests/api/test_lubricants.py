@@ -12,6 +12,7 @@ import trbdyn as trb
 from trbdyn import InputError, Lubricant, Oil, laws
 from trbdyn.model.flatten import lubricant_entries
 from trbdyn.model.lubricants import MINERAL, OILS, Dicke, astm_d341, iso_vg, vg100, wooster
+from trbdyn.run.toml_case import case_from_dict
 from trbdyn.statics.creep import contact_viscosity
 
 
@@ -40,7 +41,7 @@ def test_temperature_is_always_applied(name: str) -> None:
 
 def test_study_and_toml_change_the_temperature() -> None:
     study = trb.study.grid(
-        trb.cases.scene_30310(), {"lubricant.temperature_c": [60.0, 90.0]}, trb.RunOptions(revolutions=1)
+        trb.cases.paper_30310(), {"lubricant.temperature_c": [60.0, 90.0]}, trb.RunOptions(revolutions=1)
     )
     assert [case.scene.lubricant for case in study.cases if case.scene] == [vg100(60.0), vg100(90.0)]
     tables = {
@@ -48,7 +49,7 @@ def test_study_and_toml_change_the_temperature() -> None:
         "scene": {"speed_rpm": 1000.0, "axial_load": 1e3},
         "lubricant": {"oil": {"name": "own", "nu40": 68.0, "nu100": 8.7}, "temperature_c": 80.0},
     }
-    scene, _ = trb.toml_case.case_from_dict(tables)
+    scene, _ = case_from_dict(tables)
     assert scene.lubricant == Oil(name="own", nu40=68.0, nu100=8.7).at(80.0)
 
 

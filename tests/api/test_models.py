@@ -29,7 +29,7 @@ def rig() -> Bearing:
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:
-    return cases.scene_30310()
+    return cases.paper_30310()
 
 
 class TestGeometry:
@@ -233,7 +233,7 @@ class TestBearing:
             ("roller", {"diameter": float("nan")}, "roller.diameter"),
             ("roller", {"sphere_ratio": 1.5}, "roller.sphere_ratio"),
             ("cage", {"mass": 0.0}, "cage.mass"),
-            ("cage", {"inertia_axial": 9e-4}, "cage.inertia_axial"),
+            ("cage", {"inertia_axial": 9e-4, "inertia_transverse": 2.1e-4}, "cage.inertia_axial"),
             ("cage", {"wall_outer": 1e-3, "wall_inner": 1.5e-3}, "cage.wall_outer"),
             ("material", {"poisson_ratio": 0.5}, "material.poisson_ratio"),
             ("roughness", {"rib": 0.0}, "roughness.rib"),
@@ -260,7 +260,7 @@ class TestBearing:
 
     def test_given_deviations(self, rig: Bearing) -> None:
         one_larger = rig.replace(roller=rig.roller.replace(diameter_deviation=[1e-6] + [0.0] * 11))
-        assert flatten.diameter_deviation(cases.scene_30310(bearing=one_larger)).tolist() == [1e-6] + [0.0] * 11
+        assert flatten.diameter_deviation(cases.paper_30310(bearing=one_larger)).tolist() == [1e-6] + [0.0] * 11
         with pytest.raises(
             InputError, match=r"bearing\.roller\.diameter_deviation = .*: must have one entry for each roller, 12"
         ):
@@ -327,6 +327,23 @@ class TestRunOptions:
         end = RunOptions(revolutions=revolutions).end_time(speed)
         assert speed.integral(0.0, end) / 60.0 == pytest.approx(revolutions, rel=1e-9)
 
+    @pytest.mark.parametrize("start", [0.0, -0.37, 12.21])
+    @pytest.mark.parametrize(
+        ("mean", "amplitude", "frequency", "revolutions"),
+        [(3000.0, 2900.0, 7.0, 20.0), (600.0, 500.0, 1.7, 500.0), (-30.0, 3000.0, 5.0, 15.0), (0.0, 3000.0, 0.5, 15.0)],
+    )
+    def test_end_time_of_a_speed_that_repeats(
+        self, mean: float, amplitude: float, frequency: float, revolutions: float, start: float
+    ) -> None:
+        """For the first time: a shaft that turns to and fro was nowhere as far before."""
+        speed = History.harmonic(mean, amplitude, frequency_hz=frequency)
+        end = RunOptions(revolutions=revolutions).end_time(speed, start)
+        assert abs(speed.integral(start, end)) / 60.0 == pytest.approx(revolutions, rel=1e-9)
+        before = [abs(speed.integral(start, time)) / 60.0 for time in np.linspace(start, end, 500)[:-1]]
+        assert max(before) < revolutions
+        with pytest.raises(InputError, match="does not turn that often"):
+            RunOptions(revolutions=1e3).end_time(History.harmonic(0.0, 3000.0, frequency_hz=5.0), start)
+
     def test_refuses(self) -> None:
         with pytest.raises(InputError, match=r"run\.duration"):
             RunOptions(revolutions=1, duration=1)
@@ -368,7 +385,7 @@ class TestCases:
         assert len(points) == 18
         assert points["2000rpm_4930N_5530N"].radial_load == 5530.0
         for point in points.values():
-            cases.scene_30310(point.speed_rpm, point.axial_load, point.radial_load)
+            cases.paper_30310(point.speed_rpm, point.axial_load, point.radial_load)
 
     def test_scenes(self) -> None:
         scene = cases.scene_32216(speed_rpm=500, effects=Effects.standard())

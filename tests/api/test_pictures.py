@@ -16,7 +16,7 @@ from trbdyn.run.replay import Replay
 
 @pytest.fixture(scope="module")
 def loaded() -> trb.Result:
-    return trb.Simulation(trb.cases.scene_30310(2000.0, 4930.0, 5530.0)).run(revolutions=4)
+    return trb.Simulation(trb.cases.paper_30310(2000.0, 4930.0, 5530.0)).run(revolutions=4)
 
 
 @pytest.fixture(autouse=True)
@@ -76,7 +76,7 @@ def test_attitude_and_torque_follow_the_records(loaded: trb.Result) -> None:
 
 
 def test_poincare_takes_the_cage_once_a_turn() -> None:
-    scene = trb.cases.scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+    scene = trb.cases.paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
     result = trb.Simulation(scene).run(revolutions=8)
     points = section_points(result, "cage")
     assert len(points) == 1 + int(result.cage_angle[-1] / (2 * np.pi))
@@ -90,7 +90,7 @@ def test_poincare_takes_the_cage_once_a_turn() -> None:
 
 
 def test_pocket_polar_shows_the_peaks() -> None:
-    scene = trb.cases.scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+    scene = trb.cases.paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
     result = trb.Simulation(scene).run(revolutions=2)
     heights = [bar.get_height() for bar in trb.plot.pocket_polar(result).patches]
     assert max(heights) == pytest.approx(result.peaks["pocket_force_peak"].max())
@@ -100,7 +100,7 @@ def test_pocket_polar_shows_the_peaks() -> None:
 
 def test_waterfall_peaks_at_the_whirl() -> None:
     runs = [
-        trb.Simulation(trb.cases.scene_30310(speed, 4930.0, start=trb.Start.whirl(0.9))).run(revolutions=6)
+        trb.Simulation(trb.cases.paper_30310(speed, 4930.0, start=trb.Start.whirl(0.9))).run(revolutions=6)
         for speed in (3000.0, 1000.0)
     ]
     ax = trb.plot.waterfall(runs)

@@ -41,11 +41,25 @@ def test_cage_locus_shows_the_path_and_the_circles(whirling: Result) -> None:
     assert [patch.get_radius() for patch in ax.patches] == [1.0, pytest.approx(0.48)]
     assert ax.get_aspect() == 1.0
     assert "C_{pr}" in ax.get_xlabel()
-    texts = [text.get_text() for text in ax.get_legend().get_texts()]
+    texts = [text.get_text() for text in ax.figure.legends[0].get_texts()]
     assert texts[:2] == ["radial play $C_{pr}$ = 0.25 mm", "circumferential play $C_{pc}$ = 0.12 mm"]
     plain = plot.cage_locus(whirling, plane="rail", colour_by_time=False, circles={"Cpr": 1.0, "equal spacing": 0.436})
     assert len(plain.patches) == 2
     assert not plain.collections
+
+
+def test_the_legend_of_the_locus_lies_beside_the_colour_bar(whirling: Result) -> None:
+    """Play with three digits made the legend reach under the bar."""
+    ax = plot.cage_locus(
+        whirling, circles={"radial play $C_{pr}$ = 0.179 mm": 1.0, "circumferential play = 0.0857 mm": 0.48}
+    )
+    figure = ax.figure
+    figure.canvas.draw()
+    found = ax.get_legend() or figure.legends[0]
+    bar = next(other for other in figure.axes if other is not ax)
+    assert not found.get_window_extent().overlaps(bar.get_tightbbox())
+    assert figure.bbox.contains(*found.get_window_extent().min)
+    assert figure.bbox.contains(*found.get_window_extent().max)
 
 
 def test_pictures_draw_into_given_axes(whirling: Result) -> None:

@@ -107,7 +107,7 @@ class TestPocketShapes:
         pocket = pocket_shapes.SHAPES[shape](rig, **arguments)
         bearing = rig.replace(cage=rig.cage.replace(pocket=pocket))
         assert min(pocket.gaps(bearing.geometry).values()) > -1e-12
-        assert flatten.face_rows(cases.scene_30310(bearing=bearing)).shape[0] == len(pocket.faces)
+        assert flatten.face_rows(cases.paper_30310(bearing=bearing)).shape[0] == len(pocket.faces)
 
     def test_drafted_keeps_the_circumferential_play(self, rig: Bearing) -> None:
         face = pocket_shapes.drafted_pocket(rig, 10.0).face("leading_bar")
@@ -133,7 +133,7 @@ class TestPocketShapes:
     def test_one_pocket_differs(self, rig: Bearing) -> None:
         other = OtherPocket(index=5, pocket=pocket_shapes.chamfered_pocket(rig))
         bearing = rig.replace(cage=rig.cage.replace(other_pockets=[other]))
-        rows = flatten.face_rows(cases.scene_30310(bearing=bearing))
+        rows = flatten.face_rows(cases.paper_30310(bearing=bearing))
         columns = {name: place for place, name in enumerate(name for name, *_ in _core.face_table())}
         assert columns["pocket"] == 0
         assert sorted(set(rows[:, 0])) == list(range(12))

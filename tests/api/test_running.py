@@ -17,13 +17,13 @@ import tqdm
 
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError, StepError
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.results.fields import Field
 from trbdyn.run import checkpoint, memory, running
 
 
 def test_a_copy_made_in_a_callback_goes_its_own_way() -> None:
-    sim, copies = trb.Simulation(scene_30310()), []
+    sim, copies = trb.Simulation(paper_30310()), []
 
     def callback(now: trb.Simulation) -> bool:
         copies.append(now.copy())
@@ -45,7 +45,7 @@ def test_progress_is_counted_over_the_whole_run(monkeypatch: pytest.MonkeyPatch)
             bars.append(self)
 
     monkeypatch.setattr(tqdm, "tqdm", Bar)
-    sim = trb.Simulation(scene_30310())
+    sim = trb.Simulation(paper_30310())
     sim.run(duration=2e-3, save_every=5e-4, progress=True)
     sim.run(duration=3e-3, save_every=5e-4, progress=True)
     assert [bar.total for bar in bars] == pytest.approx([2e-3, 3e-3])
@@ -53,17 +53,17 @@ def test_progress_is_counted_over_the_whole_run(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_wall_time_of_less_than_a_turn_and_of_none() -> None:
-    part = trb.Simulation(scene_30310(3000.0)).run(duration=1e-3)
+    part = trb.Simulation(paper_30310(3000.0)).run(duration=1e-3)
     assert part.stats["revolutions"] == pytest.approx(0.05)
     assert part.stats["wall_s_per_revolution"] == pytest.approx(part.stats["stepping_s"] / 0.05)
-    still = trb.Simulation(scene_30310(0.0)).run(duration=1e-4)
+    still = trb.Simulation(paper_30310(0.0)).run(duration=1e-4)
     assert still.stats["revolutions"] == 0.0
     assert math.isnan(still.stats["wall_s_per_revolution"])
 
 
 def test_a_start_that_fails_leaves_a_simulation_without_looks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first checkpoint cannot be written: the simulation then makes rows of records alone, and runs as before."""
-    sim = trb.Simulation(scene_30310())
+    sim = trb.Simulation(paper_30310())
 
     def fail(*_: Any, **__: Any) -> None:
         raise OSError(28, "No space left on device")
@@ -78,7 +78,7 @@ def test_a_start_that_fails_leaves_a_simulation_without_looks(tmp_path: Path, mo
 
 def test_rollers_without_a_cage_must_not_touch() -> None:
     effects = trb.Effects.paper().replace(bodies="rollers")
-    scene = scene_30310(3000.0, 4930.0, effects=effects, start=trb.Start.equal())
+    scene = paper_30310(3000.0, 4930.0, effects=effects, start=trb.Start.equal())
     sim = trb.Simulation(scene, when_wrong="go_on")
     vector = sim.state.vector
     sim.view(vector)["roller_psi"][3] += 0.2  # 8.2 mm of the 7.3 mm between two rollers
@@ -93,7 +93,7 @@ def test_a_second_thread_changes_no_bit(monkeypatch: pytest.MonkeyPatch, groups:
     found = []
     for beside in (False, True):
         monkeypatch.setattr(running, "has_a_spare_core", lambda answer=beside: answer)
-        scene = scene_30310(3000.0, 1230.0, start=trb.Start.whirl(0.9))
+        scene = paper_30310(3000.0, 1230.0, start=trb.Start.whirl(0.9))
         found.append(trb.Simulation(scene).run(duration=0.01, save_every=3e-5, save_groups=groups))
     here, there = found
     for field in here.fields:
@@ -118,13 +118,13 @@ def test_a_run_in_memory_ends_before_the_memory_is_full(monkeypatch: pytest.Monk
     free = iter([1 << 40, memory.RESERVE])
     monkeypatch.setattr(memory, "LOOK_EVERY", 1)
     monkeypatch.setattr(memory, "available", lambda: next(free))
-    sim = trb.Simulation(trb.cases.scene_30310(3000.0))
+    sim = trb.Simulation(trb.cases.paper_30310(3000.0))
     result = sim.run(duration=10.0, save_every=1e-5)
     assert not result.success
     assert re.search(r"memory is nearly full at .* s: .* GB; write them to a file \(output=", result.message)
     assert len(result) == 2 * running.CHUNK_RECORDS
     monkeypatch.setattr(memory, "available", lambda: None)
-    short = trb.Simulation(trb.cases.scene_30310(3000.0)).run(duration=len(result) * 1e-5, save_every=1e-5)
+    short = trb.Simulation(trb.cases.paper_30310(3000.0)).run(duration=len(result) * 1e-5, save_every=1e-5)
     assert np.array_equal(result["cage_position"], short["cage_position"][: len(result)])
     assert sim.run(duration=1e-4).success
 
@@ -132,7 +132,7 @@ def test_a_run_in_memory_ends_before_the_memory_is_full(monkeypatch: pytest.Monk
 def test_a_run_that_is_complete_needs_no_more_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "LOOK_EVERY", 1)
     monkeypatch.setattr(memory, "available", lambda: memory.RESERVE)
-    result = trb.Simulation(trb.cases.scene_30310(3000.0)).run(duration=1e-4, save_every=1e-5)
+    result = trb.Simulation(trb.cases.paper_30310(3000.0)).run(duration=1e-4, save_every=1e-5)
     assert result.success
     assert len(result) == 11
 
@@ -142,6 +142,7 @@ def test_free_memory_is_what_the_system_says(tmp_path: Path, monkeypatch: pytest
     if free is not None:
         assert 1 << 20 < free < os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     monkeypatch.setattr(memory, "_MEMINFO", tmp_path / "nothing")
+    monkeypatch.setattr(memory, "_of_process", lambda: None)
     monkeypatch.setattr(memory, "_GROUPS", ())
     assert memory.available() is None
 
@@ -159,6 +160,7 @@ def test_free_memory_knows_the_limit_of_a_container(
     """Written as the kernel writes them; files that were read and are no longer used make room."""
     monkeypatch.setattr(memory, "_MEMINFO", tmp_path / "meminfo")
     monkeypatch.setattr(memory, "_OWN_GROUPS", tmp_path / "own")
+    monkeypatch.setattr(memory, "_of_process", lambda: None)  # these tests may run under a limit of their own
     monkeypatch.setattr(memory, "_GROUPS", ((controller, tmp_path / "groups", limit, taken, files),))
     (tmp_path / "meminfo").write_text(
         "MemTotal:       24000000 kB\nMemAvailable:    9000000 kB\nHugePages_Total:       0\n"

@@ -10,7 +10,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import observables as obs
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 
 CAGE = 130.0  # rad/s
 NOISE = np.random.default_rng(5)
@@ -124,7 +124,7 @@ def test_the_slow_whirl_at_high_load_is_not_settled_in_a_second() -> None:
     """3000 rpm, equal start: at 4930 N the whirl takes tens of seconds to grow, at 1230 N the rollers yield within a turn."""
     answers = {}
     for load, duration in ((4930.0, 1.0), (1230.0, 1.0)):
-        scene = scene_30310(3000.0, load, effects=trb.Effects.paper().replace(quadrature="gauss", n_slices=8))
+        scene = paper_30310(3000.0, load, effects=trb.Effects.paper().replace(quadrature="gauss", n_slices=8))
         run = trb.Simulation(scene, accuracy="fast").run(
             duration=duration, save_every=1e-3, save_groups=["cage", "rollers"]
         )
@@ -143,19 +143,19 @@ def test_creep_time_of_any_scene() -> None:
     from trbdyn.statics.creep import creep_time
 
     known = [
-        scene_30310(),
-        scene_30310(2000.0, 4930.0, 5530.0),
-        scene_30310(3000.0, 1230.0, 3000.0),
-        scene_30310(gravity=(0.0, 0.0, 0.0)),
-        scene_30310(effects=trb.Effects.standard()),
+        paper_30310(),
+        paper_30310(2000.0, 4930.0, 5530.0),
+        paper_30310(3000.0, 1230.0, 3000.0),
+        paper_30310(gravity=(0.0, 0.0, 0.0)),
+        paper_30310(effects=trb.Effects.standard()),
         trb.cases.scene_32216(-2000.0),
     ]
     unknown = [
-        scene_30310(0.0),
-        scene_30310(effects=trb.Effects.minimal()),
-        scene_30310(effects=trb.Effects.frictionless()),
-        scene_30310(effects=trb.Effects.paper().replace(bodies="rollers")),
-        scene_30310(trb.History.ramp(0.0, 1.0, 0.0, 3000.0)),
+        paper_30310(0.0),
+        paper_30310(effects=trb.Effects.minimal()),
+        paper_30310(effects=trb.Effects.frictionless()),
+        paper_30310(effects=trb.Effects.paper().replace(bodies="rollers")),
+        paper_30310(trb.History.ramp(0.0, 1.0, 0.0, 3000.0)),
     ]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -163,7 +163,7 @@ def test_creep_time_of_any_scene() -> None:
             assert 1e-3 < creep_time(scene) < 100.0
         for scene in unknown:
             assert math.isnan(creep_time(scene))
-    light, heavy = (creep_time(scene_30310(3000.0, load)) for load in (1230.0, 4930.0))
+    light, heavy = (creep_time(paper_30310(3000.0, load)) for load in (1230.0, 4930.0))
     assert light < 0.02 * heavy
 
 

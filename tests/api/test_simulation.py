@@ -15,14 +15,15 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import FileError, History, InputError, Result, Simulation, StepError
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
+from trbdyn.results.file_format import as_kept
 from trbdyn.run.options import RunOptions
 
 
 def simulate(**options: Any) -> Simulation:
-    return Simulation(scene_30310(3000.0, 4930.0), **options)
+    return Simulation(paper_30310(3000.0, 4930.0), **options)
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +113,7 @@ def test_bad_options(options: dict[str, Any], field: str) -> None:
 
 
 def test_a_shaft_at_rest_turns_no_revolutions() -> None:
-    sim = Simulation(scene_30310(0.0, 4930.0))
+    sim = Simulation(paper_30310(0.0, 4930.0))
     with pytest.raises(InputError, match="stands still"):
         sim.run(revolutions=1.0)
 
@@ -132,14 +133,17 @@ def test_file_holds_what_memory_does(short: Result, tmp_path: Path) -> None:
     written = simulate().run(duration=2e-3, save_every=1e-4, output=path)
     loaded = trb.load(path)
     for result in (written, loaded):
-        assert_same_fields(result, short)
+        assert [entry.name for entry in result.fields] == [entry.name for entry in short.fields]
+        for entry in short.fields:
+            # contacts, torque and peaks have seven digits in a file, motion has twelve
+            np.testing.assert_array_equal(result[entry.name], as_kept(entry, short[entry.name]), err_msg=entry.name)
         assert result.success
         assert result.message == short.message
         assert result.final_state is not None
         np.testing.assert_array_equal(result.final_state, short.final_state)
         assert result.counters == short.counters
         assert result.stats["steps"] == short.stats["steps"]
-        assert result.scene == scene_30310(3000.0, 4930.0)
+        assert result.scene == paper_30310(3000.0, 4930.0)
 
 
 def test_file_that_cannot_be_written(tmp_path: Path) -> None:
@@ -168,7 +172,7 @@ def test_what_a_callback_raises_brings_the_records_with_it() -> None:
         if sim.time > 1e-3:
             raise ValueError("enough")
 
-    sim = trb.Simulation(trb.cases.scene_30310(3000.0))
+    sim = trb.Simulation(trb.cases.paper_30310(3000.0))
     with pytest.raises(ValueError, match="enough") as caught:
         sim.run(duration=1.0, save_every=1e-5, callback=callback)
     result = caught.value.result
@@ -241,7 +245,7 @@ def any_gravity(monkeypatch: pytest.MonkeyPatch) -> None:
 def failing(**options: Any) -> Simulation:
     """Gravity that nothing can stand comes on after 1 ms."""
     weight = History.ramp(1e-3, 1.1e-3, 0.0, 1e30)
-    return Simulation(scene_30310(3000.0, 4930.0, gravity=(0.0, -9.81, weight)), **options)
+    return Simulation(paper_30310(3000.0, 4930.0, gravity=(0.0, -9.81, weight)), **options)
 
 
 @pytest.mark.usefixtures("any_gravity")
@@ -289,7 +293,7 @@ def test_failed_single_step() -> None:
 def run_into_each_other(**arguments: Any) -> StepError:
     """Rollers without a cage, one faster than the others."""
     effects = trb.Effects.frictionless().replace(bodies="rollers", gravity=False)
-    sim = Simulation(scene_30310(3000.0, 4930.0, effects=effects))
+    sim = Simulation(paper_30310(3000.0, 4930.0, effects=effects))
     vector = sim.state.vector
     sim.view(vector)["roller_v_t"][3] += 4.0
     sim.set_state(vector)
@@ -332,7 +336,7 @@ def test_a_setting_of_zero_is_not_the_default(monkeypatch: pytest.MonkeyPatch) -
 
     def state(**changes: float) -> np.ndarray:
         monkeypatch.setattr(RunOptions, "settings", lambda self: usual(self) | changes)
-        sim = Simulation(scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9)))
+        sim = Simulation(paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9)))
         sim.run(duration=5e-3)
         return sim.state.vector
 

@@ -21,6 +21,7 @@ import trbdyn as trb
 from trbdyn import study
 from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError, StepError, TrbError
+from trbdyn.run.toml_case import find_case
 from trbdyn.study import executors, runner, work
 from trbdyn.study.definition import Base, put, split_path
 from trbdyn.study.gather import unit_of
@@ -36,7 +37,7 @@ def small(**changes: Any) -> study.Study:
         "scene.speed_rpm": [1000.0, 3000.0],
         "start": {"equal": {"start.kind": "equal"}, "whirl": {"start.kind": "whirl"}},
     }
-    return study.grid(trb.cases.scene_30310(), axes | changes.pop("axes", {}), OPTIONS, fixed=FAST | changes)
+    return study.grid(trb.cases.paper_30310(), axes | changes.pop("axes", {}), OPTIONS, fixed=FAST | changes)
 
 
 def records(folder: Path) -> dict[str, dict[str, np.ndarray]]:
@@ -93,7 +94,7 @@ class TestOverrides:
             assert run == OPTIONS
 
     def test_values(self) -> None:
-        base = Base.of(trb.cases.scene_30310(), OPTIONS)
+        base = Base.of(trb.cases.paper_30310(), OPTIONS)
         history = trb.History.ramp(0.0, 1.0, 1000.0, 2000.0)
         oil = trb.lubricants.vg100(80.0)
         overrides = {
@@ -112,12 +113,12 @@ class TestOverrides:
         assert scene.effects.friction.speed_floor == 1e-4
 
     def test_an_oil_at_another_temperature_is_another_oil(self) -> None:
-        base = Base.of(trb.cases.scene_30310(), OPTIONS)
+        base = Base.of(trb.cases.paper_30310(), OPTIONS)
         scene, _ = base.build({"lubricant.temperature_c": 80.0})
         assert scene.lubricant == trb.lubricants.vg100(80.0)
         numbers = trb.lubricants.vg100().replace(viscosity=0.05)
         with pytest.raises(InputError, match="viscosities"):
-            Base.of(trb.cases.scene_30310(lubricant=numbers), OPTIONS).build({"lubricant.temperature_c": 80.0})
+            Base.of(trb.cases.paper_30310(lubricant=numbers), OPTIONS).build({"lubricant.temperature_c": 80.0})
         scene, _ = base.build({"lubricant.oil": "vg100", "lubricant.temperature_c": 80.0})
         assert scene.lubricant == trb.lubricants.vg100(80.0)
         scene, _ = Base.of("rig_30310").build({"lubricant.temperature_c": 80.0})
@@ -137,11 +138,11 @@ class TestDefinition:
 
     def test_names_of_axes_that_would_be_the_same(self) -> None:
         axes = {"lubricant.dicke.a": [300.0], "lubricant.dicke.b": [3.0], "start.seed": [1, 2]}
-        made = study.grid(trb.cases.scene_30310(), axes, OPTIONS)
+        made = study.grid(trb.cases.paper_30310(), axes, OPTIONS)
         assert [axis.name for axis in made.axes] == ["a", "b", "seed"]
         scatter = "bearing.roller.diameter_scatter"
         both = {f"{scatter}.seed": [3, 4], "start.seed": [1, 2]}
-        made = study.grid(trb.cases.scene_30310(), both, OPTIONS, fixed={scatter: {"range": 1e-6}})
+        made = study.grid(trb.cases.paper_30310(), both, OPTIONS, fixed={scatter: {"range": 1e-6}})
         assert [axis.name for axis in made.axes] == [f"{scatter}.seed", "start.seed"]
 
     @pytest.mark.parametrize(
@@ -156,10 +157,10 @@ class TestDefinition:
     )
     def test_grids_that_cannot_be_used(self, axes: dict[str, Any]) -> None:
         with pytest.raises(InputError):
-            study.grid(trb.cases.scene_30310(), axes, OPTIONS)
+            study.grid(trb.cases.paper_30310(), axes, OPTIONS)
 
     def test_a_list_is_any_iterable(self) -> None:
-        made = study.cases(trb.cases.scene_30310(), ({"scene.speed_rpm": 500.0 * k} for k in (1, 2, 3)), OPTIONS)
+        made = study.cases(trb.cases.paper_30310(), ({"scene.speed_rpm": 500.0 * k} for k in (1, 2, 3)), OPTIONS)
         assert [case.parameters for case in made.cases] == [{"speed_rpm": 500.0 * k} for k in (1, 2, 3)]
         assert made.shape == (3,)
 
@@ -171,7 +172,7 @@ class TestDefinition:
             "scene.axial_load": (1230.0, 4930.0),
             "start.seed": (0, 5),
         }
-        scene = trb.cases.scene_30310()
+        scene = trb.cases.paper_30310()
         made = study.random(scene, ranges, count, seed, OPTIONS)
         more = study.random(
             scene, {**ranges, "scene.speed_rpm": {"choice": [1000.0, 2000.0]}}, count + 2, seed, OPTIONS
@@ -185,14 +186,14 @@ class TestDefinition:
     @pytest.mark.parametrize("entry", [(2.0, 1.0), {"low": 1.0}, {"low": -1.0, "high": 1.0, "scale": "log"}])
     def test_ranges_that_cannot_be_used(self, entry: Any) -> None:
         with pytest.raises(InputError):
-            study.random(trb.cases.scene_30310(), {"bearing.cage.mass": entry}, 2, 1, OPTIONS)
+            study.random(trb.cases.paper_30310(), {"bearing.cage.mass": entry}, 2, 1, OPTIONS)
 
     def test_the_fingerprint_is_scene_and_options(self) -> None:
-        scene = trb.cases.scene_30310()
+        scene = trb.cases.paper_30310()
         print_ = study.fingerprint(scene, OPTIONS)
-        assert print_ == study.fingerprint(trb.cases.scene_30310(), OPTIONS.replace())
+        assert print_ == study.fingerprint(trb.cases.paper_30310(), OPTIONS.replace())
         assert print_ != study.fingerprint(scene, OPTIONS.replace(duration=5e-3))
-        assert print_ != study.fingerprint(trb.cases.scene_30310(2000.0), OPTIONS)
+        assert print_ != study.fingerprint(trb.cases.paper_30310(2000.0), OPTIONS)
 
 
 class TestExecutors:
@@ -285,7 +286,7 @@ class TestExecutors:
 class TestFailures:
     def test_failures_are_recorded_and_the_rest_goes_on(self, tmp_path: Path) -> None:
         loads = [4930.0, -1.0, 1230.0]
-        made = study.cases(trb.cases.scene_30310(), [{"scene.axial_load": load} for load in loads], OPTIONS)
+        made = study.cases(trb.cases.paper_30310(), [{"scene.axial_load": load} for load in loads], OPTIONS)
         data = study.run(made, tmp_path, executor="serial", observables={"top": _top})
         assert data.status.values.tolist() == ["done", "failed", "done"]
         assert "axial_load" in str(data.message.values[1])
@@ -339,7 +340,7 @@ class TestFailures:
 
     def test_a_number_in_place_of_values(self) -> None:
         with pytest.raises(InputError, match="must be a sequence of values") as caught:
-            study.grid(trb.cases.scene_30310(), {"bearing.cage.mass": 0.1}, OPTIONS)
+            study.grid(trb.cases.paper_30310(), {"bearing.cage.mass": 0.1}, OPTIONS)
         assert caught.value.field == "bearing.cage.mass"
 
     def test_nothing_half_written_stays(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -400,7 +401,7 @@ class TestResume:
 
     def test_cases_that_are_the_same_are_run_once(self, tmp_path: Path, counted: list[str]) -> None:
         made = study.cases(
-            trb.cases.scene_30310(), [{"scene.speed_rpm": 1000.0}, {}, {"scene.speed_rpm": 3000.0}], OPTIONS
+            trb.cases.paper_30310(), [{"scene.speed_rpm": 1000.0}, {}, {"scene.speed_rpm": 3000.0}], OPTIONS
         )
         data = study.run(made, tmp_path, executor="serial")
         assert len(counted) == 2
@@ -468,7 +469,7 @@ class TestDataset:
             study.load(tmp_path / "c.nc")
 
     def test_scenes_without_files(self) -> None:
-        scenes = [trb.cases.scene_30310(speed) for speed in (1000.0, 2000.0)]
+        scenes = [trb.cases.paper_30310(speed) for speed in (1000.0, 2000.0)]
         data = study.run(scenes, options=OPTIONS, executor="threads")
         assert data.sizes == {"case": 2}
         assert np.all(data.status == "done")
@@ -499,7 +500,7 @@ class TestCommand:
     def write(self, path: Path, kind: str) -> Path:
         path.write_text(STUDY.format(kind=kind).replace("revolutions = 1e9\n", ""))
         text = path.read_text()
-        case = trb.toml_case.find_case("rig_30310").read_text().replace("revolutions = 50.0", "")
+        case = find_case("rig_30310").read_text().replace("revolutions = 50.0", "")
         (path.parent / "case.toml").write_text(case)
         path.write_text(text.replace('case = "rig_30310"', 'case = "case.toml"'))
         return path
@@ -555,6 +556,9 @@ class TestCommand:
                 time.sleep(0.1)
             os.killpg(process.pid, signal.SIGINT)
             assert process.wait(60) == 130
+            said = process.stderr.read().decode() if process.stderr else ""
+        assert "the cases that are done are kept" in said
+        assert f"-m trbdyn sweep {file} -o {out}" in said
         done = [out / entry.file for entry in read_lines(out / INDEX)]
         assert 1 <= len(done) < 12
         assert not list(out.glob(".*.part"))

@@ -60,7 +60,7 @@ class TestTables:
     def test_bearing_overrides(self) -> None:
         scene, _ = parse(bearing="cage.mass = 0.3\nroller.profile.kind = 'straight'")
         rig = cases.rig_30310()
-        assert scene.bearing.cage == rig.cage.replace(mass=0.3)
+        assert scene.bearing.cage == rig.replace(cage=rig.cage.replace(mass=0.3)).cage
         assert scene.bearing.roller.profile.kind == "straight"
         assert scene.bearing.roller.diameter == rig.roller.diameter
 

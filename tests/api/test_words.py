@@ -11,7 +11,7 @@ import pytest
 import trbdyn as trb
 from trbdyn import Effects, InputError, Simulation
 from trbdyn.cli import main
-from trbdyn.model.cases import rig_30310, scene_30310
+from trbdyn.model.cases import paper_30310, rig_30310
 from trbdyn.statics.plausible import UnusualInput
 
 
@@ -32,7 +32,7 @@ def short(sim: Simulation, **options: Any) -> trb.Result:
     ],
 )
 def test_what_can_hardly_be_meant_is_said_and_kept(changes: dict[str, Any], says: str) -> None:
-    scene = scene_30310().replace(changes)
+    scene = paper_30310().replace(changes)
     with pytest.warns(UnusualInput, match=says):
         sim = Simulation(scene, accuracy="fast")
     if "axial_load" not in changes:
@@ -44,10 +44,10 @@ def test_usual_scenes_are_quiet() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", UnusualInput)
         for scene in (
-            scene_30310(),
+            paper_30310(),
             trb.cases.scene_32216(),
-            scene_30310(gravity=(0.0, 0.0, 0.0)),
-            scene_30310(1000.0, 30e3),
+            paper_30310(gravity=(0.0, 0.0, 0.0)),
+            paper_30310(1000.0, 30e3),
         ):
             assert Simulation(scene).warnings == ()
 
@@ -78,19 +78,19 @@ def test_lean_of_bars_names_the_plays() -> None:
 def test_too_many_records() -> None:
     """It ended in a MemoryError."""
     with pytest.raises(InputError, match="records in this run") as caught:
-        Simulation(scene_30310(), accuracy="fast").run(duration=1.0, save_every=1e-12)
+        Simulation(paper_30310(), accuracy="fast").run(duration=1.0, save_every=1e-12)
     assert caught.value.field == "run.save_every"
 
 
 @pytest.mark.parametrize("name", ["a.csv", "a.JSON", "a.npz"])
 def test_output_of_another_kind(name: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"must end in \.h5"):
-        short(Simulation(scene_30310(), accuracy="fast"), output=tmp_path / name)
+        short(Simulation(paper_30310(), accuracy="fast"), output=tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 
 def test_fields_that_a_result_has_not() -> None:
-    result = short(Simulation(scene_30310(), accuracy="fast"), save_groups=["time", "cage"])
+    result = short(Simulation(paper_30310(), accuracy="fast"), save_groups=["time", "cage"])
     with pytest.raises(InputError, match="needs the group 'torque'"):
         _ = result.torque_split
     with pytest.raises(InputError, match="belongs to the group 'ring', which save_groups left out"):
@@ -113,6 +113,6 @@ def test_fields_that_a_result_has_not() -> None:
     ],
 )
 def test_what_was_not_recorded_names_its_group(name, group):
-    result = trb.Simulation(trb.cases.scene_30310()).run(duration=1e-3, save_groups=("cage",))
+    result = trb.Simulation(trb.cases.paper_30310()).run(duration=1e-3, save_groups=("cage",))
     with pytest.raises(trb.InputError, match=f"needs the group '{group}'"):
         getattr(result, name)

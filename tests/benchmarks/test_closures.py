@@ -48,14 +48,14 @@ def test_radial_loads_unload_a_roller() -> None:
 
     load = grid.unloading(4930.0)
     for share, loaded in ((0.5, True), (1.5, False)):
-        sim = trb.Simulation(trb.cases.scene_30310(100.0, 4930.0, share * load))
+        sim = trb.Simulation(trb.cases.paper_30310(100.0, 4930.0, share * load))
         assert (sim.equilibrium.inner_load.min() > 0.0) == loaded
 
 
 def test_closure_is_that_of_the_watch() -> None:
     from closure import grid
 
-    sim = trb.Simulation(trb.cases.scene_30310(start=trb.Start.whirl(0.9)))
+    sim = trb.Simulation(trb.cases.paper_30310(start=trb.Start.whirl(0.9)))
     result = sim.run(duration=2e-3, save_every=2e-5, save_groups=("time", "energy"))
     found = grid.audit(result)
     assert found["closure_dissipated"] == pytest.approx(result.energy_closure)

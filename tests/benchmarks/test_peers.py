@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from trbdyn import Effects, Simulation, Start
-from trbdyn.model.cases import scene_30310, scene_32216
+from trbdyn.model.cases import paper_30310, scene_32216
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 pytestmark = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="the benchmarks are not part of a source distribution")
@@ -29,10 +29,10 @@ def _path() -> Iterator[None]:
 
 
 SCENES = {
-    "colliding": lambda: scene_30310(start=Start.whirl(0.9)),
-    "combined": lambda: scene_30310(2000.0, 4930.0, 5530.0),
-    "misaligned": lambda: scene_30310(3000.0, 1230.0, misalignment_x=2e-4, start=Start.unequal(3)),
-    "gauss": lambda: scene_30310(effects=Effects.paper().replace(quadrature="gauss", n_slices=9)),
+    "colliding": lambda: paper_30310(start=Start.whirl(0.9)),
+    "combined": lambda: paper_30310(2000.0, 4930.0, 5530.0),
+    "misaligned": lambda: paper_30310(3000.0, 1230.0, misalignment_x=2e-4, start=Start.unequal(3)),
+    "gauss": lambda: paper_30310(effects=Effects.paper().replace(quadrature="gauss", n_slices=9)),
     "other bearing": lambda: scene_32216(effects=Effects.paper()),
 }
 
@@ -82,7 +82,7 @@ def test_derivative_is_the_cores(name: str) -> None:
 def test_front_rib_is_the_cores() -> None:
     from numpy_model import NumpyModel
 
-    scene = scene_30310()
+    scene = paper_30310()
     sim, model = Simulation(scene), NumpyModel(scene)
     view = sim.view()
     view["roller_z"] -= 2.1e-4
@@ -144,7 +144,7 @@ def test_other_effects_are_refused() -> None:
     from numpy_model import NumpyModel
 
     with pytest.raises(NotImplementedError, match="damping"):
-        NumpyModel(scene_30310(effects=Effects.standard()))
+        NumpyModel(paper_30310(effects=Effects.standard()))
 
 
 def test_interpolation_at_equal_error() -> None:

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
+from trbdyn.cli import demo, make_parser
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCHMARKS = ROOT / "benchmarks"
@@ -67,9 +68,35 @@ def test_the_table_of_validation_has_every_measured_point() -> None:
         assert float(deviation) == pytest.approx(100 * (float(shaft) / float(value) - 1), abs=1.0)
 
 
-def test_users_get_the_standard_effects() -> None:
+def test_users_get_the_standard_effects_everywhere() -> None:
+    """The shipped case, the demo and the sample of the README told 1.24, 1.24 and 1.48 N m for the same words."""
     scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0)
     assert scene.effects == trb.Effects.standard() == trb.Effects()
+    assert trb.cases.scene_30310() == trb.load_case("rig_30310")[0].replace(start=trb.Start.equal()) == scene
     assert trb.cases.scene_32216().effects == trb.Effects.standard()
-    assert trb.cases.scene_30310().effects == trb.Effects.paper()
-    assert trb.load_case("rig_30310")[0].effects == trb.Effects.paper()
+    assert trb.cases.paper_30310() == scene.replace(effects=trb.Effects.paper())
+
+
+def test_the_demo_is_the_sample_of_the_readme(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    class Enough(Exception):
+        pass
+
+    seen: list[trb.Scene] = []
+
+    def look(scene: trb.Scene, *_: object, **__: object) -> None:
+        seen.append(scene)
+        raise Enough
+
+    monkeypatch.setattr(demo, "simulate", look)
+    options = make_parser().parse_args(["demo", "-o", str(tmp_path / "demo"), "--quiet"])
+    with pytest.raises(Enough):
+        options.command(options)
+    sample = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0, start=trb.Start.whirl(0.9))
+    assert seen == [sample]
+
+
+def test_pages_for_users_take_the_standard_effects() -> None:
+    """Tutorials, how-tos and the README take the default: nobody has to know of the paper to read a torque."""
+    pages = [ROOT / "README.md", *ROOT.glob("docs/tutorials/*.md"), *ROOT.glob("docs/howto/*.md")]
+    found = [page.name for page in pages if re.search(r"Effects\.paper|paper_30310", page.read_text(encoding="utf-8"))]
+    assert found == []

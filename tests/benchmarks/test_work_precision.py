@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import itertools
 import json
 import subprocess
 import sys
@@ -14,7 +16,7 @@ import pytest
 from trbdyn import InputError, Simulation, Start, cases
 from trbdyn.model.bearing import Scatter
 from trbdyn.model.effects import Effects
-from trbdyn.run.estimate import _case, estimate, table
+from trbdyn.run.estimate import _Part, _steady, case_like, estimate, table
 from trbdyn.run.options import ACCURACY
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
@@ -159,12 +161,12 @@ def test_makes_the_table_of_estimates(
     monkeypatch.setattr(module, "TABLE", made_table)
     module.table.cache_clear()
     try:
-        sim = Simulation(cases.scene_30310(start=Start.whirl(0.9)), accuracy="standard")
+        sim = Simulation(cases.paper_30310(start=Start.whirl(0.9)), accuracy="standard")
         found = sim.estimate(duration=1e-3)
         assert found.case == "collision"
         assert np.isfinite([found.error_cage_over_cpr, found.bias_contact_duty, found.bias_pocket_force]).all()
         assert "contact duty" in str(found)
-        assert Simulation(cases.scene_30310(60.0)).estimate(duration=1e-4).case == "slow"
+        assert Simulation(cases.paper_30310(60.0)).estimate(duration=1e-4).case == "slow"
     finally:
         monkeypatch.undo()
         module.table.cache_clear()
@@ -192,7 +194,7 @@ class TestEstimate:
     def test_grows_with_the_run(self, sim: Simulation) -> None:
         found = estimate(sim, duration=0.2)
         assert found.bearing_time == pytest.approx(0.2)
-        assert found.records == 2001
+        assert found.records == 321  # 32 a turn
         assert found.wall_s > 0.0
         assert found.steps > 100
         assert found.evaluations >= found.steps
@@ -224,7 +226,24 @@ class TestEstimate:
         if fields.get("bearing"):
             roller = bearing.roller.replace(diameter_scatter=Scatter(range=1e-6, seed=3))
             fields = {"bearing": bearing.replace(roller=roller)}
-        assert _case(Simulation(cases.scene_30310(**fields)), scenes) == case
+        assert case_like(Simulation(cases.paper_30310(**fields)), scenes) == case
+
+    def test_follows_rollers_until_they_are_as_busy_as_they_stay(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Rollers begin to bounce after half a turn of a combined load. How fast the machine is does not matter."""
+        scene = cases.scene_32216(5510.0, 6500.0, 13400.0)
+        found = estimate(Simulation(scene), revolutions=8.0)
+        taken = Simulation(scene).run(revolutions=8.0, save_every=1e-3).stats["steps"]
+        assert found.steps == pytest.approx(taken, rel=0.3)
+        assert found.wall_s_low <= found.wall_s <= found.wall_s_high
+        ticks = itertools.count()
+        module = importlib.import_module("trbdyn.run.estimate")
+        monkeypatch.setattr(module.clock, "perf_counter", lambda: float(next(ticks)))
+        assert estimate(Simulation(scene), revolutions=8.0).steps == found.steps
+
+    def test_a_probe_goes_on_while_the_motion_changes(self) -> None:
+        rising = [_Part(1.0, 1.0, steps, steps) for steps in (100.0, 200.0, 400.0, 400.0)]
+        assert not _steady(rising)
+        assert _steady(rising[2:])
 
     def test_refuses_nothing_to_do(self, sim: Simulation) -> None:
         with pytest.raises(InputError, match="revolutions"):

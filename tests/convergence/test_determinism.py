@@ -111,7 +111,7 @@ def test_restarts_are_exact(kit: SimpleNamespace, integrator: str) -> None:
     sim = started(kit, integrator=integrator)
     sim.run(duration=SPAN / 2)
     saved, copy = sim.state, sim.copy()
-    scenery = {"start": trb.scene.Start.state(saved.vector, time=saved.time)}
+    scenery = {"start": trb.Start.state(saved.vector, time=saved.time)}
     anew = kit.simulate(Effects.paper(), scenery=scenery, integrator=integrator)
     elsewhere = started(kit, integrator=integrator)
     for _ in range(300):

@@ -24,7 +24,9 @@ CELL = re.compile(r"^```\{code-cell\}[^\n]*\n(.*?)^```", re.MULTILINE | re.DOTAL
 SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#]+)[^)]*\)")
 EXAMPLES = (
-    "trbdyn.model.catalogue",
+    "trbdyn.model.ratings",
+    "trbdyn.standards.iso281",
+    "trbdyn.run.rating",
     "trbdyn.model.bearing",
     "trbdyn.study.what_matters",
     "trbdyn.viewer",

@@ -18,7 +18,7 @@ from pydantic import BaseModel
 
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError, LoadError, StepError
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.run import checkpoint
 from trbdyn.run.toml_case import case_from_dict, find_case, load_case, shipped_cases
 
@@ -73,20 +73,30 @@ def full_scene() -> trb.Scene:
     pocket = trb.pocket_shapes.one_sided_pocket(RIG)
     bearing = RIG.replace(
         roller=RIG.roller.replace(diameter_deviation=tuple(1e-6 * (j % 3) for j in range(RIG.n_rollers))),
-        cage=RIG.cage.replace(pocket=pocket, other_pockets=(trb.pocket.OtherPocket(index=3, pocket=pocket),)),
+        cage=RIG.cage.replace(pocket=pocket, other_pockets=(trb.OtherPocket(index=3, pocket=pocket),)),
         estimates=trb.Bearing.from_catalogue(bore=0.05, outside=0.11, width=0.02925, C=125e3, e=0.35).estimates[:1],
     )
     shift = trb.History(times=(0.0, 1e-3), values=(-40e-6, -42e-6))
-    scene = scene_30310(3000.0, 0.0, bearing=bearing, displacement=(0.0, 1e-6, shift), misalignment_x=1e-4)
+    scene = paper_30310(3000.0, 0.0, bearing=bearing, displacement=(0.0, 1e-6, shift), misalignment_x=1e-4)
     return scene.replace(start=trb.Start.state(trb.Simulation(scene).state.vector))
 
 
 CERAMIC, PLASTIC = (trb.Material(youngs_modulus=E, poisson_ratio=nu) for E, nu in ((310e9, 0.27), (4e9, 0.4)))
-SCENE = scene_30310(
+SCENE = paper_30310(
     bearing=RIG.replace(
-        roller=RIG.roller.replace(diameter_scatter=trb.bearing.Scatter(range=1e-6, seed=1), material=CERAMIC),
-        cage=RIG.cage.replace(material=PLASTIC),
+        roller=RIG.roller.replace(
+            diameter_scatter=trb.Scatter(range=1e-6, seed=1), material=CERAMIC.replace(expansion=3e-6)
+        ),
+        cage=RIG.cage.replace(
+            material=PLASTIC.replace(density=1300.0, expansion=50e-6, damping_ratio=0.02),
+            mass=0.034,
+            unbalance=1e-7,
+            body=trb.cases.cage_body_30310().replace(
+                small_rim_thickness=4e-3, large_rim_thickness=4.5e-3, height=3e-3, corner_radius=1e-3
+            ),
+        ),
     ),
+    growth=trb.Growth.uniform(40.0),
     lubricant=trb.Lubricant(
         viscosity=0.03,
         pressure_coefficient=2e-8,
@@ -122,13 +132,13 @@ def ramp(*values: float, end: float = 1.0) -> trb.History:
 @pytest.mark.parametrize(
     ("make", "field"),
     [
-        (lambda: scene_30310(gravity=(0.0, ramp(-9.8, 1e300), 0.0)), "gravity[1]"),
-        (lambda: scene_30310(gravity=(0.0, 0.0, -1e300)), "gravity[2]"),
+        (lambda: paper_30310(gravity=(0.0, ramp(-9.8, 1e300), 0.0)), "gravity[1]"),
+        (lambda: paper_30310(gravity=(0.0, 0.0, -1e300)), "gravity[2]"),
         (lambda: ramp(1e308, -1e308, 1e308), "history.values[1]"),
         (lambda: ramp(0.0, 1e10, end=1e-300), "history.values[1]"),
         (lambda: ramp(3000.0, 1000.0, end=1e300), "history.times[1]"),
         (lambda: trb.Start(time=1e300), "start.time"),
-        (lambda: trb.Simulation(scene_30310()).set_state(good_state(), 1e300), "time"),
+        (lambda: trb.Simulation(paper_30310()).set_state(good_state(), 1e300), "time"),
         (lambda: trb.Effects(n_slices=1, back_rib=False), "effects.n_slices"),
     ],
 )
@@ -139,7 +149,7 @@ def test_what_would_overflow_or_float_freely_is_refused_by_name(make: Callable[[
 
 
 def good_state() -> Any:
-    return trb.Simulation(scene_30310()).state.vector
+    return trb.Simulation(paper_30310()).state.vector
 
 
 def fields_of(kind: Any, path: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
@@ -259,7 +269,7 @@ def test_any_text_as_a_case_file(tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize(("path", "word"), choices(trb.Effects), ids=str)
 def test_every_choice_of_effects_steps(path: tuple[str, ...], word: str) -> None:
     effects = trb.Effects.paper().replace(**{path[0]: word})
-    sim = trb.Simulation(scene_30310(effects=effects))
+    sim = trb.Simulation(paper_30310(effects=effects))
     for _ in range(5):
         sim.step()
     assert np.isfinite(sim.state.vector).all()
@@ -267,7 +277,7 @@ def test_every_choice_of_effects_steps(path: tuple[str, ...], word: str) -> None
 
 @pytest.fixture(scope="module")
 def sim() -> trb.Simulation:
-    return trb.Simulation(scene_30310())
+    return trb.Simulation(paper_30310())
 
 
 @COMMON
@@ -310,7 +320,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes, Path]
     def stop(now: trb.Simulation) -> bool:
         return now.time > 3e-3
 
-    trb.Simulation(scene_30310()).run(duration=0.01, checkpoint_every=1e-3, output=folder / "run.h5", callback=stop)
+    trb.Simulation(paper_30310()).run(duration=0.01, checkpoint_every=1e-3, output=folder / "run.h5", callback=stop)
     return (folder / "run.h5").read_bytes(), checkpoint.checkpoint_path(folder / "run.h5").read_bytes(), folder
 
 

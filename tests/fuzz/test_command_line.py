@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 import trbdyn as trb
 from trbdyn import animation, plot
 from trbdyn.cli import FAULT, main
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.run import running
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
@@ -94,7 +94,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     patch = pytest.MonkeyPatch()
     patch.chdir(folder)
     with pytest.raises(RuntimeError):
-        trb.Simulation(scene_30310()).run(duration=0.02, checkpoint_every=1e-3, output="run.h5", callback=fail)
+        trb.Simulation(paper_30310()).run(duration=0.02, checkpoint_every=1e-3, output="run.h5", callback=fail)
     case = '[bearing]\ncase = "30310"\n[scene]\nspeed_rpm = 1000\naxial_load = 3000\n[run]\nduration = 1e-4\n[study]\n'
     for name, text in {
         "text.h5": "text",

@@ -22,10 +22,11 @@ import pytest
 import trbdyn as trb
 from trbdyn import plot, study
 from trbdyn.errors import FileError, InputError, TrbError
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.run.options import RunOptions
 from trbdyn.run.toml_case import case_from_dict, load_case
 from trbdyn.study.index import Index, read_lines
+from trbdyn.study.index import _checksum as checksum
 
 HUGE = 10**400
 CSRC = Path(__file__).parents[2] / "csrc"
@@ -33,13 +34,13 @@ CSRC = Path(__file__).parents[2] / "csrc"
 
 @pytest.fixture(scope="module")
 def sim() -> trb.Simulation:
-    return trb.Simulation(scene_30310())
+    return trb.Simulation(paper_30310())
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("written") / "run.h5"
-    trb.Simulation(scene_30310()).run(duration=1e-3, save_every=1e-5, output=path)
+    trb.Simulation(paper_30310()).run(duration=1e-3, save_every=1e-5, output=path)
     return path
 
 
@@ -49,9 +50,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("make", "field"),
     [
-        (lambda sim: scene_30310(HUGE), "speed_rpm"),
-        (lambda sim: scene_30310(-HUGE, 4930.0), "speed_rpm"),
-        (lambda sim: scene_30310(gravity=(0.0, HUGE, 0.0)), "gravity[1]"),
+        (lambda sim: paper_30310(HUGE), "speed_rpm"),
+        (lambda sim: paper_30310(-HUGE, 4930.0), "speed_rpm"),
+        (lambda sim: paper_30310(gravity=(0.0, HUGE, 0.0)), "gravity[1]"),
         (lambda sim: trb.Lubricant.from_dict(trb.lubricants.vg100().to_dict() | {"viscosity": HUGE}), "lubricant"),
         (lambda sim: RunOptions(save_every=HUGE, duration=1.0), "run.save_every"),
         (lambda sim: RunOptions(max_order=HUGE), "run.max_order"),
@@ -63,7 +64,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (lambda sim: trb.History(times=(0.0, HUGE), values=(0.0, 1.0)), "history.times[1]"),
         (lambda sim: trb.History(times=(0.0, 1.0), values=(0.0, HUGE)), "history.values[1]"),
         (lambda sim: trb.History.table(3, 4), "history.times"),
-        (lambda sim: scene_30310(speed_rpm={1: 2}), "speed_rpm"),
+        (lambda sim: paper_30310(speed_rpm={1: 2}), "speed_rpm"),
         (lambda sim: sim.set_state([HUGE]), "state"),
         (lambda sim: sim.set_state(sim.state, time=HUGE), "time"),
         (lambda sim: sim.set_state(sim.state, time="now"), "time"),
@@ -89,7 +90,7 @@ def test_numbers_beyond_what_can_be_used(
 def test_a_number_of_thousands_of_digits_can_be_told() -> None:
     """Python refuses to print it."""
     with pytest.raises(InputError, match="speed_rpm = a whole number of thousands of digits"):
-        scene_30310(10**5000)
+        paper_30310(10**5000)
 
 
 # ---- texts ----
@@ -168,7 +169,7 @@ def test_a_study_whose_names_are_long(tmp_path: Path) -> None:
     """A letter of Chinese takes three bytes of the 255 of a file's name."""
     word = "保持架质量" * 18
     made = study.grid(
-        scene_30310(),
+        paper_30310(),
         {word: {word: {"scene.speed_rpm": 2000.0}}},
         RunOptions(duration=2e-4, save_every=1e-5),
         name=word,
@@ -186,6 +187,11 @@ def test_a_study_whose_names_are_long(tmp_path: Path) -> None:
 GOOD = {"name": "a", "fingerprint": "f", "status": "done", "message": "", "values": {"torque": 1.0}}
 
 
+def line_of(values: dict[str, Any]) -> str:
+    """A line whose checksum is right."""
+    return json.dumps(values | {"checksum": checksum(values)})
+
+
 @pytest.mark.parametrize(
     "line",
     [
@@ -193,33 +199,34 @@ GOOD = {"name": "a", "fingerprint": "f", "status": "done", "message": "", "value
         "3",
         "[]",
         "{}",
-        json.dumps(GOOD | {"values": 3}),
-        json.dumps(GOOD | {"values": {"torque": {}}}),
-        json.dumps(GOOD | {"values": {"torque": [[1.0], [2.0, 3.0]]}}),
-        json.dumps(GOOD | {"values": {"torque": 10**400}}),
-        json.dumps(GOOD | {"wall_s": "long"}),
-        json.dumps(GOOD | {"wall_s": 1e300}).replace("1e+300", "1e999"),
-        json.dumps(GOOD | {"status": "perhaps"}),
-        json.dumps(GOOD | {"fingerprint": ["f"]}),
-        json.dumps(GOOD | {"file": "../../etc/passwd"}),
-        json.dumps(GOOD | {"file": 3}),
-        json.dumps(GOOD | {"message": None}),
+        line_of(GOOD | {"values": 3}),
+        line_of(GOOD | {"values": {"torque": {}}}),
+        line_of(GOOD | {"values": {"torque": [[1.0], [2.0, 3.0]]}}),
+        line_of(GOOD | {"values": {"torque": 10**400}}),
+        line_of(GOOD | {"wall_s": "long"}),
+        line_of(GOOD | {"wall_s": 1e300}).replace("1e+300", "1e999"),
+        line_of(GOOD | {"status": "perhaps"}),
+        line_of(GOOD | {"fingerprint": ["f"]}),
+        line_of(GOOD | {"file": "../../etc/passwd"}),
+        line_of(GOOD | {"file": 3}),
+        line_of(GOOD | {"message": None}),
         "\xff\xfe",
     ],
 )
 def test_lines_of_an_index_that_are_no_entries(tmp_path: Path, line: str) -> None:
-    (tmp_path / "index.jsonl").write_bytes(line.encode("latin-1") + b"\n" + json.dumps(GOOD).encode() + b"\n")
-    assert [entry.name for entry in read_lines(tmp_path / "index.jsonl")] == ["a"]
+    (tmp_path / "index.jsonl").write_bytes(line.encode("latin-1") + b"\n" + line_of(GOOD).encode() + b"\n")
+    with pytest.warns(UserWarning, match="line 1 is damaged"):
+        assert [entry.name for entry in read_lines(tmp_path / "index.jsonl")] == ["a"]
 
 
 def test_entries_that_do_not_fit_each_other(tmp_path: Path) -> None:
     """Numbers, lists and lists of lists under one name: those like the first list stay."""
-    made = study.grid(scene_30310(), {"scene.speed_rpm": [1000, 2000, 3000]}, RunOptions(duration=1e-4))
+    made = study.grid(paper_30310(), {"scene.speed_rpm": [1000, 2000, 3000]}, RunOptions(duration=1e-4))
     index = Index(tmp_path)
     for case, value in zip(made.cases, (1.0, [1.0, 2.0], [[3.0]]), strict=True):
         line = GOOD | {"fingerprint": case.fingerprint, "values": {"own": value}}
         with (tmp_path / "index.jsonl").open("a") as stream:
-            stream.write(json.dumps(line) + "\n")
+            stream.write(line_of(line) + "\n")
     assert not index.entries
     data = study.collect(made, tmp_path)
     np.testing.assert_array_equal(data.own.values, [[np.nan, np.nan], [1.0, 2.0], [np.nan, np.nan]])
@@ -227,7 +234,7 @@ def test_entries_that_do_not_fit_each_other(tmp_path: Path) -> None:
 
 def test_a_folder_of_something_else_is_not_a_study(tmp_path: Path) -> None:
     (tmp_path / "observables.nc").write_bytes(b"other")
-    made = study.grid(scene_30310(), {"scene.speed_rpm": [1000]}, RunOptions(duration=1e-4))
+    made = study.grid(paper_30310(), {"scene.speed_rpm": [1000]}, RunOptions(duration=1e-4))
     with pytest.raises(FileError, match="belongs to no study"):
         study.run(made, tmp_path, executor="serial")
     assert (tmp_path / "observables.nc").read_bytes() == b"other"
@@ -244,22 +251,24 @@ def changed(path: Path, folder: Path, change: Callable[[h5py.File], None]) -> Pa
     return other
 
 
-@pytest.mark.parametrize("name", ["first_record", "schema_version", "segment"])
-@pytest.mark.parametrize("value", [np.inf, -np.inf, np.nan])
-def test_attributes_that_are_not_finite(written: Path, tmp_path: Path, name: str, value: float) -> None:
-    def change(file: h5py.File) -> None:
-        file.attrs[name] = value
+def put_head(file: h5py.File, text: bytes) -> None:
+    del file["run/head"]
+    file.create_dataset("run/head", data=np.array([text]), chunks=(1,), fletcher32=True)
 
-    with pytest.raises(FileError, match="damaged"):
+
+@pytest.mark.parametrize("name", ["first_record", "schema_version"])
+@pytest.mark.parametrize("value", [np.inf, -np.inf, np.nan, "x", None])
+def test_numbers_of_the_head_that_are_none(written: Path, tmp_path: Path, name: str, value: Any) -> None:
+    def change(file: h5py.File) -> None:
+        put_head(file, json.dumps(json.loads(file["run/head"][0]) | {name: value}).encode())
+
+    with pytest.raises(FileError, match=r"damaged|schema version"):
         trb.load(changed(written, tmp_path, change))
 
 
 def test_json_that_is_nested_in_a_file(written: Path, tmp_path: Path) -> None:
-    def change(file: h5py.File) -> None:
-        file.attrs["geometry"] = np.bytes_(b"[" * 60_000)
-
     with pytest.raises(FileError, match="damaged"):
-        trb.load(changed(written, tmp_path, change))
+        trb.load(changed(written, tmp_path, lambda file: put_head(file, b"[" * 60_000)))
 
 
 MEMORY = """
@@ -276,16 +285,19 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - used)
 """
 
 
-@pytest.mark.parametrize("which", ["one", "all", "ending", "final_state"])
+@pytest.mark.parametrize("which", ["time", "all", "ending", "final_state"])
 def test_datasets_that_claim_more_than_the_file_holds(written: Path, tmp_path: Path, which: str) -> None:
     def change(file: h5py.File) -> None:
         if which == "ending":
-            file["ending"].resize(4_000_000_000, axis=0)
+            file["run/ending"].resize(4_000_000_000, axis=0)
+            file["run/committed"][1] = 4_000_000_000
         elif which == "final_state":
-            file["final_state"].resize(1_000_000_000, axis=0)
+            file["run/final_state"].resize(1_000_000_000, axis=0)
         else:
-            for dataset in file["fields"].values():
-                dataset.resize(2_000_000, axis=0)
+            file["run/committed"][0] = 2_000_000
+            for name, dataset in file.items():
+                if "units" in dataset.attrs and which in ("all", name):
+                    dataset.resize(2_000_000, axis=0)
 
     path = changed(written, tmp_path, change)
     assert path.stat().st_size < 4 << 20
@@ -300,14 +312,14 @@ def test_a_packed_file_of_zeros_is_no_damage(tmp_path: Path) -> None:
     """What is compressed may be much smaller than what it holds."""
     from trbdyn.results.result_file import ResultWriter
 
-    scene, rows = scene_30310(), 200_000
+    scene, rows = paper_30310(), 200_000
     layout = [("time", 0, ()), ("cage_angular_velocity", 1, (3,)), ("roller_position", 4, (17, 3))]
     records = np.zeros((rows, 55))
     records[:, 0] = np.arange(rows)
     path = tmp_path / "zeros.h5"
     from trbdyn.results import fields
 
-    with ResultWriter(path, scene=scene, layout=layout, fields=fields.table(), compression="gzip") as writer:
+    with ResultWriter(path, scene=scene, layout=layout, fields=fields.table()) as writer:
         writer.append(records)
         writer.finish(True, "", {}, {}, 1.0, None)
     assert path.stat().st_size < 4 << 20
@@ -319,7 +331,7 @@ def test_a_packed_file_of_zeros_is_no_damage(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("records", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3, 7, 9)), 8])
 def test_the_shortest_runs_have_a_summary_and_pictures(tmp_path: Path, records: int) -> None:
-    result = trb.Simulation(scene_30310()).run(duration=records * 1e-5, save_every=1e-5)
+    result = trb.Simulation(paper_30310()).run(duration=records * 1e-5, save_every=1e-5)
     values = result.summary()
     assert values["torque"] > 0.0
     assert values["settled"] is False
@@ -332,7 +344,7 @@ def test_the_shortest_runs_have_a_summary_and_pictures(tmp_path: Path, records: 
 
 
 def test_a_study_of_short_runs_is_done(tmp_path: Path) -> None:
-    made = study.grid(scene_30310(), {"scene.speed_rpm": [1000]}, RunOptions(duration=1e-4))
+    made = study.grid(paper_30310(), {"scene.speed_rpm": [1000]}, RunOptions(duration=1e-4))
     data = study.run(made, tmp_path / "study", executor="serial")
     assert data.status.values.tolist() == ["done"], data.message.values
 
@@ -341,7 +353,7 @@ def test_pictures_need_no_later_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_
     """Matplotlib 3.8 knows no argument of get_figure."""
     from matplotlib.axes import Axes
 
-    result = trb.Simulation(scene_30310()).run(duration=1e-4, save_every=1e-5)
+    result = trb.Simulation(paper_30310()).run(duration=1e-4, save_every=1e-5)
     picture = plot.tilt(result)
     monkeypatch.setattr(Axes, "get_figure", lambda self: self.figure)
     with pytest.raises(TypeError):
@@ -361,7 +373,7 @@ def test_pictures_need_no_later_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_
 )
 def test_a_callback_cannot_move_the_simulation(act: Callable[[trb.Simulation], object], tmp_path: Path) -> None:
     """It is told so, and a callback that goes on in spite of it has changed nothing."""
-    reference = trb.Simulation(scene_30310()).run(duration=5e-3, save_every=1e-5)
+    reference = trb.Simulation(paper_30310()).run(duration=5e-3, save_every=1e-5, output=tmp_path / "reference.h5")
     told: list[str] = []
 
     def callback(sim: trb.Simulation) -> None:
@@ -370,7 +382,7 @@ def test_a_callback_cannot_move_the_simulation(act: Callable[[trb.Simulation], o
         except InputError as error:
             told.append(str(error))
 
-    sim = trb.Simulation(scene_30310())
+    sim = trb.Simulation(paper_30310())
     result = sim.run(duration=5e-3, save_every=1e-5, callback=callback, output=tmp_path / "run.h5")
     assert told
     assert all("must not be called while a run goes on" in line for line in told)
@@ -381,7 +393,7 @@ def test_a_callback_cannot_move_the_simulation(act: Callable[[trb.Simulation], o
     def unguarded(sim: trb.Simulation) -> None:
         act(sim)
 
-    other = trb.Simulation(scene_30310())
+    other = trb.Simulation(paper_30310())
     with pytest.raises(InputError, match="must not be called"):
         other.run(duration=5e-3, save_every=1e-5, callback=unguarded, output=tmp_path / "other.h5")
     assert len(trb.load(tmp_path / "other.h5")) > 100
@@ -390,7 +402,7 @@ def test_a_callback_cannot_move_the_simulation(act: Callable[[trb.Simulation], o
 
 @pytest.mark.parametrize("make", [copy.copy, copy.deepcopy, lambda sim: sim.copy()])
 def test_copies_step_on_their_own(make: Callable[[trb.Simulation], trb.Simulation]) -> None:
-    sim = trb.Simulation(scene_30310())
+    sim = trb.Simulation(paper_30310())
     sim.step()
     before = sim.state
     other = make(sim)

@@ -19,10 +19,10 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.base.locks import take_lock
 from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError, TrbError
-from trbdyn.model.cases import scene_30310
-from trbdyn.results.hdf5_marks import take_lock
+from trbdyn.model.cases import paper_30310
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import checkpoint_path, previous_path
 
@@ -43,7 +43,7 @@ def cut_after(time: float) -> Callable[[trb.Simulation], None]:
 
 
 def run(output: Path | str, **options: Any) -> trb.Result:
-    return trb.Simulation(scene_30310()).run(output=output, **SPAN | options)
+    return trb.Simulation(paper_30310()).run(output=output, **SPAN | options)
 
 
 def cut_run(output: Path, after: float = 0.0, **options: Any) -> None:
@@ -90,38 +90,66 @@ def test_the_command_line_replaces_only_if_asked(tmp_path: Path, capsys: pytest.
 
 
 def test_a_file_that_appears_while_a_run_is_prepared_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from trbdyn.results.result_file import ResultWriter
+    from trbdyn.results import hdf5_file
 
-    path, header = tmp_path / "run.h5", ResultWriter._write_header
+    path, make = tmp_path / "run.h5", hdf5_file.make
 
-    def meanwhile(self: ResultWriter, *rest: Any) -> None:
-        header(self, *rest)
+    def meanwhile(*arguments: Any, **options: Any) -> None:
+        make(*arguments, **options)
         path.write_bytes(FOREIGN)
 
-    monkeypatch.setattr(ResultWriter, "_write_header", meanwhile)
+    monkeypatch.setattr(hdf5_file, "make", meanwhile)
     with pytest.raises(FileError, match="exists already"):
         run(path)
     assert path.read_bytes() == FOREIGN
     assert names(tmp_path) == ["run.h5"]
 
 
-def test_segments_of_others_and_text_files_stay(tmp_path: Path) -> None:
-    """Only segments of the very run that is replaced go."""
+def test_files_with_names_like_a_runs_stay(tmp_path: Path) -> None:
+    """A run is one file, also when it has been resumed: whatever lies beside it is not its own."""
     path = tmp_path / "run.h5"
     cut_run(path, 2e-3)
-    trb.resume(path)
-    assert "run.part1.h5" in names(tmp_path)
     text, other = tmp_path / "run.part2.h5", tmp_path / "run.part3.h5"
     text.write_bytes(FOREIGN)
     run(other, duration=1e-4)
+    trb.resume(path)
     run(path, duration=1e-4, overwrite=True)
     assert names(tmp_path) == ["run.h5", "run.part2.h5", "run.part3.h5"]
     assert text.read_bytes() == FOREIGN
     assert trb.load(other).success
-    assert trb.load(path).success, "a complete run needs nothing that lies beside it"
-    path.unlink()
-    run(path, duration=1e-4)
-    assert names(tmp_path) == ["run.h5", "run.part2.h5", "run.part3.h5"]
+
+
+def test_drafts_that_a_killed_process_left_are_removed_at_the_next_start(tmp_path: Path) -> None:
+    """Those of this file only, and none that somebody is writing."""
+    path, dead, alive = tmp_path / "run.h5", ".run.h5.0123456789ab.new", ".run.h5.ba9876543210.new"
+    (tmp_path / ".run.h5.checkpoint.0123456789ab.new").write_bytes(FOREIGN)
+    others = [".other.h5.0123456789ab.new", ".run.h5.notes.new", ".run.h5.mine"]
+    for name in (dead, alive, *others):
+        (tmp_path / name).write_bytes(FOREIGN)
+    with take_lock(tmp_path / alive):
+        assert run(path, checkpoint_every=1e-3).success
+    assert names(tmp_path) == sorted(["run.h5", alive, *others])
+
+
+KILLED_IN_A_DRAFT = """
+import os, signal, sys
+import trbdyn as trb
+from trbdyn.model.cases import scene_30310
+from trbdyn.results import result_file
+
+result_file.put_in_place = lambda *rest, **options: os.kill(os.getpid(), signal.SIGKILL)
+trb.Simulation(scene_30310()).run(duration=1e-3, output=sys.argv[1])
+"""
+
+
+def test_a_run_that_is_killed_before_its_file_appears_leaves_nothing_for_long(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
+    words = [sys.executable, "-P", "-c", KILLED_IN_A_DRAFT, str(path)]
+    assert subprocess.run(words, env=environment, check=False).returncode == -signal.SIGKILL
+    assert [name.endswith(".new") for name in names(tmp_path)] == [True]
+    assert run(path).success
+    assert names(tmp_path) == ["run.h5"]
 
 
 @pytest.mark.parametrize(("one", "two"), [("x.h5", "x.hdf5"), ("v3000.5", "v3000.6"), ("x", "x.h5")])
@@ -308,13 +336,13 @@ def test_a_result_replaced_after_the_last_write_is_not_read_as_success(
 
     path, other = tmp_path / "run.h5", tmp_path / "other.h5"
     run(other, duration=1e-4)
-    close = ResultWriter._close
+    close = ResultWriter.close
 
     def then_replace(self: ResultWriter) -> None:
         close(self)
         other.replace(path)
 
-    monkeypatch.setattr(ResultWriter, "_close", then_replace)
+    monkeypatch.setattr(ResultWriter, "close", then_replace)
     with pytest.raises(FileError, match="replaced by another program"):
         run(path)
 
@@ -323,7 +351,7 @@ CHILD = """
 import os, sys, time
 import trbdyn as trb
 from trbdyn.results import result_file
-from trbdyn.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 
 result_file.FLUSH_SECONDS = 0.0
 how, output = sys.argv[1:]
@@ -352,7 +380,7 @@ def callback(sim):
 
 if True:
     try:
-        trb.Simulation(scene_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output,
+        trb.Simulation(paper_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output,
         callback=callback)
     except trb.TrbError as error:
         print("child:", error, flush=True)
@@ -464,7 +492,7 @@ def test_resuming_touches_nothing_of_others(tmp_path: Path) -> None:
     before = part.read_bytes()
     assert trb.resume(path).success
     assert part.read_bytes() == before
-    assert names(tmp_path) == ["run.h5", "run.part1.h5", "run.part2.h5"]
+    assert names(tmp_path) == ["run.h5", "run.part1.h5"]
     other = tmp_path / "other.h5"
     cut_run(other, 2e-3)
     run(path, duration=1e-4, overwrite=True).final_time  # noqa: B018

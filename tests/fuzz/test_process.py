@@ -21,12 +21,12 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.run.checkpoint import checkpoint_path
 
 
 def scene(number: int) -> trb.Scene:
-    return scene_30310(1000.0 * (1 + number % 3), 4930.0, start=trb.Start.unequal(number))
+    return paper_30310(1000.0 * (1 + number % 3), 4930.0, start=trb.Start.unequal(number))
 
 
 def run(number: int) -> trb.Result:
@@ -101,7 +101,7 @@ if sys.argv[1] == "after the main one":
     import trbdyn._core
 interpreters.run_string(interpreters.create(), sys.argv[2])
 import trbdyn as trb
-print(trb.Simulation(trb.cases.scene_30310()).step() > 0.0)
+print(trb.Simulation(trb.cases.paper_30310()).step() > 0.0)
 """
 
 
@@ -183,7 +183,7 @@ def median_of_three():
         looks.append(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
     return statistics.median(looks)
 
-scene = trb.cases.scene_30310(1000.0, 4930.0, start=trb.Start.unequal(0))
+scene = trb.cases.paper_30310(1000.0, 4930.0, start=trb.Start.unequal(0))
 before = median_of_three()
 for _ in range(260):
     trb.Simulation(scene).run(duration=1e-4)
@@ -210,7 +210,7 @@ import resource
 from pathlib import Path
 import trbdyn as trb
 
-scene = trb.cases.scene_30310(3000.0, 4930.0)
+scene = trb.cases.paper_30310(3000.0, 4930.0)
 first = trb.Simulation(scene)
 first.run(duration=1e-3)
 size = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
@@ -294,7 +294,7 @@ def test_ctrl_c_while_stepping_ends_the_run_and_resume_goes_on(tmp_path: Path) -
     assert result.final_time < 500.0
     # a twin of the run, to a time a little after the signal
     end = result.final_time + 0.1
-    whole = trb.Simulation(scene(0)).run(duration=end, **schedule)
+    whole = trb.Simulation(scene(0)).run(duration=end, output=tmp_path / "whole.h5", **schedule)
     resumed = trb.resume(path, callback=lambda now: now.time >= end)
     n = len(whole) - 1  # its last record is its end
     assert len(result) < n <= len(resumed)

@@ -130,13 +130,13 @@ def test_rib_touches_the_nominal_sphere(bearing: Bearing) -> None:
 
 def test_rib_sliding(rig: Bearing) -> None:
     """The contact height gives a slide-roll ratio of about 0.30, as the paper states."""
-    sim = Simulation(cases.scene_30310(3000.0, bearing=rig))
+    sim = Simulation(cases.paper_30310(3000.0, bearing=rig))
     assert sim.contacts()["rib_slide_roll"] == pytest.approx(0.30, abs=0.01)
 
 
 def test_ratios_are_those_of_pure_rolling(bearing: Bearing) -> None:
     """At the start both raceways roll without sliding, all along the contact."""
-    scene = {"30310": cases.scene_30310, "32216": cases.scene_32216}[bearing.name]
+    scene = {"30310": cases.paper_30310, "32216": cases.scene_32216}[bearing.name]
     found = Simulation(scene(3000.0, effects=Effects.paper())).contacts()
     speed = found["raceway_mean_speed"].mean(axis=(0, 1))
     middle = 0.5 * (speed[11] + speed[12])

@@ -13,6 +13,7 @@ from scipy.optimize import brentq, fsolve
 from trbdyn import Effects, LoadError, Scene, Simulation, cases
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
+from trbdyn.statics.equilibrium import most_radial_load
 
 CUP = math.radians(12 + 57 / 60 + 10 / 3600)
 EVEN = 2 * np.pi * np.arange(12) / 12
@@ -21,7 +22,7 @@ EVEN = 2 * np.pi * np.arange(12) / 12
 def simulate(
     bearing: Bearing, speed_rpm: float = 0.0, axial: float = 4930.0, radial: float = 0.0, **more: Any
 ) -> Simulation:
-    return Simulation(cases.scene_30310(speed_rpm, axial, radial, bearing=bearing, **more))
+    return Simulation(cases.paper_30310(speed_rpm, axial, radial, bearing=bearing, **more))
 
 
 class TestAxialLoad:
@@ -271,3 +272,35 @@ class TestTooMuch:
         found = simulate(rig, speed, 1.02 * least).equilibrium
         assert np.all(found.inner_load > 0.0)
         assert found.inner_load == pytest.approx(0.02 * outer, rel=0.2)
+
+
+class TestCombinedLoads:
+    def test_a_moment_is_held_by_the_running_bearing(self, rig: Bearing) -> None:
+        """Rollers skew with the ring that a moment tilts. What is left, one per cent, is friction of rollers that twist as they
+        orbit; with rollers that did not skew the ring held (27, 19.2) N m.
+        """
+        scene = Scene(rig, speed_rpm=3000.0, axial_load=8000.0, radial_load=4000.0, moment_x=-30.0, moment_y=20.0)
+        run = Simulation(scene.replace(effects=scene.effects.replace(bodies="rollers")), accuracy="fast")
+        assert np.abs(run.equilibrium.rollers[:, 3]).max() > 2e-4
+        result = run.run(duration=0.08, save_every=1e-4)
+        moment = np.asarray(result["ring_moment"])[400:, :2].mean(axis=0)
+        assert moment == pytest.approx([30.0, -20.0], abs=0.4)
+
+    def test_rollers_do_not_skew_without_a_reason(self, rig: Bearing) -> None:
+        assert np.abs(simulate(rig, 3000.0, 4930.0).equilibrium.rollers[:, 3]).max() < 1e-12
+
+    @pytest.mark.parametrize("share", [0.88, 0.95, 0.97, 0.99])
+    def test_loads_close_to_the_largest_are_found(self, rig: Bearing, share: float) -> None:
+        """The largest load in a direction lies on the edge of the polygon whose corners are the rollers."""
+        for direction in (3.0, 12.0, 87.2, 134.7):
+            off = math.radians((direction - 15.0) % 30.0 if direction % 30.0 >= 15.0 else 15.0 - direction % 30.0)
+            limit = most_radial_load(Scene(rig, speed_rpm=2000.0, axial_load=3000.0), 3000.0)
+            radial = share * limit * math.cos(math.radians(15.0)) / math.cos(off)
+            found = simulate(rig, 2000.0, 3000.0, radial, radial_direction_deg=direction).equilibrium
+            assert found.residual < 1e-4 * radial
+
+    def test_the_largest_load_is_named(self, rig: Bearing) -> None:
+        with pytest.raises(
+            LoadError, match=r"with these rollers \d+ N and \d+(\.\d+)? N m in this direction were balanced"
+        ):
+            simulate(rig, 3000.0, 8000.0, 4000.0, moment_x=500.0)

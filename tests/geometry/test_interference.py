@@ -153,7 +153,7 @@ def test_normals_and_points(sim: Simulation, places: Any, cone_distance: Any) ->
 
 class TestRibs:
     def test_nominal_sphere_just_touches(self, rig: Bearing) -> None:
-        sim = Simulation(cases.scene_30310(0.0, bearing=rig))
+        sim = Simulation(cases.paper_30310(0.0, bearing=rig))
         found = sim.contacts(np.zeros_like(sim.state.vector), 0.0)
         # the ring is displaced by its load: only the sphere's place is nominal
         shift = sim.equilibrium.displacement[2]
@@ -214,7 +214,7 @@ class TestRibs:
             assert found[roller] == pytest.approx(max(depths), abs=1e-12)
 
     def test_front_clearance(self, rig: Bearing) -> None:
-        placed = Simulation(cases.scene_30310(0.0, bearing=rig).replace(axial_load=0.0, displacement=(0.0, 0.0, 0.0)))
+        placed = Simulation(cases.paper_30310(0.0, bearing=rig).replace(axial_load=0.0, displacement=(0.0, 0.0, 0.0)))
         found = placed.contacts(np.zeros_like(placed.state.vector), 0.0)
         assert found["front_rib_interference"] == pytest.approx(-rig.ribs.front_clearance, abs=1e-15)
         assert found["rib_interference"] == pytest.approx(0.0, abs=1e-15)

@@ -52,7 +52,7 @@ EXTREMES: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("changes", EXTREMES.values(), ids=EXTREMES)
 def test_every_quantity_is_a_number(changes: dict[str, Any]) -> None:
-    assert_finite(cases.scene_30310(**changes))
+    assert_finite(cases.paper_30310(**changes))
 
 
 def test_dicke_beyond_its_pole() -> None:
@@ -65,7 +65,7 @@ def test_dicke_beyond_its_pole() -> None:
         "dicke": Dicke(),
     }
     try:
-        scene = cases.scene_30310(300.0, lubricant=Lubricant(**oil))
+        scene = cases.paper_30310(300.0, lubricant=Lubricant(**oil))
     except InputError:
         return
     assert_finite(scene)
@@ -73,7 +73,7 @@ def test_dicke_beyond_its_pole() -> None:
 
 def test_isoviscous_oil() -> None:
     try:
-        scene = cases.scene_30310(lubricant=vg100(60.0).replace(pressure_coefficient=0.0))
+        scene = cases.paper_30310(lubricant=vg100(60.0).replace(pressure_coefficient=0.0))
     except InputError:
         return
     assert_finite(scene)

@@ -145,7 +145,19 @@ def test_rolling_resistance(seen: SimpleNamespace) -> None:
     u = seen.oil.viscosity * seen.mean_speed / (seen.modulus * seen.radius)
     share = laws.rolling_share(seen.film_elastic / seen.film_rigid, 0.1)
     law = laws.rolling_line(w, u, seen.g) * seen.radius * seen.weight / seen.oil.pressure_coefficient
-    assert seen.rolling == exact(share * seen.thermal_factor * law)
+    assert seen.rolling == exact(effects.starvation_factor * share * seen.thermal_factor * law)
+
+
+@pytest.mark.parametrize("name", ["goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert"])
+def test_other_laws_of_rolling_resistance(name: str) -> None:
+    scene = scene_of("mixed")
+    seen = look(scene.replace(effects=scene.effects.replace(rolling_law=name)))
+    w = seen.load_per_length / (seen.modulus * seen.radius)
+    u = seen.oil.viscosity * seen.mean_speed / (seen.modulus * seen.radius)
+    share = 1.0 if name == "biboulet_houpert" else laws.rolling_share(seen.film_elastic / seen.film_rigid, 0.1)
+    law = getattr(laws, f"rolling_{name}")(w, u, seen.g) * seen.radius * seen.weight / seen.oil.pressure_coefficient
+    assert seen.rolling == exact(0.1 * share * seen.thermal_factor * law)
+    assert seen.rolling.min() > 0.0
 
 
 def test_rib(seen: SimpleNamespace) -> None:
@@ -168,6 +180,20 @@ def test_rib(seen: SimpleNamespace) -> None:
     # the mean pressure of an ellipse, and its semi-axis along rolling
     assert rib.friction_coefficient == exact(friction_of(seen, rib, 2 / 3 * rib.pressure, along))
     assert rib.friction == exact(rib.load * rib.friction_coefficient)
+
+
+def test_ellipse_of_the_rib_along_rolling() -> None:
+    """The contact's length in the traction of a film is the semi-axis along rolling: a thick oil, in which it decides."""
+    scene = scene_of("full_film")
+    seen = look(scene.replace(lubricant=scene.lubricant.replace(viscosity=200.0, pressure_law="barus", dicke=None)))
+    rib, pressure = seen.rib, 2 / 3 * seen.rib.pressure
+    radii = seen.geometry.rib_rx, seen.geometry.rib_ry
+    along = laws.point_semi_axis_long(rib.load, *radii, seen.modulus)
+    across = laws.point_semi_axis_short(rib.load, *radii, seen.modulus)
+    assert seen.geometry.rib_rx > seen.geometry.rib_ry  # so that the long axis lies along rolling
+    right, wrong = (friction_of(seen, rib, pressure, semi) for semi in (along, across))
+    assert np.abs(wrong / right - 1.0).min() > 0.05
+    assert rib.friction_coefficient == exact(right)
 
 
 def test_rib_film_choice() -> None:

@@ -102,9 +102,9 @@ def contents(path: Path) -> dict[str, np.ndarray]:
     """Every number of a point's file."""
     out: dict[str, np.ndarray] = {}
     with h5py.File(path) as file:
-        for group in ("fields", "history"):
-            out |= {f"{group}/{name}": dataset[()] for name, dataset in file[group].items()}
-        out["final_state"] = file["final_state"][()]
+        names = [name for name, entry in file.items() if isinstance(entry, h5py.Dataset)]
+        names += [*(f"history/{name}" for name in file["history"]), "run/final_state"]
+        out |= {name: file[name][()] for name in names if file[name].dtype.kind in "fi"}
     return out
 
 
@@ -201,7 +201,7 @@ class TestSignals:
 
 @pytest.fixture(scope="module")
 def pockets() -> Pockets:
-    return Pockets(trb.cases.scene_30310())
+    return Pockets(trb.cases.paper_30310())
 
 
 class TestMovableDistance:

@@ -123,7 +123,7 @@ def test_loaded_zone_on_top_slows_growth_and_at_the_bottom_hastens_it(planar: An
     top, axial, bottom = (
         _grown(
             planar,
-            trb.cases.scene_30310(
+            trb.cases.paper_30310(
                 3000.0, 4930.0, radial, effects=GAUSS, radial_direction_deg=direction, start=trb.Start.whirl(0.3)
             ),
             12,

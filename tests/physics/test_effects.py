@@ -135,6 +135,28 @@ def test_planar_freezes_and_conserves(kit: SimpleNamespace, friction: bool) -> N
     assert drift[1e-6] < 0.3 * drift[1e-5]
 
 
+def test_planar_orbit_keeps_angular_momentum(kit: SimpleNamespace) -> None:
+    """A roller that nothing touches and that flies outward slows down in its orbit: L = m r v_t + It n_z^2 v_t/r stays, n_z
+    the part along the bearing's axis of the roller's first transverse axis."""
+    loose = Effects.frictionless().replace(planar=True, gravity=False, pocket_bars=False, pocket_ends=False)
+    # the inner ring has gone
+    sim = kit.simulate(loose.replace(front_rib=False), scenery={"displacement": (0.0, 0.0, 14e-3)})
+    geometry, vector, random = sim.scene.bearing.geometry, sim.state.vector, np.random.default_rng(5)
+    state = sim.view(vector)
+    state["roller_r"], state["roller_z"], state["roller_v_r"] = -1.1e-3, 0.0, random.uniform(-3.0, 3.0, 12)
+    state["roller_v_t"] = random.uniform(-1.0, 1.0, 12)
+    rates = sim.view(sim.derivative(vector, 0.0))
+    assert not sim.contacts(vector, 0.0)["force"].any()
+    radius = geometry.roller_centre_radius + state["roller_r"]
+    orbit = geometry.cage_speed_ratio * 3000.0 * np.pi / 30.0
+    speed = state["roller_v_t"] + orbit * geometry.roller_centre_radius
+    inertia = geometry.roller_inertia_transverse * np.sin(geometry.roller_axis_angle + state["roller_tilt"]) ** 2
+    gained = (geometry.roller_mass * radius + inertia / radius) * rates["roller_v_t"]
+    carried = (geometry.roller_mass - inertia / radius**2) * speed * state["roller_v_r"]
+    assert np.abs(carried).min() > 1e-3
+    np.testing.assert_allclose(gained + carried, 0.0, atol=1e-9 * np.abs(carried).max())
+
+
 def test_rollers_without_a_cage(kit: SimpleNamespace) -> None:
     result = kit.simulate(PAPER.replace(bodies="rollers")).run(duration=5e-3)
     assert result.success

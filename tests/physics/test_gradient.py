@@ -189,7 +189,7 @@ def test_sides_and_corners_of_pocket_faces(kit: SimpleNamespace) -> None:
     rig = trb.cases.rig_30310()
     bearing = rig.replace(
         cage=rig.cage.replace(pocket=kit.small_faces(rig)),
-        roller=rig.roller.replace(profile=trb.bearing.Profile.straight()),
+        roller=rig.roller.replace(profile=trb.Profile.straight()),
     )
     slices = 200
     sim = kit.simulate(FREE.replace(n_slices=slices), scenery={"bearing": bearing})

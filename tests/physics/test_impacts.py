@@ -50,7 +50,7 @@ def restitution(mass: float, speed: float, **options: object) -> float:
 
 
 @pytest.mark.parametrize("preset", ["fast", "standard", "reference"])
-@pytest.mark.parametrize("mass", [1e-4, 0.02, 0.2, 5.0])
+@pytest.mark.parametrize("mass", [1e-4, 0.02, 0.2, 2.5])
 def test_no_preset_makes_energy_in_a_hit(mass, preset):
     """What is missing in a fast hit has gone into the rollers: a run at a ten-thousandth of the tolerances misses it, too."""
     for speed in (3e-4, 1e-3, 3e-3, 1e-2, 1e-1):

@@ -16,6 +16,7 @@ import trbdyn as trb
 from trbdyn import Effects, Scene, Simulation
 from trbdyn.model.bearing import Profile
 from trbdyn.model.flatten import scene_entries
+from trbdyn.model.pocket import Pocket
 
 Array = NDArray[np.float64]
 BASE = Effects.standard().replace(damping="off")
@@ -269,6 +270,31 @@ def test_damping(kit: SimpleNamespace, part: str) -> None:
     assert np.abs(one - still).max() > 1e-3 * still.max()
 
 
+@pytest.mark.parametrize("effects", [BOUNDARY, DRY], ids=["boundary", "dry"])
+def test_factors_of_a_pocket_face(kit: SimpleNamespace, effects: Effects) -> None:
+    """A face's own factors of stiffness and friction multiply its load and its coefficient of friction."""
+    scene, vector = prepared(kit, effects)
+    stiffer, rougher = [1.0, 0.7, 1.3, 2.0], [1.6, 0.5, 1.0, 0.8]
+
+    def with_factors(stiffness: list[float], friction: list[float]) -> dict[str, Array]:
+        bearing = scene.bearing
+        faces = tuple(
+            face.replace(stiffness_factor=k, friction_factor=f)
+            for face, k, f in zip(trb.pocket_shapes.default_pocket(bearing).faces, stiffness, friction, strict=True)
+        )
+        cage = bearing.cage.replace(pocket=Pocket(faces=faces))
+        return Simulation(scene.replace(bearing=bearing.replace(cage=cage))).contacts(vector, 0.0)
+
+    plain, other = with_factors([1.0] * 4, [1.0] * 4), with_factors(stiffer, rougher)
+    touched = plain["pocket_load"] > 0.0
+    assert touched[:, :2].any(axis=0).all()  # both bars
+    assert touched[:, 2:].any()
+    loads, frictions = (np.where(touched, plain[f"pocket_{part}"], 0.0) for part in ("load", "friction"))
+    np.testing.assert_allclose(other["pocket_load"], loads * stiffer, rtol=1e-9)
+    np.testing.assert_allclose(other["pocket_friction"], frictions * stiffer * rougher, rtol=1e-9)
+    assert (frictions[touched] > 0.0).all()
+
+
 def test_inertia_of_the_cage(kit: SimpleNamespace) -> None:
     scene, vector = prepared(kit, MOVING)
     state = Simulation(scene).view(vector)
@@ -364,7 +390,7 @@ def test_nothing_is_forgotten() -> None:
         "pocket_edges",
     }
     switches |= {"profile", "viscosity_law", "n_rollers", "n_slices"}
-    assert here | switches | set(TRACTION) | set(RIBS) | set(PROFILES) >= set(scene_entries(trb.cases.scene_30310()))
+    assert here | switches | set(TRACTION) | set(RIBS) | set(PROFILES) >= set(scene_entries(trb.cases.paper_30310()))
 
 
 TRACTION = {

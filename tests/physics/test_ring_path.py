@@ -14,7 +14,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 import trbdyn as trb
 from trbdyn import Effects, History, InputError, LoadError, RotatingLoad, Simulation, Start
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 from trbdyn.statics.equilibrium import EquilibriumSolver, least_axial_load, most_radial_load, nominal_angles
 from trbdyn.statics.ring_path import PATH_TOLERANCE
 
@@ -74,7 +74,7 @@ def offsets(sim: Simulation, times: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("name", TURNS)
 def test_path_lies_at_the_equilibria_between_its_knots(name: str) -> None:
     changes, end = TURNS[name]
-    sim = Simulation(scene_30310(**{"ring": "follows", **changes}))
+    sim = Simulation(paper_30310(**{"ring": "follows", **changes}))
     times = np.random.default_rng(len(name)).uniform(0.0, end, 40)
     assert offsets(sim, times).max() < PATH_TOLERANCE
     view = [sim.record(time=float(time))["ring_force"] for time in times]
@@ -82,7 +82,7 @@ def test_path_lies_at_the_equilibria_between_its_knots(name: str) -> None:
 
 
 def test_velocity_of_the_path_is_continuous() -> None:
-    sim = Simulation(scene_30310(3000.0, 4930.0, 2000.0, rotating_load=RotatingLoad(800.0), ring="follows"))
+    sim = Simulation(paper_30310(3000.0, 4930.0, 2000.0, rotating_load=RotatingLoad(800.0), ring="follows"))
     knots = sim._motion.table[:, 0]
     for knot in [*knots[1:-1], 7 * knots[-1]]:
         before, after = (sim.record(time=float(knot + step))["ring_position"] for step in (-1e-7, 1e-7))
@@ -93,7 +93,7 @@ def test_velocity_of_the_path_is_continuous() -> None:
 def test_long_history_is_quick() -> None:
     """61 knots took 10 s, most of them for starting each search from nothing."""
     values = np.random.default_rng(0).uniform(2000, 5000, 61)
-    scene = scene_30310(3000.0, History.table(np.linspace(0, 1, 61), values), ring="follows")
+    scene = paper_30310(3000.0, History.table(np.linspace(0, 1, 61), values), ring="follows")
     began = clock.process_time()
     sim = Simulation(scene)
     assert clock.process_time() - began < 5.0
@@ -102,7 +102,7 @@ def test_long_history_is_quick() -> None:
 
 def test_run_under_a_rotating_load_goes_round_for_ever() -> None:
     """Also after thousands of periods, where only a repeating table reaches."""
-    scene = scene_30310(3000.0, 4930.0, rotating_load=RotatingLoad(800.0), ring="follows", start=Start(time=100.0))
+    scene = paper_30310(3000.0, 4930.0, rotating_load=RotatingLoad(800.0), ring="follows", start=Start(time=100.0))
     sim = Simulation(scene, accuracy="fast")
     result = sim.run(duration=0.004, save_every=1e-3)
     place = np.array([sim.record(time=float(time))["ring_position"] for time in result.time])
@@ -169,23 +169,23 @@ def test_table_that_repeats() -> None:
 )
 def test_refused(changes: dict[str, Any], field: str, says: str) -> None:
     with pytest.raises(InputError, match=says) as caught:
-        scene_30310(**{"speed_rpm": 3000.0, "axial_load": 4930.0, **changes})
+        paper_30310(**{"speed_rpm": 3000.0, "axial_load": 4930.0, **changes})
     assert caught.value.field == field
 
 
 def test_history_that_begins_before_the_start() -> None:
     """The start was that of the first knot: 53 kN on the ring, a cage at (101, 13) um."""
-    sim = Simulation(scene_30310(3000.0, History.ramp(-0.02, 0.02, 1230, 4930), ring="follows"))
+    sim = Simulation(paper_30310(3000.0, History.ramp(-0.02, 0.02, 1230, 4930), ring="follows"))
     assert sim.record()["ring_force"][2] == pytest.approx(3080.0, rel=2e-3)
     assert float(sim.record()["shaft_angle"]) == 0.0
-    plain = Simulation(scene_30310(3000.0))
-    steady = Simulation(scene_30310(History.table([-0.013, 0.01], [3000, 3000])))
+    plain = Simulation(paper_30310(3000.0))
+    steady = Simulation(paper_30310(History.table([-0.013, 0.01], [3000, 3000])))
     assert np.array_equal(steady.state.vector, plain.state.vector)
 
 
 def test_start_inside_a_history_is_that_of_the_shifted_one() -> None:
-    late = Simulation(scene_30310(3000.0, History.ramp(0, 0.02, 1230, 4930), ring="follows", start=Start(time=0.0125)))
-    shifted = Simulation(scene_30310(3000.0, History.ramp(-0.0125, 0.0075, 1230, 4930), ring="follows"))
+    late = Simulation(paper_30310(3000.0, History.ramp(0, 0.02, 1230, 4930), ring="follows", start=Start(time=0.0125)))
+    shifted = Simulation(paper_30310(3000.0, History.ramp(-0.0125, 0.0075, 1230, 4930), ring="follows"))
     assert late.state.vector == pytest.approx(shifted.state.vector, abs=1e-12)
     for step in (0.0, 0.001, 0.02):
         assert late.record(time=0.0125 + step)["ring_position"] == pytest.approx(
@@ -196,7 +196,7 @@ def test_start_inside_a_history_is_that_of_the_shifted_one() -> None:
 
 
 def test_saved_state_keeps_the_angle_of_its_shaft() -> None:
-    scene = scene_30310(3000.0, 4930.0, 2000.0, start=Start(time=2.0))
+    scene = paper_30310(3000.0, 4930.0, 2000.0, start=Start(time=2.0))
     saved = Simulation(scene)
     saved.run(duration=0.003, save_every=1e-3)
     state = saved.state
@@ -208,7 +208,7 @@ def test_saved_state_keeps_the_angle_of_its_shaft() -> None:
 @pytest.mark.parametrize("start", [Start.whirl(), Start.unequal(3)], ids=["whirl", "unequal"])
 def test_uneven_start_does_not_shift_the_ring(start: Start) -> None:
     """It was held at the equilibrium of the rollers' places at the start, which loaded it by 58 N for the whole run."""
-    even, uneven = Simulation(scene_30310()), Simulation(scene_30310(start=start))
+    even, uneven = Simulation(paper_30310()), Simulation(paper_30310(start=start))
     assert uneven.record()["ring_position"] == pytest.approx(even.record()["ring_position"], abs=1e-15)
     view, rates = uneven.view(), uneven.view(uneven.derivative())
     assert np.abs(view["roller_psi"]).max() > 1e-4
@@ -221,7 +221,7 @@ def test_radial_load_with_given_axial_place(play: float, radial: float) -> None:
     """Preload by displacement, or play, under a pure radial load."""
     for speed in (0.0, 3000.0):
         sim = Simulation(
-            scene_30310(speed, 0.0, radial, displacement=(None, None, play), effects=Effects.frictionless())
+            paper_30310(speed, 0.0, radial, displacement=(None, None, play), effects=Effects.frictionless())
         )
         place, force = sim.equilibrium.displacement, sim.record()["ring_force"]
         assert place[2] == play
@@ -230,7 +230,7 @@ def test_radial_load_with_given_axial_place(play: float, radial: float) -> None:
 
 
 def test_axial_load_with_given_radial_place() -> None:
-    sim = Simulation(scene_30310(3000.0, 2000.0, displacement=(5e-6, None, None), effects=Effects.frictionless()))
+    sim = Simulation(paper_30310(3000.0, 2000.0, displacement=(5e-6, None, None), effects=Effects.frictionless()))
     assert sim.equilibrium.displacement[0] == 5e-6
     assert sim.record()["ring_force"][1:] == pytest.approx([0.0, 2000.0], abs=1.0)
 
@@ -238,7 +238,7 @@ def test_axial_load_with_given_radial_place() -> None:
 @pytest.mark.parametrize(("speed", "axial"), [(5000.0, 600.0), (10000.0, 1000.0), (10000.0, 4930.0)])
 def test_the_largest_radial_load_knows_the_centrifugal_force(speed: float, axial: float) -> None:
     """At three quarters of it there is an equilibrium, above it there is none, and the message tells it."""
-    scene = scene_30310(speed, axial)
+    scene = paper_30310(speed, axial)
     most = most_radial_load(scene, axial)
     assert most < 0.95 * axial / math.tan(math.radians(scene.bearing.cup_half_angle_deg))
     found = Simulation(scene.replace(radial_load=0.75 * most)).equilibrium
@@ -251,7 +251,7 @@ def test_the_largest_radial_load_knows_the_centrifugal_force(speed: float, axial
 
 def test_light_load_is_told_the_least() -> None:
     """The least axial load: at one half per cent more there is an equilibrium, at as much less there is none."""
-    scene = scene_30310(10000.0, 100.0)
+    scene = paper_30310(10000.0, 100.0)
     least = least_axial_load(scene)
     with pytest.raises(LoadError, match=rf"axial_load must be at least {least:.4g} N at this speed") as caught:
         Simulation(scene)
@@ -260,4 +260,4 @@ def test_light_load_is_told_the_least() -> None:
         Simulation(scene.replace(axial_load=0.995 * least))
     assert Simulation(scene.replace(axial_load=1.005 * least)).equilibrium.residual < 1e-3
     with pytest.raises(LoadError, match=r"at 0\.\d+ s"):
-        Simulation(trb.cases.scene_30310(3000.0, History.ramp(0, 0.01, 4930, 0.1), ring="follows"))
+        Simulation(trb.cases.paper_30310(3000.0, History.ramp(0, 0.01, 4930, 0.1), ring="follows"))

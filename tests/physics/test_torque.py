@@ -21,7 +21,7 @@ ROLLING_OUTER, ROLLING_INNER = 1.558, 1.495  # N a surface and roller at 3000 rp
 def steady(kit: SimpleNamespace, speed: float, *, pressure_force: bool) -> Result:
     """Rollers without cage and gravity, come to rest in their steady rolling."""
     rig = trb.cases.rig_30310()
-    bearing = rig.replace(roller=rig.roller.replace(profile=trb.bearing.Profile.straight()))
+    bearing = rig.replace(roller=rig.roller.replace(profile=trb.Profile.straight()))
     effects = Effects.paper().replace(
         bodies="rollers", gravity=False, quadrature="gauss", rolling_pressure_force=pressure_force
     )
@@ -61,7 +61,7 @@ def test_rings_differ_without_pressure_force(kit: SimpleNamespace) -> None:
 def test_rolling_resistance_of_a_surface(kit: SimpleNamespace) -> None:
     """F_EHL summed along the contact; the inner one scaled to its load at speed by Q^0.246."""
     rig = trb.cases.rig_30310()
-    bearing = rig.replace(roller=rig.roller.replace(profile=trb.bearing.Profile.straight()))
+    bearing = rig.replace(roller=rig.roller.replace(profile=trb.Profile.straight()))
     sim = kit.simulate(Effects.paper().replace(quadrature="gauss"), scenery={"bearing": bearing})
     force = sim.contacts()["raceway_rolling"].sum(axis=-1)
     np.testing.assert_allclose(force[0], ROLLING_OUTER, rtol=2e-3)

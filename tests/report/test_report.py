@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import html
 import re
 from pathlib import Path
 
@@ -12,10 +14,12 @@ import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
+from trbdyn.reporting.bias import Bias, biases
 from trbdyn.reporting.inputs import field_texts, rows
 from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict
 from trbdyn.results import summary
+from trbdyn.run import estimate
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +41,7 @@ def text(result: trb.Result, tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 def cells(text: str, words: str) -> list[str]:
-    row = re.search(rf"<tr[^>]*><td>{re.escape(words)}</td>(.*?)</tr>", text)
+    row = re.search(rf"<tr[^>]*><td[^>]*>{re.escape(words)}</td>(.*?)</tr>", text)
     assert row is not None, words
     return re.findall(r"<td[^>]*>(.*?)</td>", row[1])
 
@@ -84,17 +88,104 @@ def test_the_verdict_follows_the_run(result: trb.Result) -> None:
     def said(**changes: object) -> dict[str, str]:
         return {head: grade for grade, head, _ in verdict(result, values | changes)}
 
-    assert said(cage_motion="circling")["The cage whirls"] == "care"
-    assert said(cage_motion="stable")["The cage does not whirl"] == "good"
-    assert said(cage_motion="unstable")["The cage moves without order"] == "bad"
+    settled = {"settled": True, "settling": "settled"}
+    assert said(cage_motion="circling", **settled)["The cage whirls"] == "care"
+    assert said(cage_motion="stable", **settled)["The cage does not whirl"] == "good"
+    assert said(cage_motion="rocking", pocket_force_peak=1.0, **settled)["The cage hangs and rocks"] == "good"
+    assert said(cage_motion="unstable", pocket_force_peak=1e3, **settled)["The cage moves without order"] == "bad"
     assert said(energy_closure=9e-4)["The energy adds up"] == "good"
     assert said(energy_closure=2e-3)["The energy adds up, not closely"] == "care"
     assert said(energy_closure=2e-2)["The energy does not add up"] == "bad"
-    assert said(film_parameter_rib=0.5)["Films are too thin"] == "bad"
-    assert said(film_parameter_rib=2.0)["Films carry, with some contact"] == "care"
+    long = {"window_start": 0.0, "window_end": 1.0}
+    assert said(film_parameter_rib=0.5, **long)["Films are too thin"] == "bad"
+    assert said(film_parameter_rib=1.3, **long)["Films carry, with some contact"] == "care"
     assert said(inner_pressure_max=5e9)["Pressures"] == "bad"
-    assert said(pocket_force_peak=0.0)["No roller touched the cage"] == "good"
+    assert said(pocket_force_peak=0.0, **settled)["No roller touched the cage"] == "good"
     assert said(settled=False)["Not settled"] == "care"
+
+
+def test_what_has_not_settled_is_not_judged(result: trb.Result) -> None:
+    """Three turns of the shaft: no sentence on the cage or on films has a grade, and it is said how long it takes."""
+    values = result.summary()
+    told = {head: (grade, text) for grade, head, text in verdict(result, values)}
+    grade, text = told["The cage's motion cannot be told yet"]
+    assert grade == "plain"
+    assert f"A run of about {values['settling_needed']:.0f} s" in text
+    assert "turns of the shaft" in text
+    assert told["Hits on the cage so far"][0] == "plain"
+    assert told["Films: cannot be told yet"][0] == "plain"
+    assert told["Pressures: cannot be told yet"][0] == "plain"
+    assert "cannot be told yet" in told["Not settled"][1]
+    for kind in ("stable", "rocking", "circling", "unstable"):
+        grade, _, text = verdict(result, values | {"cage_motion": kind})[1]
+        assert grade == "plain"
+        assert "So far: " in text
+
+
+def test_sentences_on_the_cage_do_not_contradict_each_other(result: trb.Result) -> None:
+    """Motion and hits go by one answer to how hard the cage is hit."""
+    values = result.summary() | {"settled": True, "settling": "settled", "outer_load_mean": 1000.0}
+    for peak, soft in ((11.0, True), (400.0, False)):
+        told = {
+            head: (grade, text)
+            for grade, head, text in verdict(result, values | {"pocket_force_peak": peak, "cage_motion": "unstable"})
+        }
+        grade, text = told["The cage moves without order"]
+        assert (told["Hits on the cage"][0] == "good") == soft
+        assert ("thrown from pocket to pocket" in text) == (not soft)
+        assert grade == ("care" if soft else "bad")
+        rocking = verdict(result, values | {"pocket_force_peak": peak, "cage_motion": "rocking"})[1]
+        assert rocking[0] == ("good" if soft else "plain")
+
+
+def test_films_have_one_limit_in_sentences_and_pictures(result: trb.Result) -> None:
+    """Both take that of the scene's friction."""
+    values = result.summary() | {"window_start": 0.0, "window_end": 1.0, "film_parameter_inner": 2.0}
+    heads = {head: text for _, head, text in verdict(result, values)}
+    assert "= 1.5 on" in heads["Films keep the surfaces apart"]
+    axes = trb.plot.film_parameter(result)
+    marked = [
+        float(line.get_ydata()[0])
+        for line in axes.lines
+        if len(set(line.get_ydata())) == 1 and len(line.get_ydata()) == 2
+    ]
+    assert result.scene.effects.friction.lambda_full in marked
+    assert "above 3" not in " ".join([*MEANINGS.values(), *CAPTIONS.values()])
+
+
+def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(result: trb.Result, tmp_path: Path) -> None:
+    """Each number whose bias stands in the table of accuracy has it in its row, whatever its name."""
+    listed = biases(result)
+    assert set(listed) <= set(summary.LABELS)
+    assert "pocket_force_p95" in listed
+    text = trb.report(result, tmp_path / "r.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
+    said = cells(text, summary.LABELS["pocket_force_p95"][0])[-1]
+    assert html.escape(str(listed["pocket_force_p95"])) in said
+    assert str(Bias(-0.08, 0.04, "fast", "")) == "With accuracy 'fast' it is 4 to 12 % too low."
+    assert str(Bias(0.38, 0.08, "fast", "")) == "With accuracy 'fast' it is 30 to 46 % too high."
+    assert str(Bias(-0.02, 0.1, "fast", "")) == "No bias was seen with accuracy 'fast', within 12 %."
+    assert "of Cpr" in str(Bias(0.0045, 0.003, "standard", "", "Cpr"))
+    orbit = listed.get("orbit_radius_over_cpr")
+    assert orbit is None or "of Cpr" in str(orbit)  # the table has it in Cpr
+    own = trb.Simulation(result.scene, rtol=1e-3).run(revolutions=0.1)
+    assert biases(own) == {}  # tolerances of one's own: nothing was measured for them
+
+
+def test_the_bias_of_peaks_has_its_place(result: trb.Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = copy.deepcopy(dict(estimate.table()))
+    for case in table["presets_of_scenes"].values():
+        case["standard"]["bias"] |= {"bias_pocket_peak": -0.075, "bias_pocket_peak_half_width": 0.045}
+        case["standard"]["bias"] |= {
+            "bias_rib_pressure_max": -0.02,
+            "bias_rib_pressure_max_half_width": 0.01,
+            "bias_new": 1.0,
+        }
+    monkeypatch.setattr(estimate, "table", lambda: table)
+    assert str(biases(result)["pocket_force_peak"]) == "With accuracy 'standard' it is 3 to 12 % too low."
+    assert str(biases(result)["rib_pressure_max"]).endswith("1 to 3 % too low.")
+    assert "new" not in biases(result)
+    hits = {head: text for _, head, text in verdict(result, result.summary())}["Hits on the cage so far"]
+    assert "3 to 12 % too low" in hits
 
 
 def test_a_failed_or_partial_run_still_gets_a_report(tmp_path: Path) -> None:

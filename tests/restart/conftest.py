@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 
 SCHEDULE: dict[str, Any] = {"duration": 0.12, "save_every": 1e-4, "checkpoint_every": 4e-3}
 
@@ -18,10 +18,10 @@ RUN = """
 import sys
 import trbdyn as trb
 from trbdyn.results import result_file
-from trbdyn.cases import scene_30310
+from trbdyn.model.cases import paper_30310
 
 result_file.FLUSH_SECONDS = 0.02
-scene = scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+scene = paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
 print("ready", flush=True)
 trb.Simulation(scene).run(duration=0.12, save_every=1e-4, checkpoint_every=4e-3, output=sys.argv[1])
 """
@@ -39,7 +39,7 @@ trb.resume(sys.argv[1])
 
 def whirl() -> trb.Scene:
     """The scene of all runs here: chaotic enough that one bit more or less shows at its end."""
-    return scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+    return paper_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
 
 
 def environment() -> dict[str, str]:

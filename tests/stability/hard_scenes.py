@@ -12,7 +12,7 @@ import numpy as np
 
 import trbdyn as trb
 from trbdyn.errors import InputError, LoadError, StepError
-from trbdyn.model.cases import rig_30310, scene_30310
+from trbdyn.model.cases import paper_30310, rig_30310
 from trbdyn.model.pocket import OtherPocket, Pocket
 from trbdyn.model.pocket_shapes import chamfered_pocket, default_pocket, one_sided_pocket, stepped_pocket
 from trbdyn.statics.state_view import StateView
@@ -96,7 +96,7 @@ class Hard:
 
 def smooth() -> trb.Scene:
     """What the others are measured against."""
-    return scene_30310(3000.0, 4930.0)
+    return paper_30310(3000.0, 4930.0)
 
 
 def cage(**changes: Any) -> trb.Bearing:
@@ -133,12 +133,12 @@ def history(*points: tuple[float, float]) -> trb.History:
 @cache
 def loaded_place(axial_load: float = 4930.0) -> float:
     """Axial place of the ring under a load (m)."""
-    return float(trb.Simulation(scene_30310(3000.0, axial_load)).equilibrium.displacement[2])
+    return float(trb.Simulation(paper_30310(3000.0, axial_load)).equilibrium.displacement[2])
 
 
 def from_state(change: Callable[[StateView, trb.Scene], None], **fields: Any) -> trb.Scene:
     """A scene that starts from a changed start."""
-    scene = scene_30310(**fields)
+    scene = paper_30310(**fields)
     sim = trb.Simulation(scene)
     vector = sim.state.vector
     change(sim.view(vector), scene)
@@ -206,7 +206,7 @@ def deep(state: StateView, scene: trb.Scene) -> None:
 
 
 SHOCK = history((0.0, -9.80665), (5e-3, -9.80665), (5.05e-3, 4903.0), (5.95e-3, 4903.0), (6e-3, -9.80665))
-S = scene_30310
+S = paper_30310
 
 
 def slow_films() -> trb.Effects:

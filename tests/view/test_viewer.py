@@ -10,10 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import trbdyn as trb
+from trbdyn.model.outlines import cup_outline
 from trbdyn.viewer import View, frames_that_fit
-from trbdyn.viewer.data import frames, largest_between
+from trbdyn.viewer.data import Quantity, frames, largest_between
+from trbdyn.viewer.fit import largest_factor
+from trbdyn.viewer.page import colour_range
 from trbdyn.viewer.shapes import shapes
 
 READY = "window.trbView"
@@ -162,7 +166,10 @@ def test_colours_follow_the_choice_and_the_factor_is_always_said(browser: Any, p
         browser.js(f"trbView.setFactor({factor})")
         browser.frame()
         said = browser.js("document.getElementById('factor-note').textContent")
-        assert f"drawn {factor} times" in said if factor > 1 else "true to scale" in said
+        drawn = min(
+            factor, browser.js("trbView.head.largest_factor")
+        )  # the slider ends where the cage would leave the cup
+        assert f"drawn {drawn:.4g} times" in said if factor > 1 else "true to scale" in said
     browser.js("trbView.setSwitch('arrows', true)")
     before = browser.picture()[CANVAS]
     browser.frame()
@@ -212,6 +219,79 @@ def test_a_gap_is_drawn_closed_where_it_is_closed(whirling: trb.Result) -> None:
     for factor in (1.0, 10.0):
         drawn = gap + (factor - 1.0) * np.linalg.norm(face.shift)
         assert drawn == pytest.approx(factor * gap)
+
+
+def test_the_largest_factor_keeps_the_cage_within_the_cup(whirling: trb.Result) -> None:
+    """By the vertices of the cage as they are drawn, with whole rotations and all frames."""
+    bearing = whirling.scene.bearing
+    made = shapes(bearing, np.linspace(-0.5, 0.5, 3) * bearing.roller.effective_length)
+    pose = frames(whirling, revolutions=None, max_frames=60, along=False).pose
+    largest = largest_factor(bearing, made, pose)
+    assert 1.0 < largest < made.largest_factor
+    (r_small, z_small), (r_large, z_large) = cup_outline(bearing)[:2]
+
+    def least_gap(factor: float) -> float:
+        points = made.cage.exaggerated(factor)
+        gaps = []
+        for k in range(pose["cage_x"].size):
+            turn = Rotation.from_rotvec([factor * pose["cage_tilt_x"][k], factor * pose["cage_tilt_y"][k], 0.0])
+            turn = turn * Rotation.from_rotvec([0.0, 0.0, pose["cage_angle"][k]])
+            x, y, z = (turn.apply(points) + factor * np.array([pose[f"cage_{axis}"][k] for axis in "xyz"])).T
+            wall = r_small + (r_large - r_small) * (z - z_small) / (z_large - z_small)
+            gaps.append((wall - np.hypot(x, y))[(z > z_small) & (z < z_large)].min())
+        return min(gaps)
+
+    assert least_gap(1.0) > 0.0
+    assert abs(least_gap(largest)) < 0.02 * bearing.roller.diameter
+    assert least_gap(1.3 * largest) < -0.02 * bearing.roller.diameter
+
+
+def test_lands_are_drawn_where_they_guide() -> None:
+    """The cage's band meets the land where the real ones do, drawn at any factor."""
+    bearing = trb.cases.rig_30310()
+    stations = np.linspace(-0.5, 0.5, 3) * bearing.roller.effective_length
+    assert shapes(bearing, stations).land is None
+    for guidance, radius, sign in (
+        ("outer_land", bearing.land.outer_radius, 1.0),
+        ("inner_land", bearing.land.inner_radius, -1.0),
+    ):
+        made = shapes(bearing, stations, guidance)
+        assert made.land is not None
+        assert made.guide is not None
+        land = sign * np.hypot(*made.land.position[:, :2].T)
+        assert land.min() == pytest.approx(sign * radius)
+        for factor in (1.0, 7.0):
+            guide = sign * np.hypot(*made.guide.exaggerated(factor)[:, :2].T)
+            assert land.min() - guide.max() == pytest.approx(factor * bearing.land.clearance)
+        assert np.ptp(made.land.position[:, 2]) == pytest.approx(bearing.land.width)
+
+
+def test_colours_show_differences_or_say_that_there_are_none() -> None:
+    def quantity(values: Any, kind: str = "roller") -> Quantity:
+        return Quantity("q", "q", "N", np.asarray(values, dtype=float), kind)
+
+    alike = 1000.0 + np.linspace(-10.0, 10.0, 50).reshape(10, 5)
+    assert colour_range(quantity(alike)) == (990.0, 1010.0, "all within 1 % of 1000")
+    assert colour_range(quantity(np.zeros((4, 3))))[:2] == (0.0, 0.0)
+    wide = np.linspace(0.0, 100.0, 500).reshape(100, 5)
+    assert colour_range(quantity(wide)) == (0.0, 100.0, "")
+    wide[0, 0] = 9000.0  # a single value must not make all others look alike
+    low, high, said = colour_range(quantity(wide))
+    assert 0.0 <= low < 1.0
+    assert 99.0 < high < 101.0
+    assert said == "1 % of the values lie beyond, 0.2 to 9e+03"
+    hits = np.zeros((1000, 2, 2))
+    hits[::7] = 3.0
+    hits[::49] = 5.0
+    hits[0, 0, 0] = 400.0
+    assert colour_range(quantity(hits, "pocket"))[:2] == (0.0, 5.0)
+
+
+def test_a_shaft_that_stands_is_shown(tmp_path: Path) -> None:
+    """Slip has no value there."""
+    result = trb.Simulation(trb.cases.scene_30310(0.0, 3000.0)).run(duration=2e-3)
+    assert "slip" not in [quantity.name for quantity in frames(result, revolutions=None, max_frames=5).quantities]
+    assert trb.view(result, tmp_path / "v.html").save(tmp_path / "v.html").stat().st_size > 600_000
 
 
 def test_thinning_hides_no_hit(whirling: trb.Result) -> None:

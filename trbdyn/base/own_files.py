@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import stat
 import uuid
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
+from trbdyn.base.locks import lock, take_lock
 from trbdyn.errors import FileError, InputError
 
 LONGEST_NAME = 200
@@ -145,17 +147,28 @@ def create(path: Path) -> BinaryIO:
 
 
 def create_draft(path: Path, run_id: str) -> tuple[Path, BinaryIO]:
-    """The draft of a run's file. One that the same run left when it was killed is removed first.
+    """The draft of a run's file, locked while it is open. Drafts of this file that killed processes have left are removed first.
 
     Raises
     ------
     OSError
         If it cannot be made.
     """
+    remove_drafts(path)
     draft = draft_of(path, run_id)
     with suppress(FileNotFoundError):
         draft.unlink()
-    return draft, create(draft)
+    return draft, lock(create(draft))
+
+
+def remove_drafts(path: Path) -> None:
+    """Remove the drafts of a file whose writers live no longer: those without a lock."""
+    names = re.compile(re.escape(f".{path.name}.") + "[0-9a-f]{12}" + re.escape(".new"))
+    with suppress(OSError), os.scandir(path.parent) as entries:
+        for entry in entries:
+            if names.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
+                with suppress(OSError), take_lock(Path(entry.path)):
+                    os.unlink(entry.path)
 
 
 def put_in_place(draft: Path, path: Path, *, replace: bool) -> None:
@@ -196,7 +209,8 @@ def write_whole(path: Path, content: bytes, *, overwrite: bool) -> None:
     try:
         with stream:
             stream.write(content)
-        put_in_place(draft, path, replace=overwrite)
+            stream.flush()
+            put_in_place(draft, path, replace=overwrite)
     except FileExistsError:
         draft.unlink(missing_ok=True)
         raise exists_already(path) from None
@@ -240,15 +254,6 @@ def set_aside(path: Path) -> Path:
             continue
         return other
     raise OSError(errno.EEXIST, "too many damaged files lie beside it", str(path))
-
-
-def is_same(path: Path, stream: BinaryIO) -> bool:
-    """Whether a name still belongs to an open file."""
-    try:
-        named = path.stat()
-    except OSError:
-        return False
-    return os.path.samestat(named, os.fstat(stream.fileno()))
 
 
 def copy_content(stream: BinaryIO, path: Path) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, ValidationError
 
+from trbdyn.base.shown import Displayed, Shown, field_rows
 from trbdyn.errors import InputError, Path, from_validation_error, join_path, unknown_name
 
 _PART = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
@@ -154,7 +155,7 @@ def _brief(default: Any) -> Any:
     return _Brief(default) if isinstance(default, BaseModel) else default
 
 
-class Model(BaseModel, metaclass=_Listed):
+class Model(Displayed, BaseModel, metaclass=_Listed):
     """A frozen, validated set of named values.
 
     Every number must be finite, every name known; anything else raises `InputError`.
@@ -246,6 +247,9 @@ class Model(BaseModel, metaclass=_Listed):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy; changed fields are validated."""
         return self.replace(**update) if update else super().model_copy(deep=deep)
+
+    def _shown(self) -> Shown:
+        return Shown(type(self).__name__, tuple(field_rows(self)))
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name in type(self).model_fields:

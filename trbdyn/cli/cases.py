@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from trbdyn.cli.called import command
 from trbdyn.cli.case import case_with_changes
 from trbdyn.cli.outcome import DONE
 from trbdyn.errors import FileError, InputError
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
     from trbdyn.run.options import RunOptions
 
+SHIPPED: Final = "rig_30310"
+"""The case that a new one begins with."""
 LOAD_OVER_RATING: Final = 0.04
 """Axial load of an example over the dynamic load rating: that of the test bearing is 0.046."""
 PITCH_SPEED: Final = 9.0
@@ -39,7 +42,7 @@ def add_case_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
     begin.add_argument(
         "--case",
         metavar="NAME",
-        help="the case to begin with (default: the bearing of rig_30310 with the usual effects)",
+        help="the case to begin with (default: rig_30310)",
     )
     begin.add_argument(
         "--catalogue",
@@ -65,30 +68,31 @@ def _new(options: argparse.Namespace) -> int:
         raise FileError(f"{path}: exists already; choose another name, nothing was written") from None
     except OSError as error:
         raise FileError(f"{path}: {error.strerror or error}") from None
-    print(f"{path} written: change its numbers, then run it with: trbdyn run {path}")
+    print(f"{path} written: change its numbers, then run it with: {command('run', path)}")
     return DONE
 
 
 def _first_case(options: argparse.Namespace) -> tuple[Scene, RunOptions]:
     from trbdyn.model.bearing import Bearing
-    from trbdyn.model.effects import Effects
+    from trbdyn.model.catalogue import NAMES_OF_CATALOGUES
     from trbdyn.model.scene import Scene
+    from trbdyn.run.case_text import rounded
     from trbdyn.run.options import RunOptions
 
-    if options.case is not None:
-        return case_with_changes(options.case, ())
     if options.catalogue is None:
-        scene, run = case_with_changes("rig_30310", ())
-        return scene.replace(effects=Effects.standard()), run
+        return case_with_changes(options.case or SHIPPED, ())
     numbers = dict(map(_number, options.catalogue))
-    allowed = list(inspect.signature(Bearing.from_catalogue).parameters)
-    for name in numbers:
+    known = inspect.signature(Bearing.from_catalogue).parameters.values()
+    allowed = [entry.name for entry in known if entry.kind is not inspect.Parameter.VAR_KEYWORD]
+    for name, value in numbers.items():
         if name not in allowed:
-            raise InputError.of("--catalogue", name, f"must be one of {', '.join(allowed)}")
+            called = NAMES_OF_CATALOGUES.get(name)
+            hint = f"is called {called} here; " if called else ""
+            raise InputError.of("--catalogue", f"{name}={value:g}", f"{hint}must be one of {', '.join(allowed)}")
     missing = [name for name in ("bore", "outside", "width", "C") if name not in numbers]
     if missing:
         raise InputError.of("--catalogue", " ".join(options.catalogue), f"must hold {', '.join(missing)} as well")
-    bearing = Bearing.from_catalogue(**numbers)
+    bearing = Bearing.from_dict(rounded(Bearing.from_catalogue(**numbers).inputs()))
     load = float(f"{LOAD_OVER_RATING * numbers['C']:.2g}")
     speed = float(f"{PITCH_SPEED / (math.pi * bearing.pitch_diameter) * 60.0:.1g}")
     return Scene(bearing, speed_rpm=speed, axial_load=load), RunOptions(revolutions=10.0)
@@ -106,11 +110,13 @@ def _number(text: str) -> tuple[str, Any]:
 
 
 def _title(options: argparse.Namespace) -> str:
-    if options.case is not None:
-        return f"Begun from the case {options.case}."
     if options.catalogue is None:
-        return "Begun from the bearing of the case rig_30310, with the usual effects; `--case rig_30310` has those of the paper."
-    return f"Begun from catalogue numbers: {' '.join(options.catalogue)}. Speed and load are examples."
+        return f"Begun from the case {options.case or SHIPPED}."
+    return (
+        f"Begun from catalogue numbers: {' '.join(options.catalogue)}. Speed and load are examples.\n"
+        "# What is estimated belongs together: a number that is changed here, such as n_rollers, changes alone. To derive\n"
+        "# the others again, write the case again with it: --catalogue ... n_rollers=17"
+    )
 
 
 def _cases(options: argparse.Namespace) -> int:

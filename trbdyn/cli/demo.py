@@ -43,7 +43,6 @@ def add_demo_parser(
 def _demo(options: argparse.Namespace) -> int:
     from trbdyn import plot
     from trbdyn.model.cases import scene_30310
-    from trbdyn.model.effects import Effects
     from trbdyn.model.scene import Start
     from trbdyn.reporting import report
     from trbdyn.reporting.verdict import what_matters
@@ -53,7 +52,7 @@ def _demo(options: argparse.Namespace) -> int:
 
     revolutions = 50.0 if options.revolutions is None else options.revolutions
     run = RunOptions(revolutions=revolutions, accuracy=options.accuracy or "standard")
-    scene = scene_30310(3000.0, 4930.0, effects=Effects.paper(), start=Start.whirl(0.9))
+    scene = scene_30310(3000.0, 4930.0, start=Start.whirl(0.9))
     run.end_time(scene.speed_rpm)
     folder = plot.make_folder(options.output)
     if not options.quiet:

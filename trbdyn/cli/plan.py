@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from trbdyn.cli.called import command
 from trbdyn.cli.case import add_set, case_with_changes
 from trbdyn.cli.outcome import DONE, FAILED
 from trbdyn.errors import InputError
@@ -43,7 +44,7 @@ def add_plan_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -
 
 def _plan(options: argparse.Namespace) -> int:
     from trbdyn.base.own_files import output_path, write_whole
-    from trbdyn.run.case_text import case_text
+    from trbdyn.run.case_text import case_text, rounded
     from trbdyn.study.planning import plan
 
     want = _wishes(options.want)
@@ -55,10 +56,13 @@ def _plan(options: argparse.Namespace) -> int:
     effort = {} if options.effort is None else {"effort": options.effort}
     found = plan(scene, want, budget=options.budget, **effort)
     print(found)
-    text = case_text(found.scene, found.options, title=f"The plan of {options.case} for {_words(want)}")
+    kept = {"duration": found.duration, "save_every": found.save_every}
+    text = case_text(
+        found.scene, found.options.replace(**rounded(kept)), title=f"The plan of {options.case} for {_words(want)}"
+    )
     write_whole(files[0], text.encode(), overwrite=options.overwrite)
     found.picture(files[1])
-    print(f"\n{files[0]}\n{files[1]}\npython -m trbdyn run {files[0]}")
+    print(f"\n{files[0]}\n{files[1]}\n{command('run', files[0])}")
     print(
         "(The promise is for the averages from the end of the settling on; the summary of a run averages over its second half.)"
     )

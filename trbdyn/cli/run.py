@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path, output_path
+from trbdyn.cli.called import command
 from trbdyn.cli.case import add_set, case_with_changes, simulate
 from trbdyn.cli.outcome import DONE, FAILED, one_line
 from trbdyn.errors import FileError, InputError
@@ -113,6 +114,13 @@ def _resume(options: argparse.Namespace) -> int:
     return _finish(result, Path(options.file), options.summary, quiet=options.quiet)
 
 
+def _how_to_go_on(output: Path) -> str:
+    """The command that goes on with a run that was stopped, if it has made checkpoints."""
+    from trbdyn.run.checkpoint import checkpoint_path
+
+    return f"; go on with: {command('resume', output)}" if checkpoint_path(output).exists() else ""
+
+
 def _finish(result: Result, output: Path, summary_file: str | Path | None, *, quiet: bool) -> int:
     """Write and print the summary; the exit code says whether the run reached its end."""
     from trbdyn.results import summary
@@ -124,5 +132,5 @@ def _finish(result: Result, output: Path, summary_file: str | Path | None, *, qu
         print(summary.table(values))
         print(f"\n{len(result)} records in {output}: {result.meta.get('kept', '')}")
     if not result.success:
-        print(f"trbdyn: {one_line(result.message)}", file=sys.stderr)
+        print(f"trbdyn: {one_line(result.message)}{_how_to_go_on(output)}", file=sys.stderr)
     return DONE if result.success else FAILED

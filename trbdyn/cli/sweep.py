@@ -8,10 +8,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from trbdyn.cli.called import command
+from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED
+
 if TYPE_CHECKING:
     import xarray
 
-DONE, FAILED = 0, 1
 
 COLUMNS: Final = (
     "status",
@@ -49,7 +51,15 @@ def run_sweep(options: argparse.Namespace) -> int:
 
     study = load_study(options.study)
     folder = Path(options.study).stem if options.output is None else options.output
-    data = run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
+    try:
+        data = run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
+    except KeyboardInterrupt:
+        again = command("sweep", options.study, "-o", folder)
+        print(
+            f"trbdyn: stopped; the cases that are done are kept in {folder}. Go on with the others: {again}",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
     failed = int((data.status != "done").sum())
     if not options.quiet:
         print(table(data))

@@ -30,6 +30,7 @@ RIG: Final[dict[str, float]] = {
     "front_clearance": 0.2e-3,
     "front_low": 0.3e-3,
     "front_high": 2.0e-3,
+    "density": 7810.0,
     "mass": 0.20,
     "inertia_axial": 3.9e-4,
     "inertia_transverse": 2.1e-4,
@@ -47,17 +48,17 @@ RIG: Final[dict[str, float]] = {
     "land_clearance": 0.1e-3,
     "land_contact_film": 1e-6,
 }
-"""Numbers of the 30310 rig (m, kg, kg m2, N, N/m^1.5), to which assumed ones are in proportion."""
+"""Numbers of the 30310 rig (m, kg, kg m2, kg/m3, N, N/m^1.5), to which assumed ones are in proportion."""
 
 _WITH_DIAMETER: Final = {
     "ribs": ("contact_height", "front_clearance", "front_low", "front_high"),
     "cage": ("play_radial", "play_circumferential", "play_axial", "bar_width", "wall_half_width"),
 }
 _CONSTANT: Final = {
-    "roller": ("density", "sphere_ratio"),
+    "roller": ("sphere_ratio",),
     "roller.profile": ("kind", "k1", "k2", "zm"),
     "cage": ("offset",),
-    "material": ("youngs_modulus", "poisson_ratio"),
+    "material": ("youngs_modulus", "poisson_ratio", "density", "expansion", "damping_ratio"),
     "roughness": ("raceway", "rib"),
     "land": ("fill",),
 }
@@ -83,7 +84,8 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     ----------
     size : mapping of str to float
         diameter, effective_length, pitch_diameter (m), cup_half_angle_deg (deg); as far as they are given total_length
-        (m), contact_height (m), the cage's mass (kg) and the land's clearance (m).
+        (m), contact_height (m), the cage's mass (kg), the land's clearance (m), and the densities of the materials of rollers and
+        cage (kg/m3; else that of steel).
 
     Returns
     -------
@@ -99,12 +101,13 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
         section: {name: RIG[name] * across for name in names} for section, names in _WITH_DIAMETER.items()
     }
     made["roller"] = {"total_length": total, "end_stiffness": RIG["end_stiffness"] * math.sqrt(across)}
+    made["roller"]["density"] = size.get("roller_density", RIG["density"])
     made["roller.profile"] = {"load": RIG["load"] * (across * along)}
     height = size.get("contact_height", made["ribs"]["contact_height"]) / RIG["contact_height"]
     made["ribs"] |= {name: RIG[name] * height for name in ("edge_low", "edge_high")}
-    mass = size.get("mass", RIG["mass"] * pitch**2 * along)
-    turned = mass / RIG["mass"] * pitch**2
-    made["cage"] |= {name: RIG[name] * turned for name in ("inertia_axial", "inertia_transverse")}
+    dense = size.get("cage_density", RIG["density"]) / RIG["density"]
+    mass = size.get("mass", RIG["mass"] * pitch**2 * along * dense)
+    made["cage"] |= cage_inertias(mass, pitch, along)
     end = _small_end_radius({**size, "total_length": total})
     end = end if end > 0.0 else math.inf  # a roller beyond the apex: the core reports it
     made["cage"] |= {
@@ -123,6 +126,16 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
         "contact_film": RIG["land_contact_film"] * (clearance / RIG["land_clearance"]),
     }
     return made
+
+
+def cage_inertias(mass: float, pitch: float, along: float) -> dict[str, float]:
+    """Moments of inertia (kg m2) of a cage of this mass (kg): Iz with pitch diameter squared; It = Iz/2 + m <z^2>, its second
+    part with length squared. `pitch` and `along` are pitch diameter and roller length over those of the rig.
+    """
+    heavier = mass / RIG["mass"]
+    axial = RIG["inertia_axial"] * (heavier * pitch**2)
+    along_axis = RIG["inertia_transverse"] - 0.5 * RIG["inertia_axial"]
+    return {"inertia_axial": axial, "inertia_transverse": 0.5 * axial + along_axis * (heavier * along**2)}
 
 
 def with_assumed(values: Mapping[str, Any], kinds: Mapping[str, type[Model]]) -> Values:
@@ -206,6 +219,8 @@ def _size(found: Values, given: Mapping[str, Values]) -> dict[str, float] | None
         "contact_height": given["ribs"].get("contact_height"),
         "mass": given["cage"].get("mass"),
         "clearance": given["land"].get("clearance"),
+        "roller_density": _density(given["roller"].get("material") or given["material"]),
+        "cage_density": _density(given["cage"].get("material") or given["material"]),
     }
     size: dict[str, float] = {}
     for name, value in {**wanted, **optional}.items():
@@ -218,6 +233,13 @@ def _size(found: Values, given: Mapping[str, Values]) -> dict[str, float] | None
         elif name in wanted:
             return None
     return size
+
+
+def _density(material: object) -> object:
+    """Density of a material as it was given (kg/m3); None if it has none. Steel, where no material was given."""
+    if isinstance(material, Mapping):
+        return material.get("density") if material else RIG["density"]
+    return getattr(material, "density", None)
 
 
 def assumed_inputs(bearing: Bearing) -> dict[str, float]:
@@ -241,6 +263,6 @@ def assumed_inputs(bearing: Bearing) -> dict[str, float]:
         found |= {
             f"{section}.{name}": getattr(part, name)
             for name in fields
-            if name not in part.model_fields_set and name not in unused
+            if name not in part.model_fields_set and name not in unused and getattr(part, name) is not None
         }
     return found

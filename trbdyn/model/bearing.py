@@ -7,6 +7,7 @@ proportion to the bearing's size (`trbdyn.model.assumed`) and listed by `Bearing
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Final, Self
@@ -15,9 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
+from trbdyn.base.shown import Shown, field_rows
 from trbdyn.base.validation import Gap, Length, Model, Number, Whole, unit
-from trbdyn.errors import InputError, Path, Problem
+from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.assumed import RIG, assumed_inputs, with_assumed
+from trbdyn.model.cage_body import CageBody, Wall, cage_mass
+from trbdyn.model.cage_space import CageSpace
 from trbdyn.model.catalogue import fields_from_catalogue
 from trbdyn.model.core_table import parameter
 from trbdyn.model.estimated import Estimated
@@ -27,9 +31,22 @@ from trbdyn.model.land import Land
 from trbdyn.model.material import Material, Roughness
 from trbdyn.model.pocket import Face, OtherPocket, Pocket
 from trbdyn.model.pocket_shapes import default_pocket
+from trbdyn.model.ratings import Ratings
 from trbdyn.model.roller import Profile, Roller, Scatter
 
-__all__ = ["Bearing", "Cage", "Land", "Material", "Profile", "Ribs", "Roller", "Roughness", "Scatter"]
+__all__ = [
+    "Bearing",
+    "Cage",
+    "CageBody",
+    "Land",
+    "Material",
+    "Profile",
+    "Ratings",
+    "Ribs",
+    "Roller",
+    "Roughness",
+    "Scatter",
+]
 
 
 class Ribs(Model):
@@ -79,17 +96,24 @@ class Cage(Model):
     Parameters
     ----------
     mass : float
-        Mass (kg); by default 0.2 kg times the pitch diameter squared and the roller's length over those of the rig.
+        Mass (kg); by default it follows from `body`, or else it is 0.2 kg times the pitch diameter squared, the roller's
+        length and the density of the material over those of the rig, a cage of steel.
     inertia_axial, inertia_transverse : float
         Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2); by default
-        with mass and pitch diameter squared.
+        with mass and pitch diameter squared (what lies along the axis: with length squared), so that they follow a mass
+        that is changed; with a `body` they are its own, in proportion to the mass. Given ones must belong to the mass: no
+        cage has its mass outside of the bearing.
     play_radial, play_circumferential : float
         Cpr and Cpc: plays in the x-y plane, radial and circumferential, one-sided, measured to one roller with the cage
         centred and the roller's large end touching its pocket (m); by default 0.25/14 and 0.12/14 of the diameter.
     play_axial : float
         Play along the roller's axis from large-end to small-end contact (m); by default 0.4/14 of the diameter.
     offset : float
-        Axial position of the centre of mass from the roller-centre plane (m); assumed.
+        Axial position of the centre of mass from the roller-centre plane (m); that of the `body`, or 0 (assumed).
+    unbalance : float
+        Unbalance: mass times distance of the centre of mass from the axis of the pockets (kg m; 1 g mm is 1e-6 kg m).
+    unbalance_direction_deg : float
+        Direction of the centre of mass, from the middle of pocket 0 in the direction of positive rotation (deg).
     rail_offset : float
         Axial position of the large-end rail, where sensors look, from the roller-centre plane (m); by default 12/19.8
         of the roller's length.
@@ -105,7 +129,9 @@ class Cage(Model):
     other_pockets : sequence of OtherPocket
         Pockets that differ from the others.
     material : Material, optional
-        Elasticity of its faces; that of the bearing by default.
+        What it is made of; that of the bearing by default.
+    body : CageBody, optional
+        Its rims and bars, from which mass, centre and moments of inertia follow.
     """
 
     _assumed: ClassVar[bool] = True
@@ -117,6 +143,8 @@ class Cage(Model):
     play_circumferential: Length = RIG["play_circumferential"]
     play_axial: Gap = RIG["play_axial"]
     offset: Annotated[Number, parameter("cage_offset")] = 0.0
+    unbalance: Annotated[Number, unit("kg m", ge=0)] = 0.0
+    unbalance_direction_deg: Annotated[Number, unit("deg")] = 0.0
     rail_offset: Annotated[Number, parameter("cage_rail_offset")] = RIG["rail_offset"]
     bar_width: Length = RIG["bar_width"]
     wall_inner: Gap = RIG["wall_inner"]
@@ -125,6 +153,7 @@ class Cage(Model):
     pocket: Pocket | None = None
     other_pockets: tuple[OtherPocket, ...] = ()
     material: Material | None = None
+    body: CageBody | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -167,6 +196,8 @@ class Bearing(Model):
         The land of a ring that guides the cage, where one does.
     name : str
         Name in titles and files.
+    ratings : Ratings
+        Load ratings and factors of the catalogue, where they are known; the simulation does not use them.
     estimates : sequence of Estimated
         Inputs that were estimated when the bearing was made from catalogue numbers; see `estimated`.
 
@@ -198,18 +229,20 @@ class Bearing(Model):
     roughness: Roughness = Roughness()
     land: Land = Land()
     name: Annotated[str, Field(min_length=1)] = "bearing"
+    ratings: Ratings = Ratings()
     estimates: tuple[Estimated, ...] = ()
 
     @classmethod
     def from_catalogue(
         cls,
         *,
-        bore: float,
-        outside: float,
-        width: float,
-        C: float,
+        bore: Any = MISSING,
+        outside: Any = MISSING,
+        width: Any = MISSING,
+        C: Any = MISSING,
         e: float | None = None,
         Y: float | None = None,
+        C0: float | None = None,
         cup_width: float | None = None,
         n_rollers: int | None = None,
         roller_diameter: float | None = None,
@@ -217,31 +250,36 @@ class Bearing(Model):
         pitch_diameter: float | None = None,
         contact_angle_deg: float | None = None,
         cage_mass: float | None = None,
+        maker_factor: float | None = None,
+        reference_speed_rpm: float | None = None,
+        limiting_speed_rpm: float | None = None,
         name: str = "",
+        **others: Any,
     ) -> Bearing:
         """A bearing from the numbers of a catalogue page; what is inside is estimated.
 
-        The angle of the cup follows from e or Y, the length of the rollers from the rating formula of ISO 281, the
-        rest from usual ratios. `estimated` lists every estimate with its band and source. Give what you know better.
+        The angle of the cup follows from e = 1.5 tan(alpha) or Y = 0.4 cot(alpha) (ISO 281). Diameter, length and number of the
+        rollers and the maker's factor on C are the least unusual ones with this C; the rest is scaled from the 30310 rig.
+        See `estimated`. What is given here derives the others; a later ``replace(n_rollers=17)`` changes that number alone.
 
         Parameters
         ----------
         bore, outside, width : float
             Boundary dimensions d, D and T (m).
-        C : float
-            Basic dynamic load rating (N).
+        C, C0 : float
+            Basic dynamic and static load rating (N); C0 is optional and kept for `trbdyn.rating`.
         e, Y : float, optional
-            Calculation factors; one of them, or the contact angle, must be given (1).
-        cup_width : float, optional
-            Width of the cup, often called C beside T and B (m).
+            Calculation factors; one of them, or the contact angle, must be given, and they must agree (1).
         n_rollers : int, optional
             Z.
-        roller_diameter, roller_length, pitch_diameter : float, optional
-            Dwe, Lwe, Dpw (m).
-        contact_angle_deg : float, optional
-            Half angle of the cup (deg).
-        cage_mass : float, optional
-            Mass of the cage (kg).
+        roller_diameter, roller_length, pitch_diameter, cup_width : float, optional
+            Dwe, Lwe, Dpw, and the width of the cup, often called C beside T and B (m).
+        contact_angle_deg, cage_mass : float, optional
+            Half angle of the cup (deg); mass of the cage (kg).
+        maker_factor : float, optional
+            C over the rating of ISO 281 with b_m = 1.1, where it is known; 0.8 to 1.5 (1).
+        reference_speed_rpm, limiting_speed_rpm : float, optional
+            Speeds that the catalogue permits (rpm): kept for `trbdyn.rating`.
         name : str
             Name; by default the boundary dimensions.
 
@@ -252,18 +290,13 @@ class Bearing(Model):
         Raises
         ------
         InputError
-            If a number is not allowed, or no rollers that fit the dimensions come near this C.
-
-        Notes
-        -----
-        Sources: ISO 281:2007 (rating, e = 1.5 tan alpha, Y = 0.4 cot alpha); ISO 355 (proportions of the dimension
-        series).
+            If a number is not allowed or contradicts another one, a name is unknown, or no rollers that fit the
+            dimensions come near this C.
 
         Examples
         --------
         >>> import trbdyn as trb
-        >>> bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43,
-        ...                                     name="32216")
+        >>> bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43)
         >>> print(bearing.estimated[0])
         cup_half_angle_deg = 16 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
         """
@@ -274,6 +307,7 @@ class Bearing(Model):
             C=C,
             e=e,
             Y=Y,
+            C0=C0,
             cup_width=cup_width,
             n_rollers=n_rollers,
             roller_diameter=roller_diameter,
@@ -281,7 +315,11 @@ class Bearing(Model):
             pitch_diameter=pitch_diameter,
             contact_angle_deg=contact_angle_deg,
             cage_mass=cage_mass,
+            maker_factor=maker_factor,
+            reference_speed_rpm=reference_speed_rpm,
+            limiting_speed_rpm=limiting_speed_rpm,
             name=name,
+            others=others,
         )
         return cls(**fields)
 
@@ -290,7 +328,12 @@ class Bearing(Model):
         """Inputs that are estimated, with their bands and sources; one that was changed since is no longer among
         them.
         """
-        return tuple(entry for entry in self.estimates if self._at(entry.path) == entry.value)
+        return tuple(entry for entry in self.estimates if self._still(entry))
+
+    def _still(self, entry: Estimated) -> bool:
+        """Whether the input is the estimate; digits that a case file leaves out change nothing."""
+        value = self._at(entry.path)
+        return isinstance(value, int | float) and math.isclose(value, entry.value, rel_tol=1e-5)
 
     def _at(self, path: str) -> object:
         value: object = self
@@ -301,7 +344,38 @@ class Bearing(Model):
     @model_validator(mode="before")
     @classmethod
     def _fill(cls, values: Any) -> Any:
-        return with_assumed(values, _SECTIONS) if isinstance(values, Mapping) else values
+        if not isinstance(values, Mapping):
+            return values
+        return cls._weighed(with_assumed(values, _SECTIONS), set(values.get("assumed", ())))
+
+    @classmethod
+    def _weighed(cls, fields: dict[str, Any], kept: set[str]) -> dict[str, Any]:
+        """Fields of a bearing with what its cage's body weighs; what was kept by a file stays as it is."""
+        cage = fields.get("cage")
+        if not isinstance(cage, Cage) or cage.body is None:
+            return fields
+        given = cage.model_fields_set
+        plain = Cage(**{name: getattr(cage, name) for name in given - {"body", *_OF_BODY}})
+        try:
+            bearing = cls(**{**fields, "cage": plain})
+            density = bearing.cage_material.density
+            if density is None:
+                path = ("material", "density") if cage.material is None else ("cage", "material", "density")
+                raise InputError.of(path, None, "must be given: the cage's mass follows from its body (kg/m3)")
+            found = cage_mass(Wall.of(bearing, cage.body), density)
+        except InputError as error:
+            raise (error.under(("cage",)) if error.problems[0].path[:1] == ("body",) else error) from None
+        share = cage.mass / found.mass if "mass" in given else 1.0
+        numbers = {
+            "mass": found.mass,
+            "offset": found.offset,
+            "inertia_axial": share * found.inertia_axial,
+            "inertia_transverse": share * found.inertia_transverse,
+        }
+        own = {name: value for name, value in numbers.items() if name not in given and f"cage.{name}" not in kept}
+        made = Cage(**{**{name: getattr(cage, name) for name in Cage.model_fields}, **own})
+        object.__setattr__(made, "__pydantic_fields_set__", set(given))
+        return {**fields, "cage": made}
 
     @property
     def assumed(self) -> dict[str, float]:
@@ -311,6 +385,22 @@ class Bearing(Model):
         the band and the source of the latter.
         """
         return assumed_inputs(self) | {entry.path: float(entry.value) for entry in self.estimated}
+
+    def __repr__(self) -> str:
+        return f"<Bearing {self._title()}>"
+
+    __str__ = __repr__
+
+    def _title(self) -> str:
+        roller = self.roller
+        return (
+            f"{self.name}: {self.n_rollers} rollers of {1e3 * roller.diameter:.4g} x {1e3 * roller.effective_length:.4g} mm on a "
+            f"pitch circle of {1e3 * self.pitch_diameter:.4g} mm, half angle of the cup {self.cup_half_angle_deg:.4g} deg"
+        )
+
+    def _shown(self) -> Shown:
+        marks = dict.fromkeys(self.assumed, "assumed") | {entry.path: "estimated" for entry in self.estimated}
+        return Shown(f"Bearing {self._title()}", tuple(field_rows(self, marks)))
 
     def inputs(self) -> dict[str, Any]:
         """What was given, as plain data: as `to_dict`, without what was assumed."""
@@ -395,6 +485,8 @@ class Bearing(Model):
         if not thinnest <= land.contact_film <= thickest:
             limit = f"must be from {thinnest:g} to {thickest:g}: 1e-4 to 0.5 of land.clearance, {land.clearance:g} (m)"
             raise InputError.of(("land", "contact_film"), land.contact_film, limit)
+        if impossible := CageSpace.of(self).problems(self.cage, self.cage_material):
+            raise InputError(impossible)
         self._check_pockets(self.geometry)
         return self
 
@@ -414,6 +506,9 @@ class Bearing(Model):
         if problems:
             raise InputError(problems)
 
+
+_OF_BODY: Final = ("mass", "offset", "inertia_axial", "inertia_transverse")
+"""What follows from the body of a cage."""
 
 _SECTIONS: Final[dict[str, type[Model]]] = {
     "roller": Roller,

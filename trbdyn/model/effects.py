@@ -85,10 +85,14 @@ class Effects(Model):
         Thermal reduction of films; acts where there are films.
     rolling_resistance : bool
         EHL rolling resistance; acts where there are films.
+    rolling_law : {'zhou_hoeprich', 'goksem_hargreaves', 'aihara', 'matsuyama', 'biboulet_houpert'}
+        Law of the rolling resistance. The paper's is 'zhou_hoeprich', which was fitted to loads W of 1e-4 to 3.5e-4; most
+        bearings run below that, where 'matsuyama' and 'biboulet_houpert' give nearly twice as much
+        (docs/theory/lubrication.md#rolling-resistance).
     rolling_pressure_force : bool
         Pressure force of the rolling film on the roller; needs `rolling_resistance`, and is off by default without it.
     starvation_factor : float
-        Factor of every film thickness (1).
+        Factor of every film thickness, and of rolling resistance (1).
     back_rib, front_rib : bool
         Roller ends against the ribs of the inner ring.
     rib_film : {'max', 'pe'}
@@ -126,6 +130,9 @@ class Effects(Model):
     traction: Literal["muraki_kimura", "coulomb", "none"] = "muraki_kimura"
     thermal: Flag = True
     rolling_resistance: Flag = True
+    rolling_law: Literal["zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert"] = (
+        "zhou_hoeprich"
+    )
     rolling_pressure_force: Flag = True
     starvation_factor: Annotated[Number, parameter("starvation_factor")] = 1.0
     back_rib: Flag = True

@@ -20,8 +20,9 @@ from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
+from trbdyn.model.growth import running_clearance, running_pockets
 from trbdyn.model.lubricants import Dicke, Lubricant
-from trbdyn.model.motion import History, knot_table, value_at
+from trbdyn.model.motion import History, joint_times, knot_table, value_at
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing, Material
@@ -35,6 +36,7 @@ QUADRATURES = {"uniform": 0, "gauss": 1}
 PRESSURE_LAWS = {"dicke": 0, "roelands": 1, "barus": 2}
 LUBRICATION = {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3}
 TRACTION = {"none": 0, "coulomb": 1, "muraki_kimura": 2}
+ROLLING_LAWS = {"zhou_hoeprich": 1, "goksem_hargreaves": 2, "aihara": 3, "matsuyama": 4, "biboulet_houpert": 5}
 RIB_FILMS = {"max": 0, "pe": 1}
 GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
 PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
@@ -119,7 +121,7 @@ def effects_entries(effects: Effects) -> Entries:
         "lubrication": Entry(("lubrication",), LUBRICATION[effects.lubrication]),
         "traction": Entry(("traction",), TRACTION[effects.traction]),
         "thermal": Entry(("thermal",), float(effects.films and effects.thermal)),
-        "rolling_resistance": Entry(("rolling_resistance",), float(rolling)),
+        "rolling_resistance": Entry(("rolling_resistance",), float(rolling and ROLLING_LAWS[effects.rolling_law])),
         "rolling_pressure_force": Entry(("rolling_pressure_force",), float(rolling and effects.rolling_pressure_force)),
         "back_rib": Entry(("back_rib",), float(effects.back_rib)),
         "front_rib": Entry(("front_rib",), float(effects.front_rib)),
@@ -193,8 +195,10 @@ def input_error_of_core(error: Exception, entries: Mapping[str, Entry]) -> Input
 
 def scene_entries(scene: Scene) -> Entries:
     """Numbers of a scene, by their names in the core's table; paths start at the scene."""
+    land = Entry(("bearing", "land", "clearance"), running_clearance(scene))
     return {
         **prefixed("bearing", bearing_entries(scene.bearing)),
+        "land_clearance": land,
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
     }
@@ -216,9 +220,7 @@ def face_rows(scene: Scene) -> FloatArray:
     `_core.face_table()`.
     """
     columns = [(name, count) for name, count, _, _ in _core.face_table()]
-    return np.array(
-        [_face_row(columns, pocket, face) for pocket, face in scene.bearing.pocket_faces()], dtype=np.float64
-    )
+    return np.array([_face_row(columns, pocket, face) for pocket, face in running_pockets(scene)], dtype=np.float64)
 
 
 def _face_row(columns: list[tuple[str, int]], pocket: int, face: Face) -> list[float]:
@@ -297,7 +299,7 @@ def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
     )
 
 
-def motion_table(scene: Scene, path: Sequence[float | History]) -> FloatArray:
+def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArray | None = None) -> FloatArray:
     """Prescribed motion of the inner ring, as the core takes it.
 
     Parameters
@@ -307,11 +309,14 @@ def motion_table(scene: Scene, path: Sequence[float | History]) -> FloatArray:
     path : sequence of float or History, length 5
         Displacement (m) and rotation (rad) of the ring that were found by equilibria. What the scene prescribes is
         taken from the scene instead.
+    joints : ndarray, shape (J,), optional
+        Times at which a part of the path ends (s): where what acts on the ring has a joint.
 
     Returns
     -------
-    ndarray, shape (K, 19)
-        Knot time, then value and slope of each channel of `_core.motion_table()`; the last `scene.period` repeats.
+    ndarray, shape (K, 20)
+        Knot time, value and slope of each channel of `_core.motion_table()`, and 1 where a step need not end; the last
+        `scene.period` repeats.
     """
     given = [*(scene.displacement or (None, None, None)), scene.misalignment_x, scene.misalignment_y]
     ring = [
@@ -333,7 +338,12 @@ def motion_table(scene: Scene, path: Sequence[float | History]) -> FloatArray:
     names = [name for name, _, _ in _core.motion_table()]
     if set(names) != set(channels):
         raise RuntimeError(f"the core's table of motion and the scene differ in {sorted(set(names) ^ set(channels))}")
-    return knot_table([channels[name] for name in names], scene.start.time, scene.settled, scene.period)
+    quantities = [channels[name] for name in names]
+    if joints is not None:
+        own = [*gravity, scene.speed_rpm, *(place for place in given if place is not None)]
+        end = scene.settled + (scene.period or 0.0)
+        joints = np.append(joints, joint_times(own, scene.start.time, end))
+    return knot_table(quantities, scene.start.time, scene.settled, scene.period, joints)
 
 
 def _gravity(scene: Scene) -> tuple[float | History, float | History, float | History]:

@@ -31,11 +31,17 @@ run.
 HARMONIC_PIECES = 24
 """Cubic pieces of a period of `History.harmonic`: a multiple of four."""
 
+STEP_RISE = 1e-3
+"""How long a step of `History.step` takes if nothing better is known (s); assumed."""
+
 MOST_REPETITIONS = 1000
 """Most repetitions of a quantity before everything that repeats begins again together."""
 
 SAME_PERIOD = 1e-11
 """Periods whose ratio differs by no more than this from a fraction belong together."""
+
+KINK = 0.1
+"""Jump of the second derivative, over its largest value, that ends a part of a curve whose slopes are given."""
 
 SAME_TIME = 4e-15
 """Times that differ by this share of the largest one at most are the same."""
@@ -108,6 +114,52 @@ class History(Model):
     def ramp(cls, start: float, end: float, before: float, after: float) -> Self:
         """A smooth change from `before` to `after` between the times `start` and `end` (s)."""
         return cls(times=(start, end), values=(before, after))
+
+    @classmethod
+    def step(cls, times: ArrayLike, values: Sequence[float] | FloatArray, *, rise: float = STEP_RISE) -> Self:
+        """Steps: from each value to the next at a time, each within a short time.
+
+        Nothing jumps in no time: a ring that jumped would meet its rollers at any speed, and its peaks would mean nothing. How
+        fast a load comes or goes is a property of the machine and an assumption here, `rise`; forces in the pockets depend on it.
+
+        Parameters
+        ----------
+        times : float or sequence of float
+            When each step begins (s), ascending, at least `rise` apart.
+        values : sequence of float
+            The quantity before the first step and after each of them: one entry more than `times`.
+        rise : float
+            How long each step takes (s); 1 ms, if nothing better is known: about a period of a shaft's axial vibration on its
+            bearings.
+
+        Raises
+        ------
+        InputError
+            If an argument is not allowed.
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> drop = trb.History.step((0.1, 0.12), (3000.0, 300.0, 3000.0))
+        >>> drop.times
+        (0.1, 0.101, 0.12, 0.121)
+        """
+        begins = _listed("times", [times] if isinstance(times, int | float | np.number) else times)
+        levels = _listed("values", values)
+        try:
+            taken = as_number(rise)
+        except ValueError as error:
+            raise InputError.of("rise", rise, str(error)) from None
+        if not taken > 0.0:
+            limit = "must be > 0: a load that jumps in no time would move the ring at any speed; 1e-3 is usual (s)"
+            raise InputError.of("rise", rise, limit)
+        if len(levels) != len(begins) + 1:
+            raise InputError.of(
+                ("history", "values"), values, f"must have one entry more than times, {len(begins) + 1}"
+            )
+        knots = [part for begin in begins for part in (begin, begin + taken)]
+        between = [level for level in levels[1:-1] for _ in range(2)]
+        return cls(times=tuple(knots), values=(levels[0], *between, levels[-1]))
 
     @classmethod
     def harmonic(
@@ -223,6 +275,43 @@ class History(Model):
             slope = np.where((given < self.times[0]) | (given > self.times[-1]), 0.0, slope)
         return np.asarray(slope, dtype=np.float64)
 
+    def slopes_about(self, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Its derivative just before and just after times (s): they differ where the history has a kink, which slopes that are
+        given may leave at its first and its last time.
+        """
+        slope = self.slope(time)
+        if self.repeats or self.slopes is None:
+            return slope, slope
+        off = SAME_TIME * np.max(np.abs(self.times))
+        first, last = np.abs(time - self.times[0]) <= off, np.abs(time - self.times[-1]) <= off
+        before, after = np.where(first, 0.0, slope), np.where(last, 0.0, slope)
+        return np.where(last, self.slopes[-1], before), np.where(first, self.slopes[0], after)
+
+    @cached_property
+    def _joints(self) -> NDArray[np.bool_]:
+        """Which of its knots end a part of the history: all, but for curves with given slopes.
+
+        Those may sample something smooth, such as a wave. Of their knots those count at which the curve turns, in value or
+        curvature, or has a kink: where its second derivative jumps by `KINK` of its largest value.
+        """
+        found = np.ones(len(self.times), dtype=bool)
+        if self.slopes is None or len(self.times) < 3:
+            return found
+        curve, steps = self._curve, np.diff(self.times)
+        before, after = curve.c[1, :-1] * 2.0 + 6.0 * curve.c[0, :-1] * steps[:-1], curve.c[1, 1:] * 2.0
+        largest = max(float(np.max(np.abs(before))), float(np.max(np.abs(after))))
+        found[1:-1] = np.abs(after - before) > KINK * largest
+        for course in (np.array(self.slopes), np.concatenate([[math.nan], 0.5 * (before + after), [math.nan]])):
+            turns = np.flatnonzero(course[:-1] * course[1:] < 0.0)
+            found[np.where(np.abs(course[turns]) < np.abs(course[turns + 1]), turns, turns + 1)] = True
+            found[course == 0.0] = True
+        return found
+
+    def derivative(self, time: float, order: int) -> float:
+        """Its derivative of an order at a time (s); order 0: the quantity itself."""
+        inside = float(self._inside(time)[0])
+        return float(self._curve(inside, order)) if self.repeats or inside == time or order == 0 else 0.0
+
     def integral(self, start: float, end: float) -> float:
         """Its integral in time from `start` to `end` (s)."""
         first, last = self.times[0], self.times[-1]
@@ -235,13 +324,16 @@ class History(Model):
         after = self.values[-1] * (max(end, last) - max(start, last))
         return before + inside + after
 
-    def knots(self, start: float, end: float) -> FloatArray:
-        """Times of its knots after `start` and before `end` (s), ascending."""
+    def knots(self, start: float, end: float, *, joints: bool = False) -> FloatArray:
+        """Times of its knots after `start` and before `end` (s), ascending; with `joints` those alone that end a part of it."""
         times = np.array(self.times)
+        chosen = self._joints if joints else np.ones(len(times), dtype=bool)
         if self.repeats:
             first, period = self.times[0], self.times[-1] - self.times[0]
             counts = np.arange(math.floor((start - first) / period), math.ceil((end - first) / period) + 1)
-            times = (times[:-1] + period * counts[:, None]).ravel()
+            times = (times[:-1][chosen[:-1]] + period * counts[:, None]).ravel()
+        else:
+            times = times[chosen]
         return times[(times > start) & (times < end)]
 
 
@@ -361,6 +453,12 @@ def knot_times(quantities: Sequence[float | History], start: float = 0.0, end: f
     return _apart(np.array(sorted(times)))
 
 
+def joint_times(quantities: Sequence[float | History], start: float, end: float) -> FloatArray:
+    """Times between `start` and `end` (s) at which a part of one of the quantities ends; ascending."""
+    found = [q.knots(start, end, joints=True) for q in quantities if isinstance(q, History)]
+    return np.unique(np.concatenate([[], *found]))
+
+
 def _apart(times: FloatArray) -> FloatArray:
     """The times without those that are the same but for rounding."""
     if len(times) < 3:
@@ -378,6 +476,7 @@ def knot_table(
     start: float = 0.0,
     settled: float | None = None,
     period: float | None = None,
+    joints: FloatArray | None = None,
 ) -> FloatArray:
     """Knots of a cubic Hermite curve for each quantity, all at the same times: as the core takes prescribed motion.
 
@@ -391,29 +490,51 @@ def knot_table(
         From when on nothing changes but what repeats (s); by default the last knot of what does not.
     period : float, optional
         Common period of what repeats (s): the table then ends one period after `settled`.
+    joints : ndarray, shape (J,), optional
+        Times at which a part of what happens ends (s), so that a step ends there, too; by default those of the quantities.
 
     Returns
     -------
-    ndarray, shape (K, 1 + 2 C)
-        Time (s), then value and slope of each channel. The curves are those of the histories, exactly: a cubic piece
+    ndarray, shape (K, 2 + 2 C)
+        Time (s), value and slope of each channel, 1 where the curves go on smoothly, or 0. Two rows of the same time are a
+        kink. The curves are those of the histories, exactly: a cubic piece
         split at another channel's knot stays the same cubic. A motion that never changes has one knot, at time 0.
     """
     settled = settled_time(quantities, start) if settled is None else settled
     if not any(isinstance(q, History) for q in quantities):
-        return np.array([[0.0, *(part for quantity in quantities for part in (quantity, 0.0))]])
+        return np.array([[0.0, *(part for quantity in quantities for part in (quantity, 0.0)), 0.0]])
     if period is None:
         times = knot_times(quantities, start, settled) if settled > start else np.array([start])
     else:
         before = knot_times(quantities, start, settled)[:-1] if settled > start else np.empty(0)
         times = np.concatenate([before, knot_times(quantities, settled, settled + period)])
-    table = np.zeros((len(times), 1 + 2 * len(quantities)))
+    table = np.zeros((len(times), 2 + 2 * len(quantities)))
     table[:, 0] = times
+    left = np.zeros((len(times), len(quantities)))
     for channel, quantity in enumerate(quantities):
         if isinstance(quantity, History):
             table[:, 1 + 2 * channel] = quantity.value(times)
-            table[:, 2 + 2 * channel] = quantity.slope(times)
+            left[:, channel], table[:, 2 + 2 * channel] = quantity.slopes_about(times)
         else:
             table[:, 1 + 2 * channel] = quantity
+    joints = joint_times(quantities, start, float(times[-1])) if joints is None else joints
+    table[1:-1, -1] = _not_among(times[1:-1], np.append(joints, settled))
     if period is not None:
-        table[-1, 1:] = table[int(np.searchsorted(times, settled)), 1:]
-    return table
+        left[-1] = left[int(np.searchsorted(times, settled))]
+        table[-1, 1:-1] = table[int(np.searchsorted(times, settled)), 1:-1]
+    kinks = np.flatnonzero(np.any(left[1:-1] != table[1:-1, 2:-1:2], axis=1)) + 1
+    doubled = np.insert(table, kinks, table[kinks], axis=0)
+    doubled[kinks + np.arange(kinks.size), 2:-1:2] = left[kinks]
+    if period is None and len(times) > 1:
+        doubled[-1, 2:-1:2] = left[-1]
+    return doubled
+
+
+def _not_among(times: FloatArray, joints: FloatArray) -> FloatArray:
+    """1 for each time that is none of the joints, but for rounding, or 0."""
+    if not times.size:
+        return np.zeros(0)
+    place = np.searchsorted(np.sort(joints), times)
+    near = np.pad(np.sort(joints), 1, constant_values=(-math.inf, math.inf))
+    off = SAME_TIME * float(np.max(np.abs(times)))
+    return np.asarray(np.minimum(times - near[place], near[place + 1] - times) > off, dtype=np.float64)

@@ -30,6 +30,23 @@ SIDES = {"leading": 1.0, "trailing": -1.0}
 FloatArray = NDArray[np.float64]
 Outline = list[tuple[float, float]]
 
+__all__ = [
+    "SHAPES",
+    "bar_lean",
+    "chamfered_pocket",
+    "default_pocket",
+    "drafted_pocket",
+    "large_end_wall",
+    "one_sided_pocket",
+    "relieved_pocket",
+    "small_end_wall",
+    "stepped_pocket",
+]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
 
 def bar_lean(bearing: Bearing) -> float:
     """gamma: lean of the bars from the circumferential direction that gives the plays Cpr and Cpc (rad).

@@ -23,7 +23,8 @@ class RotatingLoad(Model):
     frequency_hz : float, optional
         Turns of the load in a second (Hz), whatever the shaft does; negative: against positive speed.
     direction_deg : float
-        Direction of the load at the start, from +x towards +y (deg).
+        Direction of the load where the shaft's angle is zero, with `frequency_hz` at t = 0; from +x towards +y (deg). The shaft's
+        angle is zero at the start, and goes on in a run from a state.
 
     Examples
     --------

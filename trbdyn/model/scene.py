@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import field_validator, model_validator
 
+from trbdyn.base.shown import Shown, field_rows
 from trbdyn.base.validation import Model, unit
-from trbdyn.errors import MISSING, InputError, Path
+from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.effects import Effects
 from trbdyn.model.flatten import parameter_block
-from trbdyn.model.lubricants import Lubricant, vg100
+from trbdyn.model.growth import Growth, grown_pocket, plays, running_pockets, strains
+from trbdyn.model.lubricants import OILS, Lubricant, vg100
 from trbdyn.model.motion import (
     History,
     Quantity,
@@ -25,6 +28,7 @@ from trbdyn.model.motion import (
     values_of,
 )
 from trbdyn.model.rotating_load import RotatingLoad, check_sign
+from trbdyn.model.shaft import angle_turned, turns
 from trbdyn.model.start import Start
 
 __all__ = ["MAX_GRAVITY", "MAX_SPEED_RPM", "RotatingLoad", "Scene", "Start"]
@@ -63,8 +67,13 @@ class Scene(Model):
         Position of the inner ring along x, y, z (m), in place of loads. Where an entry is None, the load along it
         decides: ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts. TOML writes
         'free' for None.
-    lubricant : Lubricant
-        The oil.
+    unloaded : {'refused', 'rests'}
+        What the inner ring does under an axial load that does not hold it, 0 for instance. Refused: an error. Rests: it goes no
+        further than where rollers and rings just touch at this speed, and rests there; what else holds the shaft, such as a
+        second bearing without play, carries what is missing, and a radial load with it. A ring with end play is not modelled: it
+        would move as its mass and its shaft let it.
+    lubricant : Lubricant or str
+        The oil at its temperature, or the name of one of `trbdyn.lubricants.OILS` at 60 C, such as ``"vg68"``.
     effects : Effects
         Switches and choices; `Effects.standard` by default.
     start : Start
@@ -72,6 +81,9 @@ class Scene(Model):
     ring : {'held', 'follows'}
         Held: the ring stays at its equilibrium at the start, as in the paper. Follows: it moves through the equilibria
         of its load history, with evenly spaced rollers; its path lies within `trbdyn.statics.ring_path.PATH_TOLERANCE` of them.
+    growth : Growth, optional
+        Temperatures of the bearing's parts, and growth of the cage by its rotation, for the plays of the pockets; without it
+        all dimensions are as given.
     gravity : tuple of float or History, shape (3,)
         Acceleration of gravity (m/s2), each part from -1e7 to 1e7; acts if `effects.gravity`.
 
@@ -94,10 +106,12 @@ class Scene(Model):
     moment_y: Annotated[Quantity | None, unit("N m")] = None
     rotating_load: RotatingLoad | None = None
     displacement: tuple[Quantity | None, Quantity | None, Quantity | None] | None = None
+    unloaded: Literal["refused", "rests"] = "refused"
     lubricant: Lubricant = vg100()
     effects: Effects = Effects()
     start: Start = Start()
     ring: Literal["held", "follows"] = "held"
+    growth: Growth | None = None
     gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
 
     def __init__(self, bearing: Any = MISSING, **fields: Any) -> None:
@@ -106,12 +120,61 @@ class Scene(Model):
     def __hash__(self) -> int:
         return hash(self.fingerprint)
 
+    @field_validator("lubricant", mode="before")
+    @classmethod
+    def _oil_by_name(cls, given: Any) -> Any:
+        """The name of an oil that ships stands for it at 60 C."""
+        if not isinstance(given, str):
+            return given
+        if given.lower() not in OILS:
+            limit = f"must be one of {', '.join(OILS)}, a Lubricant, or an Oil at a temperature: oil.at(60.0)"
+            raise InputError([Problem((), given, limit)])
+        return OILS[given.lower()]()
+
     @field_validator("displacement", mode="before")
     @classmethod
     def _free_entries(cls, given: Any) -> Any:
         if not isinstance(given, list | tuple):
             return given
         return tuple(None if isinstance(entry, str) and entry == "free" else entry for entry in given)
+
+    def __repr__(self) -> str:
+        return f"<Scene: {self._title()}>"
+
+    __str__ = __repr__
+
+    def _title(self) -> str:
+        given = (
+            ("speed", self.speed_rpm, "rpm"),
+            ("axial load", self.axial_load, "N"),
+            ("radial load", self.radial_load, "N"),
+        )
+        said = [
+            f"{name} {value:g} {symbol}" if isinstance(value, int | float) else f"{name} changing in time"
+            for name, value, symbol in given
+            if name == "speed" or value
+        ]
+        return f"{self.bearing.name}, {', '.join(said)}, {self._part('lubricant')}"
+
+    def _shown(self) -> Shown:
+        parts = ("bearing", "lubricant", "effects", "start")
+        own = tuple(row for row in field_rows(self) if row[0].partition(".")[0] not in parts)
+        shown = {name: getattr(self, name)._shown() for name in parts}
+        folded = (replace(shown[name], title=f"{name}: {self._part(name)}") for name in parts)
+        return Shown(f"Scene: {self._title()}", own, parts=tuple(folded))
+
+    def _part(self, name: str) -> str:
+        """A part in a few words."""
+        if name == "bearing":
+            return self.bearing._title()
+        if name == "effects":
+            usual = Effects.standard()
+            changed = [key for key in Effects.model_fields if getattr(self.effects, key) != getattr(usual, key)]
+            return f"standard but for {', '.join(changed)}" if changed else "standard"
+        if name == "start":
+            return self.start.kind
+        name, temperature = self.lubricant.name, f" at {self.lubricant.temperature_c:g} C"
+        return name if name.endswith(temperature) else f"{name}{temperature}"
 
     @property
     def moments(self) -> tuple[float | History | None, float | History | None]:
@@ -154,15 +217,20 @@ class Scene(Model):
             return 0.0
         first = math.radians(rotating.direction_deg)
         if rotating.frequency_hz is not None:
-            return first + 2.0 * math.pi * rotating.frequency_hz * (time - self.start.time)
-        return first + rotating.turns * self.shaft_turn(time)
+            return first + 2.0 * math.pi * rotating.frequency_hz * time
+        return first + rotating.turns * (self.start_shaft_angle + self.shaft_turn(time))
 
     def shaft_turn(self, time: float) -> float:
         """Angle that the shaft has turned by since the start (rad)."""
-        start = self.start.time
-        if isinstance(self.speed_rpm, History):
-            return self.speed_rpm.integral(start, time) * math.pi / 30.0
-        return self.speed_rpm * math.pi / 30.0 * (time - start)
+        return angle_turned(self.speed_rpm, self.start.time, time)
+
+    @property
+    def running_plays(self) -> tuple[float, float]:
+        """Radial and circumferential play of the pocket that most rollers have (m): Cpr and Cpc of the running bearing."""
+        bearing, pocket = self.bearing, self.bearing.pocket
+        if self.growth is not None:
+            pocket = grown_pocket(bearing, pocket, strains(self, self.growth))
+        return plays(bearing, pocket)
 
     @property
     def start_shaft_angle(self) -> float:
@@ -201,7 +269,7 @@ class Scene(Model):
         speed = self.speed_rpm
         if isinstance(speed, History) and speed.repeats:
             span = speed.times[-1] - speed.times[0]
-            turned = rotating.turns * speed.integral(speed.times[0], speed.times[-1]) / 60.0
+            turned = rotating.turns * turns(speed, speed.times[0], speed.times[-1])
             if abs(turned - round(turned)) > 1e-9:
                 limit = (
                     f"must turn a whole number of times in a period of speed_rpm ({span:g} s), not {turned:.9g} times"
@@ -217,6 +285,11 @@ class Scene(Model):
         self._check_load()
         self._check_planar()
         self._check_start()
+        if self.growth is not None:
+            running_pockets(self)
+        if self.bearing.cage.unbalance > 0.0 and self.effects.guidance != "rollers":
+            limit = "must be 0 where a land guides the cage: its axis passes through the centre of mass (kg m)"
+            raise InputError.of(("bearing", "cage", "unbalance"), self.bearing.cage.unbalance, limit)
         _ = self.period
         if self.effects.films and self.effects.rolling_resistance and self.lubricant.pressure_coefficient <= 0.0:
             raise InputError.of(
@@ -277,7 +350,9 @@ class Scene(Model):
             limit = "must be 0 where displacement gives a radial position; set those entries None (N)"
             raise InputError.of(("rotating_load", "load"), turning.load, limit)
         self._check_held()
-        if not z:
+        if self.unloaded == "rests" and z:
+            raise InputError.of("unloaded", "rests", "must be 'refused' where displacement gives the axial position")
+        if self.unloaded == "refused" and not z:
             self._check_capacity()
 
     def _check_held(self) -> None:
@@ -302,7 +377,10 @@ class Scene(Model):
             when = "" if steady else f" at {time:g} s"
             if axial <= 0.0:
                 raise InputError.of(
-                    "axial_load", axial, f"must be > 0{when}: nothing else holds rollers and rings together (N)"
+                    "axial_load",
+                    round(axial, 9) + 0.0,
+                    f"must be > 0{when}: nothing else holds rollers and rings together, unless unloaded = 'rests'; or give the "
+                    "ring's axial position, as an adjusted pair of bearings has it: displacement = (None, None, -20e-6) (N)",
                 )
             most = axial / slope
             if radial >= most:

@@ -2,15 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
 
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
 from trbdyn.model.motion import MAX_TIME
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of a simulation: what is needed to go on from it.
+
+    Attributes
+    ----------
+    time : float
+        Time (s).
+    vector : ndarray, shape (n_state,)
+        The core's state vector.
+    shaft_angle : float, optional
+        Angle of the shaft (rad).
+    displacement : ndarray, shape (5,), optional
+        Where the inner ring stands: translation along x, y, z (m), rotation about x, y (rad).
+    """
+
+    time: float
+    vector: NDArray[np.float64]
+    shaft_angle: float | None = None
+    displacement: NDArray[np.float64] | None = None
 
 
 class Start(Model):
@@ -36,6 +59,8 @@ class Start(Model):
         State: the numbers of the core's state vector.
     shaft_angle : float, optional
         State: angle of the shaft at that time (rad); by default what it has turned by since t = 0.
+    displacement : tuple of float, shape (5,), optional
+        State: where the inner ring stands then (m, rad). A ring that is held stays there, as it does in the run that goes on.
     """
 
     kind: Literal["equal", "unequal", "whirl", "state"] = "equal"
@@ -46,6 +71,7 @@ class Start(Model):
     time: Annotated[Number, unit("s", ge=-MAX_TIME, le=MAX_TIME)] = 0.0
     state_vector: tuple[Number, ...] = ()
     shaft_angle: Annotated[Number, unit("rad", ge=-1e9, le=1e9)] | None = None
+    displacement: tuple[Number, Number, Number, Number, Number] | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -56,8 +82,9 @@ class Start(Model):
                 else "belongs to a start from a state only"
             )
             raise InputError.of("state_vector", self.state_vector, allowed)
-        if self.kind != "state" and self.shaft_angle is not None:
-            raise InputError.of("shaft_angle", self.shaft_angle, "belongs to a start from a state only (rad)")
+        for name, given, of in (("shaft_angle", self.shaft_angle, "rad"), ("displacement", self.displacement, "m")):
+            if self.kind != "state" and given is not None:
+                raise InputError.of(name, given, f"belongs to a start from a state only ({of})")
         return self
 
     @classmethod
@@ -92,21 +119,44 @@ class Start(Model):
         return cls(kind="whirl", eccentricity=eccentricity, direction_deg=direction_deg)
 
     @classmethod
-    def state(cls, vector: ArrayLike, *, time: float = 0.0, shaft_angle: float | None = None) -> Self:
-        """A saved state.
+    def state(
+        cls,
+        vector: ArrayLike | State,
+        *,
+        time: float | None = None,
+        shaft_angle: float | None = None,
+        displacement: ArrayLike | None = None,
+    ) -> Self:
+        """A saved state: ``Start.state(sim.state)`` goes on where a simulation is, with its loads and its ring.
 
         Parameters
         ----------
-        vector : array_like, shape (n_state,)
-            The core's state vector, for instance `Simulation.state.vector`.
-        time : float
-            The time it belongs to (s).
+        vector : State, or array_like of shape (n_state,)
+            `Simulation.state`, which knows everything else, too; or the core's state vector alone.
+        time : float, optional
+            The time it belongs to (s); by default that of the `State`, or 0.
         shaft_angle : float, optional
             Angle of the shaft at that time (rad), for instance `Simulation.state.shaft_angle`; by default what the
             shaft has turned by since t = 0. It must be given where the saved run itself did not start at t = 0.
+        displacement : array_like, shape (5,), optional
+            Where the inner ring stands: `Simulation.state.displacement`. Without it a ring that is held is placed again, at the
+            equilibrium at `time`; where the speed changes that is another place than that of the saved run.
         """
-        try:
-            numbers = np.asarray(vector, dtype=np.float64).ravel().tolist()
-        except (TypeError, ValueError, OverflowError):
-            raise InputError.of(("start", "state_vector"), vector, "must be a vector of numbers") from None
-        return cls(kind="state", state_vector=tuple(numbers), time=time, shaft_angle=shaft_angle)
+        if isinstance(vector, State):
+            time = vector.time if time is None else time
+            shaft_angle = vector.shaft_angle if shaft_angle is None else shaft_angle
+            displacement = vector.displacement if displacement is None else displacement
+            vector = vector.vector
+        numbers = _numbers("state_vector", vector)
+        place = None if displacement is None else _numbers("displacement", displacement)
+        fields: dict[str, Any] = {} if place is None else {"displacement": place}
+        return cls(
+            kind="state", state_vector=numbers, time=0.0 if time is None else time, shaft_angle=shaft_angle, **fields
+        )
+
+
+def _numbers(name: str, given: ArrayLike) -> tuple[float, ...]:
+    try:
+        return tuple(np.asarray(given, dtype=np.float64).ravel().tolist())
+    except (TypeError, ValueError, OverflowError):
+        raise InputError.of(("start", name), given, "must be a vector of numbers") from None

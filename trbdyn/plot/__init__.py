@@ -23,7 +23,7 @@ from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, t
 from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
-from trbdyn.plot.style import SAVE_DPI, STYLE
+from trbdyn.plot.style import SAVE_DPI, STYLE, styled
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
 
 if TYPE_CHECKING:
@@ -63,6 +63,11 @@ __all__ = [
     "whirl_map",
     "whirl_radius",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
 
 Picture = Callable[["Result"], Axes | Figure]
 
@@ -122,7 +127,7 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
     while not isinstance(figure, Figure):
         figure = figure.figure
     try:
-        with plt.rc_context(STYLE):
+        with styled():
             if title:
                 quantity = figure.get_suptitle()
                 figure.suptitle(f"{quantity}\n{title}" if quantity else title, fontsize=10)

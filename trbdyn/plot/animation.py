@@ -15,7 +15,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from trbdyn.errors import FileError, InputError
 from trbdyn.plot.cage import last_turns, revolutions
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, STYLE
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, styled
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -68,7 +68,7 @@ def animate(
     outer, inner = 1e3 * geometry["outer_race_radius"], 1e3 * geometry["inner_race_radius"]
     size = 0.25e3 * (geometry["large_end_diameter"] + geometry["small_end_diameter"])
 
-    with plt.rc_context(STYLE):
+    with styled():
         figure, (view, path) = plt.subplots(1, 2, figsize=(8.6, 4.6), width_ratios=(1.7, 1.0))
         view.set(aspect="equal", xlim=(-1.15 * outer, 1.15 * outer), ylim=(-1.15 * outer, 1.15 * outer))
         view.set(xlabel="x (mm)", ylabel="y (mm)", title=f"cage displacement x {exaggeration:g}")

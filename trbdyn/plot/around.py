@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns
-from trbdyn.plot.style import COLOURS, GREY, LINES, STYLE, legend, sequence
+from trbdyn.plot.style import COLOURS, GREY, LINES, legend, sequence, styled
 from trbdyn.run.replay import Replay
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def load_zone(result: Result, ax: Axes | None = None, last: float | None = None,
     """
     shown = last_turns(result, last)
     orbit = shown["roller_orbit_angle"]
-    with plt.rc_context(STYLE):
+    with styled():
         ax = _polar(ax, "Load of a roller by its place around the bearing (N)")
         for index, side in enumerate(SIDES):
             load = shown[f"{side}_load"]
@@ -134,7 +134,7 @@ def attitude(result: Result, last: float | None = None, bins: int = 72) -> Figur
     """
     shown = last_turns(result, last)
     orbit = shown["roller_orbit_angle"]
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axes = plt.subplots(2, 1, figsize=(6.4, 4.6), sharex=True)
         words = {"skew": "skew (mrad)", "tilt": "tilt against nominal (mrad)"}
         for index, (ax, (name, label)) in enumerate(zip(axes, words.items(), strict=True)):
@@ -172,7 +172,7 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
     count = statistics.peak.shape[0]
     touched = np.flatnonzero(statistics.peak.max(axis=0) > threshold).tolist()
     width = 2.0 * np.pi / count
-    with plt.rc_context(STYLE):
+    with styled():
         paper: Any = _polar(ax, "Force in each pocket (N): peak (light) and 95 % while touched (dark)")
         for order, slot in enumerate(touched):
             bar = 0.8 * width / len(touched)
@@ -276,7 +276,7 @@ def contact_map(
     edges = np.linspace(0.0, 360.0, bins + 1)
     half = 0.5e3 * result.scene.bearing.roller.effective_length
     borders = np.concatenate([[-half], 0.5 * (stations[1:] + stations[:-1]), [half]])
-    with plt.rc_context(STYLE):
+    with styled():
         figure, axes = plt.subplots(len(sides), 1, figsize=(6.8, 0.9 + 2.0 * len(sides)), sharex=True, squeeze=False)
         for ax, side, grid in zip(axes[:, 0], sides, grids, strict=True):
             mesh = ax.pcolormesh(edges, borders, grid.T, cmap=sequence(), vmin=low, vmax=high)

@@ -112,8 +112,8 @@ def cage_locus(
         ax.xaxis.set_major_locator(MultipleLocator(0.5))
         ax.yaxis.set_major_locator(MultipleLocator(0.5))
         ax.set(xlabel="$x/C_{pr}$", ylabel="$y/C_{pr}$")
-        if is_own(ax):
-            legend(ax, ncols=2)
+        if is_own(ax):  # below everything: above the axes it would reach under the colour bar
+            ax.figure.legend(loc="outside lower center", ncols=2)
         else:  # there is no room for a legend that covers no path
             for label, radius in circles.items():
                 ax.annotate(label, (0, radius), ha="center", va="center", fontsize=7).set_bbox(

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.model.outlines import cone_outline, cup_outline, profile_drop, rail_bands
-from trbdyn.plot.style import COLOURS, GREY, STYLE, canvas
+from trbdyn.plot.style import COLOURS, GREY, canvas, styled
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -149,7 +149,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
     faces, gaps = bearing.pocket_of(pocket).faces, bearing.pocket_of(pocket).gaps(bearing.geometry)
     around = np.linspace(0.0, 2.0 * np.pi, 121)
     half = 0.5e3 * roller.total_length
-    with plt.rc_context(STYLE):
+    with styled():
         figure, (end, top) = plt.subplots(1, 2, figsize=(8.4, 5.0), width_ratios=(1.0, 1.3))
         size = 0.5e3 * roller.diameter
         end.plot(size * np.cos(around), size * np.sin(around), color="black", linewidth=1.0)

@@ -14,7 +14,7 @@ from matplotlib.ticker import LogFormatter
 
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns, need_cage, revolutions
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, STYLE, canvas, legend, line, sequence
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, canvas, legend, line, sequence, styled
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -103,7 +103,7 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
     touched = [slot for slot in range(slots) if largest[:, :, slot].any()]
     borders = np.append(turned[edges[:-1]], turned[-1])
     top = float(largest.max(initial=0.0)) or 1.0
-    with plt.rc_context(STYLE):
+    with styled():
         height = 0.55 + max(0.9, 0.13 * len(chosen))
         figure, axes = plt.subplots(
             max(1, len(touched)), 1, figsize=(6.8, 1.2 + height * max(1, len(touched))), sharex=True, squeeze=False

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -63,12 +64,27 @@ OWN = "trbdyn"
 
 
 @contextmanager
+def styled() -> Iterator[None]:
+    """The style inside the block; after it, what the style has changed is as before, and nothing else.
+
+    Matplotlib's own ``rc_context`` puts back every setting, also those that a backend makes when the first figure loads it.
+    In a notebook this is the one that shows figures at the end of a cell: only the first picture would ever appear.
+    """
+    before = {name: matplotlib.rcParams[name] for name in STYLE}
+    matplotlib.rcParams.update(STYLE)
+    try:
+        yield
+    finally:
+        matplotlib.rcParams.update(before)
+
+
+@contextmanager
 def canvas(ax: Axes | None, figsize: tuple[float, float] = (6.4, 4.0), title: str = "") -> Iterator[Axes]:
     """The given axes, or new ones in a figure of their own; the style holds inside the block only.
 
     The title names the quantity: above a figure of its own, or on given axes that have no title yet.
     """
-    with plt.rc_context(STYLE):
+    with styled():
         if ax is None:
             figure, ax = plt.subplots(figsize=figsize)
             figure.set_label(OWN)

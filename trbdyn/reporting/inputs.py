@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
+from trbdyn.base.shown import field_texts
 from trbdyn.base.validation import Model
 from trbdyn.model.scene import Scene
 
@@ -39,22 +38,6 @@ class Row:
     unit: str
     text: str
     mark: str
-
-
-@cache
-def field_texts(kind: type[Model]) -> Mapping[str, str]:
-    """What each field of a model is, from the part "Parameters" of its docstring."""
-    text = inspect.cleandoc(kind.__doc__ or "")
-    found = re.search(r"^Parameters\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", text, re.MULTILINE | re.DOTALL)
-    out: dict[str, str] = {}
-    if found is None:
-        return out
-    for entry in re.split(r"\n(?=\w)", found[1]):
-        head, _, body = entry.partition("\n")
-        names = head.partition(" : ")[0]
-        for name in names.split(","):
-            out[name.strip()] = " ".join(body.split())
-    return out
 
 
 def rows(scene: Scene) -> list[Row]:

@@ -3,43 +3,25 @@
 from __future__ import annotations
 
 import base64
-import html
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+from trbdyn.reporting import tables
+from trbdyn.reporting.bias import biases
 from trbdyn.reporting.inputs import Row, rows
-from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
+from trbdyn.reporting.meanings import CAPTIONS
+from trbdyn.reporting.ratings import ratings_section
+from trbdyn.reporting.tables import safe
 from trbdyn.reporting.verdict import verdict, warnings
-from trbdyn.results.summary import LABELS, UNPRINTED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from trbdyn.results.result import Result
-
-STYLE = """
-:root { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1b1f24; }
-body { max-width: 1080px; margin: 0 auto; padding: 24px; }
-h1 { font-size: 26px; margin: 0; } h2 { margin-top: 34px; border-bottom: 2px solid #dce1e6; padding-bottom: 3px; }
-p.sub { margin: 2px 0 18px; color: #56616d; }
-.cards { display: grid; gap: 10px; grid-template-columns: repeat(auto-fit, minmax(300px, 1fr)); }
-.card { border-left: 6px solid #9aa5b1; background: #f5f7f9; padding: 8px 12px; break-inside: avoid; }
-.card.good { border-color: #009e73; } .card.care { border-color: #e69f00; } .card.bad { border-color: #c2185b; }
-.card b { display: block; } .card .grade { float: right; font-size: 12px; color: #56616d; }
-table { border-collapse: collapse; width: 100%; font-size: 13.5px; }
-th, td { text-align: left; padding: 3px 8px; border-bottom: 1px solid #e3e7eb; vertical-align: top; }
-td.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; } td.u { white-space: nowrap; }
-tr.assumed td { background: #fff7e0; } tr.estimated td { background: #fdebd8; } tr.differs td { background: #e6f2fb; }
-.mark { font-size: 12px; font-weight: 600; white-space: nowrap; }
-.pictures { display: grid; gap: 18px; grid-template-columns: repeat(auto-fit, minmax(460px, 1fr)); align-items: start; }
-figure { margin: 0; break-inside: avoid; } figure img { width: 100%; } figcaption { font-size: 13px; color: #39434d; }
-.pair { grid-column: 1 / -1; display: grid; grid-template-columns: 1fr 1fr; gap: 12px; } .pair figcaption { grid-column: 1 / -1; }
-details summary { cursor: pointer; font-weight: 600; } ul.warnings li { margin-bottom: 4px; }
-@media print { body { padding: 0; } details { display: block; } .pictures { grid-template-columns: 1fr 1fr; } }
-"""
 
 GRADES = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
 
@@ -52,20 +34,20 @@ def page(results: Sequence[Result], names: Sequence[str], title: str, pictures: 
     for result, values, listed, name in zip(results, numbers, inputs, names, strict=True):
         parts.append(_verdict(result, values, listed, name if len(results) > 1 else ""))
     if len(results) > 1:
-        parts.append(_differences(inputs, names))
+        parts.append(tables.differences(inputs, names))
     parts.append(_simulated(results, names))
     parts.append(_pictures(results, names, pictures))
-    parts.append(_numbers(numbers, names))
-    parts.append(_inputs(inputs, names))
+    parts.append(tables.numbers(numbers, names, [biases(result) for result in results]))
+    parts.append(ratings_section(results, names))
+    parts.append(tables.inputs(inputs, names))
     body = "\n".join(parts)
+    style = files("trbdyn.reporting").joinpath("report.css").read_text(encoding="utf-8")
     return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{_safe(title)}</title><style>{STYLE}</style></head>'
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{safe(title)}</title><style>{style}</style></head>"
         f"<body>\n{body}\n</body></html>\n"
     )
-
-
-def _safe(text: object) -> str:
-    return html.escape(str(text))
 
 
 def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
@@ -79,41 +61,22 @@ def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
             for key, word in (("created", "run"), ("trbdyn_version", "trbdyn"), ("instruction_set", "instruction set"))
             if result.meta.get(key)
         )
-        label = f"<b>{_safe(name)}</b>: " if len(results) > 1 else ""
-        lines.append(f"{label}{_safe(words)}; {_safe(result.scene.lubricant.name)}; {_safe(made)}")
-    return f"<h1>{_safe(title)}</h1>\n<p class='sub'>{'<br>'.join(lines)}</p>"
+        label = f"<b>{safe(name)}</b>: " if len(results) > 1 else ""
+        lines.append(f"{label}{safe(words)}; {safe(result.scene.lubricant.name)}; {safe(made)}")
+    return f"<h1>{safe(title)}</h1>\n<p class='sub'>{'<br>'.join(lines)}</p>"
 
 
 def _verdict(result: Result, numbers: dict[str, Any], listed: list[Row], name: str) -> str:
     cards = "".join(
-        f"<div class='card {grade}'><span class='grade'>{GRADES[grade]}</span><b>{_safe(head)}</b>{_safe(text)}</div>"
+        f"<div class='card {grade}'><span class='grade'>{GRADES[grade]}</span><b>{safe(head)}</b>{safe(text)}</div>"
         for grade, head, text in verdict(result, numbers)
     )
     estimated, assumed = (sum(row.mark == mark for row in listed) for mark in ("estimated", "assumed"))
-    notes = "".join(f"<li>{_safe(text)}</li>" for text in warnings(result, numbers, estimated, assumed))
-    of = f" of {_safe(name)}" if name else ""
+    notes = "".join(f"<li>{safe(text)}</li>" for text in warnings(result, numbers, estimated, assumed))
+    of = f" of {safe(name)}" if name else ""
     return f"<h2>Verdict{of}</h2>\n<div class='cards'>{cards}</div>" + (
         f"\n<h3>Before you rely on it</h3><ul class='warnings'>{notes}</ul>"
     )
-
-
-def _differences(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
-    tables = [{row.path: row for row in listed} for listed in inputs]
-    paths = [path for path in {**tables[0], **tables[1]} if _value(tables[0], path) != _value(tables[1], path)]
-    if not paths:
-        return "<h2>What differs</h2><p>All inputs of the two scenes are equal.</p>"
-    body = "".join(
-        f"<tr><td>{_safe(path)}</td>"
-        + "".join(f"<td class='n'>{_safe(_value(table, path))}</td>" for table in tables)
-        + f"<td class='u'>{_safe((tables[0].get(path) or tables[1][path]).unit)}</td></tr>"
-        for path in paths
-    )
-    heads = "".join(f"<th>{_safe(name)}</th>" for name in names)
-    return f"<h2>What differs</h2><table><tr><th>input</th>{heads}<th>unit</th></tr>{body}</table>"
-
-
-def _value(table: Mapping[str, Row], path: str) -> str:
-    return table[path].value if path in table else "-"
 
 
 def _simulated(results: Sequence[Result], names: Sequence[str]) -> str:
@@ -138,14 +101,14 @@ def image(draw: Callable[[], Axes | Figure]) -> str:
     import matplotlib.pyplot as plt
     from matplotlib.figure import Figure
 
-    from trbdyn.plot.style import STYLE as PLOT_STYLE
+    from trbdyn.plot.style import styled
 
     picture = draw()
     figure = picture if isinstance(picture, Figure) else picture.get_figure(root=True)
     assert figure is not None
     paper = io.BytesIO()
     try:
-        with plt.rc_context(PLOT_STYLE):
+        with styled():
             figure.savefig(paper, format="png", dpi=110)
     finally:
         plt.close(figure)
@@ -153,7 +116,7 @@ def image(draw: Callable[[], Axes | Figure]) -> str:
 
 
 def _figure(draw: Callable[[], Axes | Figure], caption: str) -> str:
-    return f"<figure><img alt='{_safe(caption)}' src='{image(draw)}'><figcaption>{_safe(caption)}</figcaption></figure>"
+    return f"<figure><img alt='{safe(caption)}' src='{image(draw)}'><figcaption>{safe(caption)}</figcaption></figure>"
 
 
 def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[str] | None) -> str:
@@ -176,71 +139,11 @@ def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[
             out.append(_figure(partial(PICTURES[name][0], results[0]), caption))
             continue
         images = "".join(
-            f"<img alt='{_safe(label)}' src='{image(partial(PICTURES[name][0], result))}'>"
+            f"<img alt='{safe(label)}' src='{image(partial(PICTURES[name][0], result))}'>"
             for result, label in zip(results, names, strict=True)
         )
         out.append(
-            f"<figure class='pair'>{images}<figcaption>{_safe(caption)} Left: {_safe(names[0])}; right: {_safe(names[1])}."
+            f"<figure class='pair'>{images}<figcaption>{safe(caption)} Left: {safe(names[0])}; right: {safe(names[1])}."
             "</figcaption></figure>"
         )
     return f"<h2>Pictures</h2><div class='pictures'>{''.join(out)}</div>"
-
-
-def _numbers(numbers: Sequence[dict[str, Any]], names: Sequence[str]) -> str:
-    body = []
-    for key, (words, unit) in LABELS.items():
-        values = [entry.get(key) for entry in numbers]
-        if key in UNPRINTED or all(value is None for value in values):
-            continue
-        if any(isinstance(value, Mapping) for value in values):
-            body.append(f"<tr><th colspan='{3 + len(numbers)}'>{_safe(words)}</th></tr>")
-            parts = dict.fromkeys(part for value in values if value for part in value)
-            for part in parts:
-                entries = [(value or {}).get(part) for value in values]
-                if any(entries):
-                    body.append(_number_row(part.replace("_", " "), entries, unit, ""))
-            continue
-        widths = [(entry.get("confidence") or {}).get(key) for entry in numbers]
-        body.append(_number_row(words, values, unit, MEANINGS.get(key, ""), widths))
-    heads = "".join(f"<th>{_safe(name)}</th>" for name in names) if len(numbers) > 1 else "<th>value</th>"
-    return f"<h2>Numbers</h2><table><tr><th>quantity</th>{heads}<th>unit</th><th>what it means</th></tr>{''.join(body)}</table>"
-
-
-def _number_row(
-    words: str, values: Sequence[Any], unit: str, meaning: str, half_widths: Sequence[float | None] = ()
-) -> str:
-    widths = [*half_widths, *[None] * (len(values) - len(half_widths))]
-    shown = [_amount(value) + ("" if w is None else f" ± {w:.2g}") for value, w in zip(values, widths, strict=True)]
-    differs = " class='differs'" if len(set(shown)) > 1 else ""
-    cells = "".join(f"<td class='n'>{_safe(text)}</td>" for text in shown)
-    return f"<tr{differs}><td>{_safe(words.strip())}</td>{cells}<td class='u'>{_safe(unit)}</td><td>{_safe(meaning)}</td></tr>"
-
-
-def _amount(value: Any) -> str:
-    if value is None:
-        return "-"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def _inputs(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
-    tables = []
-    for listed, name in zip(inputs, names, strict=True):
-        body = "".join(
-            f"<tr class='{row.mark}'><td>{_safe(row.path)}</td><td class='n'>{_safe(row.value)}</td>"
-            f"<td class='u'>{_safe(row.unit)}</td>"
-            f"<td class='mark'>{row.mark}</td><td>{_safe(row.text)}</td></tr>"
-            for row in listed
-        )
-        of = f" of {_safe(name)}" if len(inputs) > 1 else ""
-        tables.append(
-            f"<details open><summary>All inputs{of}</summary><table>"
-            "<tr><th>input</th><th>value</th><th>unit</th><th></th><th>what it is</th></tr>"
-            f"{body}</table></details>"
-        )
-    note = (
-        "<p>Marked as <b>assumed</b>: no source gives the value, it is the package's default. "
-        "Marked as <b>estimated</b>: derived from the catalogue's numbers.</p>"
-    )
-    return f"<h2>Inputs</h2>{note}{''.join(tables)}"

@@ -1,4 +1,9 @@
-"""What a run says, in sentences; and what to be careful about."""
+"""What a run says, in sentences; and what to be careful about.
+
+What has not settled is not judged: such a sentence has no grade, says what was seen so far, and how long a run is expected to
+tell. Loads, films and pressures at the raceways follow the load on the bearing at once, so they are judged from one turn of the
+rollers on.
+"""
 
 from __future__ import annotations
 
@@ -7,16 +12,22 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from trbdyn.model.motion import value_at
+from trbdyn.reporting.bias import biases, preset_of
 from trbdyn.run import estimate
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
 GRAVITY: Final = 9.80665
-FULL_FILM, MIXED_FILM = 3.0, 1.0
-"""Film parameters above which surfaces are apart, and below which asperities carry: Tallian, ASLE Trans. 10 (1967)
-418-439.
+MIXED_FILM: Final = 1.0
+"""Film parameter below which asperities carry a good part of the load: Tallian, ASLE Trans. 10 (1967) 418-439. The one from which
+the film carries all is that of the scene, ``effects.friction.lambda_full``.
 """
+SOFT_HIT: Final = 0.05
+"""Largest force on a pocket, over the mean load of a roller, up to which hits are soft."""
+STRAIGHT: Final = 15.0
+"""Angle from straight below up to which a cage hangs straight below the axis (deg)."""
 FATIGUE_LIMIT: Final = 1.5e9
 """Largest Hertz pressure that clean, well made bearing steel is held to carry for ever (Pa): ISO 281:2007, 9.3.4.2."""
 STATIC_LIMIT: Final = 4.0e9
@@ -59,76 +70,143 @@ def what_matters(result: Result, numbers: dict[str, Any]) -> list[str]:
     return [f"{sentence[1]}. {sentence[2]}" for sentence in found if sentence is not None]
 
 
+def _settled(numbers: dict[str, Any]) -> bool:
+    return bool(numbers.get("settled") or numbers.get("settling") == "settled")
+
+
 def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     turns = f"{numbers['revolutions']:.4g} turns of the shaft ({numbers['duration']:.4g} s)"
     if not result.success:
         return "bad", "The run did not reach its end", f"{turns} were simulated. {result.message}"
-    if numbers.get("settled") or numbers.get("settling") == "settled":
+    if _settled(numbers):
         return (
             "plain",
             "Settled",
             f"{turns} were simulated. The motion settled; averages are taken from {numbers['window_start']:.4g} s on.",
         )
+    drifts = numbers.get("settling") == "drifting"
+    known = "the motion still drifts" if drifts else "whether the motion has settled cannot be told yet"
+    reason = f": {numbers['settling_reason']}" if numbers.get("settling_reason") else ""
     return (
         "care",
         "Not settled",
-        f"{turns} were simulated, and it is not known that the motion has settled"
-        + (f" ({numbers['settling_reason']})" if numbers.get("settling_reason") else "")
-        + ". Take averages as a first look, and run longer for numbers to rely on.",
+        f"{turns} were simulated; {known}{reason}. {_needed(numbers)}Take averages as a first look.",
     )
+
+
+def _needed(numbers: dict[str, Any]) -> str:
+    """How long a run is expected to tell, in a sentence with a space behind it; empty where it is not known."""
+    needed, length = numbers.get("settling_needed"), numbers.get("duration")
+    if not needed or not length:
+        return ""
+    turns = numbers["revolutions"] * needed / length
+    wall = numbers.get("wall_s_per_revolution")
+    cost = f", about {_time(wall * turns)} of computing" if wall and turns else ""
+    return f"A run of about {_two(needed)} s ({_two(turns)} turns of the shaft{cost}) is expected to tell. "
+
+
+def _two(value: float) -> str:
+    """A number with two digits that count, in full."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def _time(seconds: float) -> str:
+    for size, unit in ((86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")):
+        if seconds >= 2.0 * size:
+            return f"{_two(seconds / size)} {unit}"
+    return f"{_two(seconds)} s"
+
+
+def _soft(numbers: dict[str, Any]) -> bool | None:
+    """Whether the hardest hit is soft; None where it is not known. All sentences on the cage go by this one answer."""
+    peak, load = numbers.get("pocket_force_peak"), numbers.get("outer_load_mean")
+    return None if peak is None or not load else bool(peak < SOFT_HIT * load)
 
 
 def _whirl(result: Result, numbers: dict[str, Any]) -> Sentence | None:
-    if numbers.get("cage_motion") is None:
+    kind = numbers.get("cage_motion")
+    if kind is None:
         return None
+    grade, headline, sentence = _motion(kind, result, numbers)
+    if _settled(numbers) and kind != "unknown":
+        return grade, headline, sentence
+    so_far = "" if kind == "unknown" else f"So far: {headline[0].lower()}{headline[1:]}. "
+    return "plain", "The cage's motion cannot be told yet", f"{so_far}{sentence} {_needed(numbers)}".strip()
+
+
+def _motion(kind: str, result: Result, numbers: dict[str, Any]) -> Sentence:
+    """The motion of the cage as if it had settled."""
     radius, ratio = numbers["axis_distance_over_cpr"], numbers.get("whirl_ratio")
     orbit = numbers["orbit_radius_over_cpr"]
     where = f"on average {radius:.2f} of its radial play Cpr away from the bearing axis"
-    rate = (
-        ""
-        if ratio is None
-        else f", {abs(ratio):.3g} times for each turn of the cage" + (" backwards" if ratio < 0 else "")
-    )
-    words: dict[str, Sentence] = {
-        "stable": (
-            "good",
-            "The cage does not whirl",
-            f"Its centre stays near one place (it moves by {orbit:.2g} of its radial play Cpr about it), {where}.",
-        ),
-        "circling": (
-            "care",
-            "The cage whirls",
+    if kind == "stable":
+        text = f"Its centre stays near one place (it moves by {orbit:.2g} of its radial play Cpr about it), {where}."
+        return "good", "The cage does not whirl", text
+    if kind == "rocking":
+        text = (
+            f"Its centre hangs{_place(result, numbers)}, {where}, and moves about that place by {orbit:.2g} Cpr (rms). "
+            "It does not go round the bearing axis."
+        )
+        return ("plain" if _soft(numbers) is False else "good"), "The cage hangs and rocks", text
+    if kind == "circling":
+        rate = (
+            ""
+            if ratio is None
+            else f", {abs(ratio):.3g} times for each turn of the cage" + (" backwards" if ratio < 0 else "")
+        )
+        text = (
             f"Its centre goes round in one sense{rate}, on an orbit of {orbit:.2f} Cpr (rms)"
-            f"{_within(numbers, 'orbit_radius_over_cpr')}, {where}.",
-        ),
-        "unstable": (
-            "bad",
-            "The cage moves without order",
-            f"Its centre is {where} and does not go round in one sense: it is thrown from pocket to pocket.",
-        ),
-    }
-    return words[numbers["cage_motion"]]
+            f"{_within(numbers, 'orbit_radius_over_cpr')}, {where}."
+        )
+        return "care", "The cage whirls", text
+    if kind == "unstable":
+        soft = _soft(numbers)
+        thrown = {True: " Its hits are soft.", False: " It is thrown from pocket to pocket.", None: ""}[soft]
+        text = (
+            f"Its centre is {where}; it neither stays on one side of the axis nor goes round it in one sense.{thrown}"
+        )
+        return ("care" if soft else "bad"), "The cage moves without order", text
+    return "plain", "", f"There are fewer than two turns of the cage after the transient. Its centre is {where}."
+
+
+def _place(result: Result, numbers: dict[str, Any]) -> str:
+    """Where the cage hangs, seen from the axis along gravity; empty where nothing pulls across the axis."""
+    pull = np.array([value_at(part, 0.0) for part in result.scene.gravity[:2]])
+    if not result.scene.effects.gravity or np.hypot(*pull) < 0.1 * GRAVITY or "cage" not in result.groups:
+        return ""
+    mean = result.window(numbers["window_start"])["cage_position"][:, :2].mean(axis=0)
+    across, along = pull[0] * mean[1] - pull[1] * mean[0], float(pull @ mean)
+    angle = abs(math.degrees(math.atan2(float(across), along)))
+    return " straight below the axis" if angle < STRAIGHT else f" {angle:.0f} deg aside from straight below the axis"
 
 
 def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     peak = numbers.get("pocket_force_peak")
     if peak is None:
         return None
+    settled = _settled(numbers)
+    so_far = "" if settled else " so far"
     if peak == 0.0:
-        return "good", "No roller touched the cage", "No force was recorded in any pocket after settling."
+        grade = "good" if settled else "plain"
+        return grade, f"No roller touched the cage{so_far}", "No force was recorded in any pocket after the transient."
     weight = result.scene.bearing.cage.mass * GRAVITY
     compared = f"{peak / weight:.3g} times the weight of the cage"
     load = numbers.get("outer_load_mean")
     if load:
         compared += f" and {100.0 * peak / load:.2g} % of the mean load of a roller"
-    grade = "good" if load and peak < 0.05 * load else "plain"
     return (
-        grade,
-        "Hits on the cage",
-        f"The hardest force between a roller and its pocket is {peak:.3g} N, {compared}; while they touch, 95 % of the "
+        "good" if settled and _soft(numbers) else "plain",
+        f"Hits on the cage{so_far}",
+        f"The hardest force between a roller and its pocket{so_far} is {peak:.3g} N, {compared}; while they touch, 95 % of the "
         f"forces stay below {numbers['pocket_force_p95']:.3g} N. A pocket is touched "
-        f"{100.0 * numbers['pocket_duty']:.2g} % of the time.",
+        f"{100.0 * numbers['pocket_duty']:.2g} % of the time.{_bias(result, 'pocket_force_peak')}",
     )
+
+
+def _bias(result: Result, name: str) -> str:
+    """What the accuracy does to a number, with a space before it; empty where it was not measured."""
+    found = biases(result).get(name)
+    return "" if found is None else f" {found}"
 
 
 def _within(numbers: dict[str, Any], name: str) -> str:
@@ -166,19 +244,36 @@ def _films(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     thinnest = min(values, key=lambda name: values[name])
     value = values[thinnest]
     number = f"The mean film parameter (film thickness over roughness) is smallest at the {thinnest}: {value:.3g}."
-    if value >= FULL_FILM:
-        return "good", "Films keep the surfaces apart", f"{number} Above 3 the surfaces do not touch."
+    if not _whole_turn(numbers):
+        return _too_short("Films", number)
+    full = result.scene.effects.friction.lambda_full
+    limit = f"effects.friction.lambda_full = {full:.3g}"
+    if value >= full:
+        return "good", "Films keep the surfaces apart", f"{number} From {limit} on, the film carries all."
     if value >= MIXED_FILM:
         return (
             "care",
             "Films carry, with some contact",
-            f"{number} Between 1 and 3 the highest asperities touch; above 3 none do.",
+            f"{number} Below {limit} the highest asperities touch and add boundary friction.",
         )
     return (
         "bad",
         "Films are too thin",
-        f"{number} Below 1 asperities carry a part of the load: wear and early fatigue are to be expected.",
+        f"{number} Below {min(MIXED_FILM, full):.3g} asperities carry a part of the load: "
+        "wear and early fatigue are to be expected.",
     )
+
+
+def _whole_turn(numbers: dict[str, Any]) -> bool:
+    """Whether the averages hold one turn of the rollers around the bearing, so that each was in the loaded zone."""
+    ratio = numbers.get("cage_speed_ratio_kinematic") or 0.4
+    seconds = (numbers.get("window_end") or 0.0) - (numbers.get("window_start") or 0.0)
+    return bool(abs(numbers.get("speed_rpm") or 0.0) / 60.0 * seconds * ratio >= 0.99)
+
+
+def _too_short(headline: str, number: str) -> Sentence:
+    text = f"{number} It is not judged: the averages hold less than one turn of the rollers around the bearing."
+    return "plain", f"{headline}: cannot be told yet", text
 
 
 def _pressure(result: Result, numbers: dict[str, Any]) -> Sentence | None:
@@ -192,6 +287,8 @@ def _pressure(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     where = max(found, key=lambda name: found[name])
     value = found[where]
     number = f"The largest pressure, {1e-9 * value:.3g} GPa, is at the {where}."
+    if value < STATIC_LIMIT and not _whole_turn(numbers):
+        return _too_short("Pressures", number)
     if value < FATIGUE_LIMIT:
         return (
             "good",
@@ -228,16 +325,14 @@ def _energy(result: Result, numbers: dict[str, Any]) -> Sentence | None:
 
 
 def _exactness(result: Result, numbers: dict[str, Any]) -> Sentence | None:
-    settings = result.meta.get("settings") or {}
-    preset = settings.get("accuracy")
-    measured = estimate.table()["presets"].get(preset)
-    own = [name for name in ("rtol", "atol_position", "atol_angle", "atol_velocity", "atol_spin") if settings.get(name)]
-    if measured is None or own or settings.get("integrator") != "bdf":
+    preset = preset_of(result)
+    if preset is None:
         return (
             "plain",
             "Accuracy",
             "Tolerances of your own: no error was measured for them. Compare with a run at 'reference'.",
         )
+    measured = estimate.table()["presets"][preset]
     cage, power = measured["error_cage_over_cpr"], measured["error_power"]
     return (
         "plain",
@@ -250,7 +345,7 @@ def _exactness(result: Result, numbers: dict[str, Any]) -> Sentence | None:
 
 def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: int) -> list[str]:
     """What a reader must know before relying on the numbers."""
-    out = [str(note) for note in result.meta.get("notes") or ()]
+    out = list(dict.fromkeys(str(note) for note in (*(result.meta.get("notes") or ()), *result.warnings)))
     if estimated:
         out.append(
             f"{estimated} inputs are estimated from the catalogue's numbers, see the table of inputs; trb.sensitivity tells "

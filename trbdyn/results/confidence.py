@@ -1,23 +1,30 @@
-"""How well the averages of a run are known: half widths of 95 % confidence intervals, from batches of its window.
+"""How well the averages of a run are known: half widths of 95 % confidence intervals, from whole turns of the cage.
 
-Each number of the summary that is an average is computed again in batches that are long against the correlation time of the
-motion (`trbdyn.observables.batches`), and its scatter over the batches tells the error of the whole. This is the scatter within
-the window: it tells nothing of a slow drift (see `Result.settling`), of a second whirl that another start would lead to, or of
-errors of the model.
+Each number of the summary that is an average is computed again in each turn of the cage (in several turns where there are many),
+and the values of the turns tell the error of the whole, with all slow motion that they leave possible
+(`trbdyn.observables.mean_error`). What is no mean, such as a percentile or a root mean square about the mean place, is first made
+one by its change with the records (its influence function), so that what a slow change adds to it counts. Nothing is told of a
+motion that is not known to have settled: what still creeps goes on where no scatter of this window reaches, and takes torque and
+loads with it. A second whirl that another start would lead to, and errors of the model, are not in it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trbdyn.results import observables
+from trbdyn.results.observables.uncertainty import LEAST_BATCHES, MOST_COSINES
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
+
+Array = NDArray[np.float64]
 
 AVERAGES: Final = (
     "cage_speed_ratio",
@@ -52,7 +59,13 @@ AVERAGES: Final = (
 """Entries of the summary that are averages over its window."""
 
 
-def confidence(window: Result, average: Callable[[Result], dict[str, Any]]) -> tuple[dict[str, float] | None, str]:
+SLOPE: Final = 0.04
+"""Share of the records on either side of a percentile whose distance tells how dense they are there."""
+
+
+def confidence(
+    window: Result, average: Callable[[Result], dict[str, Any]], unsettled: str = ""
+) -> tuple[dict[str, float] | None, str]:
     """Half widths of the confidence intervals of averages over a window.
 
     Parameters
@@ -61,6 +74,8 @@ def confidence(window: Result, average: Callable[[Result], dict[str, Any]]) -> t
         The records that averages are taken over.
     average : callable
         Gives the averages of a part of them, by the names of `AVERAGES`.
+    unsettled : str
+        Why the motion is not known to have settled: then nothing is told.
 
     Returns
     -------
@@ -69,56 +84,70 @@ def confidence(window: Result, average: Callable[[Result], dict[str, Any]]) -> t
     words : str
         From how many batches of which length, or why it cannot be told.
     """
-    time = window["time"]
-    signals = _signals(window)
-    parts = observables.batches(time, signals, _turn_of_the_cage(window))
-    if not parts:
-        times = [observables.correlation_time(time, signal) for signal in signals]
-        long = f"{max(times):.2g} s" if times and all(map(math.isfinite, times)) else "a large part of it"
-        length = float(time[-1] - time[0])
-        return (
-            None,
-            f"the window of {length:.3g} s is too short for the motion in it, which remembers itself for {long}",
+    if unsettled:
+        return None, (
+            f"they cannot be told, as the motion is not known to have settled: {unsettled}. What still changes slowly takes all "
+            "averages with it, and a scatter within this window does not show how far"
         )
-    found = [average(window.window(time[part.start], time[part.stop - 1])) for part in parts]
+    edges, turns = _batches(window)
+    if len(edges) <= LEAST_BATCHES:
+        found = f"the window has {turns:.3g} turns of the cage" if turns else f"the window has {len(window)} records"
+        return None, f"they cannot be told: {found}, and it takes {LEAST_BATCHES} turns"
+    time = window["time"]
+    parts = [average(window.window(time[a], time[b])) for a, b in pairwise(edges)]
+    of_records = _as_means(window)
     widths: dict[str, float] = {}
-    drifting: list[str] = []
+    untold: list[str] = []
     for name in AVERAGES:
-        values = [one.get(name) for one in found]
-        if any(value is None or not math.isfinite(value) for value in values):
+        if name in of_records:
+            values = np.array([of_records[name][a:b].mean() for a, b in pairwise(edges)])
+        else:
+            given = [part.get(name) for part in parts]
+            values = np.array([math.nan if value is None else value for value in given], dtype=float)
+        if not np.isfinite(values).all():
             continue
-        width = observables.half_width(np.asarray(values, dtype=float))
+        width = observables.half_width(values)
         if math.isfinite(width):
             widths[name] = width
         else:
-            drifting.append(name)
-    length = float(time[parts[0].stop] - time[parts[0].start])
-    none = f"; none for what drifts from batch to batch: {', '.join(drifting)}" if drifting else ""
+            untold.append(name)
+    each = f"{turns / (len(edges) - 1):.2g} turns of the cage" if turns else f"{time[edges[1]] - time[edges[0]]:.3g} s"
+    none = f"; none for what drifts in the window: {', '.join(untold)}" if untold else ""
     return widths, (
-        f"half widths of 95 % confidence intervals, from {len(parts)} batches of {length:.3g} s{none}; drift slower than the "
-        "window and errors of the model are not in them"
+        f"half widths of 95 % confidence intervals, from {len(edges) - 1} batches of {each}{none}; another whirl that another "
+        "start leads to, and errors of the model, are not in them"
     )
 
 
-def _signals(window: Result) -> list[Any]:
-    """What must be independent from batch to batch: the motion of the cage, its hits, and the losses."""
-    groups = set(window.groups)
-    signals: list[Any] = []
-    if "cage" in groups and window.has_cage:
-        signals.append(window.orbit_radius)
-    if "pocket" in groups and window.has_cage:
-        signals.append(window["pocket_force"].sum(axis=(1, 2)))
-    if "torque" in groups:
-        signals.append(window["inner_torque"])
-    if "power" in groups:
-        signals.append(window["power_loss"])
-    return signals
+def _batches(window: Result) -> tuple[list[int], float]:
+    """First records of batches of whole turns of the cage, with the last record, and the number of turns in all of them.
+
+    Where the rollers stand or were not recorded, batches have one length and there are no turns.
+    """
+    most, records = 2 * MOST_COSINES, len(window)
+    if "rollers" in window.groups:
+        angle = window["roller_orbit_angle"].mean(axis=1)
+        turned = np.abs(angle[-1] - angle) / (2.0 * math.pi)  # back from the end
+        whole = int(turned.max())
+        if whole >= 1:
+            each = math.ceil(whole / most)
+            back = np.arange(whole // each, -1, -1) * each
+            edges = [int(np.argmin(np.abs(turned - turn))) for turn in back]
+            return edges if min(np.diff(edges)) >= 2 else [], float(back[0])
+    length = max(math.ceil((records - 1) / most), 2)
+    return list(range((records - 1) % length, records, length)), 0.0
 
 
-def _turn_of_the_cage(window: Result) -> float:
-    """Time of one turn of the rollers around the bearing (s); 0 where they stand or were not recorded."""
-    if "rollers" not in window.groups:
-        return 0.0
-    angle, time = window["roller_orbit_angle"].mean(axis=1), window["time"]
-    turns = abs(float(angle[-1] - angle[0])) / (2.0 * math.pi)
-    return float(time[-1] - time[0]) / turns if turns > 0.0 else 0.0
+def _as_means(window: Result) -> dict[str, Array]:
+    """A series over the records, for averages that are no means: to first order the average changes as the mean of the series."""
+    found: dict[str, Array] = {}
+    if "cage" not in window.groups or not window.has_cage:
+        return found
+    orbit, distance = window.orbit_radius_over_cpr, window.axis_distance_over_cpr
+    size = math.sqrt(float(np.mean(orbit**2)))
+    found["orbit_radius_over_cpr"] = 0.5 * (orbit**2 / size + size) if size > 0.0 else orbit
+    for name, values in (("orbit_radius_over_cpr", orbit), ("axis_distance_over_cpr", distance)):
+        for share, end in ((0.05, "p05"), (0.95, "p95")):
+            place, *sides = np.quantile(values, (share, share - SLOPE, share + SLOPE))
+            found[f"{name}_{end}"] = place + (sides[1] - sides[0]) / (2.0 * SLOPE) * (share - (values <= place))
+    return found

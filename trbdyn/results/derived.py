@@ -232,8 +232,13 @@ class Derived(ABC):
 
     @property
     def cage_motion(self) -> observables.CageMotion:
-        """Class of the cage's motion: stable, circling or unstable (see `observables.classify`)."""
-        return observables.classify(self._of_cage("cage_position"), self["cage_velocity"], self.clearances.radial)
+        """Class of the cage's motion: stable, rocking, circling, unstable, or unknown (see `observables.classify`)."""
+        return observables.classify(
+            self._of_cage("cage_position"),
+            self["cage_velocity"],
+            self.clearances.radial,
+            cage_angle=self["cage_angle"],
+        )
 
     def spacing_angles(self, n: int = 1) -> Array:
         """Angle from each roller to the n-th after it (the sum of n gaps), rad, shape (T, Z)."""

@@ -1,35 +1,40 @@
 """Result files: HDF5, written while a run goes on, read field by field.
 
-Schema ``trbdyn-result``, version 1:
+Schema ``trbdyn-result``, version 2:
 
-- attributes of the root: ``schema``, ``schema_version``, ``trbdyn_version``, ``created``, ``run_id``, ``segment`` (its number),
-  ``first_record`` (place of its first record in the run); as JSON ``geometry`` and ``meta`` (versions of the core and of
-  SUNDIALS, instruction set, settings), whose texts and numbers are attributes too; all texts are UTF-8 bytes of fixed length
-- ``/scene``: the whole scene as JSON text (a dataset, because attributes end at 64 kB)
-- ``/fields/NAME``: one float64 dataset a recorded quantity, time first, with the attributes ``unit``, ``description``, ``group``,
-  ``kind``, ``dims`` and ``index`` (its place in the record)
-- ``/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and ``final_time``;
-  empty until the run
-  has ended
-- ``/final_state``: the state vector at ``final_time``; empty until then
-- ``/peaks/NAME``: peaks of the whole run, one record each, with the attributes of ``/fields``; empty until then; missing if
-  no peaks are kept
+- ``/NAME``: one dataset a recorded quantity, time first, with the attributes ``units``, ``long_name`` and ``group``. Its
+  dimensions are HDF5 dimension scales with coordinates (``/time``, ``/roller``, ``/slot``, ``/xyz``, ``/xy``, ``/wxyz``), as
+  netCDF has them, so that xarray opens the file. The groups of `SINGLE` are float32, all else is float64
+  with as many digits as `DIGITS` says
+- ``/run/head``: everything else that is known before the run, as JSON: schema, versions, name of the run, the fields in the
+  order of the record, derived geometry, settings, and the whole scene
+- ``/run/committed``: number of records that count, number of bytes of ``/run/ending``, and 1
+- ``/run/ending``: bytes of a JSON text with ``success``, ``message``, ``stats``, ``counters``, ``warnings`` and
+  ``final_time``
+- ``/run/final_state``: the state vector at ``final_time``
+- ``/run/peaks``: the peaks of the whole run, one field after the other
+- attributes of the root, as text and numbers: for other programs; `trbdyn.load` reads the head
 
-A file is data: nothing in it is executed, and links or storage that lead out of the file are refused.
+All of ``/run`` but the head is empty until the run has ended. A file is data: nothing in it is executed, and links or storage
+that lead out of the file are refused.
 
-It is written in HDF5's SWMR mode (single writer, multiple readers): every object is made first, under another name, and the file
-takes its place only then; from there on datasets only grow, in an order that leaves the file consistent at every instant. So
-readers can follow a run live, and a killed run leaves a file that can be read, whenever the kill comes. Such a file keeps the
-mark of a writer, which other programs refuse unless they open it in SWMR mode; `trbdyn.load` reads it as it is, and resuming
-the run takes the mark away (`trbdyn.results.hdf5_marks`). It is never opened for writing again: a run that is resumed writes a
-segment of its own, ``run.part1.h5``, ``run.part2.h5`` beside ``run.h5``, and `trbdyn.load` joins them by ``run_id`` and
-``first_record``: where two hold a record, the later segment counts.
+Every dataset carries a Fletcher32 checksum for each chunk, in which a zlib stream has a checksum of its own, and HDF5 keeps
+one for each piece of its metadata; it has none for texts of variable length. `trbdyn.load` therefore reads neither attributes
+nor labels.
+
+A file is closed while records wait in memory: other programs can read it then. To add records it is opened in HDF5's SWMR
+mode (single writer, multiple readers), which writes in an order that leaves the structure of the file sound at every instant;
+the number of records that count is written last. A run that is killed in this moment, some hundredths of a second long,
+leaves a file with HDF5's mark of a writer: programs open it in SWMR mode (``h5py.File(path, "r", swmr=True)``), and so does
+`trbdyn.load`. A run that is resumed copies the records before its checkpoint into a new file, which takes the place of the
+old one.
 """
 
 from __future__ import annotations
 
 import errno
 import json
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -38,25 +43,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.results.fields import Field
+
 Array = NDArray[np.float64]
 
 SCHEMA = "trbdyn-result"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
-CHUNK_BYTES = 16384
-"""Size aimed at for an HDF5 chunk where nobody knows how many records will come."""
-BLOCK_ROWS = 256
-"""Most rows of a chunk where it is known: a chunk that is not full is written again at each flush."""
+BLOCK_ROWS = 512
+"""Most rows of a chunk: what waits in memory is written in whole chunks where that is possible."""
 BLOCK_BYTES = 8 << 20
 """Most bytes of the chunks of all fields together."""
 
 PEAKS = "peaks"
 """The group of fields that are peaks of each record's interval."""
 
-JSON_ATTRIBUTES = ("geometry", "meta")
+SINGLE = ("contacts", "pocket", "torque", "power", "peaks")
+"""Groups that are kept as float32, to 7 digits. Motion and energies, from which the others can be found again, are not."""
+
+DIGITS = {"cage": 12, "rollers": 12, "ring": 12, "peaks": 9}
+"""Digits of the float64 numbers of a group, where it is not all: the bits of the others are zero, which packs better. A roller's
+place to 12 digits is exact to less than a ten-thousandth of a nanometre; peaks keep nothing but times as float64."""
 
 LIBVER = ("v110", "v110")
-"""Format of the file: the oldest that knows SWMR."""
+"""Format of the file: the oldest with checksums of all metadata, and the oldest that knows SWMR."""
 
 
 @dataclass(slots=True)
@@ -135,27 +145,38 @@ def json_text(value: Any) -> str:
     return json.dumps(value, default=_plain)
 
 
-def stored(value: Any) -> Any:
-    """Text as text of fixed length: HDF5 keeps what varies in length in a heap without a checksum, where damage makes it hang."""
-    if not isinstance(value, str):
-        return value
-    data = value.encode()
-    return np.array(data, dtype=f"S{max(len(data), 1)}")
+def stored_type(entry: Field) -> np.dtype[Any]:
+    """Type of a field's numbers in a file; times are kept as float64."""
+    return np.dtype("f4" if entry.group in SINGLE and entry.unit != "s" else "f8")
 
 
-def chunk_rows(shape: tuple[int, ...]) -> int:
-    """Rows of a chunk of a field where nobody knows how many records will come."""
-    return max(1, CHUNK_BYTES // (8 * max(1, int(np.prod(shape)))))
+def as_kept(entry: Field, values: Array) -> NDArray[Any]:
+    """A field's numbers as a file keeps them, with the type and the digits that it has there.
+
+    Parameters
+    ----------
+    entry : Field
+        The field.
+    values : ndarray of float64
+        The numbers.
+    """
+    kind = stored_type(entry)
+    digits = DIGITS.get(entry.group)
+    if kind != np.float64 or digits is None:
+        return values.astype(kind)
+    dropped = 52 - math.ceil(digits * math.log2(10.0))
+    bits = values.view(np.int64) + (1 << (dropped - 1)) & -(1 << dropped)
+    return bits.view(np.float64)
 
 
-def block_rows(expected: int, record_bytes: int) -> int:
+def block_rows(expected: int | None, record_bytes: int) -> int:
     """Rows of a chunk of every field, so that whole chunks of all fields are full at the same time.
 
     Parameters
     ----------
-    expected : int
-        Records that will come at most.
+    expected : int or None
+        Records that will come at most; None where nobody knows.
     record_bytes : int
         Bytes of a record.
     """
-    return max(1, min(expected, BLOCK_ROWS, BLOCK_BYTES // max(1, record_bytes)))
+    return max(1, min(expected or BLOCK_ROWS, BLOCK_ROWS, BLOCK_BYTES // max(1, record_bytes)))

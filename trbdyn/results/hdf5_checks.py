@@ -3,61 +3,51 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import h5py
+import numpy as np
+from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
-from trbdyn.results.result_file import FLUSH_BYTES
-
-SMALL = 2 * FLUSH_BYTES
-"""Bytes that a file may claim beyond what it holds: a writer makes room for its records, then writes them."""
 
 
-def own(group: h5py.Group, name: str, kind: type) -> Any:
-    """A member that lies in this file itself: no links or storage that lead elsewhere."""
-    return own_stored(group, name, kind)[0]
+def read_own(group: h5py.Group, name: str, count: int | None = None) -> NDArray[Any]:
+    """A dataset that lies in this file itself, or its first rows: no links or storage that lead elsewhere, and no values that
+    were never written, which take no room in a file but much when they are read.
 
+    Parameters
+    ----------
+    group : Group
+        Where it is.
+    name : str
+        Its name there.
+    count : int, optional
+        How many rows; all by default.
 
-def own_stored(group: h5py.Group, name: str, kind: type) -> tuple[Any, Storage]:
-    """The same, with the room that it takes."""
-    links, key = group.id.links, name.encode()
-    if not links.exists(key) or links.get_info(key).type != h5py.h5l.TYPE_HARD:
-        raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
-    member, storage = group[name], Storage(0, 0, elsewhere=False)
-    if not isinstance(member, kind):
-        raise FileError(f"{group.file.filename}: {name!r} is not what a result holds there")
-    if isinstance(member, h5py.Dataset):
-        storage = Storage.of(member)
-        if storage.elsewhere:
-            raise FileError(f"{group.file.filename}: {name!r} leads out of the file, which results never do")
-        check_stored(group, repr(name), storage)
-    return member, storage
-
-
-@dataclass(frozen=True, slots=True)
-class Storage:
-    """Bytes that a dataset claims to have and those that it takes in the file, and whether they lie in another file."""
-
-    claimed: int
-    stored: int
-    elsewhere: bool
-
-    @classmethod
-    def of(cls, dataset: h5py.Dataset) -> Storage:
-        place, made = dataset.id, dataset.id.get_create_plist()
-        layout, size = made.get_layout(), place.get_type().get_size()
-        packed = layout == h5py.h5d.CHUNKED and made.get_nfilters() > 0
-        stored = place.get_num_chunks() * math.prod(made.get_chunk()) * size if packed else place.get_storage_size()
-        elsewhere = layout == h5py.h5d.VIRTUAL or made.get_external_count() > 0
-        return cls(place.get_space().get_simple_extent_npoints() * size, stored, elsewhere)
-
-
-def check_stored(group: h5py.Group, name: str, *datasets: Storage) -> None:
-    """A file must hold what it claims: values that were never written take no room in it, but much when they are read."""
-    claimed, stored = sum(one.claimed for one in datasets), sum(one.stored for one in datasets)
-    if claimed > SMALL + 2 * stored:
+    Raises
+    ------
+    FileError
+        If there is no such dataset, or it does not hold so many rows.
+    """
+    where, links, key = group.file.filename, group.id.links, name.encode()
+    if not links.exists(key):
+        raise FileError(f"{where}: the file is damaged: it has no {name!r}")
+    if links.get_info(key).type != h5py.h5l.TYPE_HARD:
+        raise FileError(f"{where}: {name!r} leads out of the file, which results never do")
+    dataset = group[name]
+    if not isinstance(dataset, h5py.Dataset) or dataset.ndim < 1:
+        raise FileError(f"{where}: {name!r} is not what a result holds there")
+    made = dataset.id.get_create_plist()
+    if made.get_layout() == h5py.h5d.VIRTUAL or made.get_external_count() > 0:
+        raise FileError(f"{where}: {name!r} leads out of the file, which results never do")
+    wanted = dataset.shape[0] if count is None else count
+    shape = dataset.chunks
+    held = (
+        0 if shape is None else dataset.id.get_num_chunks() * math.prod(shape) // max(1, math.prod(dataset.shape[1:]))
+    )
+    if not 0 <= wanted <= min(dataset.shape[0], held):
         raise FileError(
-            f"{group.file.filename}: the file is damaged: {name} claims {claimed} bytes, but holds {stored}"
+            f"{where}: the file is damaged: {wanted} values of {name!r} shall be there, but it holds {held}"
         )
+    return np.asarray(dataset[:wanted])

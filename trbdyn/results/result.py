@@ -7,11 +7,12 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.scene import Scene
 from trbdyn.results import fields as field_table
@@ -20,16 +21,31 @@ from trbdyn.results.derived import Derived
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
-from trbdyn.results.sources import FileSource, MemorySource, Source, WindowSource, held_open, open_run
-from trbdyn.results.summary import summary
+from trbdyn.results.sources import FileSource, MemorySource, Source, WindowSource, held_open
+from trbdyn.results.summary import Summary, summary
 
 if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
 
+SHOWN_RECORDS: Final = 20_000
+"""Most records of a result whose numbers a notebook shows unasked: they are computed from all of them."""
+SHOWN_NUMBERS: Final = (
+    "settling",
+    "speed_rpm",
+    "cage_motion",
+    "orbit_radius_over_cpr",
+    "pocket_force_peak",
+    "torque",
+    "power_loss",
+    "film_parameter_outer_min",
+    "energy_closure",
+)
+"""Entries of the summary that a result shows in a notebook; the others are folded away."""
 
-class Result(Derived):
+
+class Result(Derived, Displayed):
     """What a run gives.
 
     Every recorded field is an attribute: a read-only float64 array with time as its first axis, in SI units
@@ -197,6 +213,26 @@ class Result(Derived):
         state = "success" if self.success else "failed"
         return f"<Result: {state}, {len(self)} records, groups {', '.join(self.groups)}: {self.message}>"
 
+    def _shown(self) -> Shown:
+        rows: list[tuple[str, ...]] = [
+            ("how it ended", self.message),
+            ("records", f"{len(self)}"),
+            ("groups of fields", ", ".join(self.groups)),
+        ]
+        rows += [("warning", text) for text in self.warnings]
+        try:
+            parts = [replace(self.scene._shown(), title=f"scene: {self.scene._title()}")]
+        except FileError as error:
+            parts = [Shown("scene", notes=(str(error),))]
+        if len(self) <= SHOWN_RECORDS:
+            numbers = self.summary()._shown()
+            rows += [row[:3] for row in numbers.rows if len(row) == 4 and row[3] in SHOWN_NUMBERS]
+            parts.insert(0, replace(numbers, title="all numbers: result.summary()"))
+        else:
+            parts.insert(0, Shown("numbers", notes=("result.summary() computes them from all records.",)))
+        title = f"Result: {'success' if self.success else 'failed'}"
+        return Shown(title, tuple(rows), ("quantity", "value", "unit"), parts=tuple(parts))
+
     @property
     def success(self) -> bool:
         return self._info.success
@@ -319,8 +355,8 @@ class Result(Derived):
         sized = (self[field.name].shape[1] for field in self.fields if field.dims[:1] == ("roller",))
         return next(sized, 0)
 
-    def summary(self) -> dict[str, Any]:
-        """The numbers an engineer asks for first (see `trbdyn.results.summary`)."""
+    def summary(self) -> Summary:
+        """The numbers an engineer asks for first: a dictionary that prints as a table (see `trbdyn.results.summary`)."""
         with held_open(self._source):
             return summary(self)
 
@@ -373,7 +409,7 @@ def load(path: str | os.PathLike[str]) -> Result:
     Parameters
     ----------
     path : path-like
-        A file written by a run; segments that were added by resuming it are joined to it.
+        A file written by a run.
 
     Returns
     -------
@@ -386,4 +422,5 @@ def load(path: str | os.PathLike[str]) -> Result:
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
-    return Result(*open_run(path))
+    source = FileSource(path)
+    return Result(source, source.info)

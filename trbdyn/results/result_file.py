@@ -6,37 +6,44 @@ import errno
 import os
 import shutil
 import uuid
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
 from weakref import WeakSet
 
-import h5py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trbdyn.base.own_files import copy_content, create_draft, exists_already, is_same, output_path, put_in_place
+from trbdyn.base.locks import is_same, take_lock
+from trbdyn.base.own_files import copy_content, create_draft, exists_already, output_path, put_in_place
 from trbdyn.base.second_thread import SecondThread
-from trbdyn.errors import FileError, InputError
+from trbdyn.errors import FileError
 from trbdyn.results import fields as field_table
+from trbdyn.results import hdf5_file
 from trbdyn.results.fields import Field, Layout
-from trbdyn.results.file_format import LIBVER, block_rows, json_text, reason
-from trbdyn.results.file_head import make_columns, write_head
-from trbdyn.results.hdf5_marks import lock, take_lock
-from trbdyn.results.hdf5_quick import Column
+from trbdyn.results.file_format import PEAKS, as_kept, block_rows, json_text, reason, stored_type
+from trbdyn.results.sources import FileSource
 from trbdyn.results.waiting_rows import WaitingRows
 
 Array = NDArray[np.float64]
 
 
 FLUSH_SECONDS = 2.0
-"""Longest wall time that records wait in memory before they are written."""
+"""Wall time that records wait in memory before they are written, if they fill a chunk."""
+
+LONGEST_SECONDS = 60.0
+"""Longest wall time that records wait which fill no chunk. A part of a chunk is written again as a whole when more has come, and
+its first place is lost; so each part waits twice as long as the one before, and the file grows by less than half of it.
+"""
 
 FLUSH_BYTES = 8 << 20
 """Most bytes of records that wait in memory."""
+
+COPIED_ROWS = 4096
+"""Records that are copied at a time."""
 
 SPARE_BYTES = 1 << 20
 """Room for HDF5's own bookkeeping that is made sure of before a write."""
@@ -61,14 +68,12 @@ class ResultWriter:
         Versions, instruction set, settings: anything that JSON can hold.
     geometry : mapping of str to float, optional
         Derived geometry of the bearing, SI.
-    compression : {"gzip", "lzf"}, optional
-        Compression of the datasets; none by default.
     run_id : str, optional
-        Name of the run, the same in all of its segments; a new one by default.
-    segment : int
-        Number of the segment.
+        Name of the run; a new one by default.
     first_record : int
-        Place of the segment's first record in the run.
+        Place of the file's first record in the run.
+    taken_over : tuple of FileSource and int, optional
+        An older file of the same run, and how many of its records come first in this one, which takes its place.
     expected : int, optional
         Records that will come at most, where it is known: the file is made for them.
     overwrite : bool
@@ -82,16 +87,16 @@ class ResultWriter:
     FileError
         If the file cannot be created, or is there and is not to be replaced.
     InputError
-        If a group or the compression is unknown, or the path names no file.
+        If a group is unknown, or the path names no file.
 
     Notes
     -----
-    Records are written and flushed when two seconds have gone by or 8 MB wait. A run that is killed leaves a file that holds
-    everything up to the last flush. Room on the disk is made sure of before each write, so that a full disk is an error and
-    leaves a readable file too. Use it as a context manager, or call `close`.
+    Records are written when two seconds have gone by or 8 MB wait, a part of a chunk less often (`LONGEST_SECONDS`). A run that
+    is killed leaves a file that holds everything up to the last write. Room on the disk is made sure of before each write, so
+    that a full disk is an error and leaves a readable file too. Use it as a context manager, or call `close`.
 
-    The file belongs to the process that made it: in a forked child the writer is closed, and nothing that the child does reaches
-    the file. If another program removes or replaces the file, the records are kept (see `flush`).
+    The file belongs to the process that made it: in a forked child the writer is closed. If another program removes or replaces
+    the file, the records are kept (see `flush`).
     """
 
     def __init__(
@@ -104,84 +109,71 @@ class ResultWriter:
         groups: Sequence[str] | None = None,
         meta: Mapping[str, Any] | None = None,
         geometry: Mapping[str, float] | None = None,
-        compression: str | None = None,
         run_id: str | None = None,
-        segment: int = 0,
         first_record: int = 0,
+        taken_over: tuple[FileSource, int] | None = None,
         expected: int | None = None,
         overwrite: bool = False,
         beside: bool = False,
     ) -> None:
-        if compression not in (None, "gzip", "lzf"):
-            raise InputError.of("compression", compression, "must be 'gzip', 'lzf' or None")
         self.path = output_path(path, overwrite=overwrite)
         self.run_id = run_id or uuid.uuid4().hex
         self.n_written = 0
         self._places = {name: (offset, tuple(shape)) for name, offset, shape in layout}
         self.fields = tuple(f for f in field_table.select(fields, groups) if f.name in self._places)
-        self._width = sum(int(np.prod(self._places[f.name][1])) for f in self.fields)
-        self._block = None if expected is None else block_rows(expected, 8 * self._width)
+        shapes = {entry.name: self._places[entry.name][1] for entry in self.fields}
+        self._row_bytes = sum(stored_type(entry).itemsize * int(np.prod(shapes[entry.name])) for entry in self.fields)
+        self._block = block_rows(expected, self._row_bytes)
         self._waiting = WaitingRows(self._block)
-        self._columns: dict[str, Column] = {}
-        self._whole_run: dict[str, Column] = {}
+        self._patience = FLUSH_SECONDS
         self._failed = False
         self._second = SecondThread() if beside else None
-        self._file: Any = None
-        head = {"run_id": self.run_id, "segment": segment, "first_record": first_record}
-        header = partial(self._write_header, head, scene, dict(meta or {}), dict(geometry or {}), compression)
+        self._lock: BinaryIO | None = None
+        head = {"run_id": self.run_id, "first_record": first_record, "scene": scene.to_dict()}
+        head |= {"meta": dict(meta or {}), "geometry": dict(geometry or {})}
+        make = partial(hdf5_file.make, head=head, fields=self.fields, shapes=shapes, rows=self._block)
         with self._guard("cannot be written"):
             replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
-                # segments of one run that are begun at the same time must not share a draft
-                draft, stream = create_draft(self.path, uuid.uuid4().hex)
+                draft, self._lock = create_draft(self.path, uuid.uuid4().hex)
                 _WRITERS.add(self)
-                make = partial(self._make, draft, stream, header, replace=replaced is not None)
+                begin = partial(self._begin, draft, make, taken_over, replace=replaced is not None)
                 if self._second is None or replaced is not None:
-                    make()
+                    begin()
                 else:
-                    self._second.start(make)
+                    self._second.start(begin)
             finally:
                 if replaced is not None:
                     replaced.close()
 
-    def _make(self, draft: Path, stream: BinaryIO, header: Callable[[h5py.File], None], *, replace: bool) -> None:
+    def _begin(
+        self, draft: Path, make: partial[None], taken_over: tuple[FileSource, int] | None, *, replace: bool
+    ) -> None:
         """Make every object of the file in a draft, which then takes its place."""
-        with self._guard("cannot be written"):
-            try:
-                self._lock = lock(stream)
-                self._file = h5py.File(draft, "w", libver=LIBVER)
-                # ext4 writes a file that was emptied to the disk when it is closed the next time: better now than in the end
-                draft.open("rb").close()
-                header(self._file)
-                self._file.flush()
-                self._file.swmr_mode = True
+        try:
+            with self._guard("cannot be written"):
+                make(draft)
+                if taken_over is not None:
+                    self._take_over(draft, *taken_over)
                 try:
                     put_in_place(draft, self.path, replace=replace)
                 except FileExistsError:
                     raise exists_already(self.path) from None
-            except BaseException:
-                with suppress(AttributeError, OSError, RuntimeError):
-                    file, self._file = self._file, None
-                    if file is not None:
-                        file.close()
-                stream.close()
-                draft.unlink(missing_ok=True)
-                raise
+        except BaseException:
+            self._let_go()
+            draft.unlink(missing_ok=True)
+            raise
 
-    def _write_header(
-        self,
-        head: dict[str, Any],
-        scene: Any,
-        meta: dict[str, Any],
-        geometry: dict[str, float],
-        compression: str | None,
-        file: h5py.File,
-    ) -> None:
-        write_head(file, head, scene, meta, geometry)
-        shapes = {entry.name: self._places[entry.name][1] for entry in self.fields}
-        self._columns, self._whole_run = make_columns(
-            file, self.fields, shapes, rows=self._block, compression=compression
-        )
+    def _take_over(self, draft: Path, older: FileSource, count: int) -> None:
+        """Copy the first records of an older file of the run."""
+        self._reserve(count * self._row_bytes + SPARE_BYTES)
+        with hdf5_file.opened_to_append(draft) as file, older.held_open():
+            for start in range(0, count, COPIED_ROWS):
+                part = slice(start, min(start + COPIED_ROWS, count))
+                for entry in self.fields:
+                    hdf5_file.append(file, entry.name, older.part(entry.name, part))
+            hdf5_file.commit(file, count)
+        self.n_written = count
 
     @contextmanager
     def _guard(self, what: str) -> Iterator[None]:
@@ -209,15 +201,21 @@ class ResultWriter:
         if rows.shape[0] == 0:
             return
         self._waiting.append(rows)
-        is_late = self._waiting.seconds >= FLUSH_SECONDS
-        if not is_late and self._waiting.nbytes < FLUSH_BYTES:
+        if self._waiting.seconds < FLUSH_SECONDS and self._waiting.nbytes < FLUSH_BYTES:
             return
-        rows_to_write = self._waiting.take(whole_blocks=not is_late)
+        rows_to_write = self._waiting.take(whole_blocks=True)
+        if rows_to_write:
+            self._patience = FLUSH_SECONDS
+        elif self._waiting.seconds >= self._patience:
+            rows_to_write = self._waiting.take()
+            self._patience = min(2.0 * self._patience, LONGEST_SECONDS)
+        else:
+            return
         if self._second is None:
-            self._flush(rows_to_write)
+            self._write(rows_to_write)
         else:
             self.wait()
-            self._second.start(partial(self._flush, rows_to_write))
+            self._second.start(partial(self._write, rows_to_write))
 
     def flush(self) -> None:
         """Write what waits in memory, so that it survives a kill.
@@ -231,14 +229,7 @@ class ResultWriter:
         """
         rows = self._waiting.take()
         self.wait()
-        self._flush(rows)
-
-    def _flush_or_drop(self) -> None:
-        """At the end: what came after an error, which has been raised already, is not written."""
-        self.wait()
-        if self._failed:
-            self._waiting.take()
-        self.flush()
+        self._write(rows)
 
     def wait(self) -> None:
         """Wait for the second thread, and raise what went wrong there.
@@ -251,45 +242,73 @@ class ResultWriter:
         if self._second is not None:
             self._second.wait()
 
-    def _flush(self, pieces: list[Array]) -> None:
-        if not self._file:
+    def _write(self, pieces: list[Array], ending: Mapping[str, NDArray[Any]] | None = None) -> None:
+        """Add pieces of records, and at the end what is known of it. After an error nothing more is written: it would lie behind
+        a gap.
+        """
+        stream, lost = self._lock, None
+        if stream is None:
             raise FileError(f"{self.path}: the result file is closed already")
-        with self._guard("cannot be written"):
-            if pieces:
-                self._write(pieces)
-            self._file.flush()
-        if not is_same(self.path, self._lock):
-            self._rescue()
-
-    def _rescue(self) -> None:
-        """Keep the records of a file that has lost its name, and say where they are."""
         with self._guard("was removed or replaced while it was written, and cannot be put back"):
-            used = self._file.id.get_filesize()
-            self._file.close()
-            os.ftruncate(self._lock.fileno(), used)
-            kept, what = self.path, "was removed by another program; it is put back with the records so far"
+            if not is_same(self.path, stream):
+                lost = self._rescue(stream)
+        with self._guard("cannot be written"):
+            if pieces and self._failed:
+                raise OSError("records before these could not be written")
+            failed, self._failed = self._failed, True
+            count, full = self._room_for(sum(map(len, pieces)))
+            if count or ending:
+                with hdf5_file.opened_to_append(self.path) as file:
+                    for entry in self.fields if count else ():
+                        offset, shape = self._places[entry.name]
+                        end = offset + int(np.prod(shape))
+                        rows = np.concatenate([piece[:, offset:end] for piece in pieces])[:count]
+                        hdf5_file.append(file, entry.name, as_kept(entry, rows).reshape(-1, *shape))
+                    for name, values in (ending or {}).items():
+                        hdf5_file.append(file["run"], name, values)
+                    hdf5_file.commit(file, self.n_written + count, len(ending["ending"]) if ending else 0)
+            self.n_written += count
+            if full is not None:
+                raise full
+            self._failed = failed
+        if lost:
+            self._let_go()
+            raise FileError(f"{lost}")
+
+    def _room_for(self, count: int) -> tuple[int, OSError | None]:
+        """How many of some records the disk has room for, and the error if these are not all."""
+        full = None
+        while True:
             try:
-                copy_content(self._lock, kept)
-            except FileExistsError:
-                kept = self.path.with_name(f"{self.path.stem}.{self.run_id[:12]}{self.path.suffix}")
-                copy_content(self._lock, kept)
-                what = f"was replaced by another program; the records so far are in {kept}"
+                begun = self.n_written % self._block if count else 0
+                self._reserve((count + begun) * self._row_bytes + SPARE_BYTES)
+                return count, full
+            except OSError as error:
+                if count < 2:
+                    raise
+                full, count = error, count // 2
+
+    def _rescue(self, stream: BinaryIO) -> str:
+        """Put back a file that has lost its name, under another one if that is taken; says what has happened."""
+        lost, what = self.path, "was removed by another program; it is put back with the records so far"
+        try:
+            copy_content(stream, self.path)
+        except FileExistsError:
+            self.path = lost.with_name(f"{lost.stem}.{self.run_id[:12]}{lost.suffix}")
+            copy_content(stream, self.path)
+            what = f"was replaced by another program; the records so far are in {self.path}"
+        return f"{lost}: the result file {what}"
+
+    def _let_go(self) -> None:
+        if self._lock is not None:
             self._lock.close()
-        raise FileError(f"{self.path}: the result file {what}")
+            self._lock = None
 
     def _forget(self) -> None:
-        """In a forked child: the file is the parent's. What HDF5 still writes goes nowhere, the lock stays with the parent."""
-        if not self._file:
-            return
-        nowhere = os.memfd_create("trbdyn") if hasattr(os, "memfd_create") else os.open(os.devnull, os.O_RDWR)
-        os.dup2(nowhere, self._file.id.get_vfd_handle(), inheritable=False)
-        os.dup2(nowhere, self._lock.fileno(), inheritable=False)
-        os.close(nowhere)
+        """In a forked child: the file and its lock are the parent's."""
         self._waiting.take()
         self._second = None
-        with suppress(OSError, RuntimeError):
-            self._file.close()
-        self._lock.close()
+        self._let_go()
 
     def sync(self) -> None:
         """Write what waits, and have the system put it on the disk.
@@ -301,41 +320,18 @@ class ResultWriter:
         """
         self.flush()
         with self._guard("cannot be written"):
+            assert self._lock is not None
             os.fsync(self._lock.fileno())
 
     def _reserve(self, size: int) -> None:
-        """Make sure that the disk has room: HDF5 brings the process down when it runs out of it in the middle of a write."""
+        """Make sure that the disk has room: HDF5 brings the process down when it runs out of it in the middle of a write. HDF5
+        gives back what it does not need when it closes the file.
+        """
+        assert self._lock is not None
         if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(self._lock.fileno(), self._file.id.get_filesize(), size)
+            os.posix_fallocate(self._lock.fileno(), os.fstat(self._lock.fileno()).st_size, size)
         elif shutil.disk_usage(self.path.parent).free < size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    def _write(self, pieces: list[Array]) -> None:
-        """Add pieces of records, or as many as the disk has room for. After an error nothing more is written: it would lie
-        behind a gap.
-        """
-        if self._failed:
-            raise OSError("records before these could not be written")
-        self._failed = True
-        count, full = sum(map(len, pieces)), None
-        while True:
-            try:
-                self._reserve(sum(column.room_for(count) for column in self._columns.values()) + SPARE_BYTES)
-                break
-            except OSError as error:
-                if count < 2:
-                    raise
-                full, count = error, count // 2
-        for entry in self.fields:
-            offset, shape = self._places[entry.name]
-            end = offset + int(np.prod(shape))
-            rows = np.concatenate([piece[:, offset:end] for piece in pieces])[:count]
-            self._columns[entry.name].append(rows.reshape(-1, *shape))
-        self.n_written += count
-        if full is not None:
-            self._file.flush()
-            raise full
-        self._failed = False
 
     def finish(
         self,
@@ -374,39 +370,28 @@ class ResultWriter:
         FileError
             If the file cannot be written.
         """
-        self._flush_or_drop()
-        with self._guard("cannot be written"):
-            self._reserve(SPARE_BYTES)
-            if final_state is not None:
-                self._put("final_state", np.asarray(final_state, dtype=float))
-            for name, values in (peaks or {}).items():
-                self._whole_run[name].append(np.asarray(values, dtype=float)[np.newaxis])
-            ending = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
-            ending |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
-            self._put("ending", np.frombuffer(json_text(ending).encode(), dtype="u1"))
+        self.wait()
+        rows = self._waiting.take()
+        how = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
+        how |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
+        ending: dict[str, NDArray[Any]] = {"ending": np.frombuffer(json_text(how).encode(), dtype="u1")}
+        if final_state is not None:
+            ending["final_state"] = np.asarray(final_state, dtype=float)
+        kept = [np.ravel(peaks[entry.name]) for entry in self.fields if entry.group == PEAKS] if peaks else []
+        if kept:
+            ending["peaks"] = np.concatenate(kept, dtype=float)
+        self._write([] if self._failed else rows, ending)
         self.close()
-
-    def _put(self, name: str, values: NDArray[Any]) -> None:
-        self._file[name].resize(values.size, axis=0)
-        self._file[name][:] = values
-        self._file.flush()
 
     def close(self) -> None:
         """Write what waits and close the file; an unfinished run stays marked as such."""
         try:
             self.wait()
-            if self._file:
-                self._flush_or_drop()
+            rows = self._waiting.take()
+            if self._lock is not None and rows and not self._failed:
+                self._write(rows)
         finally:
-            self._close()
-
-    def _close(self) -> None:
-        if self._file:
-            with self._guard("cannot be closed"):
-                used = self._file.id.get_filesize()
-                self._file.close()
-                os.ftruncate(self._lock.fileno(), used)
-                self._lock.close()
+            self._let_go()
 
     def __enter__(self) -> Self:
         return self

@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import textwrap
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -19,11 +18,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from trbdyn.base.own_files import output_path, write_whole
-from trbdyn.errors import FileError
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.errors import FileError, TrbError
+from trbdyn.model.motion import is_constant
 from trbdyn.results import observables
 from trbdyn.results.confidence import confidence
+from trbdyn.standards.sheet import at_equilibrium, sheet
 
 if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
     from trbdyn.results.result import Result
 
 LABELS: dict[str, tuple[str, str]] = {
@@ -35,6 +38,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "settling": ("settling: settled, drifting or unknown", ""),
     "settling_reason": ("why it is not known to have settled", ""),
     "settling_time_scale": ("time scale of the drift", "s"),
+    "settling_needed": ("length of a run expected to tell", "s"),
     "creep_time": ("time of the rollers' creep", "s"),
     "window_start": ("averages from", "s"),
     "window_end": ("averages to", "s"),
@@ -54,6 +58,8 @@ LABELS: dict[str, tuple[str, str]] = {
     "whirl_coherence": ("share of turning in the cage centre's motion", ""),
     "speed_deviation_ratio": ("cage centre speed, deviation / mean", ""),
     "axial_over_clearance": ("axial position / axial play", ""),
+    "running_play_radial": ("radial play of the warm, turning cage", "m"),
+    "running_play_circumferential": ("circumferential play of the warm, turning cage", "m"),
     "tilt_rms": ("cage tilt, rms", "rad"),
     "lean_mean": ("tilt to the side of the cage's displacement, mean", "rad"),
     "spacing_std_deg": ("roller spacing, deviation", "deg"),
@@ -70,6 +76,12 @@ LABELS: dict[str, tuple[str, str]] = {
     "outer_pressure_max": ("largest pressure at any step, outer raceway", "Pa"),
     "inner_pressure_max": ("largest pressure at any step, inner raceway", "Pa"),
     "rib_pressure_max": ("largest pressure at any step, rib", "Pa"),
+    "equivalent_load": ("equivalent dynamic load P (ISO 281)", "N"),
+    "basic_life_hours": ("basic rating life L10h (ISO 281)", "h"),
+    "modified_life_hours": ("modified rating life Lnmh (ISO 281)", "h"),
+    "reference_life_hours": ("basic reference rating life L10rh (ISO 16281)", "h"),
+    "static_safety": ("static safety C0/P0 (ISO 76)", ""),
+    "viscosity_ratio": ("viscosity ratio kappa (ISO 281)", ""),
     "film_parameter_outer": ("film parameter, outer raceway", ""),
     "film_parameter_inner": ("film parameter, inner raceway", ""),
     "film_parameter_rib": ("film parameter, rib", ""),
@@ -87,6 +99,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "wall_s": ("wall time", "s"),
     "wall_s_per_revolution": ("wall time a revolution", "s"),
     "confidence_note": ("About the numbers behind ±", ""),
+    "accuracy_note": ("About the accuracy", ""),
     "confidence": ("half width of the 95 % confidence interval", ""),
     "torque_note": ("Why the torques of the rings differ", ""),
     "power_split": ("power loss by mechanism", "W"),
@@ -107,7 +120,19 @@ RINGS_DIFFER: Final = 0.01
 """Share by which the torques of the two rings may differ without a word."""
 
 
-def summary(result: Result) -> dict[str, Any]:
+class Summary(dict[str, Any], Displayed):
+    """The summary of a run: a dictionary of plain values that prints as a table with units."""
+
+    def __repr__(self) -> str:
+        return table(self)
+
+    __str__ = __repr__
+
+    def _shown(self) -> Shown:
+        return shown(self)
+
+
+def summary(result: Result) -> Summary:
     """Summarise a run.
 
     Parameters
@@ -117,15 +142,41 @@ def summary(result: Result) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        Numbers by the names of `LABELS`, SI units; ``torque_split`` and ``power_split`` are dictionaries.
+    Summary
+        A dictionary: numbers by the names of `LABELS`, SI units; ``torque_split`` and ``power_split`` are dictionaries.
     """
     out: dict[str, Any] = {"success": result.success, "message": result.message}
     out |= {"revolutions": result.revolutions, "duration": result.duration}
     if len(result) > 1:
         out |= _motion(result)
+    out |= _running_plays(result.scene)
+    out |= _ratings(result.scene)
     out |= _cost(result)
-    return {name: clean(out.get(name)) for name in LABELS}
+    out["accuracy_note"] = result.meta.get("accuracy") or None
+    return Summary({name: clean(out.get(name)) for name in LABELS})
+
+
+def _running_plays(scene: Scene) -> dict[str, Any]:
+    """Plays of the pockets where they are not those of the drawing."""
+    if scene.growth is None or scene.effects.bodies == "rollers":
+        return {}
+    radial, circumferential = scene.running_plays
+    return {"running_play_radial": radial, "running_play_circumferential": circumferential}
+
+
+def _ratings(scene: Scene) -> dict[str, Any]:
+    """Numbers of the engineer's sheet (`trbdyn.rating`) where speed and loads are constant; its equilibrium takes some 10 ms."""
+    if (
+        not all(is_constant(quantity) for quantity in scene.ring_quantities().values())
+        or scene.rotating_load is not None
+    ):
+        return {}
+    try:
+        found = sheet(scene, at_equilibrium(scene))
+    except TrbError:
+        return {}
+    names = ("equivalent_load", "modified_life_hours", "reference_life_hours", "static_safety", "viscosity_ratio")
+    return {"basic_life_hours": found.life_hours} | {name: getattr(found, name) for name in names}
 
 
 def _motion(result: Result) -> dict[str, Any]:
@@ -135,15 +186,17 @@ def _motion(result: Result) -> dict[str, Any]:
         found = result.settling()
         out |= {"settled": found.settled, "settling": found.answer, "settling_reason": found.reason or None}
         out |= {"settling_time_scale": found.time_scale, "creep_time": found.creep_time}
+        out["settling_needed"] = found.needed
         window = result.window(found.time)
+        unsettled = "" if found.settled else found.reason
     else:
-        out["settling_reason"] = "the groups cage and rollers were not recorded"
+        out["settling_reason"] = unsettled = "the groups cage and rollers were not recorded"
         window = result.window(float(result["time"][len(result) // 2]))
     time = window["time"]
     out |= {"window_start": float(time[0]), "window_end": float(time[-1])}
     out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
     out |= averages(window)
-    out["confidence"], out["confidence_note"] = confidence(window, averages)
+    out["confidence"], out["confidence_note"] = confidence(window, averages, unsettled)
     if not result.has_cage:
         out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))
     if "energy" in groups:
@@ -349,25 +402,29 @@ def write_json(values: Mapping[str, Any], path: str | os.PathLike[str], *, overw
 
 def table(values: Mapping[str, Any]) -> str:
     """A summary as a table for people: words, number, unit; entries that are None are left out, sentences follow the table."""
-    rows: list[tuple[str, str, str]] = []
-    sentences = ""
+    return shown(values).text(columns=3)
+
+
+def shown(values: Mapping[str, Any]) -> Shown:
+    """A summary as a table: words, number, unit, and the name in the summary."""
+    rows: list[tuple[str, ...]] = []
+    notes: list[str] = []
     for name, (words, unit) in LABELS.items():
         value = values.get(name)
         if value is None or name in UNPRINTED:
             continue
         if name == "settling":
-            rows.append(("settled", _settled_words(values), ""))
-        elif name in ("torque_note", "confidence_note"):
-            sentences += "\n\n" + textwrap.fill(f"{words}: {value}", 100)
+            rows.append(("settled", _settled_words(values), "", name))
+        elif name in ("torque_note", "confidence_note", "accuracy_note"):
+            notes.append(f"{words}: {value}")
         elif isinstance(value, Mapping):
-            rows.append((words, "", ""))
+            rows.append((words, "", "", name))
             rows.extend(
                 (f"    {part.replace('_', ' ')}", _number(entry), unit) for part, entry in value.items() if entry
             )
         else:
-            rows.append((words, _number(value, (values.get("confidence") or {}).get(name)), unit))
-    width = max(len(words) for words, _, _ in rows)
-    return "\n".join(f"{words:<{width}}  {number} {unit}".rstrip() for words, number, unit in rows) + sentences
+            rows.append((words, _number(value, (values.get("confidence") or {}).get(name)), unit, name))
+    return Shown(rows=tuple(rows), head=("quantity", "value", "unit", "name"), notes=tuple(notes))
 
 
 def _settled_words(values: Mapping[str, Any]) -> str:

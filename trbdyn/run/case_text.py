@@ -93,13 +93,22 @@ def _lines(model: Model, values: dict[str, Any], skip: set[str], prefix: str, as
             continue
         text = texts.get(key, "")
         if path in assumed:
-            lines.append(f"# {path} = {_toml(value)}  # assumed")
+            lines.append(f"# {path} = {_toml(rounded(value))}  # assumed")
         elif value is None or value == []:
             lines.append(f"# {path} =")
         else:
             lines.append(f"{path} = {_toml(value)}")
         lines += [f"    # {part}" for part in textwrap.wrap(text, WIDTH - 6)]
     return lines
+
+
+def rounded(value: Any, digits: int = 6) -> Any:
+    """Numbers in tables and lists with so many digits: what follows from rounded numbers is not known to sixteen of them."""
+    if isinstance(value, float):
+        return float(f"{value:.{digits}g}")
+    if isinstance(value, dict):
+        return {key: rounded(entry, digits) for key, entry in value.items()}
+    return [rounded(entry, digits) for entry in value] if isinstance(value, list) else value
 
 
 def _inline(model: Model) -> bool:

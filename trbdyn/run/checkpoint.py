@@ -215,11 +215,11 @@ def write(path: Path, checkpoint: Checkpoint) -> None:
                 stream.write(checkpoint.to_bytes())
                 stream.flush()
                 os.fsync(stream.fileno())
-            whole = _belongs(path, checkpoint.run_id)
-            # the older one is kept where the newer one is damaged
-            if whole and (_belongs(older, checkpoint.run_id) or not older.exists()):
-                os.replace(path, older)
-            os.replace(draft, path)
+                whole = _belongs(path, checkpoint.run_id)
+                # the older one is kept where the newer one is damaged
+                if whole and (_belongs(older, checkpoint.run_id) or not older.exists()):
+                    os.replace(path, older)
+                os.replace(draft, path)
         except BaseException:
             draft.unlink(missing_ok=True)
             raise

@@ -12,25 +12,34 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from trbdyn import _core
 from trbdyn.base.shipped import DATA
 from trbdyn.errors import InputError, StepError
 from trbdyn.model.flatten import diameter_deviation
 from trbdyn.model.motion import History, values_of
 from trbdyn.run.keeping import interval
+from trbdyn.run.process import has_a_spare_core
 
 if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
     from trbdyn.run.simulation import Simulation
 
 TABLE: Final = DATA / "accuracy.json"
 """Errors over tolerances, written by ``python benchmarks/work_precision.py --make-table``."""
 
-PROBE: Final = 50e-3
-"""Bearing time of the probe (s): about a turn of the cage at 3000 rpm, with its quiet and its busy parts."""
-PATIENCE: Final = 0.25
-"""Wall time after which the probe ends early (s)."""
+PART: Final = 0.5
+"""Length of a part of the probe, in turns of the shaft."""
+LEAST_PARTS: Final = 8
+MOST_PARTS: Final = 32
+"""Parts of a probe: at least, unless it or the run is shorter, and at most."""
+STEADY: Final = 0.15
+"""Difference of the steps in the halves of a probe up to which the motion is taken to go on as it is."""
+MOST_STEPS: Final = 15_000
+"""Steps after which a probe ends, about a second of computing."""
 WARM_UP: Final = 5e-4
 """Bearing time before the probe (s): the integrator starts with tiny steps."""
-_RECORDS: Final = 20
+MOST_ROWS: Final = 2000
+"""Records of a part of a probe, at most."""
 SAME: Final = 1e-6
 """Relative difference up to which tolerances count as those of a preset."""
 LEAST_SCATTER: Final = 1e-7
@@ -47,6 +56,8 @@ class Estimate:
         Length of the run (s).
     wall_s : float
         Expected wall time (s), records included.
+    wall_s_low, wall_s_high : float
+        The same from the quickest and the slowest half turn of the shaft in the second half of the probe (s).
     real_time_factor : float
         Bearing time over wall time.
     steps, evaluations : int
@@ -67,6 +78,8 @@ class Estimate:
         Expected bias of the mean pocket force, and of the share of time that pockets are touched, over a longer run: mean
         relative difference from runs with far smaller tolerances. nan where it was not measured: for tolerances that are not
         those of a preset.
+    bias_pocket_peak, bias_raceway_peak : float
+        Expected bias of the largest forces in the pockets, and of the largest loads on the raceways, in the same way.
     window : float
         Length of trajectories that the errors belong to (s), median.
     case : str
@@ -78,6 +91,8 @@ class Estimate:
 
     bearing_time: float
     wall_s: float
+    wall_s_low: float
+    wall_s_high: float
     real_time_factor: float
     steps: int
     evaluations: int
@@ -90,15 +105,17 @@ class Estimate:
     error_power: float
     bias_pocket_force: float
     bias_contact_duty: float
+    bias_pocket_peak: float
+    bias_raceway_peak: float
     window: float
     case: str
     extrapolated: bool
 
     def __str__(self) -> str:
         lines = [
-            f"{self.bearing_time:.4g} s of bearing time in about {self.wall_s:.3g} s "
-            f"(real time x {self.real_time_factor:.3g}), {self.steps:,} steps",
-            f"{self.records:,} records, {self.memory_mb:.3g} MB",
+            f"{self.bearing_time:.4g} s of bearing time in about {self.wall_s:.3g} s, {self.wall_s_low:.2g} to "
+            f"{self.wall_s_high:.2g} s (real time x {self.real_time_factor:.3g}), {self.steps:,} steps",
+            f"{self.records:,} records, {self.memory_mb:.3g} MB in memory",
             f"cage centre within {100.0 * self.error_cage_over_cpr:.2g} % of Cpr over {1e3 * self.window:.2g} ms "
             f"(worst {100.0 * self.error_cage_over_cpr_worst:.2g} %), power loss within {100.0 * self.error_power:.2g} % "
             f"(scene '{self.case}')",
@@ -108,10 +125,20 @@ class Estimate:
                 f"bias of means over longer runs: pocket force {100.0 * self.bias_pocket_force:+.2g} %, "
                 f"contact duty {100.0 * self.bias_contact_duty:+.2g} %"
             )
+        if math.isfinite(self.bias_pocket_peak):
+            lines.append(
+                f"bias of peaks: pocket forces {100.0 * self.bias_pocket_peak:+.2g} %, "
+                f"raceway loads {100.0 * self.bias_raceway_peak:+.2g} %"
+            )
         return "\n".join(lines)
 
 
-_BIASES: Final = {"bias_pocket_force": "bias_pocket_mean", "bias_contact_duty": "bias_duty"}
+_BIASES: Final = {
+    "bias_pocket_force": "bias_pocket_mean",
+    "bias_contact_duty": "bias_duty",
+    "bias_pocket_peak": "bias_pocket_peak",
+    "bias_raceway_peak": "bias_raceway_peak",
+}
 _ERRORS: Final = ("error_cage_over_cpr", "error_cage_over_cpr_worst", "error_load", "error_cage_speed", "error_power")
 
 
@@ -128,11 +155,13 @@ def estimate(
     revolutions: float | None = None,
     duration: float | None = None,
     save_every: float | None = None,
-    probe: float = PROBE,
+    probe: float | None = None,
 ) -> Estimate:
     """Expected wall time and error of a run from the present state.
 
-    The wall time is extrapolated from a probe of a copy, so it holds for as long as the bearing moves as it does now. Errors
+    The wall time is extrapolated from a probe of a copy, which steps on until its second half takes about as many steps as its
+    first: rollers that leave the loaded zone, or a cage that begins to whirl, may take a turn or more until they are as busy as
+    they stay. The second half is what counts, so the estimate holds for as long as the bearing moves as it does there. Errors
     are those measured for the same tolerances on the shipped bearing: on another they are a guide.
 
     Parameters
@@ -143,8 +172,9 @@ def estimate(
         How far to go, in turns of the shaft or s; one of both must be given.
     save_every : float, optional
         Time between records (s); by default that of `Simulation.run`.
-    probe : float
-        Bearing time of the probe (s); not more than the run, and it ends early after `PATIENCE` seconds of wall time.
+    probe : float, optional
+        Bearing time of the probe (s); by default until the motion goes on as it is, from `LEAST_PARTS` to `MOST_PARTS` half turns
+        of the shaft. Not more than the run, and it ends early after `MOST_STEPS` steps.
 
     Raises
     ------
@@ -153,21 +183,22 @@ def estimate(
     StepError
         If the probe fails.
     """
-    if not probe > 0.0:
+    if probe is not None and not probe > 0.0:
         raise InputError.of("probe", probe, "must be > 0 (s)")
     changes = {"revolutions": revolutions, "duration": duration}
     options = sim.options.replace(**changes if save_every is None else {**changes, "save_every": save_every})
     start = sim.time
     length = options.end_time(sim.scene.speed_rpm, start) - start
     save_every = interval(length, sim.scene.speed_rpm) if save_every is None else save_every
-    rates = _probe(sim, min(probe, length))
+    rates = _probe(sim, length, save_every, probe)
     records = max(math.ceil(length / save_every - 1e-9), 1) + 1
-    wall = length * rates["wall"] + records * rates["record"]
     found = _errors(sim)
     return Estimate(
         bearing_time=length,
-        wall_s=wall,
-        real_time_factor=length / wall,
+        wall_s=length * rates["wall"],
+        wall_s_low=length * rates["wall_low"],
+        wall_s_high=length * rates["wall_high"],
+        real_time_factor=1.0 / rates["wall"],
         steps=round(length * rates["steps"]),
         evaluations=round(length * rates["rhs_evaluations"]),
         records=records,
@@ -176,36 +207,65 @@ def estimate(
     )
 
 
-def _probe(sim: Simulation, length: float) -> dict[str, float]:
-    """Wall time, steps and evaluations per second of bearing time, and the wall time of a record."""
+@dataclass(frozen=True)
+class _Part:
+    """A part of a probe: how long it is in bearing time and wall time (s), and what it took."""
+
+    bearing: float
+    wall: float
+    steps: float
+    rhs_evaluations: float
+
+
+def _probe(sim: Simulation, length: float, save_every: float, given: float | None) -> dict[str, float]:
+    """Wall time, steps and evaluations per second of bearing time, with records and peaks as a run has them."""
     other = sim.copy()
+    span = length if given is None else min(given, length)
+    turn = 60.0 / max(_largest(sim.scene.speed_rpm), 60.0 / span)
+    part = span / LEAST_PARTS if given is not None else min(PART * turn, span / 2)
+    parts: list[_Part] = []
     try:
-        _advance(other, min(WARM_UP, 0.25 * length))
-        before, began, from_time = other.statistics, clock.perf_counter(), other.time
-        _advance(other, length)
-    except StepError as error:
+        _part(other, min(WARM_UP, 0.25 * span), save_every, MOST_STEPS)
+        other._core.begin_peaks(other.time)
+        end, left = other.time + span, float(MOST_STEPS)
+        while other.time < end and left > 0:
+            parts.append(_part(other, min(part, end - other.time), save_every, int(left)))
+            left -= parts[-1].steps
+            if given is None and len(parts) >= LEAST_PARTS and (_steady(parts) or len(parts) >= MOST_PARTS):
+                break
+    except _core.CoreStepError as error:
         raise StepError(f"the probe of the estimate failed: {error}", time=other.time) from None
-    wall, bearing = clock.perf_counter() - began, other.time - from_time
-    after = other.statistics
-    state = other.state
+    later = parts[len(parts) // 2 :]
+    bearing = sum(one.bearing for one in later)
+    out = {name: sum(getattr(one, name) for one in later) / bearing for name in ("wall", "steps", "rhs_evaluations")}
+    each = [one.wall / one.bearing for one in later]
+    return out | {"wall_low": min(each), "wall_high": max(each)}
+
+
+def _part(sim: Simulation, length: float, save_every: float, most_steps: int) -> _Part:
+    """At least one step."""
+    core, before, since = sim._core, sim.statistics, sim._core.time
+    count = min(max(round(length / save_every), 1), MOST_ROWS)
+    times = since + length * np.arange(1, count + 1) / count
+    rows = np.empty((count, core.row_length))
     began = clock.perf_counter()
-    for _ in range(_RECORDS):
-        other._core.observe(state.time, state.vector)
-    record = (clock.perf_counter() - began) / _RECORDS
-    counted = {name: (after[name] - before[name]) / bearing for name in ("steps", "rhs_evaluations")}
-    return counted | {"wall": wall / bearing, "record": record}
+    core.run(times, rows, max(most_steps, 1), math.inf, has_a_spare_core())
+    wall, after = clock.perf_counter() - began, sim.statistics
+    counted = {name: after[name] - before[name] for name in ("steps", "rhs_evaluations")}
+    return _Part(core.time - since, wall, **counted)
 
 
-def _advance(sim: Simulation, length: float) -> None:
-    end, enough = sim.time + length, clock.perf_counter() + PATIENCE
-    while sim.time < end and clock.perf_counter() < enough:
-        sim.step()
+def _steady(parts: Sequence[_Part]) -> bool:
+    """Whether the halves of a probe take about as many steps."""
+    first, second = parts[: len(parts) // 2], parts[len(parts) // 2 :]
+    rates = [sum(one.steps for one in half) / sum(one.bearing for one in half) for half in (first, second)]
+    return abs(rates[1] - rates[0]) <= STEADY * max(rates)
 
 
 def _errors(sim: Simulation) -> dict[str, Any]:
     """Errors from the table: those of a preset, else interpolated over the tolerances' scale."""
     options, measured = sim.options, table()
-    case = _case(sim, measured["scenes"])
+    case = case_like(sim, measured["scenes"])
     window = float(np.median(measured["windows_s"][case]))
     place = {"window": window, "case": case} | dict.fromkeys(_BIASES, math.nan)
     standard = options.max_order == 2 and options.rings_share is None and options.impact_share is None
@@ -214,7 +274,7 @@ def _errors(sim: Simulation) -> dict[str, Any]:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
     tolerances = options.tolerances.model_dump()
     for preset in measured["presets_of_scenes"].get(case, {}).values():
-        if _same(tolerances, preset["tolerances"]):
+        if same_tolerances(tolerances, preset["tolerances"]):
             bias = preset.get("bias", {})
             far = {name: _number(bias.get(key)) for name, key in _BIASES.items()}
             return place | far | {name: _number(preset[name]) for name in _ERRORS} | {"extrapolated": False}
@@ -229,11 +289,16 @@ def _number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def _case(sim: Simulation, scenes: Mapping[str, Mapping[str, Any]]) -> str:
-    """The measured scene that a simulation is most like: loaded on one side, with unequal rollers, or by speed and axial load;
-    of those with the same, by whether its cage lies still or whirls.
+def case_like(sim: Simulation, scenes: Mapping[str, Mapping[str, Any]]) -> str:
+    """The measured scene that a simulation is most like."""
+    colliding = sim.scene.effects.bodies != "rollers" and _whirls(sim)
+    return most_like(sim.scene, _axial(sim), colliding, scenes)
+
+
+def most_like(scene: Scene, axial: float, colliding: bool, scenes: Mapping[str, Mapping[str, Any]]) -> str:
+    """The measured scene that another one is most like: loaded on one side, with unequal rollers, or by speed and axial load
+    (N); of those with the same, by whether its cage lies still or whirls.
     """
-    scene = sim.scene
     if _largest(scene.radial_load) > 0.0:
         like = [name for name, one in scenes.items() if one["radial_load"] > 0.0]
     elif float(np.ptp(diameter_deviation(scene))) > LEAST_SCATTER:
@@ -241,13 +306,12 @@ def _case(sim: Simulation, scenes: Mapping[str, Mapping[str, Any]]) -> str:
     else:
         like = [name for name, one in scenes.items() if one["radial_load"] == 0.0 and one["diameter_range"] == 0.0]
     like = like or list(scenes)
-    speed, load = max(_largest(scene.speed_rpm), 1e-3), max(_axial(sim), 1.0)
+    speed, load = max(_largest(scene.speed_rpm), 1e-3), max(axial, 1.0)
     distance = {
         name: math.hypot(math.log(speed / scenes[name]["speed_rpm"]), math.log(load / scenes[name]["axial_load"]))
         for name in like
     }
     nearest = [name for name in like if distance[name] <= min(distance.values()) + 1e-9]
-    colliding = scene.effects.bodies != "rollers" and _whirls(sim)
     same = [name for name in nearest if scenes[name]["colliding"] == colliding]
     return (same or nearest)[0]
 
@@ -267,15 +331,20 @@ def _axial(sim: Simulation) -> float:
 
 
 def _whirls(sim: Simulation) -> bool:
-    """Whether the cage's centre moves about as fast as on an orbit with the cage's speed and its play as radius."""
     record = sim.record()
     speed = record["cage_velocity"]
-    whirl = float(np.hypot(speed[0], speed[1])) / sim.scene.bearing.cage.play_radial
-    return whirl > 0.3 * abs(float(record["cage_angular_velocity"][2]))
+    spin = float(record["cage_angular_velocity"][2])
+    return fast_cage(float(np.hypot(speed[0], speed[1])), spin, sim.scene.bearing.cage.play_radial)
 
 
-def _same(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
-    return all(math.isclose(one[name], value, rel_tol=SAME) for name, value in other.items())
+def fast_cage(speed: float, spin: float, play: float) -> bool:
+    """Whether the cage's centre moves (m/s) about as fast as on an orbit with the cage's speed (rad/s) and its play (m)."""
+    return speed > 0.3 * abs(spin) * play
+
+
+def same_tolerances(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    """Whether tolerances are those of a preset."""
+    return bool(other) and all(math.isclose(one[name], value, rel_tol=SAME) for name, value in other.items())
 
 
 def _scale(tolerances: Mapping[str, float], base: Mapping[str, float]) -> float:

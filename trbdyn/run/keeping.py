@@ -1,9 +1,8 @@
-"""What a run keeps if nobody says so: every quantity at short intervals for short runs, less of it for long ones.
+"""What a run keeps if nobody says so: every quantity 32 times a turn of the shaft, closer in short runs, less of it in long ones.
 
-A record of all quantities of a bearing with 12 rollers takes 10 kB, half of it the group peaks. The default is a record every
-0.1 ms with all groups, up to 5000 records. Longer runs keep as many at longer intervals, but not longer than 1 ms or a twentieth
-of a turn of the shaft, so that orbits can still be read; peaks are those of all steps at any interval. From 0.5 ms the files are
-compressed. Beyond 20 000 records the groups contacts and pocket are left out; the peaks and means of their loads are in the
+A record of all quantities of a bearing with 12 rollers takes 2.7 kB in a file (its numbers are compressed), so a turn takes
+less than 0.1 MB. Shorter intervals are for runs that would have fewer than 200 records otherwise. Peaks are those of all steps
+at any interval. Beyond 20 000 records the groups contacts and pocket are left out; the peaks and means of their loads are in the
 group peaks. What is given explicitly is kept as it is given.
 """
 
@@ -15,31 +14,28 @@ from typing import Any, Final
 from trbdyn.model.motion import History, values_of
 from trbdyn.run.options import GROUPS, Group
 
+A_TURN: Final = 32
+"""Records a turn of the shaft at its highest speed."""
+RECORDS: Final = 200
+"""Records that a short run has at least, where `SHORTEST` allows it."""
 SHORTEST: Final = 1e-4
-"""Default interval of records (s)."""
-RECORDS: Final = 5_000
-"""Records up to which a run keeps them at the shortest interval."""
-LONGEST: Final = 1e-3
-"""Longest default interval (s)."""
-OF_A_TURN: Final = 0.05
-"""Longest default interval in turns of the shaft at its highest speed."""
+"""Shortest default interval of records (s)."""
+LONGEST: Final = 1e-2
+"""Longest default interval (s), for slow shafts."""
+RESTING: Final = 1e-3
+"""Default interval (s) where the shaft rests."""
 MANY: Final = 20_000
 """Records beyond which the groups `DETAILS` are left out by default."""
 DETAILS: Final[tuple[Group, ...]] = ("contacts", "pocket")
-COMPRESSED: Final = 5e-4
-"""Interval (s) from which result files are compressed: with denser records compression would cost more time than the records."""
 
 
 def interval(length: float, speed_rpm: float | History) -> float:
-    """Default interval of records (s) of a run of some length (s): 1, 2 or 5 times a power of ten."""
+    """Default interval of records (s) of a run of some length (s): a 32nd of a turn, or a half, a quarter and so on of that."""
     fastest = max(map(abs, values_of(speed_rpm))) / 60.0
-    most = min(LONGEST, OF_A_TURN / fastest) if fastest > 0.0 else LONGEST
-    wanted = length / RECORDS
-    if wanted <= SHORTEST or most <= SHORTEST:
-        return SHORTEST
-    steps = [factor * 10.0**power for power in (-4, -3) for factor in (1.0, 2.0, 5.0)]
-    allowed = [step for step in steps if step <= most * (1.0 + 1e-9)]
-    return next((step for step in allowed if step >= wanted * (1.0 - 1e-9)), allowed[-1])
+    every = min(LONGEST, 1.0 / (A_TURN * fastest)) if fastest > 0.0 else RESTING
+    while every > length / RECORDS and every > SHORTEST:
+        every /= 2.0
+    return max(every, SHORTEST)
 
 
 def kept_by_default(
@@ -67,13 +63,8 @@ def kept_by_default(
     return {"save_every": every, "save_groups": tuple(group for group in GROUPS if not (many and group in DETAILS))}
 
 
-def compression(save_every: float) -> str | None:
-    """How the datasets of a result file are compressed."""
-    return "gzip" if save_every >= COMPRESSED * (1.0 - 1e-9) else None
-
-
 def said(save_every: float, groups: Sequence[str]) -> str:
     """What is kept, in words; what is left out is named."""
     left = [group for group in GROUPS if group not in groups and group != "time"]
-    words = f"a record every {1e3 * save_every:g} ms of bearing time"
+    words = f"a record every {1e3 * save_every:.4g} ms of bearing time"
     return words + (f", without the groups {', '.join(left)}" if left else ", all groups")

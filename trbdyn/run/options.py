@@ -10,6 +10,7 @@ from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
 from trbdyn.model.core_table import SETTINGS, setting
 from trbdyn.model.motion import MAX_TIME, History
+from trbdyn.model.shaft import time_to_turn
 
 Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy", "peaks"]
 GROUPS: Final[tuple[Group, ...]] = (
@@ -63,7 +64,6 @@ RINGS_SHARE: Final = {"fast": 0.1, "standard": SETTINGS["rings_share"].default, 
 IMPACT_SHARE: Final = {"fast": 0.1, "standard": SETTINGS["impact_share"].default, "reference": 0.01}
 """`RunOptions.impact_share` of the presets."""
 
-
 OF_ONE_RUN: Final = ("revolutions", "duration", "until", "save_every", "save_groups")
 """Fields of `RunOptions` that belong to one run: how long it is, and what it keeps."""
 
@@ -80,8 +80,8 @@ class RunOptions(Model):
     until : dict of str to float
         The run ends earlier, when the 95 % confidence intervals of these averages of the summary are narrow enough: largest half
         width over the average, by name, for instance ``{"torque": 0.01}``. Empty: it never does.
-    save_every : float
-        Time between saved records (s).
+    save_every : float, optional
+        Time between saved records (s); by default that of `trbdyn.run.keeping`, 32 records a turn of the shaft.
     save_groups : sequence of str
         Groups of quantities to save; 'time' is always among them. With 'peaks' the core looks at all loads at the end of every
         step and keeps their extremes, means and impacts over each record's interval and the whole run; without it that costs
@@ -115,7 +115,7 @@ class RunOptions(Model):
     revolutions: Annotated[Number, unit("1", gt=0)] | None = None
     duration: Annotated[Number, unit("s", gt=0)] | None = None
     until: dict[str, Annotated[Number, unit("1", gt=0, lt=1)]] = Field(default_factory=dict)
-    save_every: Annotated[Number, unit("s", gt=0)] = 1e-4
+    save_every: Annotated[Number | None, unit("s", gt=0)] = None
     save_groups: Annotated[tuple[Group, ...], Field(min_length=1)] = GROUPS
     accuracy: Literal["fast", "standard", "reference"] = "standard"
     integrator: Literal["bdf", "erk"] = "bdf"
@@ -186,37 +186,10 @@ class RunOptions(Model):
             field, value, unit, length = "duration", self.duration, " (s)", self.duration
         elif self.revolutions is not None:
             field, value, unit = "revolutions", self.revolutions, ""
-            length = _time_to_turn(self.revolutions, speed_rpm, start)
+            length = time_to_turn(self.revolutions, speed_rpm, start)
         else:
             raise InputError.of(("run", "revolutions"), None, "must be given, or duration (s)")
         if not start < start + length <= MAX_TIME:
             allowed = f"must end the run after its start at {start:g} s, and not later than at {MAX_TIME:g} s{unit}"
             raise InputError.of(("run", field), value, allowed)
         return start + length
-
-
-def _time_to_turn(revolutions: float, speed_rpm: float | History, start: float) -> float:
-    """How long the shaft takes for a number of turns, one way or the other (s)."""
-    if not isinstance(speed_rpm, History):
-        if speed_rpm == 0.0:
-            raise InputError.of(("run", "revolutions"), revolutions, "the shaft stands still; give duration (s)")
-        return 60.0 * revolutions / abs(speed_rpm)
-    last = max(speed_rpm.times[-1], start)
-
-    def turns(end: float) -> float:
-        return abs(speed_rpm.integral(start, end)) / 60.0
-
-    if turns(last) < revolutions:
-        end = last + 1.0
-        if turns(end) <= turns(last):
-            raise InputError.of(
-                ("run", "revolutions"), revolutions, "the shaft does not turn that often; give duration (s)"
-            )
-        return last - start + (revolutions - turns(last)) / (turns(end) - turns(last))
-    low, high = start, last
-    while high - low > 1e-15 * max(abs(high), 1e-9):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if turns(middle) < revolutions else (low, middle)
-    return high - start

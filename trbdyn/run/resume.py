@@ -8,15 +8,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 from trbdyn import _core
-from trbdyn.base.own_files import file_path
+from trbdyn.base.locks import take_lock
+from trbdyn.base.own_files import file_path, set_aside
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.scene import Scene
 from trbdyn.results.file_format import reason
-from trbdyn.results.hdf5_marks import mend, take_lock
 from trbdyn.results.result import Result, load
-from trbdyn.results.sources import FileSource, open_run, run_id_in, segment_paths
+from trbdyn.results.sources import FileSource
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint
+from trbdyn.run.keeping import kept_by_default
 from trbdyn.run.options import OF_ONE_RUN, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
 from trbdyn.run.simulation import Simulation
@@ -32,8 +33,8 @@ def resume(
     """Go on with a run that was cut off, from its last checkpoint.
 
     It takes the steps that the uninterrupted run would have taken: records and final state are bit-identical, on the
-    same build and instruction set. Records go to a segment of their own, ``run.part1.h5``, which `load` joins to
-    ``run.h5``.
+    same build and instruction set. The records before the checkpoint are copied into a new file, which takes the place of the
+    old one.
 
     Parameters
     ----------
@@ -74,59 +75,51 @@ def resume(
         notes.append(note)
         warnings.warn(note, UserWarning, stacklevel=3)
 
-    def run_on(first: FileSource | None, segment: int, *, overwrite: bool = False) -> Result:
+    def run_on(older: FileSource | None) -> Result:
         found = checkpoint.read_last_good(output, tell)
-        if first is not None and first.run_id != found.run_id:
+        if older is not None and older.run_id != found.run_id:
             raise FileError(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint belongs to another run than {output}"
             )
         sim, options = _revive(output, found, instruction_set, tell)
-        times = output_times(found.start, found.end, options.save_every)
+        kept = kept_by_default(found.end - found.start, sim.scene.speed_rpm, options.save_every, options.save_groups)
+        times = output_times(found.start, found.end, kept["save_every"])
         if found.done >= times.size:
             raise FileError(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint cannot be used: it has too many records"
             )
+        if older is not None and older.first_record + older.n_records < found.done:
+            raise FileError(f"{output}: the result file holds fewer records than its checkpoint says")
         run = Run(sim, options, times, callback, found.done)
         run.notes, run.spent, run.doubts = notes, found.stepping_s, list(found.warnings)
-        run.write_to(output, segment, found.run_id, overwrite=overwrite)
+        run.write_to(output, found.run_id, older=older, overwrite=older is not None)
         return run.go(progress=progress)
-
-    def next_segment() -> int:
-        return 1 + max(segment_paths(output), default=0)
 
     if not output.exists():
         found = checkpoint.read_last_good(output, lambda note: None)
         if found.done:
             tell(f"{output}: there is no such file; its records are lost, those from the checkpoint on will be written")
         # refused if another process has begun to write the file meanwhile
-        return run_on(None, 0)
+        return run_on(None)
+    older: FileSource | None = None
     try:
-        lock = take_lock(output)
+        take_lock(output).close()
+        try:
+            older = FileSource(output)
+            older.check()
+        except FileError as error:
+            older, kept = None, ""
+            if output.stat().st_size:
+                # one that cannot be read may still hold something
+                kept = f"; it is kept as {set_aside(output)}"
+            else:
+                output.unlink()
+            tell(f"{error}; its records are lost, those from the checkpoint on will be written{kept}")
     except OSError as error:
         raise FileError(f"{output}: cannot be resumed: {reason(error)}") from error
-    with lock:
-        try:
-            first = FileSource(output)
-        except FileError as error:
-            tell(f"{error}; its records are lost, those from the checkpoint on will be written")
-            if output.stat().st_size == 0:
-                lock.close()
-                return run_on(None, 0, overwrite=True)
-            # one that cannot be read may still hold something
-            return run_on(None, next_segment())
-        for segment in (output, *segment_paths(output).values()):
-            if run_id_in(segment) == first.run_id:
-                mend(segment)
-        if _is_complete(output):
-            return load(output)
-        return run_on(first, next_segment())
-
-
-def _is_complete(output: Path) -> bool:
-    try:
-        return open_run(output)[1].success
-    except FileError:
-        return False
+    if older is not None and older.info.success:
+        return load(output)
+    return run_on(older)
 
 
 def _revive(

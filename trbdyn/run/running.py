@@ -7,7 +7,7 @@ import math
 import os
 import time as clock
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 
 from trbdyn import _core
 from trbdyn.errors import FileError, InputError, RunWarning, StepError
-from trbdyn.model.motion import History
+from trbdyn.model.shaft import turns
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.file_format import RunInfo, reason
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
-from trbdyn.results.sources import FileSource, Written, run_id_in, segment_paths
-from trbdyn.run import checkpoint, keeping
+from trbdyn.results.sources import FileSource, run_id_in
+from trbdyn.run import bias, checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.faults import check_apart, culprit
 from trbdyn.run.memory import Kept
@@ -32,6 +32,7 @@ from trbdyn.run.options import RunOptions
 from trbdyn.run.process import has_a_spare_core, interrupts
 from trbdyn.run.until import Until, check_wanted
 from trbdyn.run.watch import Watch
+from trbdyn.statics.plausible import dented
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
@@ -61,7 +62,7 @@ class Run:
         self.callback = callback
         self.done = done
         self.notes: list[str] = list(sim.warnings)
-        self.doubts: list[str] = []
+        self.doubts: list[str] = list(sim.warnings)
         self.filling: Array | None = None
         self.writer: ResultWriter | None = None
         self.output: Path | None = None
@@ -74,6 +75,7 @@ class Run:
         self.layout = list(sim._model.record_layout())
         check_wanted(options.until, options.save_groups, sim.scene.effects.bodies == "rollers_and_cage")
         self.until = Until(options.until, times.size)
+        self.accuracy_note = bias.note(sim)
         self.enough = ""
         self.with_peaks = peak_table.GROUP in options.save_groups
         if self.with_peaks:
@@ -89,44 +91,42 @@ class Run:
         if self.with_peaks and core.row_length == self.sim._model.record_length:
             core.begin_peaks(since)
 
-    def write_to(self, output: Path, segment: int = 0, run_id: str | None = None, *, overwrite: bool = False) -> None:
+    def write_to(
+        self, output: Path, run_id: str | None = None, *, older: FileSource | None = None, overwrite: bool = False
+    ) -> None:
         """Write records to a file, and checkpoints beside it if there is a schedule.
 
-        A run without a name is a new one. If it replaces the file of an older run, it removes that run's segments and
-        checkpoints.
+        A run without a name is a new one. If it replaces the file of an older run, it removes that run's checkpoints. A run that
+        goes on takes over the records that it has made from its older file.
         """
-        sim = self.sim
-        path = output if segment == 0 else output.with_name(f"{output.stem}.part{segment}{output.suffix}")
-        older = _own_segments(output) if run_id is None and overwrite else None
+        sim, done = self.sim, self.done
+        replaced = run_id_in(output) if run_id is None and overwrite else None
         scheduled = self.options.checkpoint_every is not None
         if run_id is None and scheduled:
-            checkpoint.check_free(output, older[0] if older else None, overwrite=overwrite)
+            checkpoint.check_free(output, replaced, overwrite=overwrite)
         self.writer = ResultWriter(
-            path,
+            output,
             scene=sim.scene,
             layout=self.layout,
             fields=self.fields,
             groups=self.options.save_groups,
             meta=self._meta(),
             geometry=asdict(sim.scene.bearing.geometry),
-            compression=keeping.compression(self.options.save_every),
             run_id=run_id,
-            segment=segment,
-            first_record=self.done,
-            expected=self.times.size - self.done,
+            first_record=done if older is None else older.first_record,
+            taken_over=None if older is None else (older, done - older.first_record),
+            expected=self.times.size,
             overwrite=overwrite,
             beside=self.beside,
         )
         self.output = output
-        if run_id is not None or older is not None or scheduled or self.callback is not None:
+        if run_id is not None or replaced is not None or scheduled or self.callback is not None:
             self.writer.wait()
         if run_id is not None:
             return
         try:
-            if older is not None:
-                checkpoint.remove(output, older[0])
-                for place in older[1]:
-                    place.unlink(missing_ok=True)
+            if replaced is not None:
+                checkpoint.remove(output, replaced)
             if scheduled:
                 checkpoint.clear(output)
                 if sim._core.time == sim._begun:
@@ -305,33 +305,32 @@ class Run:
             "sundials_version": _core.sundials_version(),
             "core_version": _core.version(),
             "settings": settings,
-            "kept": keeping.said(self.options.save_every, self.options.save_groups),
+            "kept": keeping.said(self.options.save_every or 0.0, self.options.save_groups),
             "notes": self.notes,
+            "accuracy": self.accuracy_note,
         }
 
-    def _written(self, peaks: Mapping[str, Array]) -> Result:
-        """The result as it is in the files; that of the last segment alone if the first one cannot be read."""
+    def _written(self) -> Result:
+        """The result as it is in the file."""
         assert self.output is not None
         assert self.writer is not None
-        if self.writer.path != self.output and run_id_in(self.output) != self.writer.run_id:
-            return load(self.writer.path)
+        result = load(self.output)
         if run_id_in(self.output) != self.writer.run_id:
             raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
-        if self.writer.path != self.output:
-            return load(self.output)
-        source = FileSource(self.output, Written(self.writer.fields, self.writer.n_written, peaks))
-        return Result(source, source.info)
+        return result
 
     def _say_what_is_missing(self) -> None:
         said = self.until.said or "it was too short for a look"
-        text = f"the run has reached its end without the confidence that was asked for: {said}"
+        text = (
+            f"the run has reached its end without the confidence that was asked for: {said}. A longer run may reach it"
+        )
         self.doubts.append(text)
         warnings.warn(text, RunWarning, stacklevel=4)
 
     def _stats(self) -> dict[str, Any]:
         """Solver statistics of the whole simulation, and the wall time of this run."""
         sim = self.sim
-        turned = abs(_turns(sim.scene.speed_rpm, float(self.times[0]), sim._reached))
+        turned = abs(turns(sim.scene.speed_rpm, float(self.times[0]), sim._reached))
         bearing = sim._reached - float(self.times[0])
         stats: dict[str, Any] = {
             name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
@@ -361,6 +360,9 @@ class Run:
         row = sim._core.whole_peaks(ended.time)
         peaks = peak_table.from_row(row, sim._model.peak_layout()) if row.size else {}
         sim._core.end_peaks()
+        if (text := dented(peaks)) and not any("(ISO 76)" in doubt for doubt in self.doubts):
+            self.doubts.append(text)
+            warnings.warn(text, RunWarning, stacklevel=4)
         how: dict[str, Any] = {
             "peaks": peaks,
             "success": success,
@@ -376,7 +378,7 @@ class Run:
             self.writer.finish(**how)
             if success:
                 checkpoint.remove(self.output, self.writer.run_id)
-            return self._written(peaks)
+            return self._written()
         return self._from_memory(**how)
 
     def _from_memory(self, **how: Any) -> Result:
@@ -396,14 +398,6 @@ def _hand_over(result: Result, error: BaseException) -> None:
         )
 
 
-def _own_segments(output: Path) -> tuple[str, list[Path]] | None:
-    """Name of the run whose result lies in a file, and the files of its later segments; None if there is no result."""
-    run_id = run_id_in(output)
-    if run_id is None:
-        return None
-    return run_id, [place for place in segment_paths(output).values() if run_id_in(place) == run_id]
-
-
 def output_times(start: float, end: float, every: float) -> Array:
     """Times of the records (s): every so often, and at the end.
 
@@ -421,9 +415,3 @@ def output_times(start: float, end: float, every: float) -> Array:
     times: Array = np.asarray(start + every * np.arange(count + 1), dtype=np.float64)
     times[-1] = end
     return times
-
-
-def _turns(speed_rpm: float | History, start: float, end: float) -> float:
-    if isinstance(speed_rpm, History):
-        return speed_rpm.integral(start, end) / 60.0
-    return speed_rpm * (end - start) / 60.0

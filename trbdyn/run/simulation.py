@@ -6,7 +6,7 @@ import contextlib
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn, Self
 
@@ -15,46 +15,30 @@ from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
 from trbdyn.base.own_files import output_path
+from trbdyn.base.shown import Displayed, Shown, field_rows
 from trbdyn.base.validation import number_of
 from trbdyn.errors import MISSING, InputError, Problem, StepError
 from trbdyn.model.motion import MAX_TIME
 from trbdyn.model.scene import Scene
+from trbdyn.model.start import State as State
 from trbdyn.results.result import Result
 from trbdyn.run.estimate import Estimate, estimate
 from trbdyn.run.keeping import kept_by_default
 from trbdyn.run.options import Group, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
+from trbdyn.run.watch import Account
 from trbdyn.statics.cage_start import pressed_rollers
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium
 from trbdyn.statics.plausible import UnusualInput, unusual
-from trbdyn.statics.ring_motion import ring_motion
+from trbdyn.statics.ring_motion import placed_anew, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class State:
-    """A state of a simulation: what is needed to go on from it.
-
-    Attributes
-    ----------
-    time : float
-        Time (s).
-    vector : ndarray, shape (n_state,)
-        The core's state vector.
-    shaft_angle : float, optional
-        Angle of the shaft (rad).
-    """
-
-    time: float
-    vector: Array
-    shaft_angle: float | None = None
-
-
-class Simulation:
+class Simulation(Displayed):
     """Steps a scene.
 
     Parameters
@@ -90,14 +74,25 @@ class Simulation:
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
         pressed = pressed_rollers(self._model, scene, self._motion, vector)
-        self.warnings = (*unusual(scene, self.equilibrium), *([pressed] if pressed else []))
+        anew = placed_anew(self._model, scene, self._motion)
+        self.warnings = (*unusual(scene, self.equilibrium), *(text for text in (pressed, anew) if text))
         for text in self.warnings:
             warnings.warn(text, UnusualInput, stacklevel=2)
         self._running = False
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
+        self._account = None
         self._begin(scene.start.time, vector)
         self._reached = scene.start.time
+
+    def __repr__(self) -> str:
+        return f"<Simulation: {self.scene._title()}; at {self.time:g} s, accuracy {self.options.accuracy!r}>"
+
+    def _shown(self) -> Shown:
+        rows: list[tuple[str, ...]] = [("time", f"{self.time:g}", "s", "bearing time that it has reached")]
+        rows += [row for row in field_rows(self.options) if row[0] in self.options.settings() or row[0] == "accuracy"]
+        scene = replace(self.scene._shown(), title=f"scene: {self.scene._title()}")
+        return Shown(f"Simulation: {self.scene._title()}", tuple(rows), notes=self.warnings, parts=(scene,))
 
     equilibrium: Equilibrium
     warnings: tuple[str, ...]
@@ -105,6 +100,8 @@ class Simulation:
     """Where a run has ended, inside the integrator's last step; None where the present state is the end of that
     step.
     """
+    _account: Account | None
+    """What the watch over its runs has seen since it began, or since a state was set."""
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if not abs(time) <= MAX_TIME:
@@ -112,10 +109,7 @@ class Simulation:
         first = self.scene.start.time
         if time < first and len(self._motion.table) > 1:
             raise InputError.of("time", time, f"must be >= {first:g}, the start: histories are known from there on (s)")
-        try:
-            return self._motion.open(self._model, time, vector, self.options.settings())
-        except ValueError as error:
-            raise InputError.of("state", "given", str(error)) from None
+        return self._motion.open(self._model, time, vector, self.options.settings())
 
     def _begin(self, time: float, vector: Array) -> None:
         """Make a new integrator, without any history: as in a new process."""
@@ -166,7 +160,8 @@ class Simulation:
             time, vector = self._end.time, self._end.vector.copy()
         else:
             time, vector = self._core.time, self._core.state()
-        return State(time, vector, self.scene.start_shaft_angle + self.scene.shaft_turn(time))
+        angle = self.scene.start_shaft_angle + self.scene.shaft_turn(time)
+        return State(time, vector, angle, self._motion.displacement(time))
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
@@ -196,13 +191,14 @@ class Simulation:
         core = self._open(when, given)
         self._count()
         self._core, self._begun, self._reached, self._end = core, when, when, None
+        self._account = None
 
     def copy(self) -> Self:
         """An independent simulation at the same state; its integrator starts there."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other._running = False
-        other._totals, other._counted = {}, {}
+        other._totals, other._counted, other._account = {}, {}, None
         present = self.state
         other._begin(present.time, present.vector)
         other._reached = present.time
@@ -231,7 +227,9 @@ class Simulation:
             If it is called from the callback of a run.
         """
         self._check_not_running("restart")
+        account = self._account
         self.set_state(self.state)
+        self._account = account
 
     def step(self) -> float:
         """One step of the integrator, from the end of its last one; gives the new time (s).
@@ -329,8 +327,8 @@ class Simulation:
             How far to go (s); one of both must be given.
         until : mapping of str to float, optional
             End earlier, when the averages named here are known well enough: largest half width of the 95 % confidence interval
-            over the average, for instance ``{"torque": 0.01, "orbit_radius_over_cpr": 0.05}``, and the motion is not seen to
-            drift. `revolutions` or `duration` is then the longest run; one that ends there without it warns.
+            over the average, for instance ``{"torque": 0.01, "orbit_radius_over_cpr": 0.05}``, and the motion is known to
+            have settled. `revolutions` or `duration` is then the longest run; one that ends there without it warns.
         save_every : float, optional
             Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3
             s, but not longer than a twentieth of a turn of the shaft (`trbdyn.run.keeping`); ``result.meta["kept"]`` says
@@ -349,7 +347,7 @@ class Simulation:
             Bearing time between checkpoints (s), see `RunOptions`; by default that of this simulation's options.
             Together with `output`, checkpoints are written beside it, and `resume` goes on from the last one.
         overwrite : bool
-            Replace the file `output` if it is there, together with segments and checkpoints of the run that it holds.
+            Replace the file `output` if it is there, together with the checkpoints of the run that it holds.
 
         Returns
         -------
@@ -376,7 +374,7 @@ class Simulation:
         end = options.end_time(self.scene.speed_rpm, self._reached)
         kept = kept_by_default(end - self._reached, self.scene.speed_rpm, save_every, save_groups)
         options = options.replace(**kept)
-        times = output_times(self._reached, end, options.save_every)
+        times = output_times(self._reached, end, kept["save_every"])
         run = Run(self, options, times, callback)
         if path is not None:
             run.write_to(path, overwrite=overwrite)

@@ -1,8 +1,8 @@
 """A run that goes on until averages are known as well as was asked for (`Simulation.run` with `until`).
 
-From time to time the averages of the records so far are computed with their confidence intervals
-(`trbdyn.results.confidence`). The run ends when each half width is below the wanted share of its average, and the motion is not
-seen to drift. Whoever looks often enough finds a narrow interval by chance, so a look is taken each time the run has become an
+From time to time the averages of the records so far are computed with their confidence intervals (`trbdyn.results.confidence`).
+The run ends when each half width is below the wanted share of its average; there is none as long as the motion is not known to
+have settled. Whoever looks often enough finds a narrow interval by chance, so a look is taken each time the run has become an
 eighth longer, and the intervals must be narrow at two looks in a row. Looks lie at fixed records of the run, so that a run that
 was cut off and resumed ends where it would have ended.
 """
@@ -139,8 +139,10 @@ class Until:
         widths = values["confidence"] or {}
         found = {name: _share(values[name], widths.get(name)) for name in self.wanted}
         if said:
-            self.said = "; ".join(_words(name, share, self.wanted[name]) for name, share in found.items())
-        return values["settling"] != "drifting" and all(share <= self.wanted[name] for name, share in found.items())
+            known = "; ".join(_words(name, share, self.wanted[name]) for name, share in found.items())
+            why = "" if values["confidence"] else f". Intervals {values['confidence_note'].removeprefix('they ')}"
+            self.said = known + why
+        return values["settled"] and all(share <= self.wanted[name] for name, share in found.items())
 
 
 def _share(value: float | None, width: float | None) -> float:
@@ -150,5 +152,5 @@ def _share(value: float | None, width: float | None) -> float:
 
 
 def _words(name: str, share: float, wanted: float) -> str:
-    known = f"is known within {100.0 * share:.2g} %" if math.isfinite(share) else "has no confidence interval yet"
+    known = f"is known within {100.0 * share:.2g} %" if math.isfinite(share) else "has no confidence interval"
     return f"{name} {known}, {100.0 * wanted:.2g} % was asked for"

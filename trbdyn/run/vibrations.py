@@ -1,87 +1,217 @@
-"""Vibrations of rollers on their raceways, and how fast the integration takes them away.
+"""Vibrations of rollers on their raceways: what the integration takes from them, and what that does to losses and loads.
 
-A roller that was struck, or that no load holds, vibrates on its raceways at some thousand cycles a second. Without normal
-damping hardly anything but the integration takes energy from that, so that the size of the vibrations depends on the tolerances,
-although the energy of the whole run adds up well: tenths of a millijoule decide about watts of rolling resistance where lightly
-loaded contacts grow and shrink with every swing. So three things are looked at: whether vibrations are large, whether the losses
-on the raceways swing with them, and whether the energy that is missing is much beside that of the vibrations.
+A roller that was struck, or that hardly any load holds, vibrates on its raceways at some thousand cycles a second. What feeds the
+vibration has to be taken again by the normal damping of the contacts. Steps that do not resolve the vibration take energy from
+it, too (BDF damps what it does not follow); the vibrations are then smaller than they are in the bearing, and with them loads,
+rolling resistance and slip. What is left of them does not show this, but what was taken does: the residual of the energy audit
+stands beside the energy that damping took, and both together are what fed the vibrations. Where the integration's share is more
+than `SHARE`, and large enough beside the elastic energy to matter, a piece of the run is repeated with much tighter tolerances,
+and losses and loads of both are compared (docs/theory/numerics.md#vibrations-that-steps-do-not-resolve).
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+from trbdyn.errors import InputError
+from trbdyn.run.options import ACCURACY, RunOptions
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
 
-LARGE: Final = 1e-4
-"""Energy of the motion across the raceways over the elastic energy from which on vibrations are large."""
-SWINGS: Final = 0.05
-"""Standard deviation of the losses on the raceways over their mean from which on they are said to swing."""
-RACEWAYS: Final = ("power_traction_outer", "power_traction_inner", "power_rolling")
-"""Fields of these losses."""
-LEAST_LOOKS: Final = 3
-"""Looks below which nothing is said."""
-LOST_IN_A_TURN: Final = 0.1
-"""Share of the vibrations' energy that the integration may take in one turn of the shaft."""
+Array = NDArray[np.float64]
+
+SHARE: Final = 0.05
+"""Share of the energy fed into vibrations that the integration may take in place of damping."""
+MEMORY: Final = 5e-3
+"""Time over which vibrations add up before the damping of a lightly loaded contact takes them (s)."""
+SIZE: Final = 0.01
+"""Energy that is missing in `MEMORY`, over the elastic energy, below which it is too little to change a load."""
+LENGTH: Final = 20e-3
+"""Bearing time of a probe at most (s)."""
+SHORTEST: Final = 1e-3
+"""Bearing time below which a comparison says nothing (s)."""
+STEPS: Final = 20_000
+"""Steps with tighter tolerances in all probes of a simulation, at most; or `STEPS_SHARE` of its own steps if that is more."""
+STEPS_SHARE: Final = 0.05
+LEAST_STEPS: Final = 2000
+"""Steps below which no further probe is begun."""
+ROWS: Final = 200
+"""Instants at which a probe looks at the loads."""
+BLOCKS: Final = 8
+"""Pieces of the second half of a probe, whose scatter says how well its difference is known."""
+NOTABLE: Final = 0.01
+"""Difference of the loss, or of the mean load of the rollers, from which on a run warns."""
+UNSURE: Final = 0.05
+"""A difference that may be larger than this is said, too, though the probe does not show it for certain."""
+FINER: Final = 0.1
+"""Factor of the tolerances where they are those of 'reference' already, or smaller."""
 
 
-class Vibrations:
-    """Sees the motion of rollers across the raceways.
+@dataclass(frozen=True)
+class Difference:
+    """How much larger a quantity is with tighter tolerances, relative to its value, and half of the 95 % confidence interval."""
+
+    value: float
+    half_width: float
+
+    @property
+    def within(self) -> float:
+        """Bound of its size."""
+        return abs(self.value) + self.half_width
+
+    @property
+    def notable(self) -> bool:
+        """Whether it is said."""
+        return abs(self.value) > max(NOTABLE, self.half_width) or not self.within <= UNSURE
+
+    def said(self, what: str) -> str:
+        if abs(self.value) <= self.half_width:
+            return f"{what} right within {100.0 * self.within:.2g} %"
+        way = "low" if self.value > 0.0 else "high"
+        return f"{what} {100.0 * abs(self.value):.2g} +/- {100.0 * self.half_width:.2g} % too {way}"
+
+
+@dataclass(frozen=True)
+class Probe:
+    """A piece of a run, repeated with tighter tolerances.
+
+    Attributes
+    ----------
+    since, until : float
+        The piece (s).
+    loss, load : Difference
+        Of the lost power, and of the mean load of a roller on the outer raceway.
+    steps : int
+        Steps that it took with the tighter tolerances.
+    """
+
+    since: float
+    until: float
+    loss: Difference
+    load: Difference
+    steps: int
+
+    @property
+    def notable(self) -> bool:
+        """Whether a difference is said."""
+        return self.loss.notable or self.load.notable
+
+    @property
+    def visible(self) -> bool:
+        """Whether a difference may be as large as `NOTABLE`."""
+        return not (self.loss.within <= NOTABLE and self.load.within <= NOTABLE)
+
+    def said(self) -> str:
+        return (
+            f"{1e3 * (self.until - self.since):.2g} ms from {self.since:.6g} s on were repeated with tighter tolerances "
+            f"({self.steps} steps): beside them {self.loss.said('the loss is')}, {self.load.said('the load of a roller')}"
+        )
+
+
+def taken(missing: float, damped: float, elastic: float, span: float) -> tuple[float, float]:
+    """Share of the vibrations' energy that the integration took, and what it took within `MEMORY` over the elastic energy.
+
+    Parameters
+    ----------
+    missing : float
+        Energy that the integration took, or made if negative (J).
+    damped : float
+        Energy that the normal damping of the contacts took (J).
+    elastic : float
+        Mean elastic energy (J).
+    span : float
+        Time (s).
+    """
+    share = abs(missing) / max(abs(missing) + max(damped, 0.0), 1e-300)
+    return share, abs(missing) / max(span, 1e-300) * MEMORY / max(elastic, 1e-300)
+
+
+def matter(share: float, size: float) -> bool:
+    """Whether what the integration took may have changed loads and losses."""
+    return share > SHARE and size > SIZE
+
+
+def tighter(options: RunOptions) -> RunOptions:
+    """Options with tolerances that resolve the vibrations of contacts: those of 'reference', or a tenth of smaller ones."""
+    own, reference = options.tolerances.model_dump(), ACCURACY["reference"].model_dump()
+    finest = all(own[name] < 2.0 * value for name, value in reference.items())
+    values = {name: FINER * own[name] if finest else min(own[name], value) for name, value in reference.items()}
+    return options.replace(accuracy="reference", **values)
+
+
+def probe(sim: Simulation, time: float, vector: Array, most_steps: int) -> Probe | None:
+    """Repeat a piece of a run with its own tolerances and with tighter ones, which leaves the simulation as it is.
 
     Parameters
     ----------
     sim : Simulation
-        The simulation that runs.
+        Whose run it is.
+    time, vector : float, ndarray
+        Where the piece begins (s), and the state there.
+    most_steps : int
+        Steps with the tighter tolerances.
+
+    Returns
+    -------
+    Probe or None
+        None where that many steps lead nowhere, or the tighter run fails.
     """
+    times = time + LENGTH * np.arange(ROWS + 1) / ROWS
+    fine, steps = _run(sim, tighter(sim.options), times, vector, most_steps)
+    rows = len(fine)
+    if rows < 2 * BLOCKS + 1 or times[rows - 1] - time < SHORTEST:
+        return None
+    own, _ = _run(sim, sim.options, times[:rows], vector, 4 * most_steps)
+    if len(own) < rows:
+        return None
+    return Probe(time, float(times[rows - 1]), *_compared(sim, times[:rows], own, fine), steps)
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
-        self._places = {name: at for name, at, _ in sim._model.record_layout()}
-        self._looks = 0
-        self._kinetic = self._elastic = self._speed = 0.0
-        self._losses: list[float] = []
 
-    def look(self, row: np.ndarray) -> None:
-        """Look at the present state and its record.
+def _run(sim: Simulation, options: RunOptions, times: Array, vector: Array, most_steps: int) -> tuple[Array, int]:
+    """The records that were reached, and the steps that it took."""
+    try:
+        core = sim._motion.open(sim._model, float(times[0]), vector, options.settings())
+        rows = np.empty((times.size, core.row_length))
+        try:
+            reached, steps = core.run(times, rows, most_steps)
+        except _core.CoreStepError as error:
+            reached, steps = getattr(error, "rows", 0), most_steps
+    except (InputError, ValueError):
+        return np.empty((0, 0)), 0
+    return rows[:reached], steps
 
-        Parameters
-        ----------
-        row : ndarray
-            A row of all recorded quantities.
-        """
-        state = self._sim.view(self._sim._core.state())
-        mass = self._sim.scene.bearing.geometry.roller_mass
-        self._kinetic += float(0.5 * mass * np.sum(state["roller_v_r"] ** 2 + state["roller_v_z"] ** 2))
-        self._elastic += float(row[self._places["elastic_energy"]])
-        self._speed += abs(float(row[self._places["shaft_speed"]]))
-        self._losses.append(sum(float(row[self._places[name]]) for name in RACEWAYS))
-        self._looks += 1
 
-    def judge(self, missing: float, since: float, until: float) -> str | None:
-        """What is to be said about them, or None.
+def _compared(sim: Simulation, times: Array, own: Array, fine: Array) -> tuple[Difference, Difference]:
+    """Differences of loss and load over the second half of a piece: the first one is where vibrations grow to their size."""
+    losses, load = [], slice(0, 0)
+    for name, at, shape in sim._model.record_layout():
+        if name.startswith("loss_"):
+            losses.append(at)
+        if name == "outer_load":
+            load = slice(at, at + math.prod(shape))
+    ends = np.linspace((len(times) - 1) // 2, len(times) - 1, BLOCKS + 1).astype(int)
 
-        Parameters
-        ----------
-        missing : float
-            Energy that the integration took, or made if negative, between the two times (J).
-        since, until : float
-            The times (s).
-        """
-        if self._looks < LEAST_LOOKS or self._speed == 0.0 or self._kinetic <= LARGE * self._elastic:
-            return None
-        if np.std(self._losses) <= SWINGS * np.mean(self._losses):
-            return None
-        turns = self._speed / self._looks * (until - since) / (2.0 * math.pi)
-        share = abs(missing) / max(self._kinetic / self._looks * turns, 1e-300)
-        if share <= LOST_IN_A_TURN:
-            return None
-        return (
-            f"from {since:.6g} s to {until:.6g} s rollers vibrate on their raceways, and the integration changes the energy of "
-            f"these vibrations by {100.0 * share:.2g} % in a turn of the shaft: their size, and with it rolling resistance and "
-            "slip, depend on the accuracy; give the contacts the damping that they have (effects.damping), or try smaller "
-            "tolerances"
-        )
+    def means(rows: Array) -> tuple[Array, Array]:
+        lost = np.diff(rows[ends][:, losses].sum(axis=1)) / np.diff(times[ends])
+        loads = rows[:, load].mean(axis=1)
+        return lost, np.array([loads[a:b].mean() for a, b in pairwise(ends)])
+
+    first, second = (
+        _difference(fine_means, own_means) for own_means, fine_means in zip(means(own), means(fine), strict=True)
+    )
+    return first, second
+
+
+def _difference(fine: Array, own: Array) -> Difference:
+    scale = max(abs(float(np.mean(own))), 1e-300)
+    off = (fine - own) / scale
+    # 2.36: Student's t of seven degrees of freedom
+    return Difference(float(np.mean(off)), 2.36 * float(np.std(off, ddof=1)) / math.sqrt(off.size))

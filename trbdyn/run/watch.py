@@ -1,24 +1,28 @@
 """A watch over a run: whether its energy adds up, and whether it makes progress (docs/theory/numerics.md#watch-over-a-run).
 
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
-in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, and over the
-whole run. A window whose energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more
-than `STOP` was made ends the run, as its losses, slip and forces would be wrong by as much. So does one in which that much is
-missing, if losses or the work put in are a large share of what was turned over. Over the whole run it is looked at beside the
-losses as well: a bearing that loses little may turn over much more.
+in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, over the whole
+run, and over all runs of one simulation since it began, so that a run in short pieces is judged as a whole. A window whose
+energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more than `STOP` was made ends
+the run, as its losses, slip and forces would be wrong by as much. So does one in which that much is missing, if losses or the
+work put in are a large share of what was turned over. Over all runs it is looked at beside the losses as well: a bearing that
+loses little may turn over much more. What the integration takes from vibrations is compared with what damping takes, and its
+effect is measured (`trbdyn.run.vibrations`).
 """
 
 from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import RunWarning
-from trbdyn.run.vibrations import Vibrations
+from trbdyn.run import vibrations
+from trbdyn.run.vibrations import Probe
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
@@ -51,13 +55,65 @@ REPEATED_SHARE: Final = 0.5
 MOST_WARNINGS: Final = 8
 
 
+@dataclass
+class Span:
+    """A time that is judged: its energies at its beginning, and what was turned over since then.
+
+    Attributes
+    ----------
+    since : float
+        Its beginning (s).
+    first : dict of str to float
+        Works, losses, kinetic and elastic energy there (J).
+    turned_over : float
+        Energy that changed hands (J).
+    elastic, looks : float, int
+        Sum of the elastic energy over the looks (J), and their number.
+    state : ndarray, optional
+        The state at its beginning.
+    """
+
+    since: float
+    first: dict[str, float]
+    turned_over: float = 0.0
+    elastic: float = 0.0
+    looks: int = 0
+    state: Array | None = None
+
+    def add(self, exchanged: float, elastic: float) -> None:
+        self.turned_over += exchanged
+        self.elastic += elastic
+        self.looks += 1
+
+    def vibrating(self, now: dict[str, float], time: float) -> tuple[float, float]:
+        """What the integration takes from vibrations, see `vibrations.taken`."""
+        missing, _, _ = _missing(self.first, now)
+        damped = now.get("loss_damping", 0.0) - self.first.get("loss_damping", 0.0)
+        return vibrations.taken(missing, damped, self.elastic / max(self.looks, 1), time - self.since)
+
+
+@dataclass
+class Account:
+    """What the watch has seen since a simulation began, and goes on with in the simulation's next run."""
+
+    whole: Span
+    said: set[str] = field(default_factory=set)
+    small_steps: int = 0
+    small_since: float = 0.0
+    suspect: tuple[float, Span, float] | None = None
+    """The span in which the integration took most from vibrations: how much, and its end (s)."""
+    probed: Probe | None = None
+    probe_steps: int = 0
+    probed_size: float = 0.0
+
+
 class Watch:
     """Watches one run.
 
     Parameters
     ----------
     sim : Simulation
-        The simulation that runs.
+        The simulation that runs; what was seen in its earlier runs is kept with it.
     end : float
         When the run ends (s).
     found : list of str
@@ -69,18 +125,20 @@ class Watch:
     def __init__(self, sim: Simulation, end: float, found: list[str], *, going_on: bool = False) -> None:
         self._sim = sim
         self._found = found
-        self._vibrations = (
-            Vibrations(sim) if any(name == "outer_load" for name, *_ in sim._model.record_layout()) else None
-        )
         self._length = max(end - sim._core.time, 0.0) / WINDOWS
         self._going_on = going_on
         self._suppressed = 0
-        self._said: set[str] = set()
-        self._first = self._last = self._window = self._energies()
-        self._turned_over = self._turned_over_in_all = 0.0
-        self._begin = self._since = sim._core.time
-        self._steps, self._small_steps, self._small_since = self._counted(), 0, self._since
-        self._repeated = self._repeats()
+        self._noted: set[str] = set()
+        now, time = self._energies(), sim._core.time
+        account = getattr(sim, "_account", None)
+        if account is None:
+            account = sim._account = Account(Span(time, now, state=sim._core.state()), small_since=time)
+        self._account: Account = account
+        self._last = now
+        self._run = Span(time, now, state=sim._core.state())
+        self._window = Span(time, now, state=sim._core.state())
+        self._vibrating = Span(time, now, state=sim._core.state())
+        self._steps, self._repeated = self._counted(), self._repeats()
 
     def look(self, *, final: bool = False) -> str | None:
         """Look at the present state; gives the reason why the run should end, or None.
@@ -91,23 +149,26 @@ class Watch:
             Whether the run has reached its end.
         """
         reason = self._look_at_steps()
-        now = self._energies()
-        for name in now:
-            exchanged = 0.5 * abs(now[name] - self._last[name])
-            self._turned_over += exchanged
-            self._turned_over_in_all += exchanged
+        now, time = self._energies(), self._sim._core.time
+        exchanged = sum(0.5 * abs(now[name] - self._last[name]) for name in now)
+        for span in (self._window, self._vibrating, self._run, self._account.whole):
+            span.add(exchanged, now["elastic_energy"])
         self._last = now
-        time = self._sim._core.time
-        if (final and time > self._since) or time - self._since >= self._length:
-            reason = self._judge(self._window, self._since, now, time, self._turned_over) or reason
-            self._window, self._since, self._turned_over = now, time, 0.0
-        if final and time > self._begin:
-            reason = self._judge(self._first, self._begin, now, time, self._turned_over_in_all) or reason
-            if "energy" not in self._said:
+        if (final and time > self._window.since) or time - self._window.since >= self._length:
+            reason = self._judge(self._window, now, time) or reason
+            self._window = Span(time, now, state=self._sim._core.state())
+        # windows of a short run are too short to see a vibration in
+        if time - self._vibrating.since >= max(self._length, vibrations.SHORTEST):
+            self._suspect(self._vibrating, now, time)
+            self._vibrating = Span(time, now, state=self._sim._core.state())
+        if final and time > self._run.since:
+            reason = self._judge(self._run, now, time) or reason
+            # what a short piece does not show may show in all of them
+            if self._account.whole.since < self._run.since and "energy" not in self._noted:
+                self._judge(self._account.whole, now, time)
+            if "energy" not in self._noted:
                 self._judge_losses(now, time)
-            text = self._vibrations and self._vibrations.judge(_missing(self._first, now)[0], self._begin, time)
-            if text:
-                self._say(text, "vibrations")
+            self._judge_vibrations(now, time)
         return None if self._going_on else reason
 
     def renew(self) -> None:
@@ -117,8 +178,6 @@ class Watch:
     def _energies(self) -> dict[str, float]:
         core = self._sim._core
         row = core.observe(core.time, core.state())
-        if self._vibrations is not None:
-            self._vibrations.look(np.asarray(row))
         out: dict[str, float] = {}
         for name, offset, shape in self._sim._model.record_layout():
             if shape == () and (name.startswith(("work_", "loss_")) or name in ("kinetic_energy", "elastic_energy")):
@@ -132,18 +191,16 @@ class Watch:
         statistics = self._sim._core.statistics()
         return float(statistics["error_failures"] + statistics["nonlinear_failures"])
 
-    def _judge(
-        self, then: dict[str, float], since: float, now: dict[str, float], time: float, turned_over: float
-    ) -> str | None:
-        missing, put_in, lost = _missing(then, now)
+    def _judge(self, span: Span, now: dict[str, float], time: float) -> str | None:
+        missing, put_in, lost = _missing(span.first, now)
         stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
-        scale = max(turned_over, STORED_SHARE * stored, LEAST_ENERGY)
+        scale = max(span.turned_over, STORED_SHARE * stored, LEAST_ENERGY)
         off = abs(missing) / scale
         if math.isfinite(off) and off <= WARN:
             return None
         what = "was made by the integration" if missing < 0.0 else "got lost in the integration"
         text = (
-            f"from {since:.6g} s to {time:.6g} s the energy does not add up: "
+            f"from {span.since:.6g} s to {time:.6g} s the energy does not add up: "
             f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
         )
         # where little else takes energy, vibrations that the steps do not resolve lose theirs: the run warns and goes on
@@ -156,15 +213,55 @@ class Watch:
         return f"ended at {time:.6g} s: {text}. {advice}"
 
     def _judge_losses(self, now: dict[str, float], time: float) -> None:
-        missing, _, lost = _missing(self._first, now)
+        whole = self._account.whole
+        missing, _, lost = _missing(whole.first, now)
         stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
         if lost <= 0.0 or not abs(missing) > max(LOST_SHARE * lost, LEAST_STORED_SHARE * stored, LEAST_ENERGY):
             return
         self._say(
-            f"from {self._begin:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, and the integration "
+            f"from {whole.since:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, and the integration "
             f"{'took' if missing > 0.0 else 'made'} {abs(missing):.2g} J: where losses come from impacts or vibrations they "
             "may be wrong by as much; try accuracy='reference', or smaller tolerances",
             "losses",
+        )
+
+    def _suspect(self, span: Span, now: dict[str, float], time: float) -> None:
+        """Keep the span in which the integration takes most from vibrations."""
+        share, size = span.vibrating(now, time)
+        account = self._account
+        if not (vibrations.matter(share, size) and time - span.since >= vibrations.SHORTEST):
+            return
+        if account.suspect is None or size > account.suspect[0]:
+            account.suspect = (size, span, share)
+
+    def _judge_vibrations(self, now: dict[str, float], time: float) -> None:
+        """Say what the integration takes from vibrations, if it does something to losses or loads: measured by a probe."""
+        account = self._account
+        self._suspect(self._run, now, time)
+        if self._run.since > account.whole.since:
+            self._suspect(account.whole, now, time)
+        if account.suspect is None:
+            return
+        size, span, share = account.suspect
+        most = max(vibrations.STEPS, int(vibrations.STEPS_SHARE * self._sim.statistics["steps"])) - account.probe_steps
+        if size > account.probed_size and most >= vibrations.LEAST_STEPS and span.state is not None:
+            account.probed = vibrations.probe(self._sim, span.since, span.state, most)
+            account.probe_steps += account.probed.steps if account.probed is not None else most
+            account.probed_size = size
+        damped = self._last.get("loss_damping", 0.0) > account.whole.first.get("loss_damping", 0.0)
+        # without damping vibrations go on growing: the piece must then show no difference at all
+        if account.probed is not None and not (account.probed.notable if damped else account.probed.visible):
+            return
+        took = f"takes {100.0 * share:.2g} % of the energy of these vibrations" + (
+            " in place of damping" if damped else ""
+        )
+        measured = "what that does could not be measured" if account.probed is None else account.probed.said()
+        advice = "try accuracy='reference', or smaller tolerances"
+        if not damped:
+            advice = "give the contacts the damping that they have (effects.damping), or try smaller tolerances"
+        self._say(
+            f"near {span.since:.6g} s rollers vibrate on their raceways, and the integration {took}: {measured}; {advice}",
+            "vibrations",
         )
 
     def _look_at_steps(self) -> str | None:
@@ -181,19 +278,20 @@ class Watch:
                 "repeated",
             )
         self._steps, self._repeated = steps, repeats
-        mean = (time - self._small_since) / (self._small_steps + taken)
+        account = self._account
+        mean = (time - account.small_since) / (account.small_steps + taken)
         if not mean < SMALLEST_STEP:
-            self._small_steps, self._small_since = 0, time
+            account.small_steps, account.small_since = 0, time
             return None
-        self._small_steps += int(taken)
-        if self._small_steps < SMALL_STEPS_WARN:
+        account.small_steps += int(taken)
+        if account.small_steps < SMALL_STEPS_WARN:
             return None
         count = 1e-3 / max(mean, 1e-300)
         text = (
             f"near {time:.6g} s the steps are {mean:.1g} s long: a millisecond of bearing time takes {count:.1g} steps"
         )
         self._say(text, "steps")
-        if self._small_steps < SMALL_STEPS_STOP:
+        if account.small_steps < SMALL_STEPS_STOP:
             return None
         advice = (
             "Look for clearances, stiffnesses or friction that are far from usual there, try normal damping (effects.damping) "
@@ -208,8 +306,9 @@ class Watch:
         else:
             self._suppressed += 1
             self._found[MOST_WARNINGS:] = [f"and {self._suppressed} more warnings"]
-        if kind not in self._said:
-            self._said.add(kind)
+        self._noted.add(kind)
+        if kind not in self._account.said:
+            self._account.said.add(kind)
             warnings.warn(text, RunWarning, stacklevel=2)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,17 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
+
+JUST_CARRIES: Final = 1.0001
+"""Axial load, over `least_axial_load`, under which a ring just carries."""
+
+BEYOND_REACH: Final = 1.005
+"""Radial load, over the largest that the rollers' places allow, that is refused at once: elastic rollers differ by less."""
+
+RAISED_BY: Final = 0.25
+"""First step by which radial load and moments are raised where they are not balanced at once, in units of them."""
+RAISED_LEAST: Final = 1e-3
+"""Least step of the same: as well is the largest load known that the error names."""
 
 NEAR_SHARE: Final = 0.8
 """Share of the largest radial load from which a load that was not balanced is said to be too close to it."""
@@ -35,8 +46,8 @@ class Equilibrium:
         Inner ring: translation x, y, z (m), rotation about x, y (rad).
     angles : ndarray, shape (Z,)
         Orbit angles at which the rollers stand (rad).
-    rollers : ndarray, shape (Z, 3)
-        Offsets of each roller: radius, axial position (m), tilt (rad).
+    rollers : ndarray, shape (Z, 4)
+        Offsets of each roller: radius, axial position (m), tilt, skew (rad).
     outer_load, inner_load, rib_load : ndarray, shape (Z,)
         Normal loads (N).
     residual : float
@@ -70,6 +81,7 @@ class EquilibriumSolver:
 
     def __init__(self, model: _core.Model, scene: Scene, angles: Array) -> None:
         self.model, self.scene, self.angles = model, scene, angles
+        self._rests: dict[float, float] = {}
 
     def solve(
         self,
@@ -99,6 +111,42 @@ class EquilibriumSolver:
             If the bearing cannot carry the load.
         """
         load = ring_load(self.scene, time)
+        if displacement is None and self.scene.unloaded == "rests":
+            return self._no_further(load, time, guess, share)
+        return self._solve(load, time, guess, share, displacement)
+
+    def _no_further(
+        self, load: RingLoad, time: float, guess: Sequence[Equilibrium] | None, share: float
+    ) -> Equilibrium:
+        """The equilibrium of a ring that goes no further than where it just carries; its loads hold it there or before."""
+        rest = self._resting(load, time)
+        if -load.force[2] > JUST_CARRIES * least_axial_load(self.scene, time):
+            with contextlib.suppress(LoadError):
+                found = self._solve(load, time, guess, share, None)
+                if found.displacement[2] <= rest:
+                    return found
+        fixed, place = load.fixed.copy(), load.displacement.copy()
+        fixed[2], place[2] = 1.0, rest
+        return self._solve(replace(load, fixed=fixed, displacement=place), time, guess, share, None)
+
+    def _resting(self, load: RingLoad, time: float) -> float:
+        """Axial place (m) at which rollers and rings just touch at a speed: rollers that orbit press into the cup."""
+        if load.shaft_speed not in self._rests:
+            axial = JUST_CARRIES * least_axial_load(self.scene, time)
+            alone = replace(load, force=np.array([0.0, 0.0, -axial]), fixed=np.array([0.0, 0.0, 0.0, 1.0, 1.0]))
+            alone = replace(alone, displacement=np.zeros(5))
+            place = 0.0 if axial == 0.0 else float(self._solve(alone, time, None, 0.0, None).displacement[2])
+            self._rests[load.shaft_speed] = place
+        return self._rests[load.shaft_speed]
+
+    def _solve(
+        self,
+        load: RingLoad,
+        time: float,
+        guess: Sequence[Equilibrium] | None,
+        share: float,
+        displacement: Array | None,
+    ) -> Equilibrium:
         fixed = load.fixed if displacement is None else np.ones(5)
         place, rollers = load.displacement if displacement is None else displacement, None
         if guess is not None:
@@ -107,6 +155,8 @@ class EquilibriumSolver:
             place = np.where(fixed > 0.0, place, near)
             rollers = (first.rollers + share * (second.rollers - first.rollers)).ravel()
         force = np.concatenate([load.force, load.moment])
+        if displacement is None and not load.fixed[:3].any():
+            self._check_reach(load, time)
         found = None
         try:
             found = self.model.equilibrium(force, fixed, place, load.shaft_speed, self.angles, rollers)
@@ -119,8 +169,11 @@ class EquilibriumSolver:
                 with contextlib.suppress(_core.CoreLoadError):
                     found = self.model.equilibrium(force, fixed, trial, load.shaft_speed, self.angles, guessed)
                     break
+            largest = 0.0
+            if found is None and displacement is None:
+                found, largest = self._raised(load)
             if found is None:
-                raise LoadError(_why_not(self.scene, time, str(error))) from None
+                raise LoadError(_why_not(self.scene, time, str(error), largest)) from None
         outer, inner, rib = np.asarray(found["loads"]).T
         return Equilibrium(
             displacement=found["displacement"],
@@ -133,6 +186,50 @@ class EquilibriumSolver:
             iterations=found["iterations"],
         )
 
+    def _check_reach(self, load: RingLoad, time: float) -> None:
+        """Refuse a radial load that no rollers at these angles can carry: their normal loads would have to pull."""
+        radial = float(np.hypot(*load.force[:2]))
+        if not radial > 0.0 or not self.scene.effects.back_rib:
+            return
+        most = most_radial_load(self.scene, -float(load.force[2]), time)
+        reach = most * _reach(self.angles, math.atan2(load.force[1], load.force[0]))
+        if radial > BEYOND_REACH * reach:
+            said = f"the bearing cannot carry this load: rollers at these angles carry at most {reach:.6g} N in this direction"
+            raise LoadError(_why_not(self.scene, time, said, 0.0))
+
+    def _raised(self, load: RingLoad) -> tuple[dict[str, Any] | None, float]:
+        """The equilibrium under a load to which radial load and moments are raised from less, each from the equilibria before; or
+        nothing, and the largest share of them that was balanced (1).
+        """
+        force, known = np.concatenate([load.force, load.moment]), list[tuple[float, Array, Array]]()
+        part = np.array([1.0, 1.0, 0.0, 1.0, 1.0])
+        if not np.any(part * force):
+            return None, 0.0
+        share, step = 0.0, RAISED_BY
+        while step >= RAISED_LEAST:
+            wanted = min(share + step, 1.0) if known else 0.0
+            acting = np.where(part > 0.0, wanted * force, force)
+            place, rollers = load.displacement, None
+            if known:
+                (_, place, rollers), before = known[-1], known[max(len(known) - 2, 0)]
+                ahead = (wanted - share) / (share - before[0]) if share > before[0] else 0.0
+                place, rollers = place + ahead * (place - before[1]), rollers + ahead * (rollers - before[2])
+                rollers = rollers.ravel()
+            try:
+                found = self.model.equilibrium(
+                    acting, load.fixed, place, load.shaft_speed, self.angles, rollers, wanted == 1.0
+                )
+            except _core.CoreLoadError:
+                if not known:
+                    return None, 0.0
+                step *= 0.5
+                continue
+            if wanted == 1.0:
+                return found, 1.0
+            share = wanted
+            known.append((share, found["displacement"], found["rollers"]))
+        return None, share
+
     def _pushed(self, load: RingLoad) -> Array:
         """A guess of the ring's place: where its axial position is given with play, pushed to the side by its load."""
         place, push = load.displacement.copy(), float(np.hypot(*load.force[:2]))
@@ -144,7 +241,7 @@ class EquilibriumSolver:
     def _along_cup(self, shift: float) -> Array:
         """Rollers that went along the cup by this axial distance (m), as a guess."""
         slope = math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
-        return np.tile([shift * slope, shift, 0.0], self.angles.size)
+        return np.tile([shift * slope, shift, 0.0, 0.0], self.angles.size)
 
 
 def least_axial_load(scene: Scene, time: float = 0.0) -> float:
@@ -175,8 +272,20 @@ def most_radial_load(scene: Scene, axial_load: float, time: float = 0.0) -> floa
     return (axial_load - least_axial_load(scene, time)) / slope
 
 
-def _why_not(scene: Scene, time: float, said: str) -> str:
-    """Why there is no equilibrium, as far as it can be told."""
+def _reach(angles: Array, direction: float) -> float:
+    """Share of `most_radial_load` that rollers at some angles carry in a direction (rad).
+
+    The load is the mean of the rollers' directions, weighted with their normal loads, so it lies within the polygon whose corners
+    are the rollers: the share reaches to its edge.
+    """
+    ahead = np.sort(np.mod(angles - direction, 2.0 * math.pi))
+    before, after = ahead[-1] - 2.0 * math.pi, ahead[0]
+    half, middle = 0.5 * (after - before), 0.5 * (after + before)
+    return max(math.cos(half) / math.cos(middle), 0.0) if half < 0.5 * math.pi else 0.0
+
+
+def _why_not(scene: Scene, time: float, said: str, largest: float) -> str:
+    """Why there is no equilibrium, as far as it can be told; largest: share of radial load and moments that was balanced."""
     changes = any(not is_constant(quantity) for quantity in scene.ring_quantities().values())
     when = f" at {time:.6g} s" if changes or scene.rotating_load is not None else ""
     load, z = ring_load(scene, time), scene.ring_is_placed[2]
@@ -196,6 +305,9 @@ def _why_not(scene: Scene, time: float, said: str) -> str:
         )
     most = most_radial_load(scene, axial, time)
     bounds = f"axial_load at least {least:.4g} N at {speed:g} rpm, radial load below {most:.4g} N"
+    if largest > 0.0:
+        moment = f" and {largest * float(np.hypot(*load.moment)):.4g} N m" if np.any(load.moment) else ""
+        bounds += f"; with these rollers {largest * radial:.4g} N{moment} in this direction were balanced"
     if radial > NEAR_SHARE * most:
         how = "more than" if radial >= most else "too close to all that"
         return (

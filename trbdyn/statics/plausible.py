@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from trbdyn.model.cage_space import CageSpace
+from trbdyn.model.catalogue_rollers import FILL
 from trbdyn.model.motion import value_at, values_of
 from trbdyn.statics.equilibrium import Equilibrium
 
@@ -22,6 +25,9 @@ LARGEST_PLAY_SHARE: Final = 0.1
 """Largest usual play of a cage's pocket, in units of the roller's diameter; usual are 0.01 to 0.03."""
 
 
+_PRESSURES: Final = ("outer_pressure_peak", "inner_pressure_peak")
+
+
 class UnusualInput(UserWarning):
     """Input that is allowed but can hardly be meant."""
 
@@ -29,7 +35,16 @@ class UnusualInput(UserWarning):
 def unusual(scene: Scene, equilibrium: Equilibrium) -> tuple[str, ...]:
     """What can hardly be meant in a scene: one sentence for each, with the field, its value and what is usual."""
     return tuple(
-        text for text in (_pressure(scene, equilibrium), *_plays(scene), _gravity(scene), _planar(scene)) if text
+        text
+        for text in (
+            _pressure(scene, equilibrium),
+            *_plays(scene),
+            *_cage(scene),
+            _fill(scene),
+            _gravity(scene),
+            _planar(scene),
+        )
+        if text
     )
 
 
@@ -51,6 +66,43 @@ def _pressure(scene: Scene, equilibrium: Equilibrium) -> str:
     return (
         f"the most loaded roller has a pressure of {worst / 1e9:.3g} GPa under {cause}: above "
         f"{PERMISSIBLE_PRESSURE / 1e9:g} GPa (ISO 76) raceways are dented, but contacts are elastic here"
+    )
+
+
+def dented(peaks: Mapping[str, Any]) -> str:
+    """A sentence where the largest pressure of a run on a raceway is above the static limit; empty where it is not."""
+    worst = max((float(np.max(peaks[name])) for name in _PRESSURES if name in peaks), default=0.0)
+    if worst <= PERMISSIBLE_PRESSURE:
+        return ""
+    return (
+        f"the largest pressure on a raceway was {worst / 1e9:.3g} GPa: above {PERMISSIBLE_PRESSURE / 1e9:g} GPa (ISO 76) "
+        "raceways are dented, but contacts are elastic here"
+    )
+
+
+def _cage(scene: Scene) -> list[str]:
+    """Mass and inertia that a cage can have, but that can hardly be meant."""
+    if scene.effects.bodies == "rollers":
+        return []
+    return CageSpace.of(scene.bearing).unusual(scene.bearing.cage, scene.bearing.cage_material)
+
+
+def _fill(scene: Scene) -> str:
+    """Number or size of rollers changed by hand, where the others are still those that were estimated with it."""
+    bearing = scene.bearing
+    kept = {entry.path for entry in bearing.estimated}
+    listed = {entry.path for entry in bearing.estimates}
+    sizes = {"n_rollers", "roller.diameter", "pitch_diameter"}
+    if not sizes & kept or not sizes & (listed - kept):
+        return ""
+    fill = bearing.n_rollers * bearing.roller.diameter / (math.pi * bearing.pitch_diameter)
+    if FILL.low - 0.02 <= fill <= FILL.high + 0.02:
+        return ""
+    changed = ", ".join(f"bearing.{path}" for path in sorted(sizes & (listed - kept)))
+    return (
+        f"{changed} was changed, and the other sizes are still those that were estimated with the former value: rollers take "
+        f"{100 * fill:.3g} % of the pitch circle, usual are {100 * FILL.low:g} to {100 * FILL.high:g} %; give it to "
+        "Bearing.from_catalogue, which derives the others again"
     )
 
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from trbdyn import _core
-from trbdyn.model.flatten import motion_table
-from trbdyn.model.motion import History
+from trbdyn.errors import InputError, LoadError
+from trbdyn.model.flatten import motion_table, ring_load
+from trbdyn.model.motion import History, is_constant
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import Equilibrium, EquilibriumSolver, nominal_angles
 from trbdyn.statics.ring_path import find_path
@@ -20,6 +22,12 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 Array = NDArray[np.float64]
+
+
+SAME_PLACE: Final = 1e-8
+"""Distance of a ring from where it stood before that is worth a warning (m): thirty times the tolerance of its path."""
+OTHER_SPEED: Final = 2e-6
+"""The same for a held ring whose speed changes: by less it moves with the centrifugal forces of the rollers (m)."""
 
 
 def start_angles(scene: Scene) -> Array:
@@ -43,8 +51,8 @@ class RingMotion:
 
     Attributes
     ----------
-    table : ndarray, shape (K, 19)
-        Knot time, then value and slope of each channel of `_core.motion_table()`.
+    table : ndarray, shape (K, 20)
+        As of `trbdyn.model.flatten.motion_table`.
     period : float
         After the last knot the last part of the table, this long, repeats (s); 0: everything stays.
     start : float
@@ -59,20 +67,79 @@ class RingMotion:
     angle_time: float
     shaft_angle: float
 
+    def displacement(self, time: float) -> Array:
+        """Where the ring stands at a time (s): translation (m), rotation (rad), shape (5,)."""
+        times, first, last = self.table[:, 0], float(self.table[0, 0]), float(self.table[-1, 0])
+        places = self.table[:, 1:11:2]
+        if len(times) == 1:
+            return places[0].copy()
+        if self.period > 0.0 and time >= last:
+            begin = last - self.period
+            time = begin + (time - begin) % self.period
+        if not first < time < last:
+            return places[0 if time <= first else -1].copy()
+        place = int(np.searchsorted(times, time, side="right"))
+        ends = slice(place - 1, place + 1)
+        curve = CubicHermiteSpline(times[ends], places[ends], self.table[ends, 2:12:2])
+        return np.asarray(curve(time), dtype=np.float64)
+
     def open(
         self, model: _core.Model, time: float, vector: Array, settings: dict[str, float | str]
     ) -> _core.Simulation:
-        """The core's simulation of this motion from a time (s) and state on."""
-        return _core.Simulation(
-            model,
-            self.table,
-            time,
-            vector,
-            settings,
-            period=self.period,
-            angle_time=self.angle_time,
-            angle=self.shaft_angle,
-        )
+        """The core's simulation of this motion from a time (s) and state on.
+
+        Raises
+        ------
+        InputError
+            If the core cannot use the state, or times so far apart.
+        """
+        try:
+            return _core.Simulation(
+                model,
+                self.table,
+                time,
+                vector,
+                settings,
+                period=self.period,
+                angle_time=self.angle_time,
+                angle=self.shaft_angle,
+            )
+        except ValueError as error:
+            raise InputError.of("state", "given", str(error)) from None
+
+
+def placed_anew(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
+    """A sentence if the ring of a run from a state does not go on from where it stood, or may not; or nothing."""
+    start, free = scene.start, ~np.array(scene.ring_is_placed)
+    if start.kind != "state" or not free.any():
+        return ""
+    changes = not is_constant(scene.speed_rpm)
+    if start.displacement is None:
+        if scene.ring == "held" and changes:
+            return (
+                f"start.displacement is not given: the ring is held at the equilibrium at {start.time:g} s, while the run that "
+                "this state is from may hold it at that of another speed; Start.state(simulation.state) knows where it stood"
+            )
+        return ""
+    arm = 0.5 * scene.bearing.pitch_diameter
+    found = motion.displacement(start.time)
+    if scene.ring == "held":
+        try:
+            found = EquilibriumSolver(model, scene, nominal_angles(scene)).solve(start.time).displacement
+        except LoadError:
+            return ""
+    off = float(np.max(np.abs((found - start.displacement) * [1.0, 1.0, 1.0, arm, arm])[free]))
+    if off <= (OTHER_SPEED if scene.ring == "held" and changes else SAME_PLACE):
+        return ""
+    what = (
+        "the ring is held there all the same; without start.displacement it stands in that equilibrium"
+        if scene.ring == "held"
+        else "the ring begins in that equilibrium, so that the forces on it jump"
+    )
+    return (
+        f"start.displacement is {1e6 * off:.3g} um off the equilibrium under the load at {start.time:g} s, as if loads or "
+        f"bearing had been changed: {what}"
+    )
 
 
 def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibrium]:
@@ -88,11 +155,14 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
         If the bearing cannot carry the load.
     """
     even, angles, time = nominal_angles(scene), start_angles(scene), scene.start.time
-    at_start = EquilibriumSolver(model, scene, even).solve(time)
+    stands = scene.start.displacement if scene.ring == "held" else None
+    place = None if stands is None else np.where(scene.ring_is_placed, ring_load(scene, time).displacement, stands)
+    at_start = EquilibriumSolver(model, scene, even).solve(time, displacement=place)
     path: list[float | History] = list(at_start.displacement)
+    joints: Array | None = None
     if scene.ring == "follows":
-        path = find_path(scene, EquilibriumSolver(normal_contacts(scene), scene, even), at_start)
-    table = motion_table(scene, path)
+        path, joints = find_path(scene, EquilibriumSolver(normal_contacts(scene), scene, even), at_start)
+    table = motion_table(scene, path, joints)
     moves = len(table) > 1
     # a saved state of a shaft at constant speed: its angle is counted from t = 0, without any rounding
     from_zero = not moves and scene.start.kind == "state" and scene.start.shaft_angle is None

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError, LoadError
-from trbdyn.model.motion import History, is_constant, knot_times, values_of
+from trbdyn.model.motion import History, is_constant, joint_times, knot_times, values_of
 from trbdyn.statics.equilibrium import Equilibrium, EquilibriumSolver
 
 if TYPE_CHECKING:
@@ -39,6 +39,9 @@ _JOINT_TOLERANCE = PATH_TOLERANCE / 6.0
 
 LARGEST_TURN_DEG: Final = 60.0
 """Bound of how far a load's direction may turn (deg) between two times at which the equilibrium is tested first."""
+
+KNOTS_A_JOINT: Final = 16
+"""Knots of a path from one joint to the next."""
 
 MOST_INTERVALS: Final = 200_000
 """Most intervals of a path: a larger one would take hours."""
@@ -60,8 +63,11 @@ class _Piece:
     last: Array
 
 
-def find_path(scene: Scene, solver: EquilibriumSolver, at_start: Equilibrium) -> list[float | History]:
-    """Displacement (m) and rotation (rad) of the ring in time, five quantities.
+def find_path(
+    scene: Scene, solver: EquilibriumSolver, at_start: Equilibrium
+) -> tuple[list[float | History], Array | None]:
+    """Displacement (m) and rotation (rad) of the ring in time, five quantities, and its joints: the times (s) at which a part of
+    what acts on the ring ends. Between them the knots only sample it.
 
     Parameters
     ----------
@@ -82,8 +88,9 @@ def find_path(scene: Scene, solver: EquilibriumSolver, at_start: Equilibrium) ->
     quantities = list(scene.ring_quantities().values())
     moves = scene.rotating_load is not None and scene.period is not None
     if all(scene.ring_is_placed) or not (moves or any(not is_constant(quantity) for quantity in quantities)):
-        return list(at_start.displacement)
-    return _Search(scene, solver, at_start).path()
+        return list(at_start.displacement), None
+    search = _Search(scene, solver, at_start)
+    return search.path(), search.joints()
 
 
 class _Search:
@@ -99,6 +106,7 @@ class _Search:
         self.scale = np.array([1.0, 1.0, 1.0, arm, arm])[self.free]
         self.times = [self.begin]
         self.known = {self.begin: at_start}
+        self.knots = [self.begin, self.end]
 
     def path(self) -> list[float | History]:
         from tqdm import tqdm
@@ -136,6 +144,24 @@ class _Search:
             times.append(low + (high - low) * np.arange(1, parts + 1) / parts)
             times[-1][-1] = high
         return np.concatenate(times)
+
+    def joints(self) -> Array:
+        """Joints of what acts on the ring, and, where a load turns, times between them that it takes for `LARGEST_TURN_DEG`."""
+        ends = np.concatenate(
+            [[self.begin], joint_times(self.quantities, self.begin, self.end), [self.settled, self.end]]
+        )
+        parts = [ends]
+        for low, high in itertools.pairwise(np.unique(ends)):
+            count = math.ceil(self._turn(float(low), float(high)) / LARGEST_TURN_DEG)
+            parts.append(low + (high - low) * np.arange(1, count) / max(count, 1))
+        times = np.array(sorted(self.knots))
+        # the work on a ring is integrated beside the motion: where its path has many knots, that needs a step now and then
+        parts.append(times[::KNOTS_A_JOINT])
+        wanted = np.unique(np.concatenate(parts))
+        # the knot of the path that is next to each
+        place = np.clip(np.searchsorted(times, wanted), 1, len(times) - 1)
+        place -= wanted - times[place - 1] < times[place] - wanted
+        return times[place]
 
     def _turn(self, low: float, high: float) -> float:
         """A bound of how far the loads' directions turn between two times (deg); monotone curves have slopes up to 3
@@ -237,6 +263,7 @@ class _Search:
 
     def _histories(self, pieces: list[_Piece]) -> list[float | History]:
         times = np.array([piece.begin for piece in pieces] + [pieces[-1].end])
+        self.knots = times.tolist()
         slopes = np.zeros((len(times), len(self.scale)))
         slopes[0], slopes[-1] = pieces[0].first, pieces[-1].last
         for place in range(1, len(pieces)):

@@ -43,14 +43,15 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
     geometry = scene.bearing.geometry
     speed = value_at(scene.speed_rpm, scene.start.time) * math.pi / 30.0
     orbit = geometry.cage_speed_ratio * speed
-    radius, axial, tilt = equilibrium.rollers.T
+    radius, axial, tilt, skew = equilibrium.rollers.T
     angle = geometry.roller_axis_angle
-    state["roller_r"], state["roller_z"], state["roller_tilt"] = radius, axial, tilt
+    state["roller_r"], state["roller_z"], state["roller_tilt"], state["roller_skew"] = radius, axial, tilt, skew
     state["roller_psi"] = equilibrium.angles - nominal_angles(scene)
     # pure rolling: all velocities follow from the orbit, offsets are against the nominal place
     state["roller_v_t"] = orbit * radius
     state["roller_omega_n"] = -orbit * (np.sin(angle + tilt) - np.sin(angle))
-    state["roller_omega_a"] = orbit * (np.cos(angle + tilt) - np.cos(angle))
+    state["roller_omega_t"] = -orbit * np.sin(skew) * np.cos(angle + tilt)
+    state["roller_omega_a"] = orbit * (np.cos(angle + tilt) * np.cos(skew) - np.cos(angle))
     if scene.effects.planar:
         state["roller_omega_n"] = 0.0
     if scene.effects.bodies == "rollers_and_cage":
@@ -71,8 +72,5 @@ def contacts_at_start(scene: Scene) -> dict[str, Array]:
     model = build_model(scene)
     motion, equilibrium = ring_motion(model, scene)
     vector = start_state(model, scene, motion, equilibrium)
-    try:
-        onlooker = motion.open(model, scene.start.time, vector, {})
-    except ValueError as error:
-        raise InputError.of("state", "given", str(error)) from None
+    onlooker = motion.open(model, scene.start.time, vector, {})
     return onlooker.contacts(scene.start.time, vector)

@@ -25,9 +25,11 @@ if TYPE_CHECKING:
     from trbdyn.study.gather import load, save
     from trbdyn.study.runner import collect, run
     from trbdyn.study.study_file import STUDIES, load_study, shipped_studies
+    from trbdyn.study.uncertainty import Band, open_inputs
 
 _NAMES = {
     "Axis": "trbdyn.study.definition",
+    "Band": "trbdyn.study.uncertainty",
     "Case": "trbdyn.study.definition",
     "RunOptions": "trbdyn.run.options",
     "STUDIES": "trbdyn.study.study_file",
@@ -39,6 +41,7 @@ _NAMES = {
     "load": "trbdyn.study.gather",
     "load_study": "trbdyn.study.study_file",
     "of_scenes": "trbdyn.study.design",
+    "open_inputs": "trbdyn.study.uncertainty",
     "random": "trbdyn.study.design",
     "run": "trbdyn.study.runner",
     "save": "trbdyn.study.gather",
@@ -48,6 +51,7 @@ _NAMES = {
 __all__ = [
     "STUDIES",
     "Axis",
+    "Band",
     "Case",
     "RunOptions",
     "Study",
@@ -58,6 +62,7 @@ __all__ = [
     "load",
     "load_study",
     "of_scenes",
+    "open_inputs",
     "random",
     "run",
     "save",
@@ -74,4 +79,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

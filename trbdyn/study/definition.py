@@ -16,6 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from trbdyn.base.own_files import file_path
+from trbdyn.base.shown import Displayed, Shown, value_text
 from trbdyn.base.validation import Model
 from trbdyn.errors import InputError, Path, join_path
 from trbdyn.model.scene import Scene
@@ -25,6 +26,8 @@ from trbdyn.run.toml_case import TABLES, case_from_dict, find_case, read_tables,
 Table = dict[str, Any]
 Overrides = Mapping[str, Any]
 
+LISTED: Final = 50
+"""Most cases that a study lists when it shows itself."""
 LONGEST_WORDS: Final = 90
 """Most bytes of the part of a file's name that tells the parameters."""
 
@@ -207,7 +210,7 @@ class Case:
     def fingerprint(self) -> str:
         """`fingerprint` of scene and run options."""
         if self.scene is None:
-            return hashlib.sha256(f"{self.parameters!r} {self.error}".encode()).hexdigest()
+            return hashlib.sha256(f"{plain(self.parameters)!r} {self.error}".encode()).hexdigest()
         return fingerprint(self.scene, self.run)
 
     @cached_property
@@ -243,7 +246,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Study:
+class Study(Displayed):
     """A set of cases; made by `grid`, `cases`, `random` or `load_study`.
 
     Attributes
@@ -262,6 +265,22 @@ class Study:
 
     def __len__(self) -> int:
         return len(self.cases)
+
+    def __repr__(self) -> str:
+        return f"<Study {self._title()}>"
+
+    def _title(self) -> str:
+        over = " x ".join(f"{len(axis.labels)} {axis.name}" for axis in self.axes)
+        return f"{self.name}: {len(self)} cases{f', {over}' if over else ''}"
+
+    def _shown(self) -> Shown:
+        rows = [(axis.name, value_text(tuple(axis.labels)), axis.path) for axis in self.axes]
+        names = tuple(dict.fromkeys(name for case in self.cases for name in case.parameters))
+        each = [tuple(value_text(label(case.parameters.get(name))) for name in names) for case in self.cases[:LISTED]]
+        notes = (f"and {len(self) - LISTED} cases more",) if len(self) > LISTED else ()
+        cases = Shown("cases", tuple(each), names, notes)
+        wrong = tuple(f"cannot be built: {case.error}" for case in self.cases if case.error)[:LISTED]
+        return Shown(f"Study {self._title()}", tuple(rows), ("axis", "values", "what it changes"), wrong, (cases,))
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -32,6 +32,15 @@ DIED = "the worker process died (killed, out of memory, or a crash of the core)"
 _event: Any = None
 """In a worker process: set when the study is stopped."""
 
+_orphaned = threading.Event()
+"""In a worker process: set when its parent has died."""
+
+_working = threading.Lock()
+"""In a worker process: held while a task is under way."""
+
+LAST_SECONDS = 5.0
+"""Wall time that a worker has at most to take its unfinished files away when its parent has died."""
+
 
 @dataclass(frozen=True)
 class Outcome(Generic[T]):
@@ -168,14 +177,28 @@ def _in_worker(event: Any) -> None:
     global _event
     _event = event
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, name="trbdyn parent", daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Wait for the death of the parent, which a closed pipe tells, however it comes; then stop the run under way, and end."""
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+    parent.join()
+    _orphaned.set()
+    _working.acquire(timeout=LAST_SECONDS)
+    os._exit(1)
 
 
 def _is_set() -> bool:
-    return _event is not None and bool(_event.is_set())
+    # an orphan leaves the event alone: its lock may have been taken by the one who died
+    return _orphaned.is_set() or (_event is not None and bool(_event.is_set()))
 
 
 def _call(work: Work[T], task: T) -> Any:
-    return work(task, _is_set)
+    with _working:
+        return work(task, _is_set)
 
 
 class _Pool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import io
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     import xarray
 
 NOT_RUN = "not run"
+_UNKNOWN = "0" * 64
+"""Stands in the place of the file's SHA-256 while that is computed."""
 
 
 def dataset(study: Study, entries: Sequence[Entry | None]) -> xarray.Dataset:
@@ -137,7 +141,7 @@ def _attributes(name: str) -> dict[str, str]:
 
 
 def save(data: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
-    """Write a dataset as netCDF (version 3, 64-bit offsets).
+    """Write a dataset as netCDF (version 3, 64-bit offsets), with its SHA-256 as an attribute, which `load` checks.
 
     Raises
     ------
@@ -152,7 +156,9 @@ def save(data: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
             written[name] = written[name].astype(float)
     try:
         written = _renamed(written, lambda text: text.encode().decode("latin-1"))
+        written.attrs["sha256"] = _UNKNOWN
         content = bytes(written.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
+        content = content.replace(_UNKNOWN.encode(), hashlib.sha256(content).hexdigest().encode(), 1)
         write_whole(target, content, overwrite=True)
     except (OSError, ValueError, TypeError) as error:
         why = getattr(error, "strerror", None) or error
@@ -188,6 +194,13 @@ def load(path: str | os.PathLike[str]) -> xarray.Dataset:
     import xarray
 
     try:
-        return _renamed(xarray.load_dataset(path, engine="scipy"), _from_utf8)
-    except (OSError, ValueError, TypeError) as error:
+        content = Path(path).read_bytes()
+        data = xarray.load_dataset(io.BytesIO(content), engine="scipy")
+        digest = data.attrs.pop("sha256", "")
+        if hashlib.sha256(content.replace(digest.encode(), _UNKNOWN.encode(), 1)).hexdigest() != digest:
+            raise ValueError("the file is damaged: its checksum does not fit")
+        return _renamed(data, _from_utf8)
+    except FileError:
+        raise
+    except Exception as error:  # whatever xarray and SciPy make of a damaged file
         raise FileError(f"{path}: the dataset cannot be read: {error}") from error

@@ -1,15 +1,18 @@
 """The index of a study's folder: one line of JSON for each finished case, appended when it finishes.
 
 A line holds ``name``, ``fingerprint``, ``parameters``, ``status`` ('done' or 'failed'), ``message``, ``file``, ``values`` (the
-observables), ``wall_s``, ``finished`` (UTC) and ``version``. The last line of a fingerprint counts. A line that was cut short
-by a crash is passed over.
+observables), ``wall_s``, ``finished`` (UTC), ``version``, and ``checksum``: the first 16 digits of the SHA-256 of the line
+without it. The last line of a fingerprint counts. A line that was cut short by a crash, or has been damaged, is passed over with
+a warning.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import os
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -106,7 +109,9 @@ class Index:
                 stream.seek(0, os.SEEK_END)
                 if stream.tell() and _last_byte(path) != b"\n":
                     stream.write(b"\n")
-                stream.write(json.dumps(asdict(entry), allow_nan=False).encode() + b"\n")
+                values = asdict(entry)
+                line = json.dumps(values | {"checksum": _checksum(values)}, allow_nan=False)
+                stream.write(line.encode() + b"\n")
                 stream.flush()
                 os.fsync(stream.fileno())
         except OSError as error:
@@ -127,17 +132,38 @@ def _last_byte(path: Path) -> bytes:
 
 
 def read_lines(path: Path) -> Iterator[Entry]:
-    """Entries of an index file, in the order in which they were written; damaged lines are passed over."""
+    """Entries of an index file, in the order in which they were written; damaged lines are passed over.
+
+    Warns
+    -----
+    UserWarning
+        If a line is damaged: its case counts as not run.
+    """
     if not path.is_file():
         return
     with path.open("rb") as stream:
-        for line in stream:
-            try:
-                entry = Entry(**json.loads(line))
-            except (ValueError, TypeError, RecursionError):
-                continue
-            if _is_sound(entry):
+        for number, line in enumerate(stream, start=1):
+            entry = _entry_in(line)
+            if entry is not None:
                 yield entry
+            elif line.strip():
+                text = f"{path}: line {number} is damaged or cut short and is passed over; its case counts as not run"
+                warnings.warn(text, UserWarning, stacklevel=2)
+
+
+def _entry_in(line: bytes) -> Entry | None:
+    try:
+        values = json.loads(line)
+        if values.pop("checksum") != _checksum(values):
+            return None
+        entry = Entry(**values)
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return None
+    return entry if _is_sound(entry) else None
+
+
+def _checksum(values: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(values).encode()).hexdigest()[:16]
 
 
 def _is_sound(entry: Entry) -> bool:

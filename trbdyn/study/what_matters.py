@@ -1,13 +1,24 @@
 """Which of the estimated inputs matter for a chosen result: each is moved through its band, alone, and the runs are
 compared.
+
+A cage that collides is chaotic: a billionth of an input moves the result of a short run as far as a real change does. So each end
+of a band is run from several starts and compared with runs of the estimate from the same starts, and these are made again with
+the rollers' diameter changed by billionths. A difference is told apart where it is larger than what chance makes of as many ends
+as the table has, once in twenty tables (Student's t with Bonferroni's correction). Its error is the largest of three: from its
+own scatter over the starts, from that of the other ends in the median, and from that of the repeated runs.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, LoadError, StepError, unknown_name
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.scene import Scene, Start
@@ -16,6 +27,20 @@ from trbdyn.run.simulation import Simulation
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
     from trbdyn.results.result import Result
+
+
+Array = NDArray[np.float64]
+
+STARTS: Final = 3
+REPEATS: Final = 4
+"""Runs of the estimate from each start, all but one with a roller diameter that differs by billionths."""
+BILLIONTH: Final = 1e-9
+WHOLE: Final = 1e-6
+"""What a number of rollers may lack of a whole one, by rounding of what it follows from."""
+CHANCE: Final = 0.05
+"""Chance that any end of a table without influences is told apart."""
+LEAST_SHARE: Final = 1e-5
+"""Difference over the result below which nothing is told apart: the tolerances of the runs are not finer."""
 
 
 @dataclass(frozen=True)
@@ -27,11 +52,11 @@ class Influence:
     estimated : Estimated
         The input with its band.
     at_low, at_high : float or None
-        The result with the input at the ends of its band; None where such a bearing cannot be built or run.
+        The result with the input at the ends of its band, mean over the starts; None where such a bearing cannot be built or run.
     span : float
         Largest difference of the result from its value with the estimate, in the result's unit.
     told_apart : bool
-        Whether the span is larger than the scatter of the result itself.
+        Whether a difference is larger than what chance makes of it.
     note : str
         Why an end of the band could not be run; empty if both could.
     """
@@ -44,8 +69,8 @@ class Influence:
     note: str = ""
 
 
-@dataclass(frozen=True)
-class Sensitivity:
+@dataclass(frozen=True, repr=False)
+class Sensitivity(Displayed):
     """Influence of each estimated input on a result, the largest first.
 
     Attributes
@@ -53,9 +78,9 @@ class Sensitivity:
     quantity : str
         Name of the result.
     value : float
-        The result with all estimates as they are.
+        The result with all estimates as they are, mean over the starts.
     scatter : float
-        How far the result moves by itself: its change when nothing but the start differs.
+        What chance alone makes of the difference at an end of a band, in the median: smaller influences cannot be told.
     influences : tuple of Influence
         One an input.
     """
@@ -66,14 +91,26 @@ class Sensitivity:
     influences: tuple[Influence, ...]
 
     def __str__(self) -> str:
-        lines = [f"{self.quantity} = {self.value:.4g}; it moves by {self.scatter:.2g} by itself"]
-        width = max((len(entry.estimated.path) for entry in self.influences), default=0)
+        return self._shown().text()
+
+    __repr__ = __str__
+
+    def _shown(self) -> Shown:
+        rows: list[tuple[str, ...]] = []
         for entry in self.influences:
             ends = " to ".join("not possible" if end is None else f"{end:.4g}" for end in (entry.at_low, entry.at_high))
-            mark = "" if entry.told_apart else "  (not told apart from scatter)"
-            share = f"{100.0 * entry.span / abs(self.value):6.1f} %" if self.value else f"{entry.span:.3g}"
-            lines.append(f"{entry.estimated.path:<{width}}  {share}  {ends}{mark}")
-        return "\n".join(lines)
+            mark = "" if entry.told_apart else "  (not told apart from chance)"
+            share = f"{100.0 * entry.span / abs(self.value):.1f} %" if self.value else f"{entry.span:.3g}"
+            rows.append((entry.estimated.path, share.rjust(8), f"{ends}{mark}"))
+        notes = [f"Not possible: {entry.estimated.path} = {entry.note}" for entry in self.influences if entry.note]
+        if self.influences and not any(entry.told_apart for entry in self.influences):
+            notes.append(
+                "No influence can be told from chance with runs as short and few as these: allow more turns or starts."
+            )
+        title = f"{self.quantity} = {self.value:.4g}; by chance alone it moves by up to {self.scatter:.2g}"
+        return Shown(
+            title, tuple(rows), ("input", "changes it by", "from one end of its band to the other"), tuple(notes)
+        )
 
 
 def sensitivity(
@@ -83,12 +120,14 @@ def sensitivity(
     revolutions: float = 5.0,
     accuracy: str = "fast",
     paths: Sequence[str] | None = None,
+    starts: int = STARTS,
 ) -> Sensitivity:
     """Which estimated inputs of the scene's bearing matter for a result.
 
-    Every estimate (`Bearing.estimated`) is put to the low and the high end of its band, alone, and a short run is made
-    for each end. A cage that collides is chaotic, so a result moves a little whatever is changed: this scatter is
-    measured by a run that starts otherwise, and smaller influences are marked as not told apart.
+    Every estimate (`Bearing.estimated`) is put to the low and the high end of its band, alone, and short runs from several starts
+    are made for each end. A cage that collides is chaotic, so a result moves whatever is changed: influences that are
+    smaller than what chance makes are marked as not told apart. An influence on the slow creep of the rollers, which takes longer
+    than the runs, is not seen.
 
     Parameters
     ----------
@@ -102,6 +141,8 @@ def sensitivity(
         Preset of the tolerances.
     paths : sequence of str, optional
         Only these inputs; all estimates by default.
+    starts : int
+        Starts of each run, at least 2: that of the scene, and others. More starts tell smaller influences apart.
 
     Returns
     -------
@@ -118,21 +159,70 @@ def sensitivity(
     >>> import trbdyn as trb
     >>> bearing = trb.Bearing.from_catalogue(bore=0.050, outside=0.110, width=0.02925, C=125e3, e=0.35, name="30310")
     >>> scene = trb.Scene(bearing, speed_rpm=2000, axial_load=3000.0)
-    >>> found = trb.sensitivity(scene, "outer_load_mean", revolutions=0.5, paths=["cup_half_angle_deg", "cage.mass"])
+    >>> found = trb.sensitivity(scene, "outer_load_mean", revolutions=0.2, paths=["cup_half_angle_deg", "cage.mass"])
     >>> found.influences[0].estimated.path
     'cup_half_angle_deg'
     """
+    if isinstance(starts, bool) or not isinstance(starts, int) or not 2 <= starts <= 1000:
+        raise InputError.of("starts", starts, "must be a whole number from 2 to 1000: one start shows no scatter")
     chosen = _chosen(scene.bearing, paths)
     name = quantity if isinstance(quantity, str) else getattr(quantity, "__name__", "result")
+    begun = [scene.replace(start=_start(scene, k)) for k in range(starts)]
 
-    def measured(run_scene: Scene) -> float:
-        return _number(Simulation(run_scene, accuracy=accuracy).run(revolutions=revolutions), quantity, name)
+    def measured(bearing: Bearing) -> Array:
+        runs = [
+            Simulation(one.replace(bearing=bearing), accuracy=accuracy).run(revolutions=revolutions) for one in begun
+        ]
+        return np.array([_number(run, quantity, name) for run in runs])
 
-    value = measured(scene)
-    scatter = abs(measured(scene.replace(start=_other_start(scene))) - value)
-    influences = [_influence(scene, entry, value, scatter, measured) for entry in chosen]
+    diameter = scene.bearing.roller.diameter
+    same = [scene.bearing] + [
+        changed(scene.bearing, "roller.diameter", diameter * (1.0 + k * BILLIONTH)) for k in range(1, REPEATS)
+    ]
+    base = np.array([measured(bearing) for bearing in same])
+    ends, notes = zip(*(_ends(scene.bearing, entry, measured) for entry in chosen), strict=True)
+    limits = told_from(base, ends)
+    influences = [
+        _influence(entry, float(base.mean()), *of_entry, note)
+        for entry, note, of_entry in zip(chosen, notes, zip(ends, limits, strict=True), strict=True)
+    ]
     influences.sort(key=lambda entry: -entry.span)
-    return Sensitivity(name, value, scatter, tuple(influences))
+    known = [limit for pair in limits for limit in pair if limit is not None]
+    return Sensitivity(name, float(base.mean()), float(np.median(known)) if known else 0.0, tuple(influences))
+
+
+Pair = tuple[Array | None, Array | None]
+
+
+def told_from(base: Array, ends: Sequence[Pair]) -> list[tuple[float | None, float | None]]:
+    """Difference of the mean over the starts from which an end of a band is told apart from the estimate.
+
+    Parameters
+    ----------
+    base : ndarray, shape (R, S)
+        The result with the estimates, in R repeated runs from each of S starts.
+    ends : sequence of pairs of ndarray, shape (S,), or None
+        The result at both ends of each band, from the same starts; None where there is none.
+    """
+    from scipy import stats
+
+    repeats, starts = base.shape
+    mean = base.mean(axis=0)
+    of_chance = float(base.var(axis=0, ddof=1).mean()) * (1.0 + 1.0 / repeats)
+    own = [[None if end is None else float((end - mean).var(ddof=1)) for end in pair] for pair in ends]
+    known = [value for pair in own for value in pair if value is not None]
+    if not known:
+        return [(None, None)] * len(ends)
+    usual = float(np.median(known)) / (float(stats.chi2.median(starts - 1)) / (starts - 1))
+    factor = float(stats.t.ppf(1.0 - 0.5 * CHANCE / len(known), starts * (repeats - 1)))
+    least = LEAST_SHARE * abs(float(mean.mean()))
+
+    def limit(variance: float | None) -> float | None:
+        if variance is None:
+            return None
+        return max(factor * float(np.sqrt(max(variance, usual, of_chance) / starts)), least)
+
+    return [(limit(low), limit(high)) for low, high in own]
 
 
 def _chosen(bearing: Bearing, paths: Sequence[str] | None) -> list[Estimated]:
@@ -163,31 +253,62 @@ def _number(result: Result, quantity: str | Callable[[Result], float], name: str
         raise InputError.of("quantity", name, f"must give a number, not {found!r}") from None
 
 
-def _other_start(scene: Scene) -> Any:
+def _start(scene: Scene, number: int) -> Start:
+    """The scene's start, or another one."""
     start = scene.start
+    if number == 0:
+        return start
     if start.kind == "whirl":
-        return start.replace(direction_deg=start.direction_deg + 37.0)
+        return start.replace(direction_deg=start.direction_deg + 37.0 * number)
     if start.kind == "unequal":
-        return start.replace(seed=start.seed + 1)
-    return Start.unequal(1, spread=0.3)
+        return start.replace(seed=start.seed + number)
+    return Start.unequal(number, spread=0.3)
 
 
-def _influence(
-    scene: Scene, entry: Estimated, value: float, scatter: float, measured: Callable[[Scene], float]
-) -> Influence:
-    ends: list[float | None] = []
+def _ends(bearing: Bearing, entry: Estimated, measured: Callable[[Bearing], Array]) -> tuple[Pair, str]:
+    """The result at both ends of a band, and why there is none."""
+    found: list[Array | None] = []
     notes = []
     for target in (entry.low, entry.high):
         if target == entry.value:
-            ends.append(value)
+            found.append(None)
             continue
         try:
-            ends.append(measured(scene.replace(bearing=changed(scene.bearing, entry.path, target))))
+            found.append(measured(_moved(bearing, entry.path, target)))
         except (InputError, LoadError, StepError) as error:
-            ends.append(None)
-            notes.append(f"{target:.4g}: {str(error).splitlines()[0]}")
-    span = max((abs(end - value) for end in ends if end is not None), default=0.0)
-    return Influence(entry, ends[0], ends[1], span, span > scatter, "; ".join(notes))
+            found.append(None)
+            notes.append(f"{target:.4g}: {_reason(error)}")
+    return (found[0], found[1]), "; ".join(notes)
+
+
+def _influence(
+    entry: Estimated, value: float, ends: Pair, limits: tuple[float | None, float | None], note: str
+) -> Influence:
+    means = [None if end is None else float(end.mean()) for end in ends]
+    apart = [0.0 if mean is None else abs(mean - value) for mean in means]
+    told = any(limit is not None and size > limit for size, limit in zip(apart, limits, strict=True))
+    at = [value if target == entry.value else mean for target, mean in zip((entry.low, entry.high), means, strict=True)]
+    return Influence(entry, at[0], at[1], max(apart), told, note)
+
+
+def _reason(error: Exception) -> str:
+    """Why a bearing cannot be built or run, in a line: every problem of an error that has several."""
+    return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
+
+
+def _moved(bearing: Bearing, path: str, value: float) -> Bearing:
+    """The bearing with an estimate moved. Number and diameter of the rollers go together where both are estimated: they keep
+    their share of the pitch circle, as more rollers of the same size would overlap.
+    """
+    other = {"n_rollers": "roller.diameter", "roller.diameter": "n_rollers"}.get(path)
+    for entry in bearing.estimated:
+        if entry.path == other:
+            size = min(max(bearing.n_rollers * bearing.roller.diameter / value, entry.low), entry.high)
+            size = math.floor(size + WHOLE) if other == "n_rollers" else size
+            thinner_first = size < entry.value
+            bearing = changed(bearing, other, size) if thinner_first else changed(bearing, path, value)
+            return changed(bearing, path, value) if thinner_first else changed(bearing, other, size)
+    return changed(bearing, path, value)
 
 
 def changed(bearing: Bearing, path: str, value: float) -> Bearing:
@@ -213,7 +334,7 @@ def changed(bearing: Bearing, path: str, value: float) -> Bearing:
         models.append(getattr(models[-1], part, None))
     if models[-1] is None or last not in type(models[-1]).model_fields:
         raise InputError.of("path", path, "must be the path of an input, for instance roller.diameter")
-    changes: dict[str, Any] = {last: int(value) if last == "n_rollers" else value}
+    changes: dict[str, Any] = {last: math.floor(value + WHOLE) if last == "n_rollers" else value}
     if path == "roller.effective_length":
         changes["total_length"] = bearing.roller.total_length + value - bearing.roller.effective_length
     new = models.pop().replace(**changes)

@@ -118,7 +118,7 @@ def view(
     exaggeration : float, optional
         Factor by which motion and clearances are drawn larger at the start, at least 1; by default the radial play of
         the cage is drawn as about a fifth of the roller's diameter. It is limited so that the bars of the cage stay
-        visible.
+        visible and the cage, drawn so, stays within the cup.
     title : str
         Title of the page.
     height : int
@@ -151,7 +151,7 @@ def view(
     stations = (
         data_of.stations(result) if len(result) > 1 else np.linspace(-0.5, 0.5, 2) * bearing.roller.effective_length
     )
-    meshes = shapes(bearing, stations)
+    meshes = shapes(bearing, stations, result.scene.effects.guidance if result.has_cage else "rollers")
     limit = frames_that_fit(result, max_size_mb, len(meshes.faces), stations.size)
     taken = data_of.frames(result, revolutions=revolutions, max_frames=min(max_frames, limit))
     made = View(page(result, meshes, taken, factor=exaggeration, title=title), height=height)

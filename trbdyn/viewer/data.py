@@ -214,7 +214,7 @@ def _quantities(result: Result, index: NDArray[np.int64], pose: dict[str, Array]
     out.append(Quantity("slip", "slip of the roller's orbit against pure rolling", "%", slip))
     for name, label in (("skew", "skew"), ("tilt", "tilt")):
         out.append(Quantity(name, label, "mrad", 1e3 * pose[name]))
-    return out
+    return [quantity for quantity in out if np.isfinite(quantity.values).all()]  # slip is none where the shaft stands
 
 
 def largest_between(values: Array, index: NDArray[np.int64]) -> Array:

@@ -18,6 +18,7 @@ from scipy.spatial.transform import Rotation
 
 from trbdyn.errors import FileError, InputError
 from trbdyn.viewer.data import Frames, check, default_factor, frames
+from trbdyn.viewer.fit import largest_factor
 from trbdyn.viewer.meshes import Mesh, join
 from trbdyn.viewer.shapes import Shapes, shapes
 
@@ -94,10 +95,11 @@ def save_gltf(
         raise InputError.of("exaggeration", exaggeration, "must be from 1 to 10000 (1)")
     bearing = result.scene.bearing
     half = 0.5 * bearing.roller.effective_length
-    meshes = shapes(bearing, np.linspace(-half, half, 13))
-    factor = default_factor(result, meshes.largest_factor) if exaggeration is None else exaggeration
-    factor = min(factor, meshes.largest_factor) if result.has_cage else factor
+    guidance = result.scene.effects.guidance if result.has_cage else "rollers"
+    meshes = shapes(bearing, np.linspace(-half, half, 13), guidance)
     taken = frames(result, revolutions=revolutions, max_frames=max_frames, along=False)
+    largest = largest_factor(bearing, meshes, taken.pose) if result.has_cage else math.inf
+    factor = min(default_factor(result, largest) if exaggeration is None else exaggeration, largest)
     data = _Document(bearing, meshes, factor, result.has_cage).write(taken, seconds_per_turn)
     try:
         Path(path).write_bytes(data)
@@ -176,12 +178,17 @@ class _Document:
         self._time = self._accessor(time.reshape(-1, 1), "SCALAR")
         cone = self._node("cone", self._mesh("cone", self._primitive(meshes.inner, "cone")))
         self._move(cone, *self._ring(pose))
+        if meshes.land is not None:
+            land = self._node("land", self._mesh("land", self._primitive(meshes.land, "cup")))
+            if meshes.land_turns:
+                self._move(land, *self._ring(pose))
         roller = self._mesh("roller", self._primitive(meshes.roller, "rollers"), self._primitive(meshes.mark, "mark"))
         for number in range(count):
             self._move(self._node(f"roller {number + 1}", roller), *self._roller(pose, number))
         if self.has_cage:
             faces = join([face.mesh for face in meshes.faces])
-            body = self._mesh("cage", self._primitive(meshes.cage, "cage"), self._primitive(faces, "pocket"))
+            whole = meshes.cage if meshes.guide is None else join([meshes.cage, meshes.guide])
+            body = self._mesh("cage", self._primitive(whole, "cage"), self._primitive(faces, "pocket"))
             self._move(self._node("cage", body), *self._cage(pose))
         name = f"{self.bearing.name}, motion and clearances x {self.factor:g}"
         head = {

@@ -7,12 +7,13 @@ import gzip
 import html
 import json
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.viewer.data import Frames, Quantity, default_factor, facts
+from trbdyn.viewer.fit import largest_factor
 from trbdyn.viewer.library import three_js
 from trbdyn.viewer.meshes import Mesh
 from trbdyn.viewer.shapes import AROUND, Shapes
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
 FULL = np.iinfo(np.uint16).max
+MESHES: Final = ("outer", "inner", "roller", "mark", "cage", "land", "guide")
+ALIKE: Final = 0.02
+"""Share of the mean within which values count as alike, either way."""
+BEYOND: Final = 0.01
+"""Share of the values that may lie beyond the ends of the colours."""
 
 
 class _Block:
@@ -67,7 +73,7 @@ def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None
     """
     block = _Block()
     bearing = result.scene.bearing
-    largest = shapes.largest_factor if result.has_cage else 200.0
+    largest = largest_factor(bearing, shapes, frames.pose) if result.has_cage else 200.0
     head: dict[str, Any] = {
         **facts(result),
         "title": title,
@@ -87,7 +93,8 @@ def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None
         },
         "factor": min(default_factor(result, largest) if factor is None else factor, largest),
         "largest_factor": largest,
-        "meshes": {name: _mesh(block, getattr(shapes, name)) for name in ("outer", "inner", "roller", "mark", "cage")},
+        "meshes": {name: _mesh(block, mesh) for name in MESHES if (mesh := getattr(shapes, name)) is not None},
+        "guidance": result.scene.effects.guidance,
         "roller_rows": shapes.roller_rows,
         "row_size": AROUND + 1,
         "faces": [
@@ -104,6 +111,7 @@ def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None
         ],
         "frames": int(frames.index.size),
         "records": frames.total,
+        "shown": shown_turns(result, frames),
         "time": block.add(_relative(frames.time), "f4") | {"start": float(frames.time[0])},
         "turns": block.add(frames.turns, "f4"),
         "pose": {
@@ -115,6 +123,17 @@ def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None
     }
     head["bytes"] = block.size
     return _fill(head, block.text())
+
+
+def shown_turns(result: Result, frames: Frames) -> str:
+    """Which turns of the shaft are shown, and why, in words."""
+    first, last = float(frames.turns[0]), float(frames.turns[-1])
+    if frames.index[0] == 0:
+        return f"all {last - first:.3g} turns of the shaft are shown"
+    return (
+        f"the last {last - first:.3g} of {result.revolutions:.3g} turns of the shaft are shown, so that single hits can be seen; "
+        "revolutions=None shows all"
+    )
 
 
 def _relative(values: NDArray[Any]) -> NDArray[Any]:
@@ -132,7 +151,29 @@ def _mesh(block: _Block, mesh: Mesh) -> dict[str, Any]:
 
 def _quantity(block: _Block, quantity: Quantity) -> dict[str, Any]:
     text = {name: getattr(quantity, name) for name in ("name", "label", "unit", "kind", "note")}
-    return text | {"values": block.coded(quantity.values)}
+    low, high, said = colour_range(quantity)
+    return text | {"values": block.coded(quantity.values), "range": [low, high], "said": said}
+
+
+def colour_range(quantity: Quantity) -> tuple[float, float, str]:
+    """Values at the ends of the colours, and what must be said of them.
+
+    The colours go over all but 1 % of the values, so that a single hit does not make all others look alike; of forces in pockets
+    those that are zero do not count. Where all values lie close together, this is said.
+    """
+    values, pocket = np.asarray(quantity.values, dtype=float), quantity.kind == "pocket"
+    values = values[values > 0.0] if pocket else values.ravel()
+    if values.size == 0:
+        return 0.0, 0.0, "no pocket is touched"
+    least, most = float(values.min()), float(values.max())
+    middle = 0.5 * abs(least + most)
+    if most - least <= 2.0 * ALIKE * middle:
+        return least, most, f"all within {50.0 * (most - least) / middle if middle else 0.0:.1g} % of {middle:.4g}"
+    low, high = (float(end) for end in np.quantile(values, (0.5 * BEYOND, 1.0 - 0.5 * BEYOND)))
+    low = 0.0 if pocket else low
+    if high - low > 0.8 * (most - (0.0 if pocket else least)):
+        return (0.0 if pocket else least), most, ""
+    return low, high, f"1 % of the values lie beyond, {'up' if pocket else f'{least:.3g}'} to {most:.3g}"
 
 
 def _colours() -> list[list[float]]:

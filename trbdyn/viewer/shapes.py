@@ -74,6 +74,10 @@ class Shapes:
         Rings of vertices of the roller's flank: the first rows of its mesh, AROUND + 1 vertices each.
     largest_factor : float
         Factor of exaggeration at which the bars of the cage become too thin to draw.
+    land, guide : Mesh, optional
+        Land of the ring that guides the cage, and the cage's guiding surface on it.
+    land_turns : bool
+        Whether the land belongs to the inner ring.
     """
 
     outer: Mesh
@@ -84,9 +88,12 @@ class Shapes:
     faces: tuple[FaceMesh, ...]
     roller_rows: int
     largest_factor: float
+    land: Mesh | None = None
+    guide: Mesh | None = None
+    land_turns: bool = False
 
 
-def shapes(bearing: Bearing, stations: ArrayLike) -> Shapes:
+def shapes(bearing: Bearing, stations: ArrayLike, guidance: str = "rollers") -> Shapes:
     """Meshes of a bearing.
 
     Parameters
@@ -95,11 +102,14 @@ def shapes(bearing: Bearing, stations: ArrayLike) -> Shapes:
         The bearing.
     stations : array_like, shape (n,)
         Places along the roller's flank, from mid length towards the large end, at which it has rings of vertices (m).
+    guidance : {'rollers', 'inner_land', 'outer_land'}
+        What guides the cage: a land is drawn where one does.
     """
     flank = np.asarray(stations, dtype=float)
     faces = _faces(bearing)
     body, largest = _cage(bearing, faces)
     outer = revolve(cup_outline(bearing), facets=4 * AROUND, start=CUT[1], stop=CUT[0] + 2.0 * np.pi, caps=True)
+    land, guide = (None, None) if guidance == "rollers" else _land(bearing, outer=guidance == "outer_land")
     return Shapes(
         outer=outer,
         inner=revolve(cone_outline(bearing), facets=4 * AROUND),
@@ -109,7 +119,30 @@ def shapes(bearing: Bearing, stations: ArrayLike) -> Shapes:
         faces=faces,
         roller_rows=flank.size,
         largest_factor=largest,
+        land=land,
+        guide=guide,
+        land_turns=guidance == "inner_land",
     )
+
+
+def _land(bearing: Bearing, *, outer: bool) -> tuple[Mesh, Mesh]:
+    """Land of a ring as a band (that of the cup with the sector left out), and the cage's band on it: they meet where the real
+    ones do.
+    """
+    land, thickness = bearing.land, 0.12 * bearing.roller.diameter
+    radius, away = (land.outer_radius, 1.0) if outer else (land.inner_radius, -1.0)
+    low, high = (land.offset + half * land.width for half in (-0.5, 0.5))
+
+    def band(near: float, far: float) -> list[tuple[float, float]]:
+        return [(near, low), (near, high), (far, high), (far, low)]
+
+    sector = {"start": CUT[1], "stop": CUT[0] + 2.0 * np.pi, "caps": True} if outer else {}
+    ring = revolve(band(radius, radius + away * thickness), facets=4 * AROUND, **sector)
+    surface = radius - away * land.clearance
+    guide = revolve(band(surface, surface - away * thickness), facets=4 * AROUND)
+    outward = guide.position * [1.0, 1.0, 0.0]
+    outward /= np.linalg.norm(outward, axis=1)[:, None]
+    return ring, Mesh(guide.position, guide.normal, guide.index, -away * land.clearance * outward)
 
 
 # ---- roller ----

@@ -30,6 +30,7 @@
   const Z = head.rollers, N = head.frames, slots = head.slots;
   const quantities = {};
   for (const q of head.quantities) quantities[q.name] = { ...q, low: q.values.low, high: q.values.high, step: q.values.step,
+    from: q.range[0], to: q.range[1],
     data: array(q.values), width: q.values.shape.slice(1).reduce((a, b) => a * b, 1), depth: q.values.shape[2] || 1 };
   const valueAt = (q, frame, column) => q.low + q.step * q.data[frame * q.width + column];
 
@@ -37,7 +38,7 @@
 
   const modes = head.quantities.map((q) => q.name);
   const state = { place: 0, playing: false, speed: 1, mode: modes.includes("outer_load") ? "outer_load" : modes[0], factor: head.factor,
-    follow: false, arrows: false, section: false, outer: true, inner: true, rollers: true, cage: true, picked: null, camera: "free" };
+    follow: false, arrows: false, trail: true, section: false, outer: true, inner: true, rollers: true, cage: true, picked: null, camera: "free" };
 
   // ---- scene ----
 
@@ -66,6 +67,7 @@
   const controls = new THREE.OrbitControls(camera, canvas);
   controls.addEventListener("change", () => { dirty = true; });
 
+  const seen = (hex) => new THREE.Color(hex).convertSRGBToLinear(); // so that a colour is drawn as the legend shows it
   const stretched = [];
   function geometryOf(mesh) {
     const geometry = new THREE.BufferGeometry();
@@ -118,6 +120,34 @@
       faces.push({ ...face, mesh });
     }
   }
+  // lands: that of the ring stands with the ring, the cage's guiding surface moves with the cage
+  const landMaterial = material({ color: 0x5f7d95 });
+  const land = head.meshes.land ? new THREE.Mesh(geometryOf(head.meshes.land), landMaterial) : null;
+  if (land) (head.guidance === "inner_land" ? innerGroup : world).add(land);
+  if (head.meshes.guide) cage.add(new THREE.Mesh(geometryOf(head.meshes.guide), material({ color: 0xb0862f })));
+
+  // ---- orbit of the cage: the trail of its centre, with its radial play as a circle, in the bore and on a scale of its own ----
+
+  const trail = new THREE.Group();
+  let innermost = 1e9, front = -1e9;
+  { const p = array(head.meshes.inner.position);
+    for (let i = 0; i < p.length; i += 3) { innermost = Math.min(innermost, Math.hypot(p[i], p[i + 1])); front = Math.max(front, p[i + 2]); } }
+  const trailFactor = (0.75 * innermost) / head.geometry.play_radial;
+  trail.position.z = front * MM;
+  function curve(points, colour) {
+    const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color: seen(colour) }));
+    trail.add(line);
+  }
+  const onTrail = (x, y) => new THREE.Vector3(x, y, 0).multiplyScalar(trailFactor * MM);
+  const circle = (radius) => [...Array(97).keys()].map((k) => onTrail(radius * Math.cos((2 * Math.PI * k) / 96), radius * Math.sin((2 * Math.PI * k) / 96)));
+  curve(circle(head.geometry.play_radial), 0x30363c);
+  curve([onTrail(-0.04 * head.geometry.play_radial, 0), onTrail(0.04 * head.geometry.play_radial, 0)], 0x30363c);
+  curve([onTrail(0, -0.04 * head.geometry.play_radial), onTrail(0, 0.04 * head.geometry.play_radial)], 0x30363c);
+  curve([...Array(N).keys()].map((k) => onTrail(pose.cage_x[k], pose.cage_y[k])), 0xd55e00);
+  const centre = new THREE.Mesh(new THREE.SphereGeometry(0.025 * innermost * MM, 12, 12), new THREE.MeshBasicMaterial({ color: seen(0xb00020) }));
+  trail.add(centre);
+  world.add(trail);
+
   const outline = new THREE.Mesh(new THREE.SphereGeometry(1, 8, 8), new THREE.MeshBasicMaterial({ color: 0xd000a0 }));
   outline.visible = false;
   world.add(outline);
@@ -128,7 +158,7 @@
   const tip = new THREE.ConeGeometry(0.13, 0.25, 12).translate(0, 0.875, 0);
   const UP = new THREE.Vector3(0, 1, 0);
   function arrow(colour, parent) {
-    const group = new THREE.Group(), look = new THREE.MeshBasicMaterial({ color: colour, depthTest: false, transparent: true });
+    const group = new THREE.Group(), look = new THREE.MeshBasicMaterial({ color: seen(colour), depthTest: false, transparent: true });
     group.add(new THREE.Mesh(shaft, look), new THREE.Mesh(tip, look));
     group.renderOrder = 5;
     group.children.forEach((part) => { part.renderOrder = 5; });
@@ -145,7 +175,7 @@
     one.scale.set(width, length, width);
   }
   const loadArrows = ["outer_load", "inner_load"].filter((name) => quantities[name]).map((name) => (
-    { name, list: rollers.map(() => arrow(name === "outer_load" ? 0xb00020 : 0x7a0177, world)) }));
+    { name, list: rollers.map(() => arrow(name === "outer_load" ? 0xb00020 : 0x7b2fa0, world)) }));
   const pocketArrows = quantities.pocket_force ? faces.map((face) => arrow(0x0050b0, cage)) : [];
 
   // ---- a moment of the record ----
@@ -174,6 +204,7 @@
       tilted.setPosition(e * MM * scalar("cage_x", b), e * MM * scalar("cage_y", b), e * MM * scalar("cage_z", b));
       cage.matrix.copy(tilted);
       cage.matrixWorldNeedsUpdate = true;
+      centre.position.copy(onTrail(scalar("cage_x", b), scalar("cage_y", b)));
     }
     for (let i = 0; i < Z; i++) {
       const angle = cageAngle + (2 * Math.PI * i) / Z + e * ofRoller("psi", b, i);
@@ -193,7 +224,7 @@
     return found.copy(ramp[k]).lerp(ramp[k + 1], x - k);
   }
   const PLAIN = new THREE.Color(0xd7dde3).convertSRGBToLinear(), FACE = new THREE.Color(0xe3c78f).convertSRGBToLinear();
-  const share = (q, value) => (q.high > q.low ? (value - q.low) / (q.high - q.low) : 0);
+  const share = (q, value) => (q.to > q.from ? (value - q.from) / (q.to - q.from) : 0.5);
   function paint(b) {
     const q = quantities[state.mode];
     for (let i = 0; i < Z; i++) {
@@ -214,20 +245,24 @@
       face.mesh.material.color.copy(force > 0.5 * q?.step ? colour(share(q, force)) : FACE);
     }
   }
+  // one scale for the loads at both raceways, one for the forces on the cage: the longest arrow is that of the largest force shown
+  const LOAD_LENGTH = 1.1, POCKET_LENGTH = 1.6; // in diameters of a roller
+  const loads = Math.max(0, ...loadArrows.map(({ name }) => quantities[name].high));
+  const arrowLength = (largest, longest) => (largest > 0 ? (longest * head.geometry.diameter * MM) / largest : 0); // mm per N
   function force(b) {
     const d = head.geometry.diameter * MM;
     for (const { name, list } of loadArrows) {
       const q = quantities[name], side = name === "outer_load" ? -1 : 1;
       list.forEach((one, i) => {
         const n = inOrbit[i].n.clone(), from = new THREE.Vector3(inOrbit[i].x, inOrbit[i].y, inOrbit[i].z).addScaledVector(n, -side * 0.5 * d);
-        aim(one, from, n.multiplyScalar(side), q.high > 0 ? (1.1 * d * valueAt(q, b.nearest, i)) / q.high : 0);
+        aim(one, from, n.multiplyScalar(side), valueAt(q, b.nearest, i) * arrowLength(loads, LOAD_LENGTH));
       });
     }
     const q = quantities.pocket_force;
     pocketArrows.forEach((one, k) => {
       const face = faces[k], value = valueAt(q, b.nearest, face.pocket * slots + face.slot);
       const end = new THREE.Vector3(...face.centre).addScaledVector(new THREE.Vector3(...face.shift), state.factor - 1).multiplyScalar(MM);
-      aim(one, end, new THREE.Vector3(...face.normal).multiplyScalar(-1), q.high > 0 ? (1.6 * d * value) / q.high : 0);
+      aim(one, end, new THREE.Vector3(...face.normal).multiplyScalar(-1), value * arrowLength(q.high, POCKET_LENGTH));
     });
   }
   function stretch() {
@@ -240,17 +275,29 @@
 
   // ---- words and numbers ----
 
+  const legend = [];
   const number = (x) => (x === 0 ? "0" : Math.abs(x) >= 1e5 || Math.abs(x) < 1e-3 ? x.toExponential(2) : String(+x.toPrecision(4)));
   const unit = (q) => (q.unit === "1" ? "" : " " + q.unit);
   byId("about").innerHTML = "<b></b><span></span>";
   byId("about").firstChild.textContent = head.title || head.bearing;
-  byId("about").lastChild.textContent = `${head.bearing}, ${number(head.speed_rpm)} rpm, ${head.loads}; ${N} of ${head.records} records are shown`;
+  byId("about").lastChild.textContent = `${head.bearing}, ${number(head.speed_rpm)} rpm, ${head.loads}; ${head.shown}; ${N} of their ${head.records} records`;
+  { const swatch = (colour) => `<i style="background:#${colour.toString(16).padStart(6, "0")}"></i>`;
+    const bar = (label, colours, largest, longest) => {
+      if (largest > 0) legend.push(`<div>${colours.map(swatch).join("")} ${label}: an arrow as long as a roller is thick is ${number(largest / longest)} N, the longest ${number(largest)} N</div>`);
+    };
+    for (const { name } of loadArrows) legend.push(`<div>${swatch(name === "outer_load" ? 0xb00020 : 0x7b2fa0)} ${quantities[name].label}</div>`);
+    bar("loads of the raceways on the rollers", [], loads, LOAD_LENGTH);
+    if (quantities.pocket_force) bar("forces of the rollers on the cage", [0x0050b0], quantities.pocket_force.high, POCKET_LENGTH);
+    if (head.has_cage) byId("trail-legend").textContent = `In the bore: path of the cage's centre, ${number(trailFactor)} times as large as it is; the circle is the radial play, ${number(head.geometry.play_radial * MM)} mm.`;
+    byId("arrow-legend").innerHTML = "<b>Force arrows</b>" + legend.join(""); }
   function words() {
     byId("factor-note").textContent = state.factor > 1.0005
       ? `Motion and clearances of cage and rollers are drawn ${number(state.factor)} times as large as they are.` : "Motion and clearances are drawn true to scale.";
     byId("factor-value").textContent = number(state.factor);
     const q = quantities[state.mode];
-    byId("scale").innerHTML = q ? `<div>${q.label}${q.unit === "1" ? "" : " (" + q.unit + ")"}</div><div class="bar"></div><div class="ends"><span>${number(q.low)}</span><span>${number(0.5 * (q.low + q.high))}</span><span>${number(q.high)}</span></div>` : "";
+    byId("scale").innerHTML = q ? `<div>${q.label}${q.unit === "1" ? "" : " (" + q.unit + ")"}</div><div class="bar"></div><div class="ends"><span>${number(q.from)}</span><span>${number(0.5 * (q.from + q.to))}</span><span>${number(q.to)}</span></div><div class="said">${q.said}</div>` : "";
+    byId("trail-legend").hidden = !state.trail || !head.has_cage;
+    byId("arrow-legend").hidden = !state.arrows || !legend.length;
     if (q) byId("scale").querySelector(".bar").style.background = "linear-gradient(90deg," +
       head.colours.map((c) => `rgb(${c.map((x) => Math.round(255 * x)).join()})`).join() + ")";
   }
@@ -374,9 +421,9 @@
     controls.update();
     refresh();
   }
-  const switches = { follow: "turn with the cage", arrows: "force arrows", section: "half section", outer: "cup", inner: "cone", rollers: "rollers", cage: "cage" };
+  const switches = { follow: "turn with the cage", arrows: "force arrows", trail: "orbit of the cage", section: "half section", outer: "cup", inner: "cone", rollers: "rollers", cage: "cage" };
   for (const name in switches) {
-    if (name === "cage" && !head.has_cage) continue;
+    if ((name === "cage" || name === "trail") && !head.has_cage) continue;
     const label = document.createElement("label"), box = document.createElement("input");
     Object.assign(box, { type: "checkbox", id: "switch-" + name, checked: state[name] });
     box.addEventListener("change", () => setSwitch(name, box.checked));
@@ -390,10 +437,12 @@
     outer.visible = state.outer;
     innerGroup.visible = state.inner;
     cage.visible = state.cage;
+    trail.visible = state.trail && head.has_cage;
+    if (land) land.visible = head.guidance === "inner_land" ? state.inner : state.outer;
     rollers.forEach((roller) => { roller.group.visible = state.rollers; });
     const planes = state.section ? [new THREE.Plane(new THREE.Vector3(-1, 0, 0), 0)] : [];
     renderer.localClippingEnabled = state.section;
-    ringMaterial.clippingPlanes = innerMaterial.clippingPlanes = planes;
+    for (const look of [ringMaterial, innerMaterial, landMaterial]) look.clippingPlanes = planes;
     refresh();
   }
   const caster = new THREE.Raycaster(), spot = new THREE.Vector2();
@@ -433,13 +482,15 @@
     drawn++;
   }
   function fit() {
-    const box = byId("view").getBoundingClientRect();
+    const box = canvas.getBoundingClientRect(); // on a phone the captions stand above and below it
     renderer.setSize(box.width, box.height, false);
     camera.aspect = box.width / Math.max(box.height, 1);
     camera.updateProjectionMatrix();
     dirty = true;
   }
-  new ResizeObserver(fit).observe(byId("view"));
+  const watcher = new ResizeObserver(fit);
+  watcher.observe(byId("view"));
+  watcher.observe(canvas);
   function tick(now) {
     if (state.playing) {
       if (last !== null) {

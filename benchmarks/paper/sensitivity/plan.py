@@ -12,7 +12,7 @@ from paper.points import Condition
 from paper.sensitivity.inputs import Input, Level, inputs
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Scatter
-from trbdyn.model.cases import rig_30310, scene_30310
+from trbdyn.model.cases import paper_30310, rig_30310
 from trbdyn.model.effects import Effects
 from trbdyn.model.scene import Scene, Start
 from trbdyn.run.options import Group, RunOptions
@@ -116,7 +116,7 @@ def scene(place: Place, start: StartName, seed: int) -> Scene:
     direction = float(np.random.default_rng([29, seed]).uniform(-180.0, 180.0))
     bearing = rig_30310()
     none = Scatter(range=0.0, seed=seed)
-    return scene_30310(
+    return paper_30310(
         condition.speed_rpm,
         condition.axial_load,
         condition.radial_load,

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from trbdyn.base.validation import Model, Number, as_number, split_paths, unit
+from trbdyn.base.validation import Flag, Model, Number, as_number, split_paths, unit
 from trbdyn.errors import InputError
 from trbdyn.model.core_table import parameter
 from trbdyn.model.lubricants.viscosity import Dicke, Vogel, astm_d341, wooster
@@ -170,6 +170,10 @@ class Lubricant(Model):
         tau0, characteristic shear stress (Pa): 3 to 8 MPa.
     shear_modulus_floor : float
         Smallest limiting shear modulus Ginf (Pa).
+    cleanliness : {'13/10', '15/12', '17/14', '19/16', '21/18'}, optional
+        Particles in the oil, the last two numbers of the code of ISO 4406; only `trbdyn.rating` uses it.
+    filtered : bool
+        Circulating oil with an in-line filter; only `trbdyn.rating` uses it.
     name : str
         Name of the oil.
 
@@ -198,6 +202,8 @@ class Lubricant(Model):
     viscosity_exponent_cap: Annotated[Number, parameter("viscosity_exponent_cap")] = 25.0
     eyring_stress: Annotated[Number, parameter("eyring_stress")] = 5e6
     shear_modulus_floor: Annotated[Number, parameter("shear_modulus_floor")] = 1e7
+    cleanliness: Literal["13/10", "15/12", "17/14", "19/16", "21/18"] | None = None
+    filtered: Flag = False
     oil: Oil | None = None
     name: str = "oil"
 

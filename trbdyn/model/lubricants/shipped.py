@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
-from typing import Final
+from typing import Any, Final
 
 from trbdyn.base.validation import as_number
 from trbdyn.errors import InputError
@@ -87,9 +86,38 @@ def iso_vg(grade: int, temperature_c: float = 60.0, *, eyring_stress: float = 5e
 
 
 fva3 = vg100
+
+
+def _named(name: str) -> Callable[..., Lubricant]:
+    """A function that gives an oil that ships at a temperature (C), 60 by default; other fields are those of `Lubricant`."""
+    oil = SHIPPED[name]
+
+    def made(temperature_c: float = 60.0, **fields: Any) -> Lubricant:
+        return Lubricant(oil=oil, temperature_c=temperature_c, **fields)
+
+    made.__name__ = made.__qualname__ = name
+    made.__doc__ = f"""{oil.name} at a temperature.
+
+    Parameters
+    ----------
+    temperature_c : float
+        Temperature of the oil (C).
+    **fields
+        Other fields of `Lubricant`.
+
+    Returns
+    -------
+    Lubricant
+    """
+    return made
+
+
+vg32, vg46, vg68, vg150, vg220, vg320, vg460 = (_named(f"vg{grade}") for grade in MINERAL if grade != 100)
+gear_75w90, gear_80w90, atf = (_named(name) for name in ("gear_75w90", "gear_80w90", "atf"))
+
 OILS: Final[dict[str, Callable[..., Lubricant]]] = {
     "vg100": vg100,
     "fva3": vg100,
-    **{name: partial(Lubricant, oil=oil) for name, oil in SHIPPED.items() if oil is not FVA3},
+    **{made.__name__: made for made in (vg32, vg46, vg68, vg150, vg220, vg320, vg460, gear_75w90, gear_80w90, atf)},
 }
 """Oils that ship, by name: each takes ``temperature_c`` (60 by default)."""

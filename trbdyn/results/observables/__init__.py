@@ -36,7 +36,7 @@ from trbdyn.results.observables.rollers import (
     wrap_angle,
 )
 from trbdyn.results.observables.signals import Settling, peak_frequency, settling, spectrum, uniform
-from trbdyn.results.observables.uncertainty import batches, correlation_time, half_width
+from trbdyn.results.observables.uncertainty import MeanError, correlation_time, half_width, mean_error
 
 __all__ = [
     "LIMITS",
@@ -44,11 +44,11 @@ __all__ = [
     "Drift",
     "EnergyAudit",
     "Growth",
+    "MeanError",
     "MotionSettling",
     "PocketStatistics",
     "Settling",
     "axis_distance",
-    "batches",
     "by_turns",
     "cage_frequency",
     "cage_speed_ratio",
@@ -61,6 +61,7 @@ __all__ = [
     "kinematic_slip",
     "lean",
     "locus",
+    "mean_error",
     "motion_settling",
     "orbit_radius",
     "peak_frequency",

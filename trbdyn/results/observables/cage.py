@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -267,40 +267,67 @@ def whirl_coherence(position: ArrayLike, velocity: ArrayLike) -> float:
     return float(np.sum(r[:, 0] * v[:, 1] - r[:, 1] * v[:, 0]) / size) if size > 0 else float("nan")
 
 
+Kind = Literal["unknown", "stable", "rocking", "circling", "unstable"]
+
+REST_ORBIT: Final = 0.1
+"""Largest orbit (rms) of a stable cage, in units of the play."""
+OWN_SIDE: Final = 0.4
+"""Least share of its mean distance from the axis that a rocking cage keeps on its own side of the axis."""
+LEAST_COHERENCE: Final = 0.5
+"""Least coherence about the axis of a circling cage. A circle about a place beside the axis reaches this and `OWN_SIDE` together:
+where its radius is 0.6 of the distance of its centre.
+"""
+LEAST_TURNS: Final = 2.0
+"""Turns of the cage below which its motion has no class."""
+SELDOM: Final = 0.01
+"""Share of the time that is left out of the least distance on its own side."""
+
+
 @dataclass(frozen=True, slots=True)
 class CageMotion:
     """What kind of motion the cage makes.
 
     Attributes
     ----------
-    kind : {"stable", "circling", "unstable"}
-        Class of the motion.
+    kind : {"unknown", "stable", "rocking", "circling", "unstable"}
+        Class of the motion; unknown: the record is too short.
     orbit_over_play : float
         Root mean square distance from the mean place over the radial play.
     whirl_coherence : float
-        How far the motion is a turn in one sense, see `whirl_coherence`.
+        How far the motion is a turn in one sense about its mean place, see `whirl_coherence`.
     speed_deviation_ratio : float
         Standard deviation over mean of the cage centre's speed, the indicator of Ghaisas et al.; for comparison.
+    own_side : float
+        Distance from the axis, in the direction of the mean place, that is kept for 99 % of the time, over that of the mean
+        place; 1: it stays there, below 0: it comes to the other side. nan for a mean place on the axis.
+    axis_coherence : float
+        How far the motion is a turn in one sense about the bearing axis.
     """
 
-    kind: Literal["stable", "circling", "unstable"]
+    kind: Kind
     orbit_over_play: float
     whirl_coherence: float
     speed_deviation_ratio: float
+    own_side: float
+    axis_coherence: float
 
 
 def classify(
     position: ArrayLike,
     velocity: ArrayLike,
     radial_play: float,
-    rest_orbit: float = 0.1,
-    least_coherence: float = 0.5,
+    rest_orbit: float = REST_ORBIT,
+    least_coherence: float = LEAST_COHERENCE,
+    cage_angle: ArrayLike | None = None,
 ) -> CageMotion:
-    """Classify the cage's motion.
+    """Classify the cage's motion by where the centre of its orbit lies, how large the orbit is, and whether it encloses the axis.
 
-    Stable: the centre stays near one place (root mean square distance from it below `rest_orbit` times the play). Else
-    circling, if it goes round in one sense (`whirl_coherence` at least `least_coherence`, either way), else unstable. The
-    deviation of the speed alone would not do: an orbit that repeats itself but is not round has a large one.
+    Stable: the centre stays near one place (root mean square distance from it below `rest_orbit` times the play). Rocking: it
+    hangs beside the axis, and moves to and fro or in loops about that place without coming near to the other side of the axis
+    (`own_side` at least 0.4). Circling: it goes round the bearing axis in one sense (coherence about the axis at least
+    `least_coherence`, either way). Unstable: none of these. The deviation of the speed alone would not do: an orbit that repeats
+    itself but is not round has a large one; nor would the coherence about the mean place, as a cage that rocks in small loops
+    has any.
 
     Parameters
     ----------
@@ -313,16 +340,34 @@ def classify(
     rest_orbit : float
         Largest orbit of a stable cage, in units of the play.
     least_coherence : float
-        Least coherence of a circling cage.
+        Least coherence about the axis of a circling cage.
+    cage_angle : array_like, shape (T,), optional
+        Turn of the cage, rad: with fewer than two turns the motion has no class.
 
     Returns
     -------
     CageMotion
         The class and the numbers behind it.
     """
+    p = _planar(position)
     orbit = float(np.sqrt(np.mean(orbit_radius(position) ** 2)) / radial_play)
     coherence, ratio = whirl_coherence(position, velocity), speed_deviation_ratio(velocity)
-    if orbit < rest_orbit:
-        return CageMotion("stable", orbit, coherence, ratio)
-    kind: Literal["circling", "unstable"] = "circling" if abs(coherence) >= least_coherence else "unstable"
-    return CageMotion(kind, orbit, coherence, ratio)
+    mean = p.mean(axis=0)
+    square = float(mean @ mean)
+    side = float(np.quantile(p @ mean, SELDOM)) / square if square > 0.0 else float("nan")
+    # the same angular momentum as about the mean place, over a radius that counts the way to the axis, too
+    size = float(np.sqrt(np.mean(np.sum(p**2, axis=1)))) / radial_play
+    about_axis = coherence * orbit / size if size > 0.0 else float("nan")
+
+    def kind() -> Kind:
+        if cage_angle is not None:
+            angle = np.asarray(cage_angle, dtype=float)
+            if abs(float(angle[-1] - angle[0])) < 2.0 * np.pi * LEAST_TURNS:
+                return "unknown"
+        if orbit < rest_orbit:
+            return "stable"
+        if side >= OWN_SIDE:
+            return "rocking"
+        return "circling" if abs(about_axis) >= least_coherence else "unstable"
+
+    return CageMotion(kind(), orbit, coherence, ratio, side, about_axis)

@@ -9,7 +9,7 @@ told by the rates of change with their errors, and by the time that the creep ta
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -25,6 +25,8 @@ BLOCKS: Final = 12
 LEAST_BLOCKS: Final = 5
 LEAST_TURNS: Final = 10
 """Turns of the cage after the transient from which a motion can be called settled."""
+STANDSTILL: Final = 1e-6
+"""Turns of the cage up to which it stands: no length of a run can be told from them."""
 CREEP_TIMES: Final = 3.0
 """Length after the transient, in times of the creep, from which a motion can be called settled."""
 SIGNIFICANT: Final = 0.00135
@@ -33,6 +35,7 @@ BOUND: Final = 0.0228
 """Chance that a rate lies above its bound: that of two standard errors, one-sided."""
 LEAST_GROWTH: Final = 0.1
 """Growth (ln of the whirl amplitude) over the record after the transient from which a whirl counts as growing."""
+GROWS: Final = "grows"
 LIMITS: Final = {"whirl amplitude": 0.05, "orbit radius": 0.05, "roller spacing": 0.1}
 """Changes that matter, in units of Cpr, Cpr and the angle Cpc/(Dpw/2)."""
 
@@ -96,6 +99,13 @@ class MotionSettling:
         Time that the creep of the rollers needs to change the cage's whirl, s; nan where it is not known.
     drifts : dict of str to Drift
         The rates, by the names of `LIMITS`; empty for records that are too short.
+    needed : float
+        Length of a record that is expected to tell whether the motion has settled, s; nan where it is told already or no
+        length is known. Unknown: ten turns of the cage and three times of the creep after the transient, and so long that the
+        rates are known well enough. Drifting: three time scales of the drift more.
+    growth_rate : float
+        Rate of an exponential growth of the whirl, 1/s; 0 where it does not grow so. Where a whirl grows, what it grows to cannot be
+        told from its rate.
     """
 
     answer: Answer
@@ -105,6 +115,8 @@ class MotionSettling:
     reason: str
     creep_time: float
     drifts: dict[str, Drift] = field(default_factory=dict)
+    needed: float = math.nan
+    growth_rate: float = 0.0
 
     @property
     def settled(self) -> bool:
@@ -254,10 +266,14 @@ def motion_settling(
     spread = np.asarray(spacing, dtype=float)
     turns = float(abs(turned[-1] - turned[0])) / (2.0 * np.pi) if t.size else 0.0
     middle = max(min(t.size // 2, t.size - 2), 0)  # averages need two records
+    length = float(t[-1] - t[0]) if t.size else 0.0
+    after = max(
+        LEAST_TURNS * length / turns if turns > STANDSTILL else math.nan, CREEP_TIMES * np.nan_to_num(creep_time)
+    )
     if turns < 4.0:
-        return MotionSettling(
-            "unknown", middle, float(t[middle]), math.nan, f"only {turns:.2g} turns of the cage", creep_time
-        )
+        reason, needed = f"only {turns:.2g} turns of the cage", length + after
+        return MotionSettling("unknown", middle, float(t[middle]), math.nan, reason, creep_time, needed=needed)
+    first = float(t[0])
     signals = {"roller spacing": spread}
     centre = None if position is None else np.asarray(position, dtype=float)
     if centre is not None:
@@ -277,9 +293,13 @@ def motion_settling(
     length = float(t[-1] - found.time)
 
     def result(
-        answer: Answer, reason: str, scale: float = math.nan, drifts: dict[str, Drift] | None = None
+        answer: Answer,
+        reason: str,
+        scale: float = math.nan,
+        drifts: dict[str, Drift] | None = None,
+        needed: float = found.time - first + after,
     ) -> MotionSettling:
-        return MotionSettling(answer, found.index, found.time, scale, reason, creep_time, drifts or {})
+        return MotionSettling(answer, found.index, found.time, scale, reason, creep_time, drifts or {}, needed)
 
     if count < LEAST_BLOCKS or not all(np.isfinite(values).all() for values in means.values()):
         return result(
@@ -288,9 +308,11 @@ def motion_settling(
     drifts = {name: drift(when, values) for name, values in means.items()}
     horizon = length if math.isnan(creep_time) else max(length, CREEP_TIMES * creep_time)
     moving = _moving(when, means, drifts, horizon)
-    if moving is not None:
-        name, scale, words = moving
-        return result("drifting", f"the {name} {words}, time scale {scale:.2g} s", scale, drifts)
+    if moving:
+        name, scale, words = min(moving, key=lambda entry: entry[1])
+        still = float(t[-1]) - first + CREEP_TIMES * scale
+        drifting = result("drifting", f"the {name} {words}, time scale {scale:.2g} s", scale, drifts, still)
+        return replace(drifting, growth_rate=next((1.0 / one for _, one, how in moving if how == GROWS), 0.0))
     if not math.isnan(creep_time) and length < CREEP_TIMES * creep_time:
         return result(
             "unknown",
@@ -304,14 +326,17 @@ def motion_settling(
         if rate.bound * length > 2.0 * LIMITS[name]:
             unit = "Cpc" if name == "roller spacing" else "Cpr"
             size = f"its rate is {rate.rate:.2g} with an error of {rate.error:.1g} {unit} in a second"
-            return result("unknown", f"the {name} scatters too much: {size}", drifts=drifts)
-    return result("settled", "", drifts=drifts)
+            # the error of a rate goes down with the length to the power 1.5, so what it may add up to with its square root
+            longer = length * (rate.bound * length / (2.0 * LIMITS[name])) ** 2
+            needed = found.time - first + longer
+            return result("unknown", f"the {name} scatters too much: {size}", drifts=drifts, needed=needed)
+    return result("settled", "", drifts=drifts, needed=math.nan)
 
 
 def _moving(
     when: Array, means: dict[str, Array], drifts: dict[str, Drift], horizon: float
-) -> tuple[str, float, str] | None:
-    """The quantity that drifts fastest: name, time scale (s), words; None if none does."""
+) -> list[tuple[str, float, str]]:
+    """The quantities that drift: name, time scale (s), words."""
     found: list[tuple[str, float, str]] = []
     for name, rate in drifts.items():
         if rate.significant and abs(rate.rate) * horizon > LIMITS[name]:
@@ -322,8 +347,8 @@ def _moving(
         log = drift(when, np.log(np.maximum(size, 1e-9)))
         grown = log.rate * float(when[-1] - when[0])
         if log.significant and grown > LEAST_GROWTH and _matters(float(size[-1]), log.rate, horizon):
-            found.append(("whirl amplitude", 1.0 / log.rate, "grows"))
-    return min(found, key=lambda entry: entry[1], default=None)
+            found.append(("whirl amplitude", 1.0 / log.rate, GROWS))
+    return found
 
 
 def _matters(size: float, rate: float, horizon: float) -> bool:

@@ -16,6 +16,10 @@ from trbdyn.study.planning.wishes import TOLD_APART, Wishes
 
 MOST_AVERAGING: Final = 20_000.0
 """Turns of the shaft of the averaging at most."""
+UNSEEN: Final = 0.001
+UNSEEN_SHARE: Final = 0.5
+"""What a short probe cannot see: an error of this size, and this share of the errors of model, numerics and settling that it
+sees. Assumed; held against long runs by benchmarks/plan_proof.py."""
 TRIES: Final = 4
 """Choices that are run as a whole at most."""
 AND: Final = " and "
@@ -45,6 +49,8 @@ class Decision:
         Simplifications that made the error of the whole too large.
     task : Task
         What was chosen from.
+    unseen : ndarray, shape (W,)
+        Room for what the probes could not see, over the sizes of the averages; part of the bounds of the choice.
     """
 
     choice: Choice
@@ -54,6 +60,7 @@ class Decision:
     accuracy: str
     struck: frozenset[str]
     task: Task
+    unseen: Array
 
 
 def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
@@ -71,7 +78,7 @@ def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
     ground, wish = seen.ground, wishes.size
     task = Task(
         want=wish,
-        fixed=ground.drift,
+        fixed=ground.drift + unseen_of(ground.drift),
         scatter=ground.scatter,
         window=ground.window,
         settle=ground.settle,
@@ -87,19 +94,26 @@ def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
         changes, accuracy = _settings(choice, made)
         found = looker.probe(changes, accuracy, cost=TRUTH_IN_PROBES if choice.numerics == EXACT else 1.0)
         whole = errors_of(looker.influences(found, seen.truth), wishes)
-        if found.failure or np.any(whole + ground.drift > np.maximum(choice.bounds, 0.8 * wish)):
+        seen_errors = whole + ground.drift
+        if found.failure or np.any(seen_errors + unseen_of(seen_errors) > np.maximum(choice.bounds, 0.8 * wish)):
             worst = _worst(choice, [*effects, *numbers], wish)
             if worst:
                 struck.add(worst)
                 continue
         break
-    bounds = whole + ground.drift
+    unseen = unseen_of(whole + ground.drift)
+    bounds = whole + ground.drift + unseen
     errors = bounds + (choice.errors - choice.bounds)
     cost = looker.seconds(found) * (ground.settle + choice.averaging)
     affordable = wishes.budget is None or cost <= 1.1 * wishes.budget
     within = bool(np.all(errors <= wish * (1.0 + 1e-9))) and affordable
     choice = replace(choice, bounds=bounds, errors=errors, cost=cost, within=within)
-    return Decision(choice, found, made, changes, accuracy, frozenset(struck), task)
+    return Decision(choice, found, made, changes, accuracy, frozenset(struck), task, unseen)
+
+
+def unseen_of(seen: Array) -> Array:
+    """Room for what probes cannot see beside the errors that they show, over the sizes of the averages."""
+    return np.asarray(UNSEEN + UNSEEN_SHARE * seen)
 
 
 def is_hidden(found: Influence, wish: float) -> bool:
@@ -149,7 +163,13 @@ def _options(wishes: Wishes, seen: Seen, struck: set[str]) -> tuple[list[Option]
         for other in of_kind("tolerances")
     ]
     exact = Option(EXACT, np.zeros(wishes.size.size), seen.truth.rate / seen.base.rate)
-    return effects, [one for one in [*own, *both] if one.name not in struck] + [exact]
+    fitting = [one for one in [*own, *both] if one.name not in struck] + [exact]
+    return [_with_room(one) for one in effects], [_with_room(one) for one in fitting]
+
+
+def _with_room(one: Option) -> Option:
+    """An option with its share of the room for what probes cannot see."""
+    return replace(one, bounds=(1.0 + UNSEEN_SHARE) * one.bounds)
 
 
 def _made(choice: Choice, seen: Seen) -> tuple[Candidate, ...]:

@@ -6,33 +6,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from trbdyn.errors import StepError
+from trbdyn.errors import InputError, StepError
 from trbdyn.model.scene import Scene, Start
 from trbdyn.results.confidence import confidence
 from trbdyn.results.summary import averages
 from trbdyn.study.planning.candidates import USUAL_ACCURACY
-from trbdyn.study.planning.probes import TOO_LONG, Array, Length, in_batches, run_quietly
+from trbdyn.study.planning.probes import BATCHES, TOO_LONG, Array, Length, in_batches, run_quietly
+from trbdyn.study.planning.sizes import least_size, size_of
 
 if TYPE_CHECKING:
+    from trbdyn.results.observables import MotionSettling
     from trbdyn.results.result import Result
 
-FIRST_TURNS: Final = 2.0
-"""Turns of the shaft of the first look at the computing time."""
 LEAST_TURNS: Final = 20.0
 """Turns of the shaft below which a note says so."""
+LEAST_RECORDS: Final = 200
+"""Records of a run at least."""
 MOST_TURNS: Final = 1000.0
 """Turns of the shaft after which the run ends, however fast it is."""
 SETTLING_BATCHES: Final = 40
 """Batches in which the run is looked through for the end of the transient."""
 LEFT_OF_SETTLING: Final = 0.1
 """Share of the wish that the mean of three batches may be off after settling, beside their scatter."""
-UNKNOWN_SCATTER: Final = 2.0 * 2.3
-"""Half width over the standard error of ten batches (Student's t: 2.26), twice as large as they may not be independent."""
+UNKNOWN_SCATTER: Final = 2.0 * 2.1
+"""Half width over the standard error of twenty batches (Student's t: 2.1), twice as large as they may not be independent."""
+SIZES_OF_WHIRL: Final = ("orbit_radius_over_cpr", "axis_distance_over_cpr")
+"""Averages that are the size of the whirl; what it does to others is taken to go with the square of its size."""
 TOLD_FROM_SCATTER: Final = 2.8
 """Difference of two means of five batches each over its standard error (Student's t: 2.78) from which it is a drift."""
 
@@ -47,10 +51,12 @@ class Ground:
         The state at its end.
     value : dict of str to float
         The averages over its settled part.
+    size : dict of str to float
+        What their errors are shares of (`trbdyn.study.planning.sizes`).
     scatter : ndarray, shape (W,)
         Half widths of their confidence intervals over their sizes.
     drift : ndarray, shape (W,)
-        What the averages still change by, over their sizes.
+        What the averages may still change by, over their sizes.
     window, settle : float
         Lengths of the settled part, and of the part before it (s).
     creep_time : float
@@ -63,6 +69,7 @@ class Ground:
 
     start: Start
     value: dict[str, float]
+    size: dict[str, float]
     scatter: Array
     drift: Array
     window: float
@@ -72,22 +79,7 @@ class Ground:
     notes: tuple[str, ...]
 
 
-def computing_rate(scene: Scene, period: float, length: Length) -> float:
-    """Processor time for a second of bearing time at the scene's start (s).
-
-    Raises
-    ------
-    StepError
-        If the scene cannot be run.
-    """
-    first = Length(FIRST_TURNS * period, length.save_every, length.groups, length.patience)
-    result, rate, failure = run_quietly(scene, USUAL_ACCURACY, first)
-    if result is None or not math.isfinite(rate) or rate > 1e12:
-        raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
-    return rate
-
-
-def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: Length) -> Ground:
+def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: Length, effort: float) -> Ground:
     """Run a scene as long as its share of the time allows.
 
     Parameters
@@ -99,22 +91,35 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     period : float
         Time of a turn of the shaft (s).
     length : Length
-        With the longest duration; what to keep.
+        What to keep, and the processor time after which the run ends: how dear a second of bearing time is once the motion has
+        settled is not known beforehand.
+    effort : float
+        Processor time of the whole plan (s).
 
     Raises
     ------
+    InputError
+        If it is not enough for as many records as averages need.
     StepError
         If the run fails.
     """
-    result, spent, failure = run_quietly(scene, USUAL_ACCURACY, length)
+    result, spent, failure = run_quietly(scene, USUAL_ACCURACY, replace(length, duration=MOST_TURNS * period))
     if result is None or failure not in ("", TOO_LONG):
         raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
+    if len(result) < LEAST_RECORDS:
+        turns = float(result["time"][-1] - result["time"][0]) / period
+        allowed = f"is not enough: {length.patience:.2g} s, the share of one run, bring {turns:.2g} turns of the shaft (s)"
+        raise InputError.of("effort", effort, allowed)
     names, settling = list(want), result.settling()
     began, end = float(result["time"][0]), float(result["time"][-1])
     settled_from = settling.time if settling.settled else 0.5 * (began + end)
     window = result.window(settled_from)
-    value = {name: _value(averages(window), name) for name in names}
-    scatter, notes = _scatter(window, names, value)
+    found = averages(window)
+    value = {name: _value(found, name) for name in names}
+    if found.get("orbit_radius_over_cpr", 1.0) < least_size("orbit_radius_over_cpr"):
+        value |= {name: math.nan for name in names if name.startswith("whirl_")}
+    size = {name: size_of(name, value[name]) for name in names}
+    scatter, notes = _scatter(window, names, size)
     notes += [f"the motion is not known to have settled after {end - began:.3g} s: {settling.reason}"] * (
         not settling.settled
     )
@@ -122,15 +127,19 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     turns = (end - began) / period
     if turns < LEAST_TURNS:
         notes.append(f"only {turns:.2g} turns of the shaft could be looked at; allow more effort")
-    drift = np.zeros(len(names)) if settling.settled else _drift(result, names, value)
+    drift = np.zeros(len(names)) if settling.settled else _drift(result, names, size, settling)
     assert result.final_state is not None
     angle = scene.start_shaft_angle + scene.shaft_turn(result.final_time)
     state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle)
-    settle = _settle(result, want, value, settled_from)
-    return Ground(state, value, scatter, drift, end - settled_from, settle, settling.creep_time, spent, tuple(notes))
+    settle = _settle(result, want, value, size, settled_from)
+    return Ground(
+        state, value, size, scatter, drift, end - settled_from, settle, settling.creep_time, spent, tuple(notes)
+    )
 
 
-def _settle(result: Result, want: Mapping[str, float], value: Mapping[str, float], latest: float) -> float:
+def _settle(
+    result: Result, want: Mapping[str, float], value: Mapping[str, float], size: Mapping[str, float], latest: float
+) -> float:
     """Time after the start from which each wanted average is that of the settled part, but for its scatter (s)."""
     time = result["time"]
     batches = in_batches(result, list(want), 0.0, SETTLING_BATCHES)
@@ -138,10 +147,10 @@ def _settle(result: Result, want: Mapping[str, float], value: Mapping[str, float
     last = int(np.searchsorted(ends, latest))
     first = 0
     for name, wish in want.items():
-        values, size = batches[name], abs(value[name])
+        values = batches[name]
         noise = 2.0 * float(np.std(values[last:], ddof=1)) / math.sqrt(3.0)
         threes = np.array([values[k : k + 3].mean() for k in range(last)])
-        off = np.flatnonzero(~(np.abs(threes - value[name]) <= noise + LEFT_OF_SETTLING * wish * size))
+        off = np.flatnonzero(~(np.abs(threes - value[name]) <= noise + LEFT_OF_SETTLING * wish * size[name]))
         first = max(first, int(off[-1]) + 1 if off.size else 0)
     return min(float(ends[max(first, 1)]), latest) - float(time[0])
 
@@ -151,35 +160,58 @@ def _value(found: dict[str, Any], name: str) -> float:
     return math.nan if value is None else float(value)
 
 
-def _scatter(window: Result, names: Sequence[str], value: dict[str, float]) -> tuple[Array, list[str]]:
-    """Half widths over the values: of independent batches, else guessed from ten batches and said so."""
+def _scatter(window: Result, names: Sequence[str], size: Mapping[str, float]) -> tuple[Array, list[str]]:
+    """Half widths over the sizes: those of the summary, else guessed from batches and said so."""
     widths, _ = confidence(window, averages)
     known = widths or {}
     parts = in_batches(window, names, 0.0)
     notes, found = [], []
     for name in names:
-        size = abs(value[name])
-        if name in known and size > 0.0:
-            found.append(known[name] / size)
+        if name in known and size[name] > 0.0:
+            found.append(known[name] / size[name])
             continue
-        spread = float(np.std(parts[name], ddof=1)) / math.sqrt(parts[name].size)
-        found.append(UNKNOWN_SCATTER * spread / size if size > 0.0 else math.inf)
+        spread = float(np.std(parts[name], ddof=1)) / math.sqrt(BATCHES)
+        found.append(UNKNOWN_SCATTER * spread / size[name] if size[name] > 0.0 else math.inf)
         notes.append(f"the statistical error of {name} is a guess: its batches are too few or not independent")
     return np.array(found), notes
 
 
-def _drift(result: Result, names: Sequence[str], value: dict[str, float]) -> Array:
-    """Change of the averages from the third to the last quarter of the run, where it is larger than the scatter within them."""
+def _drift(result: Result, names: Sequence[str], size: Mapping[str, float], settling: MotionSettling) -> Array:
+    """What the averages may still change by: their change from the third to the last quarter of the run. Where it stands out of
+    the scatter and the motion drifts, it goes on at this rate for the time scale of the drift; where the whirl grows, up to the
+    play of the cage (`_left_to_grow`).
+    """
     time = result["time"]
-    quarter = 0.25 * (time[-1] - time[0])
+    quarter = 0.25 * float(time[-1] - time[0])
+    longer = max(1.0, settling.time_scale / quarter) if math.isfinite(settling.time_scale) else 1.0
+    last, grown = result.window(time[-1] - quarter), settling.growth_rate * quarter
     sides = [result.window(time[-1] - 2.0 * quarter, time[-1] - quarter), result.window(time[-1] - quarter)]
     batches = [in_batches(side, names, 0.0, 5) for side in sides]
     found = []
     for name in names:
         before, after = (part[name] for part in batches)
         change = abs(float(after.mean() - before.mean()))
+        goes_on = max(longer, _left_to_grow(last, grown, 1.0 if name in SIZES_OF_WHIRL else 2.0)) if grown > 0.0 else longer
         noise = TOLD_FROM_SCATTER * math.hypot(
             *(float(part.std(ddof=1)) / math.sqrt(part.size) for part in (before, after))
         )
-        found.append(change / abs(value[name]) if change > noise and value[name] != 0.0 else 0.0)
+        found.append(change * (goes_on if change > noise else 1.0) / size[name] if size[name] > 0.0 else math.inf)
     return np.array(found)
+
+
+def _left_to_grow(last: Result, grown: float, power: float) -> float:
+    """What is still to come of a change, over what a growing whirl brought it from the quarter before to the last one.
+
+    The whirl cannot become larger than the play of the cage.
+
+    Parameters
+    ----------
+    last : Result
+        The last quarter.
+    grown : float
+        Growth of the whirl (ln of its size) in a quarter.
+    power : float
+        Power of the whirl's size with which the average changes.
+    """
+    size = max(float(averages(last)["orbit_radius_over_cpr"]), 1e-6)
+    return max(size**-power - 1.0, 0.0) / -math.expm1(-power * grown)

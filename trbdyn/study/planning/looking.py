@@ -19,9 +19,10 @@ from trbdyn.study.planning.candidates import (
     candidates,
     numerics,
 )
-from trbdyn.study.planning.ground import MOST_TURNS, Ground, computing_rate, run_ground
+from trbdyn.study.planning.ground import LEAST_RECORDS, Ground, run_ground
 from trbdyn.study.planning.probes import PATIENCE, Influence, Length, Probe, influence, probe
 from trbdyn.study.planning.proposal import Row, words
+from trbdyn.study.planning.sizes import least_size
 from trbdyn.study.planning.wishes import Wishes, changed
 
 OF_GROUND: Final = 0.25
@@ -32,8 +33,6 @@ PROBE_TURNS: Final = 100.0
 """Most turns of the shaft of a probe."""
 LEAST_AVERAGING: Final = 12.0
 """Turns of the shaft of an averaging at least."""
-LEAST_RECORDS: Final = 200
-"""Records of a run at least."""
 RECORDS: Final = 40
 """Records in a turn of the shaft."""
 RECORDS_OF_POCKETS: Final = 200
@@ -122,7 +121,7 @@ class Looker:
 
     def __init__(self, wishes: Wishes) -> None:
         self.wishes, scene, period = wishes, wishes.scene, wishes.period
-        groups = sorted({"cage", "rollers", *(group for name in wishes.names for group in groups_for(name))})
+        groups = sorted({"cage", "rollers", "energy", *(group for name in wishes.names for group in groups_for(name))})
         pockets = any("pocket" in groups_for(name) for name in wishes.names)
         every = period / (RECORDS_OF_POCKETS if pockets else RECORDS)
         self.keep = Length(period, max(every, 1e-6), tuple(groups), wishes.effort)
@@ -140,14 +139,14 @@ class Looker:
             If the scene cannot be run.
         """
         wishes = self.wishes
-        rate = computing_rate(self.usual, wishes.period, replace(self.keep, patience=0.1 * wishes.effort))
-        self.ground = run_ground(self.usual, wishes.want, wishes.period, self._length(OF_GROUND, rate, MOST_TURNS))
+        self.ground = run_ground(self.usual, wishes.want, wishes.period, self._share(OF_GROUND), wishes.effort)
         self.notes += self.ground.notes
         zero = [name for name in wishes.names if not abs(self.ground.value[name]) > 0.0]
         if zero:
-            allowed = "is zero in this scene, or does not exist; a relative error of it cannot be planned"
+            allowed = "is zero in this scene, or does not exist, as the whirl of a cage whose orbit is below "
+            allowed += f"{least_size('orbit_radius_over_cpr'):g} Cpr does not; a relative error of it cannot be planned"
             raise InputError.of("want", zero[0], allowed)
-        other = self._other_start(rate)
+        other = self._other_start()
         seen = self._probe_all(candidates(wishes.scene, wants_cage=wishes.of_cage))
         seen.rows += [other] if other else []
         seen.notes += self.notes
@@ -176,11 +175,15 @@ class Looker:
 
     def influences(self, other: Probe, base: Probe) -> dict[str, Influence]:
         """What differs between two probes, by the name of the average."""
-        return {name: influence(other, base, self.ground.value, name) for name in self.wishes.names}
+        return {name: influence(other, base, self.ground.size, name) for name in self.wishes.names}
 
     def seconds(self, found: Probe) -> float:
         """Processor time of a probe for a second of bearing time, as on a machine that does nothing else (s)."""
         return self.clock.at_rest(found.rate) * self.clock.fastest
+
+    def _share(self, share: float) -> Length:
+        """A run that goes on as long as a share of the effort lasts."""
+        return replace(self.keep, patience=share * self.wishes.effort)
 
     def _length(self, share: float, rate: float, turns: float) -> Length:
         """How long a run is that may take a share of the effort, and a number of turns of the shaft."""
@@ -189,23 +192,23 @@ class Looker:
         every = max(min(self.keep.save_every, duration / LEAST_RECORDS), 1e-9)
         return replace(self.keep, duration=duration, save_every=every, patience=PATIENCE * seconds)
 
-    def _other_start(self, rate: float) -> Row | None:
+    def _other_start(self) -> Row | None:
         wishes, start = self.wishes, self.wishes.scene.start
-        if start.kind == "state" or wishes.effort * OF_OTHER_START / rate < LEAST_AVERAGING * wishes.period:
+        if start.kind == "state" or wishes.effort * OF_OTHER_START / self.ground.rate < LEAST_AVERAGING * wishes.period:
             self.notes.append("no other start was tried: whether the motion depends on its start is not known")
             return None
         whirls = start.kind == "whirl" or self.usual.effects.bodies == "rollers"
-        other = self.usual.replace(start=Start.unequal(start.seed + 1) if whirls else Start.whirl(0.9))
         try:
-            found = run_ground(other, wishes.want, wishes.period, self._length(OF_OTHER_START, rate, MOST_TURNS))
+            other = self.usual.replace(start=Start.unequal(start.seed + 1) if whirls else self._thrown())
+            found = run_ground(other, wishes.want, wishes.period, self._share(OF_OTHER_START), wishes.effort)
         except (InputError, LoadError, StepError) as error:
             self.notes.append(f"a run from another start failed: {str(error).splitlines()[0]}")
             return None
         influences = {}
         for k, name in enumerate(wishes.names):
             own = self.ground.value[name]
-            change = (found.value[name] - own) / abs(own)
-            half = math.hypot(self.ground.scatter[k], found.scatter[k])
+            change = (found.value[name] - own) / self.ground.size[name]
+            half = math.hypot(self.ground.scatter[k], found.scatter[k] * found.size[name] / self.ground.size[name])
             influences[name] = Influence(change, half)
             if abs(change) > max(half + self.ground.drift[k] + found.drift[k], 0.5 * wishes.size[k]):
                 self.notes.append(
@@ -215,6 +218,12 @@ class Looker:
         return Row(
             f"another start ({other.start.kind})", "start", influences, math.nan, "shown; the start stays as given"
         )
+
+    def _thrown(self) -> Start:
+        """A cage thrown sideways, as far as a land that guides it allows."""
+        bearing, guided = self.usual.bearing, self.usual.effects.guidance != "rollers"
+        free = bearing.land.clearance - bearing.land.contact_film if guided else math.inf
+        return Start.whirl(min(0.9, 0.9 * free / bearing.cage.play_radial))
 
     def _probe_all(self, found: list[Candidate]) -> Seen:
         """The usual and the most exact choice, and each candidate alone."""

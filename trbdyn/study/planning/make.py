@@ -83,11 +83,12 @@ def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, no
     given = next((seen.probes[one.name].rate for one in seen.candidates if one.kind == "as given"), seen.base.rate)
     exact = choose(decision.task, [], [Option(EXACT, np.zeros(wishes.size.size), seen.truth.rate / seen.base.rate)])
     length = ground.settle + choice.averaging
-    settling, statistics = ground.drift, choice.errors - choice.bounds
+    settling, statistics, unseen = ground.drift, choice.errors - choice.bounds, decision.unseen
     parts = {
         name: {
-            "model and numerics": float(choice.bounds[k] - settling[k]),
+            "model and numerics": float(choice.bounds[k] - settling[k] - unseen[k]),
             "settling": float(settling[k]),
+            "not seen by a probe": float(unseen[k]),
             "statistics": float(statistics[k]),
         }
         for k, name in enumerate(wishes.names)
@@ -108,6 +109,7 @@ def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, no
         promised={name: float(choice.errors[k]) for k, name in enumerate(wishes.names)},
         parts=parts,
         value=dict(ground.value),
+        size=dict(ground.size),
         reached=choice.within,
         rows=tuple(rows),
         computing_s=choice.cost,

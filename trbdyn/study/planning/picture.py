@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, SAVE_DPI, STYLE
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, SAVE_DPI, styled
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,7 +30,7 @@ def draw(plan: Plan, path: str | Path | None = None) -> Any:
         Where to save the picture.
     """
     rows = [row for row in plan.rows if math.isfinite(row.time_ratio)][::-1]
-    with plt.rc_context(STYLE):
+    with styled():
         figure, (left, right) = plt.subplots(
             1,
             2,

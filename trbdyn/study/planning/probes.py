@@ -30,7 +30,7 @@ from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
 
-BATCHES: Final = 10
+BATCHES: Final = 20
 """Batches of a probe that are compared."""
 TRANSIENT: Final = 0.25
 """Share of a probe that is left away, in which the motion follows a change of the model."""
@@ -176,7 +176,7 @@ def _number(value: Any) -> float:
 
 @dataclass(frozen=True)
 class Influence:
-    """What a change does to an average, relative to its value.
+    """What a change does to an average, over its size (`trbdyn.study.planning.sizes`).
 
     Attributes
     ----------
@@ -207,7 +207,7 @@ def influence(other: Probe, base: Probe, scale: Mapping[str, float], name: str) 
     other, base : Probe
         The probe with the change, and the one without.
     scale : mapping of str to float
-        The averages' values.
+        The averages' sizes.
     name : str
         The average.
     """

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from trbdyn.base.shown import Displayed, Shown
 from trbdyn.results.summary import averages
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
@@ -51,8 +52,8 @@ class Row:
     chosen: bool = False
 
 
-@dataclass(frozen=True)
-class Plan:
+@dataclass(frozen=True, repr=False)
+class Plan(Displayed):
     """The cheapest simulation of a scene that is as exact as was wanted, as made by `trbdyn.plan`.
 
     Attributes
@@ -72,11 +73,14 @@ class Plan:
     want : dict of str to float
         Wanted relative error of each average.
     promised : dict of str to float
-        Relative error that is expected not to be exceeded in 95 of 100 cases; as far as `warnings` does not except it.
+        Relative error that is expected not to be exceeded in 95 of 100 cases; as far as `warnings` does not except it. Errors are
+        shares of `size`.
     parts : dict of str to dict
-        Where it comes from: of each average, 'model and numerics', 'settling' and 'statistics'.
+        Where it comes from: of each average, 'model and numerics', 'settling', 'not seen by a probe' and 'statistics'.
     value : dict of str to float
         The averages with everything on, from the probes.
+    size : dict of str to float
+        What their errors are shares of: the size of the value, or the least one that means anything where it is smaller.
     reached : bool
         Whether every promise is within the wish, and the run within the budget.
     rows : tuple of Row
@@ -102,6 +106,7 @@ class Plan:
     promised: dict[str, float]
     parts: dict[str, dict[str, float]]
     value: dict[str, float]
+    size: dict[str, float]
     reached: bool
     rows: tuple[Row, ...]
     computing_s: float
@@ -163,13 +168,41 @@ class Plan:
 
         return draw(self, path)
 
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _shown(self) -> Shown:
+        head, *rows = _cells(self)
+        asked = Shown(
+            f"Plan: {', '.join(self.want)}",
+            tuple(
+                (
+                    name,
+                    f"{self.value[name]:.4g}",
+                    f"{100.0 * wish:.3g} %",
+                    f"{100.0 * self.promised[name]:.2g} %" + self._of_what(name),
+                )
+                for name, wish in self.want.items()
+            ),
+            ("average", "value", "wanted within", "promised within"),
+            tuple(_run_lines(self)) + tuple(f"Note: {text}" for text in self.warnings),
+        )
+        return replace(
+            asked, parts=(Shown("what each simplification changes and saves", tuple(map(tuple, rows)), tuple(head)),)
+        )
+
+    def _of_what(self, name: str) -> str:
+        """What the percents of an average are of, where its value is too small to mean anything."""
+        least = self.size[name]
+        return f" of {least:g}, as a smaller {name} means nothing" if least > abs(self.value[name]) else ""
+
     def __str__(self) -> str:
         lines = []
         for name, wish in self.want.items():
             parts = ", ".join(f"{part} {100.0 * size:.2g} %" for part, size in self.parts[name].items())
             lines.append(
                 f"{name} = {self.value[name]:.4g}: wanted within {100.0 * wish:.3g} %, promised within "
-                f"{100.0 * self.promised[name]:.2g} % ({parts})"
+                f"{100.0 * self.promised[name]:.2g} %{self._of_what(name)} ({parts})"
             )
         if not self.reached:
             lines.append(
@@ -194,17 +227,19 @@ def _run_lines(plan: Plan) -> list[str]:
 
 
 def _table(plan: Plan) -> list[str]:
-    """Influence on each average, time, and what was decided."""
+    """Influence on each average, time, and what was decided, as aligned lines."""
+    head, *rows = _cells(plan)
+    return Shown(rows=(tuple(head), *map(tuple, rows)), head=tuple(head)).text().splitlines()
+
+
+def _cells(plan: Plan) -> list[list[str]]:
     head = ["simplification", *plan.want, "time", "decision"]
     rows = [head]
     for row in plan.rows:
         changes = [words(row.influence.get(name)) for name in plan.want]
         ratio = "-" if math.isnan(row.time_ratio) else f"x {row.time_ratio:.2f}"
         rows.append([_name(row), *changes, ratio, row.decision])
-    widths = [max(len(row[k]) for row in rows) for k in range(len(head) - 1)]
-    return [
-        "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]) for row in rows
-    ]
+    return rows
 
 
 def _name(row: Row) -> str:

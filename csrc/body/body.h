@@ -1,0 +1,71 @@
+/* Bodies that are no rolling elements: rings, the cage, oil, and whatever else a system is built of (system/system.h). A body is an instance
+ * of a kind. A kind is a file with a row at its end: how many coordinates its bodies have in the state, where a body is, what loads do to
+ * it, which work its drive does. What evaluates the equations of motion, their Jacobian, tolerances, energies and messages loops over the
+ * bodies of a system and names none.
+ *
+ * Bodies with coordinates together are the hub: their coordinates follow those of the rollers in the state, body after body. A body without
+ * coordinates is where its drive puts it. */
+#ifndef TRB_BODY_BODY_H
+#define TRB_BODY_BODY_H
+
+#include "bearing/model.h"
+#include "body/drive.h"
+
+typedef struct trb_coordinate {
+  const char   *name;
+  trb_tolerance tolerance; /* to which it is integrated */
+  const char   *text;
+} trb_coordinate;
+
+typedef struct trb_body trb_body;
+
+typedef struct trb_body_kind {
+  const char *name;
+  /* of bodies without coordinates: a rigid surface that the drive places; NULL: nothing asks where it is */
+  void (*place)(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose); /* in inertial coordinates */
+  int rests; /* 1: its pose is the same at all times, and in every frame that turns about the bearing's axis */
+  /* what its drive puts in against a wrench, in the same frame as the pose; NULL: the work is not booked */
+  trb_drive_power (*power)(const trb_ring_pose *pose, const trb_drive *drive, const trb_wrench *on_body);
+  /* of bodies with coordinates */
+  int                   size; /* coordinates, where all bodies of the kind have as many */
+  const trb_coordinate *coordinates;
+  int                   skew;  /* coordinate that must stay below a right angle, or -1 */
+  int                   loses; /* 1: its bodies lose energy in themselves (trb_rigid_pose) */
+  void (*pose)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose);
+  /* rates of the coordinates under a load, gravity and inertia */
+  void (*rates)(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *pose, const double *y,
+                const trb_wrench *load, double *rates);
+  trb_rigid (*motion)(const trb_rigid_pose *pose, int coordinate); /* what a coordinate does to its place, or to its velocity, in R */
+  double (*mass)(const trb_model *m, const trb_body *body);        /* on which gravity acts, kg */
+  double (*kinetic)(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose); /* energy, J */
+} trb_body_kind;
+
+/* A body of a system. */
+struct trb_body {
+  const trb_body_kind  *kind;
+  const char           *name;        /* as messages and names of coordinates begin */
+  const void           *own;         /* parameters, as its kind says */
+  int                   size;        /* coordinates; 0: as its kind says */
+  const trb_coordinate *coordinates; /* of a body whose size is its own */
+  int                   loss;        /* where it books what it loses in itself: TRB_BOOK of an entry of bearing/losses.h; 0: nowhere */
+  int                   first;       /* where its coordinates begin in the state; -1: it has none */
+};
+
+/* A body at an instant. */
+typedef struct trb_body_at {
+  trb_rigid_pose pose;     /* of a body with coordinates, in R */
+  trb_ring_pose  ring;     /* of a body without, in inertial coordinates */
+  trb_ring_pose *in_frame; /* n_rollers: the same in the cylindrical frame of each roller; NULL where nobody asks for them */
+  int            rests;    /* as its kind says */
+} trb_body_at;
+
+/* A body without coordinates in a frame that is turned about z by the angle whose cosine and sine are given. */
+static inline trb_ring_pose trb_body_in(const trb_body_at *body, double cosine, double sine)
+{
+  return body->rests ? body->ring : trb_ring_pose_in_frame(&body->ring, cosine, sine);
+}
+
+/* Whether a coordinate is a place, and not a velocity. */
+static inline int trb_is_place(const trb_coordinate *c) { return c->tolerance == TRB_TOL_POSITION || c->tolerance == TRB_TOL_ANGLE; }
+
+#endif

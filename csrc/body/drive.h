@@ -1,0 +1,59 @@
+/* What is prescribed at an instant: where a ring is placed and how fast it turns, how fast the frame R of the rollers turns, and gravity. */
+#ifndef TRB_BODY_DRIVE_H
+#define TRB_BODY_DRIVE_H
+
+#include "bearing/model.h"
+#include "body/rigid.h"
+
+/* A rigid surface of revolution that turns: position, axis and velocity field v(p) = velocity + omega x (p - centre). */
+typedef struct trb_ring_pose {
+  trb_vec3 axis;     /* unit vector */
+  trb_vec3 centre;   /* reference point, on the axis: of the motion, of moments and of the ring's surfaces, m */
+  trb_vec3 velocity; /* of the centre, m/s */
+  trb_vec3 omega;    /* angular velocity, rad/s */
+} trb_ring_pose;
+
+/* In inertial coordinates. */
+typedef struct trb_drive {
+  double        time;          /* s */
+  double        shaft_angle;   /* rad */
+  double        shaft_speed;   /* rad/s */
+  double        rolling_speed; /* of the shaft, to which the rollers' coordinates count as pure rolling, rad/s */
+  double        rolling_rate;  /* its rate, rad/s2 */
+  double        frame_angle;   /* angle of R: that of the kinematic orbit, rad */
+  double        frame_speed;   /* rad/s */
+  double        frame_rate;    /* rad/s2 */
+  double        cosine, sine;  /* of frame_angle */
+  trb_ring_pose ring;          /* of the ring that is driven */
+  trb_vec3      displacement;  /* of that ring, m */
+  trb_vec3      ring_omega;    /* its angular velocity without the shaft's turn, rad/s */
+  trb_vec3      gravity;       /* m/s2 */
+} trb_drive;
+
+/* The prescribed pose: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */
+void trb_drive_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocity, const double rotation[2], const double rotation_rate[2],
+                     double shaft_speed, trb_drive *drive);
+
+/* Power that a wrench on a body takes from its drive, W: from the turn about its axis, and from the motion of its place. */
+typedef struct trb_drive_power {
+  double shaft, place;
+} trb_drive_power;
+
+static inline trb_ring_pose trb_ring_pose_in_frame(const trb_ring_pose *ring, double cosine, double sine)
+{
+  return (trb_ring_pose){trb_turn_z(ring->axis, cosine, -sine), trb_turn_z(ring->centre, cosine, -sine),
+                         trb_turn_z(ring->velocity, cosine, -sine), trb_turn_z(ring->omega, cosine, -sine)};
+}
+
+static inline int trb_has_gravity(const trb_drive *drive)
+{
+  return drive->gravity.x != 0.0 || drive->gravity.y != 0.0 || drive->gravity.z != 0.0;
+}
+
+/* Gravity in a frame turned about z by the angle whose cosine and sine are given, on top of R. */
+static inline trb_vec3 trb_gravity_in(const trb_drive *drive, double cosine, double sine)
+{
+  return trb_turn_z(trb_turn_z(drive->gravity, drive->cosine, -drive->sine), cosine, -sine);
+}
+
+#endif

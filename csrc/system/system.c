@@ -1,0 +1,117 @@
+#include "system/system.h"
+
+#include <string.h>
+
+const trb_body *trb_state_body(const trb_system *system, int index, int *coordinate)
+{
+  for (int b = 0; b < system->n_bodies; b++) {
+    const trb_body *body = &system->bodies[b];
+    *coordinate = index - body->first;
+    if (body->first >= 0 && *coordinate >= 0 && *coordinate < body->size) return body;
+  }
+  return NULL;
+}
+
+trb_tolerance trb_state_tolerance(const trb_system *system, int index)
+{
+#define TRB_STATE_KIND(name, kind, text) TRB_TOL_##kind,
+  static const trb_tolerance roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_KIND)};
+#undef TRB_STATE_KIND
+  int             coordinate;
+  const trb_body *body;
+  if (index < trb_state_hub(system)) return roller[index % TRB_ROLLER_SIZE];
+  body = trb_state_body(system, index, &coordinate);
+  return body != NULL ? body->coordinates[coordinate].tolerance : TRB_TOL_QUADRATURE;
+}
+
+int trb_system_body(const trb_system *system, const char *name)
+{
+  for (int b = 0; b < system->n_bodies; b++)
+    if (strcmp(system->bodies[b].name, name) == 0) return b;
+  return -1;
+}
+
+int trb_system_pair(const trb_system *system, const char *name)
+{
+  for (int i = 0; i < system->n_pairs; i++)
+    if (strcmp(system->pairs[i].name, name) == 0) return i;
+  return -1;
+}
+
+int trb_system_seats(const trb_system *system)
+{
+  int seats = 0;
+  for (int i = 0; i < system->n_pairs; i++) seats |= system->pairs[i].kind->seats && system->pairs[i].on;
+  return seats;
+}
+
+static const char *mechanism_name(int by)
+{
+  static const char *const names[TRB_N_MECHANISMS] = {"sliding", "rolling", "the rolling film's pressure", "damping", "a film"};
+  return names[by];
+}
+
+/* Bodies and parameters of a pair are those of its surfaces. */
+static trb_status join(const trb_system *s, trb_pair *pair, trb_message *message)
+{
+  for (int side = 0; side < 2; side++) {
+    const int at = pair->surface[side];
+    if (at < 0 || at >= s->n_surfaces || s->surfaces[at].shape != pair->kind->shape[side])
+      return trb_fail(message, TRB_ERR_INPUT, "pair %s: surface %d is none that a pair of the kind '%s' takes there", pair->name, at,
+                      pair->kind->name);
+    if (s->surfaces[at].body < TRB_ROLLERS || s->surfaces[at].body >= s->n_bodies)
+      return trb_fail(message, TRB_ERR_INPUT, "surface %s: body %d: must be from %d (the rollers) to %d", s->surfaces[at].name,
+                      s->surfaces[at].body, TRB_ROLLERS, s->n_bodies - 1);
+  }
+  pair->a = s->surfaces[pair->surface[0]].body;
+  pair->b = s->surfaces[pair->surface[1]].body;
+  pair->own = s->surfaces[pair->surface[1]].is;
+  if (pair->kind->pace == TRB_PACE_FAST && (pair->b < 0 || s->bodies[pair->b].size == 0))
+    return trb_fail(message, TRB_ERR_INPUT, "pair %s: a pair that comes and goes with impacts needs a body with coordinates", pair->name);
+  /* a roller's tangent does not say what a slow pair does to the other body */
+  if (pair->a == TRB_ROLLERS && pair->kind->pace == TRB_PACE_SLOW && pair->b >= 0 && s->bodies[pair->b].size > 0)
+    return trb_fail(message, TRB_ERR_INPUT,
+                    "pair %s: its load would be lost on %s, which has coordinates: only pairs that come and go with "
+                    "impacts, and pairs without a roller, move a body",
+                    pair->name, s->bodies[pair->b].name);
+  return TRB_OK;
+}
+
+/* Where a roller's part of the right-hand side has no room for a loss, the loss would be dropped. */
+static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_message *message)
+{
+  const int room = pair->a == TRB_ROLLERS ? TRB_N_ROLLER_LOSSES : s->model->n_losses;
+  for (int by = 0; by < TRB_N_MECHANISMS; by++) {
+    const int loses = (pair->kind->mechanisms & TRB_LOSES(by)) != 0, loss = pair->books.loss[by];
+    if (loses && !(loss >= 1 && loss <= room && loss <= s->model->n_losses))
+      return trb_fail(message, TRB_ERR_INPUT, "pair %s loses energy by %s, which is booked nowhere", pair->name, mechanism_name(by));
+    if (!loses && (loss != 0 || pair->books.torque[by] != 0))
+      return trb_fail(message, TRB_ERR_INPUT, "pair %s books what is lost by %s, and loses nothing by it", pair->name, mechanism_name(by));
+  }
+  return TRB_OK;
+}
+
+trb_status trb_system_finish(trb_system *s, trb_message *message)
+{
+  int points = 0;
+  s->hub_width = 0;
+  for (int b = 0; b < s->n_bodies; b++) {
+    trb_body *body = &s->bodies[b];
+    if (body->size == 0) body->size = body->kind->size, body->coordinates = body->kind->coordinates;
+    body->first = body->size > 0 ? trb_state_hub(s) + s->hub_width : -1;
+    s->hub_width += body->size;
+    if (body->kind->loses && !(body->loss >= 1 && body->loss <= s->model->n_losses))
+      return trb_fail(message, TRB_ERR_INPUT, "body %s loses energy, which is booked nowhere", body->name);
+    if (!body->kind->loses && body->loss != 0)
+      return trb_fail(message, TRB_ERR_INPUT, "body %s books a loss, and loses nothing", body->name);
+  }
+  for (int i = 0; i < s->n_pairs; i++) {
+    trb_pair  *pair = &s->pairs[i];
+    trb_status status = join(s, pair, message);
+    if (status == TRB_OK && pair->on) status = check_books(s, pair, message);
+    if (status != TRB_OK) return status;
+    pair->point = points;
+    points += pair->kind->is_point;
+  }
+  return TRB_OK;
+}

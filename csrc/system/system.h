@@ -1,0 +1,60 @@
+/* A system: the bodies, surfaces and pairs that are simulated, as arrays that a builder fills at run time (system/tapered.h is the builder of
+ * a tapered roller bearing), and the layout of the state that follows from them (docs/theory/motion.md#coordinates). Nothing changes it
+ * after trb_system_finish, and many simulations and threads may use one.
+ *
+ * The state vector: the coordinates of the rollers (body/roller.h), those of the bodies of the hub (body/body.h), then spin angles and
+ * quadratures. The frame R turns about the bearing axis with the kinematic angle of the orbit. A roller's coordinates are cylindrical and
+ * are offsets from pure rolling; its axis is given by skew and tilt in the frame (e_r, e_t, e_z) that orbits with it; its velocities are
+ * inertial velocities that are written in orbiting frames. In steady rolling the whole vector stands still. The spin angle is in the tail of
+ * the vector, as nothing depends on it. */
+#ifndef TRB_SYSTEM_SYSTEM_H
+#define TRB_SYSTEM_SYSTEM_H
+
+#include "contact/pair.h"
+
+typedef struct trb_surface {
+  const char *name;
+  int         body; /* number of its body, or TRB_ROLLERS */
+  trb_shape   shape;
+  const void *is;
+} trb_surface;
+
+enum { TRB_MOST_SURFACES = 16 };
+
+typedef struct trb_system {
+  const trb_model *model; /* of the bearing: its numbers */
+  trb_body         bodies[TRB_MOST_BODIES];
+  int              n_bodies;
+  trb_surface      surfaces[TRB_MOST_SURFACES];
+  int              n_surfaces;
+  trb_pair         pairs[TRB_MOST_PAIRS];
+  int              n_pairs;
+  int              driven;    /* number of the body that its drive places and turns, and that loads act on */
+  int              hub_width; /* coordinates of all bodies */
+} trb_system;
+
+/* Lays out the state and checks what the builder has put together: every pair joins surfaces that its kind knows, and every mechanism by
+ * which it loses energy is booked as a loss that the state has. */
+trb_status trb_system_finish(trb_system *system, trb_message *message);
+
+/* Number of a body or of a pair by name, or -1. */
+int trb_system_body(const trb_system *system, const char *name);
+int trb_system_pair(const trb_system *system, const char *name);
+
+/* Whether a pair that is on holds rollers along their axes. */
+int trb_system_seats(const trb_system *system);
+
+static inline int trb_n_quadratures(const trb_system *s) { return TRB_Q_losses + s->model->n_losses; }
+static inline int trb_state_roller(int roller) { return roller * TRB_ROLLER_SIZE; }
+static inline int trb_state_hub(const trb_system *s) { return s->model->n_rollers * TRB_ROLLER_SIZE; }
+static inline int trb_state_main_size(const trb_system *s) { return trb_state_hub(s) + s->hub_width; }
+static inline int trb_state_spin(const trb_system *s) { return trb_state_main_size(s); }
+static inline int trb_state_quadrature(const trb_system *s) { return trb_state_spin(s) + s->model->n_rollers; }
+static inline int trb_state_size(const trb_system *s) { return trb_state_quadrature(s) + trb_n_quadratures(s); }
+
+/* Tolerance kind of every entry. */
+trb_tolerance trb_state_tolerance(const trb_system *system, int index);
+/* The body that has an entry of the hub, and the number of that coordinate; NULL: no body has it. */
+const trb_body *trb_state_body(const trb_system *system, int index, int *coordinate);
+
+#endif

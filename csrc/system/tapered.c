@@ -1,0 +1,149 @@
+#include "system/tapered.h"
+
+#include <stdlib.h>
+
+#include "body/cage.h"
+#include "body/ring.h"
+
+enum {
+  FLANK,
+  LARGE_END,
+  SMALL_END,
+  ROLLER,
+  OUTER_RACE,
+  INNER_RACE,
+  BACK_FACE,
+  FRONT_FACE,
+  OIL,
+  POCKETS,
+  GUIDED,
+  INNER_LAND,
+  OUTER_LAND,
+  N_SURFACES
+};
+
+static void add_bodies(trb_system *s)
+{
+  s->n_bodies = TRB_N_BODIES;
+  s->driven = TRB_BODY_INNER_RING;
+  s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = &trb_ring_at_rest, .name = "outer ring"};
+  s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_prescribed, .name = "inner ring"};
+  s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = &trb_body_cage, .name = "cage"};
+  s->bodies[TRB_BODY_OIL] = (trb_body){.kind = &trb_fluid_at_rest, .name = "oil"};
+}
+
+static void add_surfaces(trb_system *s)
+{
+  const trb_model *m = s->model;
+  s->n_surfaces = N_SURFACES;
+  s->surfaces[FLANK] = (trb_surface){"flank", TRB_ROLLERS, TRB_SHAPE_FLANK, m};
+  s->surfaces[LARGE_END] = (trb_surface){"large end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.large_end};
+  s->surfaces[SMALL_END] = (trb_surface){"small end", TRB_ROLLERS, TRB_SHAPE_PLANE, &m->surfaces.small_end};
+  s->surfaces[ROLLER] = (trb_surface){"roller", TRB_ROLLERS, TRB_SHAPE_NONE, NULL};
+  s->surfaces[OUTER_RACE] = (trb_surface){"outer raceway", TRB_BODY_OUTER_RING, TRB_SHAPE_RACE, &m->race[TRB_RACE_OUTER]};
+  s->surfaces[INNER_RACE] = (trb_surface){"inner raceway", TRB_BODY_INNER_RING, TRB_SHAPE_RACE, &m->race[TRB_RACE_INNER]};
+  s->surfaces[BACK_FACE] = (trb_surface){"back-face rib", TRB_BODY_INNER_RING, TRB_SHAPE_CONE, &m->back_rib};
+  s->surfaces[FRONT_FACE] = (trb_surface){"front rib", TRB_BODY_INNER_RING, TRB_SHAPE_CIRCLES, m->surfaces.front_rib};
+  s->surfaces[OIL] = (trb_surface){"mixture of oil and air", TRB_BODY_OIL, TRB_SHAPE_NONE, NULL};
+  s->surfaces[POCKETS] = (trb_surface){"pockets", TRB_BODY_CAGE, TRB_SHAPE_POCKETS, m};
+  s->surfaces[GUIDED] = (trb_surface){"guiding surface", TRB_BODY_CAGE, TRB_SHAPE_CYLINDER, m};
+  s->surfaces[INNER_LAND] = (trb_surface){"land of the inner ring", TRB_BODY_INNER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_INNER]};
+  s->surfaces[OUTER_LAND] = (trb_surface){"land of the outer ring", TRB_BODY_OUTER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_OUTER]};
+}
+
+#define SLIDES(name) {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_##name), [TRB_BY_DAMPING] = TRB_BOOK(TRB_LOSS_damping)}
+#define ROLLS(name) \
+  {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_##name), \
+   [TRB_BY_ROLLING] = TRB_BOOK(TRB_LOSS_rolling), \
+   [TRB_BY_ROLLING_PRESSURE] = TRB_BOOK(TRB_LOSS_rolling_pressure), \
+   [TRB_BY_DAMPING] = TRB_BOOK(TRB_LOSS_damping)}
+#define FLOATS \
+  {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_land), \
+   [TRB_BY_DAMPING] = TRB_BOOK(TRB_LOSS_damping), \
+   [TRB_BY_FILM] = TRB_BOOK(TRB_LOSS_land_film)}
+#define TURNS(name) {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_##name)}
+
+/* Names, and whether a pair is on, are put in by add_pairs; bodies and parameters follow from the surfaces (trb_system_finish). */
+static const trb_pair rows[TRB_N_PAIRS] = {
+    [TRB_PAIR_outer] = {.kind = &trb_pair_raceway,
+                        .text = "roller on the outer raceway",
+                        .surface = {FLANK, OUTER_RACE},
+                        .books = {.loss = ROLLS(traction_outer)}},
+    [TRB_PAIR_inner] = {.kind = &trb_pair_raceway,
+                        .text = "roller on the inner raceway",
+                        .surface = {FLANK, INNER_RACE},
+                        .books = {.loss = ROLLS(traction_inner),
+                                  .torque = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_traction),
+                                             [TRB_BY_ROLLING] = TRB_BOOK(TRB_TORQUE_rolling)}}},
+    [TRB_PAIR_rib] = {.kind = &trb_pair_rib,
+                      .text = "roller's large end on the back-face rib",
+                      .surface = {LARGE_END, BACK_FACE},
+                      .books = {.loss = SLIDES(rib), .torque = TURNS(rib)}},
+    [TRB_PAIR_front_rib] = {.kind = &trb_pair_front_rib,
+                            .text = "roller's small end on the front rib",
+                            .surface = {SMALL_END, FRONT_FACE},
+                            .books = {.loss = SLIDES(front_rib), .torque = TURNS(front_rib)}},
+    [TRB_PAIR_drag] = {.kind = &trb_pair_drag,
+                       .text = "roller in the mixture of oil and air",
+                       .surface = {ROLLER, OIL},
+                       .books = {.loss = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_drag)}}},
+    [TRB_PAIR_pocket] = {.kind = &trb_pair_pocket,
+                         .text = "roller in its pocket of the cage",
+                         .surface = {ROLLER, POCKETS},
+                         .books = {.loss = SLIDES(pocket)}},
+    [TRB_PAIR_inner_land] = {.kind = &trb_pair_land,
+                             .text = "cage on a land of the inner ring",
+                             .surface = {GUIDED, INNER_LAND},
+                             .books = {.loss = FLOATS,
+                                       .torque = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_land),
+                                                  [TRB_BY_FILM] = TRB_BOOK(TRB_TORQUE_land)}}},
+    [TRB_PAIR_outer_land] = {
+        .kind = &trb_pair_land, .text = "cage in a land of the outer ring", .surface = {GUIDED, OUTER_LAND}, .books = {.loss = FLOATS}}};
+
+/* Which pairs the effects of the scene leave on. */
+static int is_on(const trb_model *m, int pair)
+{
+  const trb_params *p = &m->params;
+  switch (pair) {
+  case TRB_PAIR_rib: return p->back_rib > 0.0;
+  case TRB_PAIR_front_rib: return p->front_rib > 0.0;
+  case TRB_PAIR_drag: return p->oil_fill > 0.0 && p->drag_coefficient > 0.0;
+  case TRB_PAIR_pocket: return m->first_face[m->n_rollers] > 0;
+  case TRB_PAIR_inner_land: return p->with_cage > 0.0 && p->guidance == TRB_GUIDANCE_INNER_LAND;
+  case TRB_PAIR_outer_land: return p->with_cage > 0.0 && p->guidance == TRB_GUIDANCE_OUTER_LAND;
+  default: return 1;
+  }
+}
+
+static void add_pairs(trb_system *s)
+{
+#define TRB_PAIR_NAME(name) #name,
+  static const char *const names[TRB_N_PAIRS] = {TRB_PAIRS(TRB_PAIR_NAME)};
+#undef TRB_PAIR_NAME
+  s->n_pairs = TRB_N_PAIRS;
+  for (int i = 0; i < TRB_N_PAIRS; i++) {
+    s->pairs[i] = rows[i];
+    s->pairs[i].name = names[i];
+    s->pairs[i].on = is_on(s->model, i);
+  }
+}
+
+trb_status trb_system_tapered(const trb_model *model, trb_system **system, trb_message *message)
+{
+  trb_system *s = calloc(1, sizeof *s);
+  *system = NULL;
+  if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a system");
+  s->model = model;
+  add_bodies(s);
+  add_surfaces(s);
+  add_pairs(s);
+  const trb_status status = trb_system_finish(s, message);
+  if (status != TRB_OK) {
+    trb_system_free(s);
+    return status;
+  }
+  *system = s;
+  return TRB_OK;
+}
+
+void trb_system_free(trb_system *system) { free(system); }

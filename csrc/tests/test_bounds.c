@@ -1,0 +1,74 @@
+/* Bounds of contacts: arms reach as far as what they stand for, and what several coordinates do is added up. */
+#include "check.h"
+#include "contact/pair.h"
+#include "motion/hold.h"
+#include "rig.h"
+
+/* Two coordinates that each move a contact by 0.6 of what it may bear hold alone, and not together, whatever their signs. */
+static void test_ways_add_up(void)
+{
+  static const int           coordinates[] = {TRB_ROLLER_r, TRB_ROLLER_z, TRB_ROLLER_tilt};
+  static const int           velocities[] = {TRB_ROLLER_v_r, TRB_ROLLER_v_z, TRB_ROLLER_omega_n, TRB_ROLLER_omega_a};
+  const trb_hold_arms        arms = {.radial = 0.9, .axial = 0.2, .tilt = 0.02, .skew = 0.01, .reach = 0.03, .off = 0.05};
+  const double               arm[] = {arms.radial, arms.axial, arms.tilt}, lever[] = {1.0, 1.0, arms.reach, arms.reach};
+  const double               from[TRB_ROLLER_SIZE] = {0}, way = 1e-6, speed = 1e-3;
+  static const trb_hold_ring still = {0};
+  trb_hold                   hold;
+  trb_hold_set(from, 0.0, way, speed, &hold);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      for (int signs = 0; signs < 4; signs++) {
+        double y[TRB_ROLLER_SIZE] = {0};
+        y[coordinates[a]] = (signs & 1 ? -0.6 : 0.6) * way / arm[a];
+        CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
+        if (a == b) continue;
+        y[coordinates[b]] = (signs & 2 ? -0.6 : 0.6) * way / arm[b];
+        CHECK(!trb_hold_holds(&hold, &arms, &still, y, 0.0));
+      }
+  for (int a = 0; a < 4; a++)
+    for (int b = 0; b < 4; b++) {
+      double y[TRB_ROLLER_SIZE] = {0};
+      y[velocities[a]] = 0.6 * speed / lever[a];
+      CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
+      if (a == b) continue;
+      y[velocities[b]] = -0.6 * speed / lever[b];
+      CHECK(!trb_hold_holds(&hold, &arms, &still, y, 0.0));
+    }
+}
+
+/* The edge of the small end, seen from the roller's centre of mass, which lies nearer to the large end. */
+static void test_arm_of_the_small_end(const trb_system *system)
+{
+  const trb_model    *m = system->model;
+  const trb_geometry *g = &m->geometry;
+  CHECK(g->small_end_station < 0.0 && g->roller_mass_offset > 0.0);
+  CHECK(trb_pair_front_rib.margin(m, &system->pairs[TRB_PAIR_front_rib]).arm >=
+        hypot(g->small_end_station - g->roller_mass_offset, g->small_end_radius));
+}
+
+/* A turn of a body about the roller moves a face's vertex by its distance, which the arm of the same kind of face must reach. */
+static void test_arms_of_pockets(const trb_model *m)
+{
+  trb_clearance_arms arms[TRB_N_GAPS];
+  trb_pair_pocket.clearance(m, arms);
+  for (int i = 0; i < m->first_face[m->n_rollers]; i++) {
+    const trb_polygon *f = &m->faces[i].surface;
+    const int          gap = m->faces[i].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_N_GAPS - 1;
+    for (int k = 0; k < f->n; k++) {
+      const trb_vec3 vertex = trb_axpy(trb_axpy(f->origin, f->outline[2 * k], f->u), f->outline[2 * k + 1], f->v);
+      CHECK(arms[gap].roller[TRB_ROLLER_skew] >= trb_norm(vertex) && arms[gap].roller[TRB_ROLLER_tilt] >= trb_norm(vertex));
+      CHECK(arms[gap].body[TRB_CAGE_psi] >= trb_norm(vertex) + m->geometry.roller_centre_radius);
+    }
+  }
+}
+
+int main(void)
+{
+  const trb_params p = rig_params();
+  trb_system      *system = rig_system(&p);
+  test_ways_add_up();
+  test_arm_of_the_small_end(system);
+  test_arms_of_pockets(system->model);
+  rig_free(system);
+  return check_report();
+}

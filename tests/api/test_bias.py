@@ -1,0 +1,74 @@
+"""What tolerances do to peaks is measured for every preset, and told with a result."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import trbdyn as trb
+from trbdyn.base.shipped import DATA
+from trbdyn.model.cases import scene_30310
+from trbdyn.run.bias import READ, measured, note
+from trbdyn.run.options import ACCURACY
+
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+WHIRLING = trb.Start.whirl(0.9)
+
+
+@pytest.mark.parametrize("accuracy", ACCURACY)
+def test_every_preset_has_measured_biases(accuracy):
+    found = measured(trb.Simulation(scene_30310(start=WHIRLING), accuracy=accuracy))
+    assert found is not None, "tolerances have changed: run python benchmarks/preset_bias.py --make-table"
+    case, values = found
+    assert case == "collision"
+    assert all(math.isfinite(values[f"bias_{name}"]) for name in READ)
+    assert all(values[f"bias_{name}_half_width"] > 0.0 for name in READ)
+
+
+def test_tighter_presets_take_less_from_peaks():
+    sims = [trb.Simulation(scene_30310(start=WHIRLING), accuracy=name) for name in ("fast", "standard", "reference")]
+    peaks = [found[1]["bias_pocket_peak"] for sim in sims if (found := measured(sim)) is not None]
+    assert peaks[0] < peaks[1] < peaks[2] < 0.0
+
+
+def test_a_summary_says_how_low_peaks_are():
+    result = trb.Simulation(scene_30310(3000.0, 1230.0), accuracy="fast").run(duration=1e-3)
+    said = result.summary()["accuracy_note"]
+    assert "largest pocket forces" in said
+    assert "too low" in said
+    assert "'light'" in said
+    assert "largest loads on raceways" in said
+
+
+def test_it_stays_with_a_file(tmp_path):
+    sim = trb.Simulation(scene_30310(start=WHIRLING))
+    result = sim.run(duration=1e-3, output=tmp_path / "run.h5")
+    assert trb.load(tmp_path / "run.h5").summary()["accuracy_note"] == result.summary()["accuracy_note"] == note(sim)
+
+
+def test_nothing_is_said_of_tolerances_that_were_not_measured():
+    assert note(trb.Simulation(scene_30310(), rtol=1e-5)) == ""
+    assert note(trb.Simulation(scene_30310(), integrator="erk")) == ""
+
+
+def test_peaks_stand_beside_the_duty_in_an_estimate():
+    found = trb.Simulation(scene_30310(3000.0, 1230.0, start=WHIRLING), accuracy="fast").estimate(duration=1e-3)
+    assert found.bias_pocket_peak < -0.05
+    assert "bias of peaks" in str(found)
+
+
+@pytest.mark.slow
+def test_the_measurement_is_one_command(tmp_path):
+    table = tmp_path / "accuracy.json"
+    table.write_text((DATA / "accuracy.json").read_text())
+    before = json.loads(table.read_text())["presets_of_scenes"]
+    command = [sys.executable, "preset_bias.py", "--quick", "--cases", "collision", "--make-table", str(table)]
+    subprocess.run(command, cwd=BENCHMARKS, check=True, capture_output=True)
+    after = json.loads(table.read_text())["presets_of_scenes"]
+    assert after["light"] == before["light"]
+    assert after["collision"]["fast"]["bias"]["bias_pocket_peak"] < 0.0

@@ -1,0 +1,133 @@
+"""Bands of predictions: draws, quantiles, shares of the inputs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import qmc, sobol_indices, uniform
+
+import trbdyn as trb
+from trbdyn.study.uncertainty import Band, first_order, open_inputs, uncertainty
+
+SHORT = trb.RunOptions(duration=1e-3, accuracy="fast")
+BANDS = {"lubricant.temperature_c": (47.0, 53.0), "bearing.cup_half_angle_deg": (14.0, 15.7)}
+
+
+def bent(x: np.ndarray) -> np.ndarray:
+    """Straight, bent, two inputs together, and one that does nothing; inputs along the first axis."""
+    return 3.0 * x[0] + 2.0 * (2.0 * x[1] - 1.0) ** 2 + 0.5 * (2.0 * x[0] - 1.0) * (2.0 * x[2] - 1.0)
+
+
+def test_shares_are_those_of_an_independent_method() -> None:
+    draws = qmc.Sobol(4, seed=1).random(256)
+    shares, rest = first_order(draws, bent(draws.T))
+    expected = sobol_indices(func=bent, n=4096, dists=[uniform()] * 4, rng=2).first_order
+    assert shares == pytest.approx(expected, abs=0.02)
+    assert rest == pytest.approx(1.0 - expected.sum(), abs=0.02)
+
+
+def test_chance_is_no_share() -> None:
+    """What no input makes is the rest: a result of pure chance has no shares but by chance, taken off on average."""
+    random = np.random.default_rng(4)
+    found = [first_order(random.random((64, 5)), random.normal(size=64)) for _ in range(200)]
+    assert np.mean([shares.mean() for shares, _ in found]) < 0.02
+    assert np.mean([rest for _, rest in found]) > 0.9
+
+
+def test_too_few_draws_have_straight_lines_or_no_shares() -> None:
+    draws = qmc.Sobol(4, seed=1).random(16)
+    line = 2.0 * draws[:, 1]
+    shares, _ = first_order(draws, line)
+    assert shares == pytest.approx([0.0, 1.0, 0.0, 0.0], abs=0.1)
+    assert first_order(draws[:8], line[:8])[0].size == 0
+    assert first_order(draws, np.ones(16))[0].size == 0
+
+
+def test_a_band_is_that_of_its_draws(tmp_path: Path) -> None:
+    scene = trb.cases.scene_32216(2000.0)
+    found = uncertainty(scene, BANDS, samples=12, seed=3, options=SHORT, folder=tmp_path / "draws")
+    torque = found["torque"]
+    values = found.data["torque"].values
+    assert found.draws == 12
+    assert torque.value == values[0]
+    assert torque.low < torque.mean < torque.high
+    assert (torque.low, torque.high) == pytest.approx(np.quantile(values[1:], [0.025, 0.975]))
+    # a warmer film is thinner: at these loads the torque falls by about 3 % a kelvin
+    assert torque.shares["lubricant.temperature_c"] > torque.shares["bearing.cup_half_angle_deg"]
+    assert 0.1 < (torque.high - torque.low) / torque.value < 0.3
+    assert "95 % of the draws" in str(found)
+    assert repr(found) == str(found)
+    assert "shares of the variance" in found._repr_html_()
+    # the draws are there already, and a larger number keeps them
+    again = uncertainty(scene, BANDS, samples=13, seed=3, options=SHORT, folder=tmp_path / "draws")
+    assert np.array_equal(again.data["torque"].values[:13], values)
+    assert again.data["wall_time"].values[:13] == pytest.approx(found.data["wall_time"].values)
+
+
+def test_what_cannot_be_run_is_said() -> None:
+    bands = {"bearing.roller.diameter": (0.016, 0.026)}
+    found = uncertainty(trb.cases.scene_32216(2000.0), bands, samples=24, options=SHORT)
+    assert found.draws < 24
+    assert len(found.refused) == 24 - found.draws
+    assert f"{len(found.refused)} more could not be run" in str(found)
+
+
+def test_open_inputs_of_a_catalogue_bearing() -> None:
+    bearing = trb.Bearing.from_catalogue(bore=0.05, outside=0.09, width=0.02475, C=82.5e3, e=0.42)
+    scene = trb.Scene(
+        bearing, speed_rpm=2000.0, axial_load=2000.0, effects=trb.Effects.standard().replace(oil_fill=0.1)
+    )
+    paths = [band.path for band in open_inputs(scene)]
+    assert {"bearing.cup_half_angle_deg", "bearing.cage.mass", "bearing.n_rollers"} <= set(paths)
+    assert {"lubricant.temperature_c", "bearing.roughness.raceway", "effects.oil_fill"} <= set(paths)
+    assert len(set(paths)) == len(paths)
+    found = uncertainty(
+        scene, [b for b in open_inputs(scene) if not b.path.startswith("bearing.")], samples=8, options=SHORT
+    )
+    assert found.draws == 8
+
+
+@pytest.mark.parametrize(
+    ("bands", "changes", "field"),
+    [
+        ({}, {}, "bands"),
+        ({"lubricant.temperature_c": (53.0, 47.0)}, {}, "bands.lubricant.temperature_c"),
+        ({"lubricant.temperature_c": 50.0}, {}, "bands.lubricant.temperature_c"),
+        ({"lubricant.warmth": (1.0, 2.0)}, {}, "bands"),
+        ([Band(path="scene.speed_rpm", low=1.0, high=2.0)] * 2, {}, "bands"),
+        (BANDS, {"samples": 7}, "samples"),
+        (BANDS, {"seed": -1}, "seed"),
+        (BANDS, {"samples": 8, "quantities": ["torgue"]}, "quantities"),
+        ({"bearing.roller.diameter": (0.03, 0.04)}, {}, "bands"),
+    ],
+)
+def test_bad_bands(bands: object, changes: dict[str, int], field: str) -> None:
+    with pytest.raises(trb.InputError) as raised:
+        uncertainty(trb.cases.scene_32216(2000.0), bands, options=SHORT, **changes)  # type: ignore[arg-type]
+    assert str(raised.value).startswith(field)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["axial", "combined", "catalogue"])
+def test_bands_are_those_of_a_sample_ten_times_as_large(case: str) -> None:
+    """Ends of the bands of torque and largest pressure, within a fifth of their width."""
+    scenes = {
+        "axial": lambda: trb.cases.scene_32216(2000.0),
+        "combined": lambda: trb.cases.scene_30310(3000.0, 4930.0, 2780.0),
+        "catalogue": lambda: trb.Scene(
+            trb.Bearing.from_catalogue(bore=0.05, outside=0.09, width=0.02475, C=82.5e3, e=0.42),
+            speed_rpm=1500.0,
+            axial_load=3000.0,
+        ),
+    }
+    scene = scenes[case]()
+    options = trb.RunOptions(revolutions=0.2, accuracy="fast")
+    few, many = (uncertainty(scene, samples=n, seed=s, options=options) for n, s in ((64, 5), (640, 6)))
+    for name in ("torque", "outer_pressure_max"):
+        width = many[name].high - many[name].low
+        assert few[name].low == pytest.approx(many[name].low, abs=0.2 * width)
+        assert few[name].high == pytest.approx(many[name].high, abs=0.2 * width)
+        for path, share in many[name].shares.items():
+            assert few[name].shares.get(path, share) == pytest.approx(share, abs=0.15)

@@ -1,0 +1,1 @@
+"""Elasticity of the cage: a frame of beams, natural modes and their file, stress from static loads."""

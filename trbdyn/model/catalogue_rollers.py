@@ -1,0 +1,240 @@
+"""Rollers from a catalogue's C: among all that give it, those that depart least from what is usual
+(docs/theory/estimates.md#inner-geometry-from-a-catalogue-page).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Final
+
+from trbdyn.errors import InputError
+from trbdyn.model.ratings import rating_iso281
+
+
+@dataclass(frozen=True)
+class Usual:
+    """A ratio that catalogues do not tell: its usual value, how far real bearings scatter, and between what it must lie.
+
+    Attributes
+    ----------
+    value : float
+        Usual value (1).
+    spread : float
+        Standard deviation of its logarithm among real bearings (1).
+    low, high : float
+        Band: bounds of the estimate (1).
+    """
+
+    value: float
+    spread: float
+    low: float
+    high: float
+
+    def at(self, multiplier: float, weight: float) -> float:
+        """The ratio where all of them give way together by `multiplier`; `weight` is its exponent in C."""
+        moved = self.value * math.exp(multiplier * weight * self.spread**2)
+        return min(max(moved, self.low), self.high)
+
+
+PITCH: Final = Usual(1.0, 0.015, 0.97, 1.035)
+"""Pitch diameter over (d + D)/2."""
+SECTION: Final = Usual(0.50, 0.10, 0.40, 0.60)
+"""Roller diameter over the height of the section (D - d)/2."""
+LENGTH: Final = Usual(0.86, 0.05, 0.75, 0.94)
+"""Effective length of a roller over the cup's width along the raceway; corners and edges of the cup take the rest."""
+FILL: Final = Usual(0.85, 0.03, 0.80, 0.90)
+"""Share of the pitch circle that rollers take, Z Dwe/(pi Dpw)."""
+CUP_WIDTH: Final = Usual(0.78, 0.015, 0.75, 0.82)
+"""Width of the cup over that of the bearing, as in ISO 355's dimension series."""
+MAKER: Final = Usual(1.0, 0.12, 0.80, 1.50)
+"""C of a catalogue over that of ISO 281 with b_m = 1.1: steel, finish, and what makers have raised since."""
+WALL: Final = 0.06
+"""Least thickness of a ring where it is thinnest, over the height of the section."""
+
+_IN_C: Final = {
+    "diameter": 29.0 / 27.0 + 2.0 / 9.0 - 0.75,
+    "diameter_of_counted": 29.0 / 27.0 + 2.0 / 9.0,
+    "length": 7.0 / 9.0,
+    "fill": 0.75,
+}
+"""Exponents with which roller diameter, length and fill raise C; where the rollers are not counted, thicker ones are fewer."""
+
+_LARGEST: Final = 400.0
+"""A multiplier at which everything is at its bound, see `solve`."""
+
+
+@dataclass(frozen=True)
+class Page:
+    """The numbers of a catalogue page, checked (m, N, deg), and what is known of the rollers."""
+
+    bore: float
+    outside: float
+    width: float
+    angle: float
+    cup_width: float | None
+    n_rollers: int | None
+    diameter: float | None
+    length: float | None
+    pitch: float | None
+    maker_factor: float | None
+
+    @property
+    def height(self) -> float:
+        """Height of the section."""
+        return 0.5 * (self.outside - self.bore)
+
+    @property
+    def mean(self) -> float:
+        return 0.5 * (self.outside + self.bore)
+
+    @property
+    def pitch_diameter(self) -> float:
+        return PITCH.value * self.mean if self.pitch is None else self.pitch
+
+    def along(self, share: float = CUP_WIDTH.value) -> float:
+        """Width of the cup along the raceway; `share` of the bearing's width where that of the cup is not known."""
+        width = share * self.width if self.cup_width is None else self.cup_width
+        return width / math.cos(math.radians(self.angle))
+
+    def count(self, share: float, diameter: float) -> float:
+        """Number of rollers that take a share of the pitch circle; not a whole number."""
+        return share * math.pi * self.pitch_diameter / diameter
+
+    @property
+    def diameters(self) -> tuple[Usual, float]:
+        """Roller diameter over the section's height, and its exponent in C; from the fill as well where rollers are counted."""
+        if self.n_rollers is None:
+            return SECTION, _IN_C["diameter"]
+        one = math.pi * self.pitch_diameter / (self.n_rollers * self.height)
+        first, second = SECTION.spread**-2, FILL.spread**-2
+        total = first + second
+        value = math.exp((first * math.log(SECTION.value) + second * math.log(FILL.value * one)) / total)
+        low, high = max(SECTION.low, FILL.low * one), min(SECTION.high, FILL.high * one)
+        if low > high:
+            few = math.ceil(FILL.low * one * self.n_rollers / SECTION.high)
+            many = math.floor(FILL.high * one * self.n_rollers / SECTION.low)
+            limit = (
+                f"must be from {few} to {many}: then rollers take 80 to 90 % of the pitch circle and 40 to 60 % of the section's "
+                "height; give roller_diameter as well if this bearing is different (1)"
+            )
+            raise InputError.of("n_rollers", self.n_rollers, limit)
+        return Usual(min(max(value, low), high), total**-0.5, low, high), _IN_C["diameter_of_counted"]
+
+
+@dataclass(frozen=True)
+class Rollers:
+    """Sizes that are looked for (m); the number of rollers need not be whole while they are."""
+
+    count: float
+    diameter: float
+    length: float
+    pitch: float
+    angle: float
+
+    @property
+    def rating(self) -> float:
+        return rating_iso281(
+            n_rollers=self.count,
+            roller_diameter=self.diameter,
+            roller_length=self.length,
+            pitch_diameter=self.pitch,
+            contact_angle_deg=self.angle,
+        )
+
+    def walls(self, page: Page) -> float:
+        """Thickness of the thinner ring where it is thinnest (m): the cup at the large ends, the cone at the small ones.
+
+        With Rc = Dwe/(2 tan nu) from the apex to the rollers' middle, a raceway of half angle a has at the station x the
+        radius (Rc + x) sin(a)/cos(nu), a = alpha for the cup and alpha - 2 nu for the cone.
+        """
+        cup, nu = math.radians(self.angle), 0.0
+        for _ in range(50):
+            nu = math.atan2(self.diameter * math.sin(cup - nu), self.pitch)
+        apex, half = 0.5 * self.diameter / math.tan(nu), 0.5 * self.length
+        outer = (apex + half) * math.sin(cup) / math.cos(nu)
+        inner = (apex - half) * math.sin(cup - 2.0 * nu) / math.cos(nu)
+        return min(0.5 * page.outside - outer, inner - 0.5 * page.bore)
+
+
+def solve(page: Page, C: float) -> tuple[Rollers, float]:
+    """Rollers of a bearing with this C, and the maker's factor on C.
+
+    One number says how far the bearing departs from the usual one (the multiplier of the least sum of squares of what is
+    unusual, each in units of its spread, among all bearings with this C): diameter, length, fill and the maker's factor all
+    give way by it, each by its spread squared times its exponent in C, within its bounds. Each of them and C rise with it, so
+    the answer is continuous in C, but for the whole number of rollers: the maker's factor takes what rounding leaves.
+    """
+    usual, weight = page.diameters
+    most = _LARGEST
+
+    def sizes(multiplier: float) -> Rollers:
+        shift = min(multiplier, most)
+        diameter = page.height * usual.at(shift, weight) if page.diameter is None else page.diameter
+        length = page.along() * LENGTH.at(shift, _IN_C["length"]) if page.length is None else page.length
+        count = page.count(FILL.at(shift, _IN_C["fill"]), diameter) if page.n_rollers is None else page.n_rollers
+        return Rollers(count, diameter, length, page.pitch_diameter, page.angle)
+
+    def factor(multiplier: float) -> float:
+        return MAKER.at(multiplier, 1.0) if page.maker_factor is None else page.maker_factor
+
+    def above(multiplier: float) -> float:
+        return math.log(factor(multiplier) * sizes(multiplier).rating / C)
+
+    from scipy.optimize import brentq
+
+    most = _largest_that_fits(page, sizes)
+    lowest, highest = C * math.exp(above(-_LARGEST)), C * math.exp(above(_LARGEST))
+    known = page.maker_factor is not None and None not in (page.n_rollers, page.diameter, page.length)
+    if known and lowest * 0.97 <= C <= 1.03 * highest:
+        return sizes(0.0), factor(0.0)
+    if not lowest <= C <= highest:
+        raise _wrong_rating(page, C, lowest, highest)
+    found = sizes(brentq(above, -_LARGEST, _LARGEST, xtol=1e-10))
+    if page.n_rollers is None:
+        ceiling = page.count(FILL.high, found.diameter)
+        found = replace(found, count=max(3, math.floor(min(found.count + 0.5, ceiling + 1e-9))))
+    return found, C / found.rating
+
+
+def _largest_that_fits(page: Page, sizes: Callable[[float], Rollers]) -> float:
+    """Largest multiplier at which the rings keep walls; sizes do not grow beyond it."""
+    from scipy.optimize import brentq
+
+    wall = WALL * page.height
+
+    def room(multiplier: float) -> float:
+        return sizes(multiplier).walls(page) - wall
+
+    if room(_LARGEST) >= 0.0:
+        return _LARGEST
+    smallest = room(-_LARGEST)
+    if smallest < 0.0:
+        names = {"roller_diameter": page.diameter, "roller_length": page.length, "pitch_diameter": page.pitch}
+        known = {name: value for name, value in names.items() if value is not None}
+        key, value = next(iter(known.items())) if known else ("width", page.width)
+        limit = (
+            f"must leave room for the rings: of a section of {1e3 * page.height:.3g} mm at {page.angle:.3g} deg the thinner one "
+            f"has {1e3 * (smallest + wall):.2g} mm where it is thinnest, at least {1e3 * wall:.2g} mm are needed (m)"
+        )
+        raise InputError.of(key, value, limit)
+    return float(brentq(room, -_LARGEST, _LARGEST, xtol=1e-10))
+
+
+def _wrong_rating(page: Page, C: float, lowest: float, highest: float) -> InputError:
+    """What is wrong where no rollers that fit have this C: the unit of C, inches, or C itself."""
+    inch = 0.0254
+    if lowest * inch**1.9 <= C <= highest * inch**1.8 and page.bore * inch >= 2e-3:
+        limit = (
+            f"must be in m: with this C it looks like inches, and {page.bore:g} inches are {page.bore * inch:.4g} m; "
+            f"if it is in m, C must be from {lowest:.3g} to {highest:.3g} (N)"
+        )
+        return InputError.of("bore", page.bore, limit)
+    hint = ""
+    if lowest <= 1e3 * C <= highest:
+        hint = f": {C:g} kN are {1e3 * C:g}"
+    elif page.maker_factor is not None:
+        hint = " with this maker_factor"
+    limit = f"must be from {lowest:.3g} to {highest:.3g} for rollers that fit these dimensions (N){hint}"
+    return InputError.of("C", C, limit)

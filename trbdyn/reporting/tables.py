@@ -1,0 +1,147 @@
+"""The tables of a report: numbers with their meaning and the notes below them, inputs, and what differs between two scenes.
+
+A cell holds a number, a unit or a few words. Sentences (a name of the summary that ends in ``_note`` or ``_reason``) stand below
+the table, so that no table is wider than its page.
+"""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from trbdyn.reporting.bias import Bias
+from trbdyn.reporting.inputs import Row
+from trbdyn.reporting.meanings import MEANINGS
+from trbdyn.results.summary import LABELS, UNPRINTED
+
+SENTENCES: Final = ("_note", "_reason")
+"""Ends of the names of entries that are sentences."""
+LONGEST_NUMBER: Final = 24
+"""Letters of a number with its interval, at most."""
+
+
+def safe(text: object) -> str:
+    """Text as HTML shows it."""
+    return html.escape(str(text))
+
+
+def differences(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
+    """Inputs in which two scenes differ."""
+    tables = [{row.path: row for row in listed} for listed in inputs]
+    paths = [path for path in {**tables[0], **tables[1]} if _value(tables[0], path) != _value(tables[1], path)]
+    if not paths:
+        return "<h2>What differs</h2><p>All inputs of the two scenes are equal.</p>"
+    body = "".join(
+        f"<tr><td class='q'>{safe(path)}</td>"
+        + "".join(f"<td class='n {_kind(_value(table, path))}'>{safe(_value(table, path))}</td>" for table in tables)
+        + f"<td class='u'>{safe((tables[0].get(path) or tables[1][path]).unit)}</td></tr>"
+        for path in paths
+    )
+    return f"<h2>What differs</h2><table>{_heads('input', *names, 'unit')}{body}</table>"
+
+
+def _value(table: Mapping[str, Row], path: str) -> str:
+    return table[path].value if path in table else "-"
+
+
+def _heads(*words: str) -> str:
+    return "<tr class='heads'>" + "".join(f"<th>{safe(word)}</th>" for word in words) + "</tr>"
+
+
+def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases: Sequence[Mapping[str, Bias]]) -> str:
+    """Every number of the summaries with its interval, unit and meaning; below them the notes."""
+    body: list[str] = []
+    notes: list[str] = []
+    for key, (words, unit) in LABELS.items():
+        values = [entry.get(key) for entry in summaries]
+        if all(value is None for value in values):
+            continue
+        if key.endswith(SENTENCES):
+            notes += _notes(words, values, names)
+        elif key in UNPRINTED:
+            continue
+        elif any(isinstance(value, Mapping) for value in values):
+            body += _parts(words, unit, values)
+        else:
+            widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
+            body.append(_number(words, unit, values, widths, MEANINGS.get(key, ""), _said(key, values, biases, names)))
+    measured = dict.fromkeys(bias.measured for listed in biases for bias in listed.values())
+    notes += [f"<dt>What the integration's accuracy does to numbers</dt><dd>{safe(text)}</dd>" for text in measured]
+    heads = _heads("quantity", *(names if len(summaries) > 1 else ("value",)), "unit", "what it means")
+    listed = f"<dl class='notes'>{''.join(notes)}</dl>" if notes else ""
+    return f"<h2>Numbers</h2><table>{heads}{''.join(body)}</table>{listed}"
+
+
+def _notes(words: str, values: Sequence[Any], names: Sequence[str]) -> list[str]:
+    said = [
+        (f"{safe(name)}: " if len(values) > 1 else "") + safe(value[:1].upper() + value[1:])
+        for name, value in zip(names, values, strict=True)
+        if value is not None
+    ]
+    head = words[:1].upper() + words[1:]
+    return [f"<dt>{safe(head)}</dt>"] + [f"<dd>{text}</dd>" for text in said]
+
+
+def _said(key: str, values: Sequence[Any], biases: Sequence[Mapping[str, Bias]], names: Sequence[str]) -> list[str]:
+    """What the accuracy of each run does to this number."""
+    found = [
+        (name, listed[key])
+        for name, listed, value in zip(names, biases, values, strict=True)
+        if key in listed and value is not None
+    ]
+    return [(f"{name}: " if len(values) > 1 else "") + str(bias) for name, bias in found]
+
+
+def _parts(words: str, unit: str, values: Sequence[Any]) -> list[str]:
+    rows = [f"<tr><th colspan='{3 + len(values)}'>{safe(words)}</th></tr>"]
+    for part in dict.fromkeys(part for value in values if value for part in value):
+        entries = [(value or {}).get(part) for value in values]
+        if any(entries):
+            rows.append(_number(part.replace("_", " "), unit, entries, [None] * len(values), "", []))
+    return rows
+
+
+def _number(
+    words: str, unit: str, values: Sequence[Any], widths: Sequence[float | None], meaning: str, bias: Sequence[str]
+) -> str:
+    shown = [_amount(value) + ("" if w is None else f" ± {w:.2g}") for value, w in zip(values, widths, strict=True)]
+    differs = " class='differs'" if len(set(shown)) > 1 else ""
+    cells = "".join(f"<td class='n {_kind(text)}'>{safe(text)}</td>" for text in shown)
+    said = "".join(f"<span class='bias'>{safe(text)}</span>" for text in bias)
+    return (
+        f"<tr{differs}><td class='q'>{safe(words.strip())}</td>{cells}<td class='u'>{safe(unit)}</td>"
+        f"<td class='m'>{safe(meaning)}{said}</td></tr>"
+    )
+
+
+def _kind(text: str) -> str:
+    """Whether a cell may wrap: words may, a number with its interval may not."""
+    return "number" if len(text) <= LONGEST_NUMBER else "words"
+
+
+def _amount(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def inputs(listed_inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
+    """All inputs of each scene, the assumed and the estimated ones marked."""
+    tables = []
+    for listed, name in zip(listed_inputs, names, strict=True):
+        body = "".join(
+            f"<tr class='{row.mark}'><td class='q'>{safe(row.path)}</td><td class='n {_kind(row.value)}'>{safe(row.value)}</td>"
+            f"<td class='u'>{safe(row.unit)}</td><td class='mark'>{row.mark}</td><td class='m'>{safe(row.text)}</td></tr>"
+            for row in listed
+        )
+        of = f" of {safe(name)}" if len(listed_inputs) > 1 else ""
+        heads = _heads("input", "value", "unit", "", "what it is")
+        tables.append(f"<details open><summary>All inputs{of}</summary><table>{heads}{body}</table></details>")
+    note = (
+        "<p>Marked as <b>assumed</b>: no source gives the value, it is the package's default. "
+        "Marked as <b>estimated</b>: derived from the catalogue's numbers.</p>"
+    )
+    return f"<h2>Inputs</h2>{note}{''.join(tables)}"

@@ -1,0 +1,193 @@
+"""HDF5 files of a result: how they are made, opened again, and read; `trbdyn.results.file_format` says what they hold.
+
+Datasets and attributes are made through the low interface of h5py: a result has more than a hundred of them, and the usual one
+looks each up by name again, and makes a type for every single value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.base.locks import is_locked
+from trbdyn.base.version import __version__
+from trbdyn.results.chunks import LEVEL, packed
+from trbdyn.results.fields import DIMENSIONS, Field
+from trbdyn.results.file_format import LIBVER, SCHEMA, SCHEMA_VERSION, json_text, stored_type
+
+_LABELS = {dim for dims in DIMENSIONS.values() for dim in dims} - {"roller", "slot"}
+"""Dimensions whose entries have the letters of the name as labels."""
+
+
+def make(
+    path: Path,
+    head: Mapping[str, Any],
+    fields: Sequence[Field],
+    shapes: Mapping[str, tuple[int, ...]],
+    *,
+    rows: int,
+) -> None:
+    """Make a result file without records.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; one that is there is emptied.
+    head : mapping
+        What is known before the run: name of the run, place of its first record, scene, settings, geometry.
+    fields : sequence of Field
+        The fields that are kept.
+    shapes : mapping of str to tuple of int
+        Shape of each field in one record.
+    rows : int
+        Records of a chunk.
+    """
+    created = datetime.now(UTC).isoformat()
+    about = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__, "created": created}
+    table = [[entry.name, entry.group, entry.kind, entry.unit, entry.text] for entry in fields]
+    text = json_text(about | dict(head) | {"fields": table}).encode()
+    with h5py.File(path, "w", libver=LIBVER, locking=False) as file:
+        simple = {name: value for name, value in head["meta"].items() if isinstance(value, str | bool | int | float)}
+        file.attrs.update(about | {"run_id": head["run_id"]} | simple)
+        run = file.create_group("run")
+        # each a scale of its own: netCDF's readers would have to make up dimensions otherwise
+        made = [
+            _dataset(run, "head", (1,), np.dtype(f"S{len(text)}")),
+            # not packed: it is written again and again in the same place
+            _dataset(run, "committed", (3,), np.dtype("i8"), packed=False),
+            _dataset(run, "ending", (), np.dtype("u1"), rows=4096),
+            _dataset(run, "final_state", (), np.dtype("f8"), rows=512),
+            _dataset(run, "peaks", (), np.dtype("f8"), rows=512),
+        ]
+        for dataset in made:
+            h5py.h5ds.set_scale(dataset, h5py.h5i.get_name(dataset).rpartition(b"/")[2])
+        run["head"][0] = np.bytes_(text)
+        _make_fields(file, fields, shapes, rows=rows)
+        commit(file, 0)
+
+
+def _make_fields(file: h5py.File, fields: Sequence[Field], shapes: Mapping[str, tuple[int, ...]], *, rows: int) -> None:
+    scales: dict[str, h5py.h5d.DatasetID] = {}
+    for dim, size in {
+        dim: size for entry in fields for dim, size in zip(entry.dims, shapes[entry.name], strict=True)
+    }.items():
+        if dim in _LABELS:
+            scales[dim] = file.create_dataset(dim, data=list(dim), dtype=h5py.string_dtype(), chunks=(size,)).id
+        else:
+            scales[dim] = _dataset(file, dim, (size,), np.dtype("i4"))
+            file[dim][:] = np.arange(size)
+    made = {
+        entry.name: _dataset(file, entry.name, shapes[entry.name], stored_type(entry), rows=rows) for entry in fields
+    }
+    scales["time"] = made["time"]
+    for dim, scale in scales.items():
+        h5py.h5ds.set_scale(scale, dim.encode())
+    for entry in fields:
+        for name, value in (("units", entry.unit), ("long_name", entry.text), ("group", entry.group)):
+            attribute = h5py.h5a.create(made[entry.name], name.encode(), _text(), h5py.h5s.create(h5py.h5s.SCALAR))
+            attribute.write(np.array(value, dtype=h5py.string_dtype()))
+        if entry.name != "time":
+            for axis, dim in enumerate(("time", *entry.dims)):
+                h5py.h5ds.attach_scale(made[entry.name], scales[dim], axis)
+
+
+@cache
+def _text() -> h5py.h5t.TypeID:
+    return h5py.h5t.py_create(h5py.string_dtype(), logical=True)
+
+
+def _dataset(
+    group: h5py.Group,
+    name: str,
+    shape: tuple[int, ...],
+    kind: np.dtype[Any],
+    *,
+    rows: int | None = None,
+    packed: bool = True,
+) -> h5py.h5d.DatasetID:
+    """A new dataset with checksums; with `rows` one that grows by such rows of a shape, which are its chunks."""
+    how = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    how.set_obj_track_times(False)
+    how.set_chunk(shape if rows is None else (rows, *shape))
+    if packed:
+        how.set_shuffle()
+        how.set_deflate(LEVEL)
+    how.set_fletcher32()
+    most = shape if rows is None else (h5py.h5s.UNLIMITED, *shape)
+    space = h5py.h5s.create_simple(shape if rows is None else (0, *shape), most)
+    return h5py.h5d.create(group.id, name.encode(), h5py.h5t.py_create(kind), space, how)
+
+
+@contextmanager
+def opened_to_append(path: Path) -> Iterator[h5py.File]:
+    """A file of `make`, open in SWMR mode until the end of the block. Hold its lock: HDF5's own would let readers stop a run."""
+    access = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
+    access.set_libver_bounds(h5py.h5f.LIBVER_V110, h5py.h5f.LIBVER_V110)
+    access.set_fclose_degree(h5py.h5f.CLOSE_STRONG)
+    access.set_file_locking(False, False)
+    flags = h5py.h5f.ACC_RDWR | h5py.h5f.ACC_SWMR_WRITE
+    with h5py.File(h5py.h5f.open(bytes(path), flags, access)) as file:
+        yield file
+
+
+def append(group: h5py.Group, name: str, rows: NDArray[Any]) -> None:
+    """Add rows to a dataset that is packed.
+
+    Parameters
+    ----------
+    group : Group
+        Where it is.
+    name : str
+        Its name there.
+    rows : ndarray, shape (n, ...)
+        What is added.
+    """
+    dataset = h5py.h5d.open(group.id, name.encode())
+    start = dataset.shape[0]
+    dataset.set_extent((start + len(rows), *rows.shape[1:]))
+    rows = np.ascontiguousarray(rows, dtype=dataset.dtype)
+    size = dataset.get_create_plist().get_chunk()[0]
+    origin = (0,) * (rows.ndim - 1)
+    # a chunk that is begun is read and written again by HDF5
+    begun = min(-start % size, len(rows))
+    if begun:
+        place = dataset.get_space()
+        place.select_hyperslab((start, *origin), rows[:begun].shape)
+        dataset.write(h5py.h5s.create_simple(rows[:begun].shape), place, rows[:begun])
+    for at in range(begun, len(rows), size):
+        chunk = rows[at : at + size]
+        if len(chunk) < size:  # a chunk is a whole one in the file
+            chunk = np.concatenate([chunk, np.zeros((size - len(chunk), *rows.shape[1:]), dtype=rows.dtype)])
+        dataset.write_direct_chunk((start + at, *origin), packed(chunk))
+
+
+def commit(file: h5py.File, n_records: int, n_ending: int = 0) -> None:
+    """Let the records so far count, once they are written."""
+    file.flush()
+    # the last number tells it from zeros, whose checksum is zero
+    file["run/committed"][:] = (n_records, n_ending, 1)
+
+
+def open_to_read(path: Path) -> h5py.File:
+    """A file that is complete, is being written now, or whose writer was killed.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    """
+    if not is_locked(path):
+        try:
+            return h5py.File(path, "r", locking=False)
+        except OSError as error:
+            if "already open for" not in str(error):
+                raise
+    return h5py.File(path, "r", swmr=True, locking=False)

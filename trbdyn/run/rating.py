@@ -1,0 +1,116 @@
+"""`trbdyn.rating`: the engineer's sheet of a scene or a result."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from trbdyn.errors import InputError
+from trbdyn.model.motion import value_at
+from trbdyn.model.scene import Scene
+from trbdyn.results.result import Result
+from trbdyn.run.replay import Replay
+from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, lamina_loads, ring_loads, sheet
+
+RECORDS: Final = 60
+"""Records of a run that are evaluated, at most; evenly spread over its window."""
+
+
+def rating(
+    subject: Scene | Result,
+    *,
+    cleanliness: str | None = None,
+    filtered: bool | None = None,
+    contamination: float | None = None,
+    reliability: float = 90.0,
+) -> Rating:
+    """What every catalogue program answers first: equivalent load, rating lives, static safety, kappa, limits of speed.
+
+    C, C0 and the factors are those of ``bearing.ratings`` (`Bearing.from_catalogue` keeps them there); what is not known is
+    computed by ISO 281 and ISO 76 from the rollers, and the note says so. Reference lives (ISO 16281) stand on the loads of
+    the laminas: of a scene, those of the equilibrium at its start; of a result, those of its records after the transient.
+
+    Parameters
+    ----------
+    subject : Scene or Result
+        A result needs the groups cage and rollers.
+    cleanliness : {'13/10', '15/12', '17/14', '19/16', '21/18'}, optional
+        Particles in the oil, the last two numbers of ISO 4406; that of the scene's lubricant by default, and 17/14 where that
+        has none, which is said with what a neighbouring class gives.
+    filtered : bool, optional
+        Circulating oil with an in-line filter; that of the scene's lubricant by default.
+    contamination : float, optional
+        e_C, in place of the cleanliness: from 0 (very dirty) to 1 (laboratory) (1).
+    reliability : float
+        90, 95, 96, 97, 98 or 99 (%).
+
+    Returns
+    -------
+    Rating
+        Prints as a table; `Rating.rows` has every number with its symbol, unit and source.
+
+    Raises
+    ------
+    InputError
+        If a number is not allowed, or a result lacks what is needed.
+    LoadError
+        If the bearing cannot carry the scene's load.
+
+    Notes
+    -----
+    Sources: ISO 281:2007, ISO/TS 16281:2008, ISO 76:2006; docs/theory/ratings.md.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> bearing = trb.Bearing.from_catalogue(bore=0.040, outside=0.080, width=0.02475, C=74.8e3, C0=86.5e3, e=0.37, Y=1.6)
+    >>> scene = trb.Scene(bearing, speed_rpm=2000, axial_load=2500.0, lubricant="vg68")
+    >>> found = trb.rating(scene, cleanliness="15/12", filtered=True)
+    >>> round(found.equivalent_load), round(found.life_hours, -3)
+    (4000, 145000.0)
+    """
+    options: dict[str, Any] = {
+        "cleanliness": cleanliness,
+        "filtered": filtered,
+        "contamination": contamination,
+        "reliability": reliability,
+    }
+    if isinstance(subject, Scene):
+        return sheet(subject, at_equilibrium(subject), **options)
+    if isinstance(subject, Result):
+        return sheet(subject.scene, of_run(subject), **options)
+    raise InputError.of("subject", type(subject).__name__, "must be a Scene or a Result")
+
+
+def of_run(result: Result) -> Loading:
+    """Loads of a run's records after the transient; each counts by the shaft's speed, that is by revolutions.
+
+    Raises
+    ------
+    InputError
+        If the groups cage and rollers were not recorded.
+    """
+    replay, scene, time = Replay(result), result.scene, result["time"]
+    first = int(np.searchsorted(time, result.settling().time)) if len(result) > 2 else 0
+    chosen = np.unique(np.linspace(min(first, len(result) - 1), len(result) - 1, RECORDS).round().astype(int))
+    speeds = np.abs(result["shaft_speed"][chosen])
+    shares = speeds / speeds.sum() if speeds.sum() > 0.0 else np.full(chosen.size, 1.0 / chosen.size)
+    loads, axial, radial, pressure = [], 0.0, 0.0, 0.0
+    x, y, z, *_ = scene.ring_is_placed
+    for index, share in zip(chosen.tolist(), shares, strict=True):
+        contacts = replay.contacts(index)
+        loads.append(lamina_loads(scene, contacts))
+        carried = ring_loads(scene, loads[-1][0].sum(axis=-1), result["roller_orbit_angle"][index])
+        axial += share * (carried[0] if z else value_at(scene.axial_load, float(time[index])))
+        radial += share * (carried[1] if x or y else value_at(scene.radial_load, float(time[index])))
+        pressure = max(pressure, float(np.max(contacts["raceway_pressure"])))
+    return Loading(
+        axial_load=float(axial),
+        radial_load=float(radial),
+        speed_rpm=float(speeds.mean()) * 30.0 / np.pi,
+        lamina_loads=np.concatenate(loads, axis=1),
+        weights=np.repeat(shares, scene.bearing.n_rollers),
+        largest_pressure=pressure,
+        source=f"{chosen.size} records from {float(time[chosen[0]]):.3g} to {float(time[chosen[-1]]):.3g} s",
+    )

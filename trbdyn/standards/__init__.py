@@ -1,0 +1,1 @@
+"""The engineer's sheet: equivalent load, rating lives, static safety, viscosity ratio (docs/theory/ratings.md)."""

@@ -1,0 +1,486 @@
+"""The engineer's sheet of a scene: what every catalogue program answers first, each number with its symbol, unit and meaning.
+
+Ratings and factors are those of the catalogue (`Bearing.ratings`); what it does not tell is computed by the standards from the
+bearing's rollers, and said. Reference lives stand on the loads of laminas, of an equilibrium or of a run's records.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.errors import InputError
+from trbdyn.model.motion import value_at
+from trbdyn.model.ratings import rating_iso76, rating_iso281
+from trbdyn.standards import iso281, lamina
+from trbdyn.statics.plausible import PERMISSIBLE_PRESSURE
+from trbdyn.statics.start import contacts_at_start
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+Array = NDArray[np.float64]
+
+ASSUMED_CLEANLINESS: Final = "17/14"
+"""Cleanliness where none is given: oil without a filter in an ordinary gearbox."""
+_NEIGHBOURS: Final = ("15/12", "19/16")
+
+
+@dataclass(frozen=True)
+class RatingRow:
+    """A number of the sheet.
+
+    Attributes
+    ----------
+    name : str
+        Name of the attribute of `Rating`.
+    words, symbol : str
+        What it is.
+    value : float or None
+        Its value; None where it cannot be told, with the reason in the note.
+    unit : str
+        Its unit; empty for pure numbers.
+    note : str
+        Where it comes from, or what it means.
+    """
+
+    name: str
+    words: str
+    symbol: str
+    value: float | None
+    unit: str
+    note: str
+
+    @property
+    def shown(self) -> str:
+        """The value as text, four digits."""
+        return _digits(self.value)
+
+
+_ROWS: Final[dict[str, tuple[str, str, str]]] = {
+    "axial_load": ("axial load", "Fa", "N"),
+    "radial_load": ("radial load", "Fr", "N"),
+    "speed_rpm": ("speed", "n", "rpm"),
+    "dynamic_rating": ("basic dynamic load rating", "C", "N"),
+    "static_rating": ("basic static load rating", "C0", "N"),
+    "fatigue_limit": ("fatigue load limit", "Cu", "N"),
+    "e": ("largest Fa/Fr at which P = Fr", "e", ""),
+    "Y": ("axial factor of P", "Y", ""),
+    "Y0": ("axial factor of P0", "Y0", ""),
+    "equivalent_load": ("equivalent dynamic load", "P", "N"),
+    "load_ratio": ("rating over equivalent load", "C/P", ""),
+    "smallest_load": ("smallest load, so that rollers roll", "Pmin", "N"),
+    "life": ("basic rating life", "L10", "million revolutions"),
+    "life_hours": ("basic rating life", "L10h", "h"),
+    "static_equivalent_load": ("equivalent static load", "P0", "N"),
+    "static_safety": ("static safety", "S0", ""),
+    "pressure_safety": ("static safety by the largest pressure of a roller", "(4 GPa/p)^2", ""),
+    "viscosity": ("viscosity of the oil", "nu", "mm2/s"),
+    "reference_viscosity": ("viscosity that the bearing asks for", "nu1", "mm2/s"),
+    "viscosity_ratio": ("viscosity ratio", "kappa", ""),
+    "contamination_factor": ("contamination factor", "e_C", ""),
+    "life_factor": ("life modification factor", "a_ISO", ""),
+    "reliability_factor": ("factor of reliability", "a1", ""),
+    "modified_life": ("modified rating life", "Lnm", "million revolutions"),
+    "modified_life_hours": ("modified rating life", "Lnmh", "h"),
+    "reference_life": ("basic reference rating life", "L10r", "million revolutions"),
+    "reference_life_hours": ("basic reference rating life", "L10rh", "h"),
+    "reference_load": ("equivalent load of the reference life", "Pref", "N"),
+    "modified_reference_life": ("modified reference rating life", "Lnmr", "million revolutions"),
+    "modified_reference_life_hours": ("modified reference rating life", "Lnmrh", "h"),
+    "speed_over_reference": ("speed over the catalogue's reference speed", "n/n_ref", ""),
+    "speed_over_limit": ("speed over the catalogue's limiting speed", "n/n_lim", ""),
+    "speed_parameter": ("speed times pitch diameter", "n Dpw", "mm/min"),
+}
+"""Words, symbol and unit of each number, in the order of the sheet."""
+
+
+@dataclass(frozen=True)
+class Rating(Displayed):
+    """The sheet. Numbers that cannot be told are None; `notes` says why, and where the others come from.
+
+    Attributes
+    ----------
+    axial_load, radial_load : float
+        Fa and Fr (N).
+    speed_rpm : float
+        n (rpm).
+    dynamic_rating, static_rating, fatigue_limit : float
+        C, C0 and Cu (N).
+    e, Y, Y0 : float
+        Factors (1).
+    equivalent_load, smallest_load, static_equivalent_load : float
+        P, least load, P0 (N).
+    load_ratio : float or None
+        C/P (1).
+    life, life_hours : float or None
+        L10 (million revolutions, h).
+    static_safety, pressure_safety : float or None
+        C0/P0, and (4 GPa over the largest pressure) squared, which is its like for line contacts (1).
+    viscosity, reference_viscosity : float or None
+        nu and nu1 (mm2/s).
+    viscosity_ratio, contamination_factor, life_factor, reliability_factor : float or None
+        kappa, e_C, a_ISO, a1 (1).
+    modified_life, modified_life_hours : float or None
+        Lnm = a1 a_ISO L10 (million revolutions, h).
+    reference_life, reference_life_hours : float or None
+        L10r of ISO 16281 (million revolutions, h).
+    reference_load : float or None
+        Pref = C/L10r^(3/10) (N).
+    modified_reference_life, modified_reference_life_hours : float or None
+        Lnmr = a1 a_ISO L10r, with a_ISO at Pref (million revolutions, h).
+    speed_over_reference, speed_over_limit : float or None
+        Speed over those that the catalogue permits (1).
+    speed_parameter : float
+        n Dpw (mm/min).
+    warnings : tuple of str
+        What an engineer must know: too small a load, speeds beyond the catalogue's, kappa out of range.
+    notes : dict of str to str
+        By name of a number, where it comes from or why there is none.
+    """
+
+    axial_load: float
+    radial_load: float
+    speed_rpm: float
+    dynamic_rating: float
+    static_rating: float
+    fatigue_limit: float
+    e: float
+    Y: float
+    Y0: float
+    equivalent_load: float
+    load_ratio: float | None
+    smallest_load: float
+    life: float | None
+    life_hours: float | None
+    static_equivalent_load: float
+    static_safety: float | None
+    pressure_safety: float | None
+    viscosity: float
+    reference_viscosity: float | None
+    viscosity_ratio: float | None
+    contamination_factor: float | None
+    life_factor: float | None
+    reliability_factor: float
+    modified_life: float | None
+    modified_life_hours: float | None
+    reference_life: float | None
+    reference_life_hours: float | None
+    reference_load: float | None
+    modified_reference_life: float | None
+    modified_reference_life_hours: float | None
+    speed_over_reference: float | None
+    speed_over_limit: float | None
+    speed_parameter: float
+    warnings: tuple[str, ...]
+    notes: dict[str, str]
+
+    @property
+    def rows(self) -> tuple[RatingRow, ...]:
+        """Every number with words, symbol, unit and note."""
+        return tuple(
+            RatingRow(name, words, symbol, getattr(self, name), unit, self.notes.get(name, ""))
+            for name, (words, symbol, unit) in _ROWS.items()
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dictionaries, lists, numbers and text, as JSON takes them."""
+        return asdict(self) | {"warnings": list(self.warnings)}
+
+    def _shown(self) -> Shown:
+        listed = [row for row in self.rows if row.value is not None or row.note]
+        return Shown(
+            title="ratings and lives",
+            rows=tuple((f"{row.words} {row.symbol}", row.shown, row.unit, row.note) for row in listed),
+            head=("name", "value", "unit", "where it comes from"),
+            notes=self.warnings,
+        )
+
+    def __str__(self) -> str:
+        return self._shown().text()
+
+
+def _digits(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"
+
+
+@dataclass(frozen=True)
+class Loading:
+    """What a sheet stands on.
+
+    Attributes
+    ----------
+    axial_load, radial_load, speed_rpm : float
+        Means (N, N, rpm).
+    lamina_loads : ndarray, shape (2, P, n_s)
+        Loads of the laminas at the outer and the inner ring (N), see `lamina.reference_life`.
+    weights : ndarray, shape (P,), or None
+        Share of the revolutions of each.
+    largest_pressure : float
+        Largest pressure on a raceway (Pa).
+    source : str
+        Of what: in words.
+    """
+
+    axial_load: float
+    radial_load: float
+    speed_rpm: float
+    lamina_loads: Array
+    weights: Array | None
+    largest_pressure: float
+    source: str
+
+
+def stations(scene: Scene) -> Array:
+    """Places of the nodes along the effective length, from its middle towards the large end (m), shape (n,)."""
+    effects, length = scene.effects, scene.bearing.roller.effective_length
+    if effects.quadrature == "gauss":
+        return np.asarray(0.5 * length * np.polynomial.legendre.leggauss(effects.n_slices)[0])
+    return np.asarray(length * ((np.arange(effects.n_slices) + 0.5) / effects.n_slices - 0.5))
+
+
+def lamina_loads(scene: Scene, contacts: dict[str, Array]) -> Array:
+    """Loads of the laminas (N), shape (2, Z, n_s), of the contacts of a scene, as `Simulation.contacts` gives them."""
+    per_length, weight = contacts["raceway_load_per_length"], contacts["raceway_weight"]
+    load = np.sum(per_length * weight, axis=-1)
+    return lamina.in_laminas(per_length, stations(scene), load, scene.bearing.roller.effective_length)
+
+
+def ring_loads(scene: Scene, loads: Array, angles: Array) -> tuple[float, float]:
+    """Axial and radial load (N) that the outer raceway carries by these loads of its rollers (N) at these angles (rad)."""
+    slope = math.radians(scene.bearing.cup_half_angle_deg)
+    radial = np.array([np.sum(loads * np.cos(angles)), np.sum(loads * np.sin(angles))]) * math.cos(slope)
+    return float(np.sum(loads) * math.sin(slope)), float(np.hypot(*radial))
+
+
+def at_equilibrium(scene: Scene) -> Loading:
+    """Loads of the equilibrium at the scene's start.
+
+    Raises
+    ------
+    LoadError
+        If the bearing cannot carry the load.
+    """
+    start = scene.start.time
+    still = scene.replace(start=scene.start.replace(kind="equal")) if scene.start.kind != "state" else scene
+    contacts = contacts_at_start(still)
+    loads = lamina_loads(scene, contacts)
+    x, y, z, *_ = scene.ring_is_placed
+    even = 2.0 * math.pi * np.arange(loads.shape[1]) / loads.shape[1]
+    carried = ring_loads(scene, loads[0].sum(axis=-1), even)
+    return Loading(
+        axial_load=carried[0] if z else value_at(scene.axial_load, start),
+        radial_load=carried[1] if x or y else value_at(scene.radial_load, start),
+        speed_rpm=value_at(scene.speed_rpm, start),
+        lamina_loads=loads,
+        weights=None,
+        largest_pressure=float(np.max(contacts["raceway_pressure"])),
+        source="equilibrium at the start",
+    )
+
+
+def inner_turns_against_load(scene: Scene) -> bool:
+    """Whether the inner ring turns against the load: not where the larger load turns with the shaft."""
+    rotating, start = scene.rotating_load, scene.start.time
+    if rotating is None or rotating.frequency_hz is not None or abs(rotating.turns - 1.0) > 1e-9:
+        return True
+    return value_at(rotating.load, start) <= value_at(scene.radial_load, start)
+
+
+def sheet(
+    scene: Scene,
+    loading: Loading,
+    *,
+    cleanliness: str | None = None,
+    filtered: bool | None = None,
+    contamination: float | None = None,
+    reliability: float = 90.0,
+) -> Rating:
+    """The sheet of a scene under a loading; see `trbdyn.rating`."""
+    notes: dict[str, str] = {}
+    said: list[str] = []
+    bearing = scene.bearing
+    pitch, angle = bearing.pitch_diameter, math.radians(bearing.cup_half_angle_deg)
+    C, C0, Cu, e, Y, Y0 = _factors(scene, notes)
+    axial, radial, speed = abs(loading.axial_load), loading.radial_load, abs(loading.speed_rpm)
+    P = iso281.equivalent_load(radial, axial, e=e, Y=Y)
+    P0 = iso281.static_equivalent_load(radial, axial, Y0=Y0)
+    notes["equivalent_load"] = "Fr" if axial <= e * radial else "0.4 Fr + Y Fa"
+    smallest = iso281.SMALLEST_LOAD_SHARE * C
+    notes["smallest_load"] = "0.02 C"
+    if smallest > P:
+        said.append(
+            f"the equivalent load {P:.4g} N is below the smallest load {smallest:.4g} N (0.02 C): rollers may slide"
+        )
+
+    life = _finite(iso281.basic_life(C, P))
+    ratings = lamina.contact_ratings(
+        C, n_rollers=bearing.n_rollers, roller_diameter=bearing.roller.diameter, pitch_diameter=pitch, angle=angle
+    )
+    inner = inner_turns_against_load(scene)
+    reference = _finite(
+        lamina.reference_life(loading.lamina_loads, ratings, weights=loading.weights, inner_turns=inner)
+    )
+    notes["reference_life"] = f"ISO 16281, {lamina.LAMINAS} laminas, {loading.source}"
+    reference_load = None if reference is None else C / reference ** (1.0 / iso281.LIFE_EXPONENT)
+
+    viscosity = 1e6 * scene.lubricant.kinematic_viscosity
+    nu1 = _finite(iso281.reference_viscosity(speed, pitch))
+    kappa = None if nu1 is None else viscosity / nu1
+    oil = _Oil.of(scene, cleanliness, filtered, contamination)
+    factor, e_C = _life_factor(kappa, oil, Cu, P, pitch, notes, said)
+    reference_factor, _ = _life_factor(kappa, oil, Cu, reference_load, pitch, {}, [])
+    a1 = iso281.reliability_factor(reliability)
+    notes["reliability_factor"] = f"reliability {reliability:g} %"
+    modified = _times(a1, factor, life)
+    modified_reference = _times(a1, reference_factor, reference)
+    if modified is not None and oil.assumed:
+        others = (_life_factor(kappa, replace(oil, cleanliness=code), Cu, P, pitch, {}, [])[0] for code in _NEIGHBOURS)
+        lives = (_times(a1, other, life) for other in others)
+        listed = zip(_NEIGHBOURS, lives, strict=True)
+        notes["modified_life"] = ", ".join(f"{_digits(other)} with -/{code}" for code, other in listed)
+
+    over: dict[str, float | None] = {}
+    for name, limit in (
+        ("speed_over_reference", bearing.ratings.reference_speed_rpm),
+        ("speed_over_limit", bearing.ratings.limiting_speed_rpm),
+    ):
+        over[name] = None if limit is None else speed / limit
+        if limit is not None and speed > limit:
+            words = "reference" if name == "speed_over_reference" else "limiting"
+            said.append(f"the speed of {speed:g} rpm is above the catalogue's {words} speed of {limit:g} rpm")
+    safety = PERMISSIBLE_PRESSURE / loading.largest_pressure if loading.largest_pressure > 0.0 else None
+    if axial <= 0.0 and radial <= 0.0:
+        notes["life"] = "no load"
+    return Rating(
+        axial_load=axial,
+        radial_load=radial,
+        speed_rpm=speed,
+        dynamic_rating=C,
+        static_rating=C0,
+        fatigue_limit=Cu,
+        e=e,
+        Y=Y,
+        Y0=Y0,
+        equivalent_load=P,
+        load_ratio=C / P if P > 0.0 else None,
+        smallest_load=smallest,
+        life=life,
+        life_hours=_hours(life, speed),
+        static_equivalent_load=P0,
+        static_safety=C0 / P0 if P0 > 0.0 else None,
+        pressure_safety=None if safety is None else safety**2,
+        viscosity=viscosity,
+        reference_viscosity=nu1,
+        viscosity_ratio=kappa,
+        contamination_factor=e_C,
+        life_factor=factor,
+        reliability_factor=a1,
+        modified_life=modified,
+        modified_life_hours=_hours(modified, speed),
+        reference_life=reference,
+        reference_life_hours=_hours(reference, speed),
+        reference_load=reference_load,
+        modified_reference_life=modified_reference,
+        modified_reference_life_hours=_hours(modified_reference, speed),
+        speed_parameter=speed * 1e3 * pitch,
+        warnings=tuple(said),
+        notes=notes,
+        **over,
+    )
+
+
+def _factors(scene: Scene, notes: dict[str, str]) -> tuple[float, float, float, float, float, float]:
+    """C, C0, Cu, e, Y and Y0: of the catalogue, else by the standards from the rollers and the cup's angle."""
+    bearing, known = scene.bearing, scene.bearing.ratings
+    slope = math.tan(math.radians(bearing.cup_half_angle_deg))
+    sizes: dict[str, Any] = {
+        "n_rollers": bearing.n_rollers,
+        "roller_diameter": bearing.roller.diameter,
+        "roller_length": bearing.roller.effective_length,
+        "pitch_diameter": bearing.pitch_diameter,
+        "contact_angle_deg": bearing.cup_half_angle_deg,
+    }
+    C = known.dynamic or rating_iso281(**sizes)
+    C0 = known.static or rating_iso76(**sizes)
+    # a catalogue that tells one of e and Y: the other one by e Y = 0.6
+    e = known.e or (0.6 / known.Y if known.Y is not None else 1.5 * slope)
+    Y = known.Y or (0.6 / known.e if known.e is not None else 0.4 / slope)
+    for name, value, how in (
+        ("dynamic_rating", known.dynamic, "ISO 281 from the rollers, b_m = 1.1"),
+        ("static_rating", known.static, "ISO 76 from the rollers"),
+        ("fatigue_limit", known.fatigue_limit, "C0/8.2 (ISO 281, B.3.3)"),
+        ("e", known.e, "1.5 tan(alpha), or 0.6/Y"),
+        ("Y", known.Y, "0.4 cot(alpha), or 0.6/e"),
+        ("Y0", known.Y0, "0.55 Y, that is 0.22 cot(alpha)"),
+    ):
+        notes[name] = "catalogue" if value is not None else how
+    return C, C0, known.fatigue_limit or iso281.fatigue_limit(C0, bearing.pitch_diameter), e, Y, known.Y0 or 0.55 * Y
+
+
+@dataclass(frozen=True)
+class _Oil:
+    """How clean the oil is."""
+
+    cleanliness: str
+    filtered: bool
+    factor: float | None
+    assumed: bool
+
+    @classmethod
+    def of(cls, scene: Scene, cleanliness: str | None, filtered: bool | None, factor: float | None) -> _Oil:
+        if factor is not None and not 0.0 <= factor <= 1.0:
+            raise InputError.of("contamination", factor, "must be from 0 to 1 (1)")
+        given = cleanliness or scene.lubricant.cleanliness
+        clean = given or ASSUMED_CLEANLINESS
+        filters = scene.lubricant.filtered if filtered is None else filtered
+        iso281.contamination_factor(clean, filtered=filters, viscosity_ratio=1.0, pitch_diameter=0.1)
+        return cls(clean, filters, factor, factor is None and given is None)
+
+
+def _life_factor(
+    kappa: float | None,
+    oil: _Oil,
+    limit: float,
+    load: float | None,
+    pitch: float,
+    notes: dict[str, str],
+    said: list[str],
+) -> tuple[float | None, float | None]:
+    """a_ISO and e_C."""
+    if kappa is None or not load:
+        notes["life_factor"] = "not known at standstill" if kappa is None else "no load"
+        return None, None
+    e_C = oil.factor
+    if e_C is None:
+        counted = min(kappa, iso281.MOST_VISCOSITY_RATIO)
+        e_C = iso281.contamination_factor(
+            oil.cleanliness, filtered=oil.filtered, viscosity_ratio=counted, pitch_diameter=pitch
+        )
+        how = "in-line filter" if oil.filtered else "without in-line filter"
+        notes["contamination_factor"] = f"oil of -/{oil.cleanliness} (ISO 4406), {how}"
+        notes["contamination_factor"] += ", assumed: give cleanliness" if oil.assumed else ""
+    if kappa < iso281.LEAST_VISCOSITY_RATIO:
+        text = f"kappa = {kappa:.3g} is below 0.1, where ISO 281 has no life factor: surfaces touch, expect wear"
+        notes["life_factor"] = text
+        said.append(text)
+        return None, e_C
+    return iso281.life_factor(kappa, e_C * limit / load), e_C
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _times(*factors: float | None) -> float | None:
+    known = [factor for factor in factors if factor is not None]
+    return math.prod(known) if len(known) == len(factors) else None
+
+
+def _hours(life: float | None, speed: float) -> float | None:
+    return None if life is None else _finite(iso281.hours(life, speed))

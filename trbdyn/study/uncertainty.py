@@ -1,0 +1,414 @@
+"""The band of a prediction: inputs that nobody knows exactly are drawn from their bands together, each draw is run, and the
+spread of the results is told, with the share of it that each input makes.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.validation import Model, Number
+from trbdyn.errors import InputError, unknown_name
+from trbdyn.model.scene import Scene
+from trbdyn.results.summary import LABELS
+from trbdyn.run.options import RunOptions
+from trbdyn.study.definition import Base, Case, Study
+from trbdyn.study.runner import run as run_study
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+
+QUANTITIES: Final = (
+    "torque",
+    "outer_pressure_max",
+    "film_parameter_inner",
+    "film_parameter_rib",
+    "orbit_radius_over_cpr",
+)
+"""Observables whose shares are printed unless others are asked for."""
+LEVEL: Final = 0.95
+"""Share of the draws that a band holds."""
+FEWEST: Final = 8
+"""Fewest draws that make a band."""
+
+
+class Band(Model):
+    """An input that is not known exactly; every value between both ends is as likely.
+
+    Parameters
+    ----------
+    path : str
+        Which input, as in a study: ``lubricant.temperature_c``, ``bearing.roller.diameter``.
+    low, high : float
+        Ends, in the unit of the input. Whole numbers at both ends of a number that is whole stay whole.
+    source : str
+        Why the band is what it is.
+    """
+
+    path: str
+    low: Number
+    high: Number
+    source: str = "given"
+
+
+@dataclass(frozen=True)
+class Spread:
+    """What an observable does over all draws.
+
+    Attributes
+    ----------
+    name : str
+        Name in `Result.summary`.
+    unit : str
+        Its unit.
+    value : float
+        With every input as the scene has it.
+    mean, low, high : float
+        Mean of the draws, and the band that holds 95 % of them.
+    shares : dict of str to float
+        First-order index of each input: the share of the variance that this input makes by itself, from an additive model
+        with a parabola for each input. Empty where the draws are too few.
+    rest : float
+        Share of the variance that no input makes by itself: inputs acting together, and chance.
+    """
+
+    name: str
+    unit: str
+    value: float
+    mean: float
+    low: float
+    high: float
+    shares: dict[str, float]
+    rest: float
+
+
+@dataclass(frozen=True, repr=False)
+class Uncertainty(Displayed):
+    """Bands of all observables of a scene; print it for a table.
+
+    Attributes
+    ----------
+    spreads : dict of str to Spread
+        By the names of `Result.summary`.
+    bands : tuple of Band
+        Inputs that were drawn.
+    draws : int
+        How many draws could be run.
+    refused : tuple of str
+        Why others could not.
+    data : xarray.Dataset
+        All draws: inputs as coordinates, observables as variables.
+    shown : tuple of str
+        Observables that are printed.
+    """
+
+    spreads: dict[str, Spread]
+    bands: tuple[Band, ...]
+    draws: int
+    refused: tuple[str, ...]
+    data: xarray.Dataset
+    shown: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> Spread:
+        return self.spreads[name]
+
+    def __str__(self) -> str:
+        lines = [f"{self.draws} draws of {len(self.bands)} inputs" + self._refusals()]
+        for name in self.shown:
+            spread = self.spreads[name]
+            unit = f" {spread.unit}" if spread.unit else ""
+            lines.append(
+                f"{name} = {spread.value:.4g}{unit}; 95 % of the draws: {spread.low:.4g} to {spread.high:.4g}{unit}"
+            )
+            largest = sorted(spread.shares.items(), key=lambda entry: -entry[1])[:5]
+            lines += [f"  {100.0 * share:5.1f} %  {path}" for path, share in largest if share >= 0.01]
+            if spread.shares:
+                lines.append(f"  {100.0 * spread.rest:5.1f} %  inputs together, and chance")
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _shown(self) -> Shown:
+        rows = []
+        for name in self.shown:
+            spread = self.spreads[name]
+            largest = sorted(spread.shares.items(), key=lambda entry: -entry[1])[:5]
+            causes = ", ".join(f"{path} {100.0 * share:.0f} %" for path, share in largest if share >= 0.01)
+            rows.append((name, f"{spread.value:.4g}", spread.unit, f"{spread.low:.4g} to {spread.high:.4g}", causes))
+        title = f"{self.draws} draws of {len(self.bands)} inputs{self._refusals()}"
+        return Shown(title, tuple(rows), ("name", "value", "unit", "95 % of the draws", "shares of the variance"))
+
+    def _refusals(self) -> str:
+        if not self.refused:
+            return ""
+        return f"; {len(self.refused)} more could not be run, so that the bands leave them out: {self.refused[0]}"
+
+
+def open_inputs(scene: Scene) -> tuple[Band, ...]:
+    """Inputs of a scene that are hardly ever known exactly, with the bands they are given without better knowledge.
+
+    Estimates of a catalogue bearing with their own bands; temperature, roughness, boundary friction and, where oil drags,
+    its share in the mixture.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated.
+
+    Returns
+    -------
+    tuple of Band
+    """
+    oil, effects, rough = scene.lubricant, scene.effects, scene.bearing.roughness
+    found = [
+        Band(path=f"bearing.{entry.path}", low=entry.low, high=entry.high, source=entry.source)
+        for entry in scene.bearing.estimated
+        if entry.low < entry.high
+    ]
+    if effects.films and oil.oil is not None:
+        t = oil.temperature_c
+        found.append(
+            Band(path="lubricant.temperature_c", low=t - 3.0, high=t + 3.0, source="thermocouple at the ring: assumed")
+        )
+    if effects.films:
+        found += [
+            Band(
+                path=f"bearing.roughness.{name}",
+                low=0.7 * value,
+                high=1.5 * value,
+                source="finishing and running in: assumed",
+            )
+            for name, value in (("raceway", rough.raceway), ("rib", rough.rib))
+        ]
+    if effects.lubrication in ("mixed", "boundary"):
+        limit = effects.friction.boundary_limit
+        found.append(
+            Band(
+                path="effects.friction.boundary_limit",
+                low=0.7 * limit,
+                high=2.0 * limit,
+                source="0.07 to 0.2, published",
+            )
+        )
+    if effects.oil_fill > 0.0:
+        high = min(2.0 * effects.oil_fill, 1.0)
+        found.append(Band(path="effects.oil_fill", low=0.0, high=high, source="known in no bearing: assumed"))
+    return tuple(found)
+
+
+def uncertainty(
+    scene: Scene,
+    bands: Mapping[str, tuple[float, float]] | Sequence[Band] | None = None,
+    *,
+    samples: int = 64,
+    seed: int = 0,
+    options: RunOptions | None = None,
+    quantities: Sequence[str] = QUANTITIES,
+    folder: str | os.PathLike[str] | None = None,
+    executor: Any = "threads",
+    workers: int | None = None,
+    progress: bool = False,
+) -> Uncertainty:
+    """The band of every observable that follows from the bands of the inputs.
+
+    Inputs are drawn together by a scrambled Sobol sequence (`scipy.stats.qmc`), every draw is run, and the middle 95 % of
+    the results are the band.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated.
+    bands : mapping of str to tuple, or sequence of Band, optional
+        Which inputs are drawn, and between which ends; `open_inputs` of the scene by default.
+    samples : int
+        Number of draws, at least 8. A larger number keeps the first ones. Shares need twice as many draws as the model has
+        numbers: 2 (2 n + 1) for n inputs, else straight lines take the place of parabolas, else there are none.
+    seed : int
+        Seed of the draws.
+    options : RunOptions, optional
+        How each draw is run; 5 turns of the shaft with 'fast' by default.
+    quantities : sequence of str
+        Observables that are printed.
+    folder : path-like, optional
+        Where the draws are kept; a second call with the same folder runs only those that are missing.
+    executor : {'threads', 'processes', 'serial'} or object
+        As in `trbdyn.study.run`.
+    workers : int, optional
+        As in `trbdyn.study.run`.
+    progress : bool
+        Show a progress bar.
+
+    Returns
+    -------
+    Uncertainty
+        Print it for a table.
+
+    Raises
+    ------
+    InputError
+        If a band is wrong or names no input, there are none, a quantity is unknown, or so few draws can be run that they make no
+        band.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> scene = trb.cases.scene_32216(2000.0)
+    >>> bands = {"lubricant.temperature_c": (47.0, 53.0), "bearing.cup_half_angle_deg": (14.0, 15.7)}
+    >>> options = trb.RunOptions(duration=2e-3, accuracy="fast")
+    >>> found = trb.uncertainty(scene, bands, samples=16, options=options)
+    >>> found["torque"].low < found["torque"].high
+    True
+    """
+    drawn = _checked(open_inputs(scene) if bands is None else bands)
+    for field, value, least in (("samples", samples, FEWEST), ("seed", seed, 0)):
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+            raise InputError.of(field, value, f"must be a whole number, at least {least}")
+    options = RunOptions(revolutions=5.0, accuracy="fast") if options is None else options
+    base = Base.of(scene, options)
+    unit = _unit_draws(len(drawn), int(samples), int(seed))
+    made = [Case({"draw": 0}, scene, options), *(_case(base, options, drawn, row, k + 1) for k, row in enumerate(unit))]
+    if all(case.scene is None for case in made[1:]):
+        raise InputError.of("bands", drawn[0].path, f"no draw can be built; the first: {made[1].error}")
+    data = run_study(
+        Study(tuple(made), (), "uncertainty"), folder, executor=executor, workers=workers, progress=progress
+    )
+    return _gathered(data, drawn, unit, quantities)
+
+
+def _checked(bands: Mapping[str, tuple[float, float]] | Sequence[Band]) -> tuple[Band, ...]:
+    if isinstance(bands, Mapping):
+        made = []
+        for path, ends in bands.items():
+            if isinstance(ends, str) or not isinstance(ends, Sequence) or len(ends) != 2:
+                raise InputError.of(("bands", path), ends, "must be a band (low, high)")
+            made.append(Band(path=path, low=ends[0], high=ends[1]))
+    else:
+        made = list(bands)
+    if not made:
+        raise InputError.of("bands", "none", "must name at least one input; this scene has none that is open by itself")
+    for band in made:
+        if not band.low < band.high:
+            raise InputError.of(("bands", band.path), (band.low, band.high), "must have low < high")
+    paths = [band.path for band in made]
+    if len(set(paths)) != len(paths):
+        raise InputError.of("bands", paths, "must not name an input twice")
+    return tuple(made)
+
+
+def _unit_draws(inputs: int, count: int, seed: int) -> Array:
+    """Points of the unit cube, shape (count, inputs)."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "The balance properties", UserWarning)  # counts that are no powers of two
+        return np.asarray(qmc.Sobol(inputs, seed=seed).random(count), dtype=float)
+
+
+def _case(base: Base, options: RunOptions, bands: Sequence[Band], row: Array, number: int) -> Case:
+    overrides: dict[str, Any] = {}
+    for band, share in zip(bands, row, strict=True):
+        if band.path.endswith("n_rollers"):
+            value: float = int(band.low + share * (band.high - band.low + 1.0))
+        else:
+            value = float(band.low + share * (band.high - band.low))
+        overrides[band.path] = value
+    parameters = {"draw": number, **overrides}
+    try:
+        scene, _ = base.build(_longer_with_its_line(base, overrides))
+    except InputError as error:
+        return Case(parameters, None, options, str(error).splitlines()[0])
+    return Case(parameters, scene, options)
+
+
+def _longer_with_its_line(base: Base, overrides: dict[str, Any]) -> dict[str, Any]:
+    """A longer contact line makes the roller longer by as much, unless its length is drawn as well."""
+    line, whole = "bearing.roller.effective_length", "bearing.roller.total_length"
+    roller = base.tables.get("bearing", {}).get("roller")
+    if (
+        line not in overrides
+        or whole in overrides
+        or not isinstance(roller, Mapping)
+        or roller.get("total_length") is None
+    ):
+        return overrides
+    return {**overrides, whole: roller["total_length"] + overrides[line] - roller["effective_length"]}
+
+
+def _gathered(data: xarray.Dataset, bands: tuple[Band, ...], unit: Array, quantities: Sequence[str]) -> Uncertainty:
+    status = [str(text) for text in data["status"].values]
+    ran = np.array([text == "done" for text in status])
+    if not ran[0]:
+        raise InputError.of("scene", "as it is", f"cannot be run: {data['message'].values[0]}")
+    good = ran[1:]
+    refused = tuple(str(text) for text in data["message"].values[1:][~good])
+    if good.sum() < FEWEST:
+        raise InputError.of(
+            "bands", f"{int(good.sum())} draws", f"so few could be run; the first that failed: {refused[0]}"
+        )
+    spreads = {}
+    for name, variable in data.data_vars.items():
+        if variable.dims != ("case",) or variable.dtype.kind not in "fi" or name in ("wall_time", "number", "draw"):
+            continue
+        values = np.asarray(variable.values, dtype=float)
+        if np.isfinite(values[0]) and np.isfinite(values[1:][good]).all():
+            spreads[str(name)] = _spread(str(name), values[0], values[1:][good], bands, unit[good])
+    if tuple(quantities) != QUANTITIES and (strange := [name for name in quantities if name not in spreads]):
+        raise InputError.of("quantities", strange[0], unknown_name(strange[0], spreads))
+    shown = tuple(name for name in quantities if name in spreads)
+    return Uncertainty(spreads, bands, int(good.sum()), refused, data, shown)
+
+
+def _spread(name: str, value: float, values: Array, bands: Sequence[Band], unit: Array) -> Spread:
+    low, high = np.quantile(values, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+    found, rest = first_order(unit, values)
+    shares = {band.path: float(share) for band, share in zip(bands, found, strict=False)}
+    unit_text = LABELS.get(name, ("", ""))[1]
+    return Spread(name, unit_text, float(value), float(values.mean()), float(low), float(high), shares, rest)
+
+
+def first_order(unit: Array, values: Array) -> tuple[Array, float]:
+    """First-order indices of independent inputs, from given draws.
+
+    The values are fitted by a sum of one parabola for each input, in Legendre polynomials, which are orthogonal over the
+    unit interval: the variance that an input makes by itself is the sum of its two squared coefficients (Sudret 2008, Reliab.
+    Eng. Syst. Saf. 93, 964, to second degree and without products). What chance adds to a squared coefficient is taken off.
+
+    Parameters
+    ----------
+    unit : ndarray, shape (n, inputs)
+        Draws, each input uniform over 0 to 1.
+    values : ndarray, shape (n,)
+        The observable.
+
+    Returns
+    -------
+    shares : ndarray, shape (inputs,)
+        Empty where the draws are too few even for straight lines.
+    rest : float
+        One less their sum, not below 0.
+    """
+    n, inputs = unit.shape
+    variance = float(values.var(ddof=1))
+    degree = 2 if n >= 2 * (1 + 2 * inputs) else 1 if n >= 2 * (1 + inputs) else 0
+    if degree == 0 or variance <= (1e-12 * float(np.abs(values).max())) ** 2:
+        return np.empty(0), 1.0
+    x = 2.0 * unit - 1.0
+    columns = [np.ones(n), *(np.sqrt(3.0) * x.T)]
+    if degree == 2:
+        columns += list(np.sqrt(5.0) * 0.5 * (3.0 * x.T**2 - 1.0))
+    matrix = np.stack(columns, axis=1)
+    coefficients, *_ = np.linalg.lstsq(matrix, values, rcond=None)
+    left = values - matrix @ coefficients
+    chance = float(left @ left) / (n - matrix.shape[1]) * np.diag(np.linalg.pinv(matrix.T @ matrix))
+    made = (coefficients**2 - chance)[1:].reshape(degree, inputs).sum(axis=0)
+    shares = np.clip(made / variance, 0.0, 1.0)
+    return shares, max(1.0 - float(shares.sum()), 0.0)
