@@ -262,12 +262,12 @@ def run_whole(report: common.Report, name: str, builds: dict[str, tuple[str, Ask
 
 
 def _geometric_mean(values: Sequence[float]) -> float:
-    known = np.array([value for value in values if np.isfinite(value)])
-    return float(np.exp(np.log(known).mean())) if known.size else float("nan")
+    """nan unless all are known: two builds that reach different cases cannot be compared by it."""
+    return float(np.exp(np.log(values).mean())) if len(values) else float("nan")
 
 
 def summary_of(report: common.Report, builds: Sequence[str], cases: Sequence[str]) -> dict[str, Any]:
-    """What a turn costs at each error, by build: of each case, and the geometric mean over those that reach it."""
+    """What a turn costs at each error, by build: of each case, and their geometric mean where all cases reach it."""
     out: dict[str, Any] = {}
     for build in builds:
         rows = [row for row in report.results if row["build"] == build and "error" in row]

@@ -15,6 +15,13 @@ if TYPE_CHECKING:
     from pydantic import ValidationError
     from pydantic.fields import FieldInfo
 
+__all__ = ["FileError", "InputError", "LoadError", "Problem", "RunWarning", "StepError", "TrbError"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 Path = tuple[str | int, ...]
 
 

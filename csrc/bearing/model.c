@@ -353,3 +353,11 @@ void trb_model_free(trb_model *model)
   free(model->first_face);
   free(model);
 }
+
+double trb_chain_length(const trb_model *m)
+{
+  double length = 0.0;
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int k = 0; k < m->n_nodes; k++) length = fmax(length, fabs(m->centre[j * m->n_lanes + k]));
+  return length;
+}

@@ -102,6 +102,9 @@ typedef struct trb_model {
   int        n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
 } trb_model;
 
+/* Distance of the farthest sphere of the flank from the centre of mass of its roller, m. */
+double trb_chain_length(const trb_model *model);
+
 /* A checked, immutable copy of everything given. deviation: a roller's diameter over nominal, n_rollers values; faces: n_faces rows. */
 trb_status trb_model_create(const trb_params *params, const double *deviation, int n_deviations, const trb_face *faces, int n_faces,
                             trb_model **model, trb_message *message);

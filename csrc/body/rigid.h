@@ -8,10 +8,8 @@
 typedef enum trb_tolerance {
   TRB_TOL_POSITION,
   TRB_TOL_ANGLE,
-  TRB_TOL_LEAN, /* an angle that moves a load along a contact */
   TRB_TOL_VELOCITY,
   TRB_TOL_SPIN,
-  TRB_TOL_LEAN_RATE,
   TRB_TOL_QUADRATURE,
   TRB_N_TOLERANCES
 } trb_tolerance;

@@ -10,13 +10,13 @@
   X(r,       POSITION, "radius of the centre of mass, minus nominal, m") \
   X(psi,     ANGLE,    "orbit angle, minus nominal place and kinematic cage angle, rad") \
   X(z,       POSITION, "axial position of the centre of mass, minus nominal, m") \
-  X(skew,    LEAN,     "axis turned in the tangential direction, rad") \
-  X(tilt,    LEAN,     "axis turned in the axial plane, minus nominal, rad") \
+  X(skew,    ANGLE,    "axis turned in the tangential direction, rad") \
+  X(tilt,    ANGLE,    "axis turned in the axial plane, minus nominal, rad") \
   X(v_r,     VELOCITY, "radial velocity, m/s") \
   X(v_t,     VELOCITY, "tangential velocity, minus kinematic, m/s") \
   X(v_z,     VELOCITY, "axial velocity, m/s") \
-  X(omega_n, LEAN_RATE, "angular velocity along n, minus kinematic, rad/s") \
-  X(omega_t, LEAN_RATE, "angular velocity along t, rad/s") \
+  X(omega_n, SPIN,     "angular velocity along n, minus kinematic, rad/s") \
+  X(omega_t, SPIN,     "angular velocity along t, rad/s") \
   X(omega_a, SPIN,     "angular velocity along the axis, minus kinematic, rad/s")
 
 enum {

@@ -17,15 +17,6 @@ static double pocket_size(const trb_model *m, int flanks)
   return size;
 }
 
-/* Farthest sphere of the flank from the roller's centre of mass. */
-static double chain_length(const trb_model *m)
-{
-  double length = 0.0;
-  for (int j = 0; j < m->n_rollers; j++)
-    for (int k = 0; k < m->n_nodes; k++) length = fmax(length, fabs(m->centre[j * m->n_lanes + k]));
-  return length;
-}
-
 /* roller: largest distance of what may touch, from the roller's centre of mass; pocket: the same of its faces, from the pocket's origin;
  * ring: the same of either, from the place of the roller, across the bearing axis. */
 static trb_clearance_arms arms_from(const trb_model *m, double roller, double pocket, double ring)
@@ -43,7 +34,7 @@ static trb_clearance_arms arms_from(const trb_model *m, double roller, double po
 static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
 {
   const trb_geometry *g = &m->geometry;
-  const double        offset = fabs(g->roller_mass_offset), chain = chain_length(m);
+  const double        offset = fabs(g->roller_mass_offset), chain = trb_chain_length(m);
   const double        length = fmax(fabs(g->small_end_station), fabs(g->large_end_station)) + offset;
   const double        sphere = fabs(m->surfaces.large_end.place);
   const double flanks = pocket_size(m, 1) + offset + trb_clearance_play(m), ends = pocket_size(m, 0) + offset + trb_clearance_play(m);

@@ -110,25 +110,16 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
   }
 }
 
-/* Farthest sphere from a roller's centre of mass. */
-static double chain_length(const trb_model *m)
-{
-  double length = 0.0;
-  for (int j = 0; j < m->n_rollers; j++)
-    for (int k = 0; k < m->n_nodes; k++) length = fmax(length, fabs(m->centre[j * m->n_lanes + k]));
-  return length;
-}
-
 static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
 {
   (void)pair;
-  const double chain = chain_length(m);
+  const double chain = trb_chain_length(m);
   return (trb_margin_arm){.arm = chain, .ring = chain + m->geometry.outer_race_radius + m->params.total_length};
 }
 
 static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 {
-  const double    chain = chain_length(m);
+  const double    chain = trb_chain_length(m);
   const trb_cone *race = nodes_of(pair)->cone;
   return (trb_hold_arms){fabs(race->cosine),
                          fabs(race->sine),

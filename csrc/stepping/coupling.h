@@ -1,5 +1,5 @@
 /* A roller that touches a body of the hub, as its pocket: slopes of the loads between both with each coordinate of either. The pair gives
- * the slopes with their relative motion (trb_pocket_slopes); here they are written in the coordinates of the state. */
+ * the slopes with their relative motion (trb_slopes); here they are written in the coordinates of the state. */
 #ifndef TRB_STEPPING_COUPLING_H
 #define TRB_STEPPING_COUPLING_H
 

@@ -22,23 +22,15 @@ static double speed_share(const trb_integrator *it, double shaft_speed)
   return trb_min(1.0, it->settings.slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
 }
 
-/* Tolerances by what an entry does to forces, slip and path (docs/theory/numerics.md#error-norm-and-tolerances). A roller that leans moves
- * its load along the contacts, but makes neither more of it nor slip worth mention, so its lean may be off by more than another angle. The
- * share of its rate is the root of that. Quadratures and spin angles are integrated beside the motion but do not control the step. */
+/* Quadratures and spin angles are integrated beside the motion but do not control the step. */
 void trb_integrator_set_tolerances(trb_integrator *it)
 {
   const trb_settings *s = &it->settings;
   trb_drive           drive;
   trb_motion_at(it->motion, it->dynamics->model, it->time, &drive);
   const double share = speed_share(it, drive.shaft_speed);
-  const double scale[TRB_N_TOLERANCES] = {s->atol_position,
-                                          s->atol_angle,
-                                          s->lean_share * s->atol_angle,
-                                          share * s->atol_velocity,
-                                          share * s->atol_spin,
-                                          sqrt(s->lean_share) * share * s->atol_spin,
-                                          1e30};
-  const double relative[TRB_N_TOLERANCES] = {0.0, 0.0, 0.0, s->rtol, s->rtol, s->rtol, 0.0};
+  const double scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, share * s->atol_velocity, share * s->atol_spin, 1e30};
+  const double relative[TRB_N_TOLERANCES] = {0.0, 0.0, s->rtol, s->rtol, 0.0};
   for (int i = 0; i < it->n; i++) {
     const trb_tolerance kind = trb_state_tolerance(it->dynamics->system, i);
     it->scale[i] = scale[kind];

@@ -10,7 +10,6 @@
   X(rtol,           1e-3,  1e-12, 0.1,  "relative tolerance of velocities") \
   X(atol_position,  9e-10, 1e-16, 1e-2, "tolerance of positions, m") \
   X(atol_angle,     9e-8,  1e-14, 1e-1, "tolerance of angles, rad") \
-  X(lean_share,     1,     1e-3,  1e6,  "tolerance of a roller's skew and tilt over that of angles") \
   X(atol_velocity,  3e-4,  1e-14, 10,   "tolerance of velocities, m/s") \
   X(atol_spin,      3e-2,  1e-12, 1e3,  "tolerance of angular velocities, rad/s") \
   X(max_order,      2,     1,     5,    "highest order of BDF") \

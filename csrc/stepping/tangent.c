@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-8, 1e-7, 1e-5, 1e-5, 1.0};
+const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
 /* Turn of the frame R that counts as one tolerance, and turn by which slopes over it are computed, rad. */
 static const double turn_unit = 1e-3, turn_difference = 1e-5;

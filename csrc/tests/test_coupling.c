@@ -48,7 +48,7 @@ static int is_place(int column) { return column < TRB_ROLLER_SIZE ? column < TRB
 /* Central differences by a micrometre's thousandth; 0 where the roller leaves its pocket within them. */
 static int differentiate(trb_dynamics *d, int roller, const double *y, double (*slopes)[ROWS])
 {
-  static const double share[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-8, 1e-6, 1e-4, 1e-4, 0};
+  static const double share[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-6, 1e-4, 0};
   const trb_system   *system = d->system;
   double              moved[512], low[ROWS], high[ROWS];
   trb_load            load;

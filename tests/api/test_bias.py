@@ -51,6 +51,12 @@ def test_it_stays_with_a_file(tmp_path):
     assert trb.load(tmp_path / "run.h5").summary()["accuracy_note"] == result.summary()["accuracy_note"] == note(sim)
 
 
+def test_biases_of_constant_loads_are_no_promise_for_a_load_that_comes_back():
+    drop = trb.History.step((0.02, 0.04), (3000.0, 300.0, 3000.0))
+    assert "under constant loads" in note(trb.Simulation(scene_30310(3000.0, drop, ring="follows")))
+    assert "under constant loads" not in note(trb.Simulation(scene_30310(3000.0, 3000.0)))
+
+
 def test_nothing_is_said_of_tolerances_that_were_not_measured():
     assert note(trb.Simulation(scene_30310(), rtol=1e-5)) == ""
     assert note(trb.Simulation(scene_30310(), integrator="erk")) == ""

@@ -22,7 +22,8 @@ def test_fva3_keeps_its_numbers_bit_for_bit() -> None:
         assert oil.viscosity == 0.062e-3 * math.exp(1021.7 / above)
         assert oil.pressure_coefficient == 1e-5 / (327.79 + 2.9862 * t)
         assert oil.temperature_coefficient == 1021.7 / above**2
-        assert (oil.density, oil.conductivity, oil.pressure_law) == (860.6, 0.134, "dicke")
+        assert oil.density == pytest.approx(887.6 - 0.6 * (t - 15.0))
+        assert (oil.conductivity, oil.pressure_law) == (0.134, "dicke")
         assert oil.name == f"VG100 (FVA3) at {t:g} C"
 
 
@@ -100,9 +101,9 @@ def test_astm_d341_is_a_straight_line_in_its_chart() -> None:
         slope = (points[3][1] - points[1][1]) / (points[3][0] - points[1][0])
         for x, y in points:
             assert y == pytest.approx(points[1][1] + slope * (x - points[1][0]), abs=2e-4)
-    # FVA3 was measured over this range: its two viscosities give the others
+    # FVA3 was measured over this range: its two viscosities give the others, but for the cold, where chart and Vogel's law part
     nu40, nu100 = (1e6 * vg100(t).kinematic_viscosity for t in (40.0, 100.0))
-    for t, within in ((0.0, 0.06), (20.0, 0.01), (70.0, 0.01), (130.0, 0.03)):
+    for t, within in ((0.0, 0.1), (20.0, 0.02), (70.0, 0.001), (130.0, 0.005)):
         assert astm_d341(t, nu40, nu100) == pytest.approx(1e6 * vg100(t).kinematic_viscosity, rel=within)
 
 

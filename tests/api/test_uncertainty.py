@@ -66,6 +66,14 @@ def test_a_band_is_that_of_its_draws(tmp_path: Path) -> None:
     assert again.data["wall_time"].values[:13] == pytest.approx(found.data["wall_time"].values)
 
 
+def test_whole_numbers_stay_whole() -> None:
+    options = trb.RunOptions(revolutions=0.01, accuracy="fast")
+    bands = {"effects.n_slices": (6, 12), "lubricant.temperature_c": (50.0, 60.0)}
+    found = uncertainty(trb.cases.scene_30310(3000.0), bands, samples=16, seed=1, options=options)
+    assert set(np.unique(found.data["effects.n_slices"].values[1:])) <= set(range(6, 13))
+    assert not (found.data["lubricant.temperature_c"].values[1:] % 1.0 == 0.0).all()
+
+
 def test_what_cannot_be_run_is_said() -> None:
     bands = {"bearing.roller.diameter": (0.016, 0.026)}
     found = uncertainty(trb.cases.scene_32216(2000.0), bands, samples=24, options=SHORT)

@@ -196,7 +196,8 @@ def test_files_hold_the_peaks(runs: dict[float, Result], tmp_path: Path) -> None
         for name in runs[1e-3].peaks:
             np.testing.assert_array_equal(found.peaks[name], runs[1e-3].peaks[name])
             # a file keeps seven digits of them, and nine of their times
-            np.testing.assert_array_equal(found[name], as_kept(next(field for field in result.fields if field.name == name), runs[1e-3][name]))
+            field = next(field for field in result.fields if field.name == name)
+            np.testing.assert_array_equal(found[name], as_kept(field, runs[1e-3][name]))
     assert {field.unit for field in loaded.fields if field.name.endswith("_time")} == {"s"}
     with pytest.raises(trb.InputError, match="pocket_force_peak"):
         loaded.peaks["pocket_force_peek"]

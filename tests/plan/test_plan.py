@@ -307,7 +307,7 @@ class TestPromise:
         assert max(found.scatter[0], found.drift[0]) < 1.0
 
     def test_an_orbit_that_grows_may_become_as_large_as_the_play(self) -> None:
-        """Without gravity at 3000 rpm an orbit of 1e-4 grows within seconds: its mean may still change by all of the play, and not by more."""
+        """Without gravity an orbit of 1e-4 grows within seconds: its mean may still change by all of the play, not by more."""
         scene = rolling(guidance="outer_land", gravity=False)
         length = Length(0.2, 1e-3, ("cage", "rollers"), 1.0)
         found = ground.run_ground(scene, {"orbit_radius_over_cpr": 0.1}, 0.02, length, 60.0)

@@ -96,6 +96,10 @@ def test_the_verdict_follows_the_run(result: trb.Result) -> None:
     assert said(energy_closure=9e-4)["The energy adds up"] == "good"
     assert said(energy_closure=2e-3)["The energy adds up, not closely"] == "care"
     assert said(energy_closure=2e-2)["The energy does not add up"] == "bad"
+    unlike = verdict(result, values | {"torque_outer": 1.8, "torque_note": "the film's pressure force is off"})
+    assert (
+        "outer ring carries 1.8 N m: the film's pressure force is off." in dict(line[1:] for line in unlike)["Torque"]
+    )
     long = {"window_start": 0.0, "window_end": 1.0}
     assert said(film_parameter_rib=0.5, **long)["Films are too thin"] == "bad"
     assert said(film_parameter_rib=1.3, **long)["Films carry, with some contact"] == "care"

@@ -205,7 +205,7 @@ def test_workers_of_a_killed_study_end_and_the_next_start_cleans_up(tmp_path: Pa
     finally:
         process.kill()
         process.wait()
-    until = time.monotonic() + 20.0
+    until = time.monotonic() + 5.0
     while any(map(is_alive, workers)) and time.monotonic() < until:
         time.sleep(0.05)
     assert not [pid for pid in workers if is_alive(pid)]

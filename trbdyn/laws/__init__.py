@@ -57,6 +57,10 @@ globals().update(_TABLE)
 __all__ = ["names", *_TABLE]
 
 
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 def names() -> tuple[str, ...]:
     """Names of the laws."""
     return tuple(_TABLE)

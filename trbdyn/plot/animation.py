@@ -20,6 +20,13 @@ from trbdyn.plot.style import COLOURS, GREY, LIGHT, styled
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
+__all__ = ["animate", "save"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 RING_POINTS = 181
 
 

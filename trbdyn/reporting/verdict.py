@@ -226,10 +226,12 @@ def _torque(result: Result, numbers: dict[str, Any]) -> Sentence | None:
         part = f"; most of it is lost by {largest.replace('_', ' ')}, {split[largest]:.3g} N m"
     power = numbers.get("power_loss")
     heat = "" if power is None else f" The bearing turns {power:.3g} W into heat."
+    outer, note = numbers.get("torque_outer"), numbers.get("torque_note")
+    other = f" The outer ring carries {outer:.3g} N m: {note}." if outer is not None and note else ""
     return (
         "plain",
         "Torque",
-        f"The shaft has to overcome {torque:.3g} N m of friction{_within(numbers, 'torque')}{part}.{heat}",
+        f"The shaft has to overcome {torque:.3g} N m of friction{_within(numbers, 'torque')}{part}.{other}{heat}",
     )
 
 

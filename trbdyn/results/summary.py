@@ -80,6 +80,9 @@ LABELS: dict[str, tuple[str, str]] = {
     "basic_life_hours": ("basic rating life L10h (ISO 281)", "h"),
     "modified_life_hours": ("modified rating life Lnmh (ISO 281)", "h"),
     "reference_life_hours": ("basic reference rating life L10rh (ISO 16281)", "h"),
+    "modified_reference_life_hours": ("modified reference rating life Lnmrh (ISO 16281)", "h"),
+    "smallest_load": ("smallest load, so that rollers roll", "N"),
+    "speed_over_limit": ("speed over the catalogue's limiting speed", ""),
     "static_safety": ("static safety C0/P0 (ISO 76)", ""),
     "viscosity_ratio": ("viscosity ratio kappa (ISO 281)", ""),
     "film_parameter_outer": ("film parameter, outer raceway", ""),
@@ -112,6 +115,18 @@ LABELS: dict[str, tuple[str, str]] = {
 Cpr is the radial play of the cage, one-sided. A force on the inner ring that makes torque need not lose power: traction passes on
 what rolling resistance takes at the outer raceway. So the shares of ``torque_split`` differ from those of ``torque_by_loss``.
 """
+
+RATINGS: Final = (
+    "equivalent_load",
+    "smallest_load",
+    "modified_life_hours",
+    "reference_life_hours",
+    "modified_reference_life_hours",
+    "static_safety",
+    "viscosity_ratio",
+    "speed_over_limit",
+)
+"""Numbers of the engineer's sheet that a summary has under the sheet's names."""
 
 UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "whirl_radius_over_cpr", "confidence")
 """Entries that the table leaves out, as another one tells them."""
@@ -175,8 +190,7 @@ def _ratings(scene: Scene) -> dict[str, Any]:
         found = sheet(scene, at_equilibrium(scene))
     except TrbError:
         return {}
-    names = ("equivalent_load", "modified_life_hours", "reference_life_hours", "static_safety", "viscosity_ratio")
-    return {"basic_life_hours": found.life_hours} | {name: getattr(found, name) for name in names}
+    return {"basic_life_hours": found.life_hours} | {name: getattr(found, name) for name in RATINGS}
 
 
 def _motion(result: Result) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
+from trbdyn.model.motion import is_constant
 from trbdyn.run.estimate import case_like, same_tolerances, table
 
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ READ: Final = {
     "skew": ("skew angles", False),
 }
 """What is told: in words, and whether it needs a cage."""
+NONE_SEEN: Final = "peaks, percentiles and contact times: no bias by these tolerances was seen"
+CHANGING: Final = (
+    "that was measured under constant loads and speeds; after a change the largest forces differ more from start to start than "
+    "from accuracy to accuracy: run several seeds of Start.unequal for their band"
+)
 LEAST: Final = 0.01
 """Bias below which nothing is said."""
 
@@ -78,6 +84,7 @@ def note(sim: Simulation) -> str:
     scene = table()["scenes"][case]
     place = f"{scene['speed_rpm']:g} rpm and {scene['axial_load']:g} N axial load ('{case}')"
     where = f"measured with a 30310 at {place}, of the scenes that were measured the one most like this"
-    if not said:
-        return f"peaks, percentiles and contact times: no bias by these tolerances was seen ({where})"
-    return f"with these tolerances: {', '.join(said)} ({where})"
+    told = f"with these tolerances: {', '.join(said)}" if said else NONE_SEEN
+    steady = all(is_constant(quantity) for quantity in sim.scene.quantities().values())
+    changing = "" if steady else f"; {CHANGING}"
+    return f"{told} ({where}){changing}"

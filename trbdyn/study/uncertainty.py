@@ -313,10 +313,19 @@ def _unit_draws(inputs: int, count: int, seed: int) -> Array:
         return np.asarray(qmc.Sobol(inputs, seed=seed).random(count), dtype=float)
 
 
+def _is_whole(base: Base, band: Band) -> bool:
+    """Whether an input is drawn in whole numbers: both ends are, and so is what the scene has."""
+    value: Any = base.tables
+    for name in band.path.split("."):
+        value = value.get(name) if isinstance(value, dict) else None
+    whole = band.path.endswith("n_rollers") or (isinstance(value, int) and not isinstance(value, bool))
+    return whole and float(band.low).is_integer() and float(band.high).is_integer()
+
+
 def _case(base: Base, options: RunOptions, bands: Sequence[Band], row: Array, number: int) -> Case:
     overrides: dict[str, Any] = {}
     for band, share in zip(bands, row, strict=True):
-        if band.path.endswith("n_rollers"):
+        if _is_whole(base, band):
             value: float = int(band.low + share * (band.high - band.low + 1.0))
         else:
             value = float(band.low + share * (band.high - band.low))

@@ -355,8 +355,8 @@ def _oil(given: Any) -> Oil:
 FVA3: Final = Oil(
     name="VG100 (FVA3)",
     vogel=Vogel(a=0.062e-3, b=1021.7, c=101.55),
-    density=860.6,
-    expansion=0.0,
+    density=887.6,
+    expansion=0.6 / 887.6,
     dicke=Dicke(),
 )
 """The mineral oil FVA3, an ISO VG 100, as measured (Wingertszahn 2023, Lubricants 11:369)."""

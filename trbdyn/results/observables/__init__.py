@@ -83,3 +83,7 @@ __all__ = [
     "whirl_radius",
     "wrap_angle",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

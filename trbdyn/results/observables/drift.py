@@ -104,8 +104,7 @@ class MotionSettling:
         length is known. Unknown: ten turns of the cage and three times of the creep after the transient, and so long that the
         rates are known well enough. Drifting: three time scales of the drift more.
     growth_rate : float
-        Rate of an exponential growth of the whirl, 1/s; 0 where it does not grow so. Where a whirl grows, what it grows to cannot be
-        told from its rate.
+        Rate of an exponential growth of the whirl, 1/s; 0 where it does not grow so. It does not tell what a whirl grows to.
     """
 
     answer: Answer

@@ -108,7 +108,9 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
         raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
     if len(result) < LEAST_RECORDS:
         turns = float(result["time"][-1] - result["time"][0]) / period
-        allowed = f"is not enough: {length.patience:.2g} s, the share of one run, bring {turns:.2g} turns of the shaft (s)"
+        allowed = (
+            f"is not enough: {length.patience:.2g} s, the share of one run, bring {turns:.2g} turns of the shaft (s)"
+        )
         raise InputError.of("effort", effort, allowed)
     names, settling = list(want), result.settling()
     began, end = float(result["time"][0]), float(result["time"][-1])
@@ -191,7 +193,9 @@ def _drift(result: Result, names: Sequence[str], size: Mapping[str, float], sett
     for name in names:
         before, after = (part[name] for part in batches)
         change = abs(float(after.mean() - before.mean()))
-        goes_on = max(longer, _left_to_grow(last, grown, 1.0 if name in SIZES_OF_WHIRL else 2.0)) if grown > 0.0 else longer
+        goes_on = (
+            max(longer, _left_to_grow(last, grown, 1.0 if name in SIZES_OF_WHIRL else 2.0)) if grown > 0.0 else longer
+        )
         noise = TOLD_FROM_SCATTER * math.hypot(
             *(float(part.std(ddof=1)) / math.sqrt(part.size) for part in (before, after))
         )
