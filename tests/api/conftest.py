@@ -154,12 +154,14 @@ class StubScene:
         films=True,
         traction="none",
         rolling_resistance=True,
+        rolling_law="biboulet_houpert",
         rolling_pressure_force=False,
         friction=SimpleNamespace(lambda_full=1.5),
     )
     axial_load, radial_load = 4930.0, 0.0
     rotating_load = None
     growth = None
+    misalignment_x = misalignment_y = 0.0
 
     def ring_quantities(self) -> dict[str, Any]:
         """A load that changes: ratings ask for constant ones."""

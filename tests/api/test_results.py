@@ -771,3 +771,21 @@ def test_a_summary_opens_the_file_once(tmp_path: Path, monkeypatch: pytest.Monke
     path.unlink()
     with pytest.raises(FileError, match="there is no such file"):
         again.summary()
+
+
+def test_a_law_outside_of_its_loads_says_so() -> None:
+    """By hand: W = Q/(l E' Re) of a roller's outer contact under 4930 N; and a law whose range nobody states says nothing."""
+    from trbdyn.results.ranges import load_groups
+
+    heavy = trb.cases.scene_30310(3000.0, 4930.0)
+    result = trb.Simulation(heavy).run(duration=2e-3, save_every=1e-4)
+    assert load_groups(result).min() == pytest.approx(1832.9 / (19.8e-3 * 226.37e9 * 8.163e-3), rel=0.01)
+    note = result.summary()["rolling_note"]
+    assert "zhou_hoeprich" in note
+    assert "100 % of the loaded contacts lie outside, W is 5e-05 to " in note
+    other = heavy.replace(effects=heavy.effects.replace(rolling_law="biboulet_houpert"))
+    assert trb.Simulation(other).run(duration=2e-3).summary()["rolling_note"] is None
+    tilted = other.replace(misalignment_x=3e-4)
+    assert "tilted ring" in trb.Simulation(tilted).run(duration=2e-3).summary()["rolling_note"]
+    inside = trb.cases.scene_30310(3000.0, 15_000.0)
+    assert trb.Simulation(inside).run(duration=2e-3, save_every=1e-4).summary()["rolling_note"] is None

@@ -81,6 +81,7 @@ MEANINGS: Final[dict[str, str]] = {
     "rhs_evaluations": "How often all forces were computed.",
     "wall_s": "Computing time.",
     "wall_s_per_revolution": "Computing time for a turn of the shaft.",
+    "rolling_note": "Whether the law of rolling resistance was made for these loads and this tilt.",
     "torque_note": "Why the two rings have different torques.",
     "torque_by_loss": "The shaft's torque by what loses it.",
     "torque_split": "Forces on the inner ring that make the shaft's torque.",

@@ -23,6 +23,7 @@ from trbdyn.errors import FileError, TrbError
 from trbdyn.model.motion import is_constant
 from trbdyn.results import observables
 from trbdyn.results.confidence import confidence
+from trbdyn.results.ranges import rolling_note
 from trbdyn.standards.sheet import at_equilibrium, sheet
 
 if TYPE_CHECKING:
@@ -105,6 +106,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "accuracy_note": ("About the accuracy", ""),
     "confidence": ("half width of the 95 % confidence interval", ""),
     "torque_note": ("Why the torques of the rings differ", ""),
+    "rolling_note": ("About rolling resistance", ""),
     "power_split": ("power loss by mechanism", "W"),
     "torque_by_loss": ("the same as friction torque of the shaft", "N m"),
     "torque_split": ("forces on the inner ring that make this torque", "N m"),
@@ -312,6 +314,7 @@ def _torque(window: Result) -> dict[str, Any]:
         "torque": inner,
         "torque_outer": outer,
         "torque_note": torque_note(window, inner, outer),
+        "rolling_note": rolling_note(window),
         "torque_split": window.torque_split,
     }
 
@@ -429,7 +432,7 @@ def shown(values: Mapping[str, Any]) -> Shown:
             continue
         if name == "settling":
             rows.append(("settled", _settled_words(values), "", name))
-        elif name in ("torque_note", "confidence_note", "accuracy_note"):
+        elif name in ("torque_note", "rolling_note", "confidence_note", "accuracy_note"):
             notes.append(f"{words}: {value}")
         elif isinstance(value, Mapping):
             rows.append((words, "", "", name))
