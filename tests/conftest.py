@@ -1,7 +1,11 @@
-"""The order of the test files: those that take longest come first, so that several processes end at about the same time."""
+"""The order of the test files: those that take longest come first, so that several processes end at about the same time.
+
+Tests of Ctrl-C send signals: a shell that starts tests in the background lets them ignore it, and Python then installs no handler.
+"""
 
 from __future__ import annotations
 
+import signal
 from typing import Final
 
 import pytest
@@ -33,6 +37,10 @@ LONGEST: Final = (
     "report/test_demo.py",
     "api/test_results.py",
 )
+
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

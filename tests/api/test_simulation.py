@@ -244,7 +244,7 @@ def any_gravity(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def failing(**options: Any) -> Simulation:
     """Gravity that nothing can stand comes on after 1 ms."""
-    weight = History.ramp(1e-3, 1.1e-3, 0.0, 1e30)
+    weight = History.ramp(1e-3, 1.1e-3, 0.0, 1e60)
     return Simulation(paper_30310(3000.0, 4930.0, gravity=(0.0, -9.81, weight)), **options)
 
 
