@@ -1,6 +1,6 @@
 """The order of the test files: those that take longest come first, so that several processes end at about the same time.
 
-Tests of Ctrl-C send signals: a shell that starts tests in the background lets them ignore it, and Python then installs no handler.
+Tests of Ctrl-C send signals: a shell that starts tests in the background lets them ignore it; Python then installs no handler.
 """
 
 from __future__ import annotations
