@@ -40,8 +40,10 @@ _JOINT_TOLERANCE = PATH_TOLERANCE / 6.0
 LARGEST_TURN_DEG: Final = 60.0
 """Bound of how far a load's direction may turn (deg) between two times at which the equilibrium is tested first."""
 
-KNOTS_A_JOINT: Final = 16
+KNOTS_A_JOINT: Final = 2
 """Knots of a path from one joint to the next."""
+KNOTS_A_JOINT_ROUND: Final = 16
+"""The same where a load rotates: the ring then goes the same way again and again, and no step is large beside it."""
 
 MOST_INTERVALS: Final = 200_000
 """Most intervals of a path: a larger one would take hours."""
@@ -156,7 +158,7 @@ class _Search:
             parts.append(low + (high - low) * np.arange(1, count) / max(count, 1))
         times = np.array(sorted(self.knots))
         # the work on a ring is integrated beside the motion: where its path has many knots, that needs a step now and then
-        parts.append(times[::KNOTS_A_JOINT])
+        parts.append(times[:: KNOTS_A_JOINT if self.scene.rotating_load is None else KNOTS_A_JOINT_ROUND])
         wanted = np.unique(np.concatenate(parts))
         # the knot of the path that is next to each
         place = np.clip(np.searchsorted(times, wanted), 1, len(times) - 1)
