@@ -31,7 +31,7 @@ from trbdyn.statics.cage_start import pressed_rollers
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium
 from trbdyn.statics.plausible import UnusualInput, unusual
-from trbdyn.statics.ring_motion import placed_anew, ring_motion
+from trbdyn.statics.ring_motion import placed_again, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
 
@@ -74,8 +74,8 @@ class Simulation(Displayed):
         self._motion, self.equilibrium = ring_motion(self._model, scene)
         vector = start_state(self._model, scene, self._motion, self.equilibrium)
         pressed = pressed_rollers(self._model, scene, self._motion, vector)
-        anew = placed_anew(self._model, scene, self._motion)
-        self.warnings = (*unusual(scene, self.equilibrium), *(text for text in (pressed, anew) if text))
+        again = placed_again(self._model, scene, self._motion)
+        self.warnings = (*unusual(scene, self.equilibrium), *(text for text in (pressed, again) if text))
         for text in self.warnings:
             warnings.warn(text, UnusualInput, stacklevel=2)
         self._running = False

@@ -108,7 +108,7 @@ class RingMotion:
             raise InputError.of("state", "given", str(error)) from None
 
 
-def placed_anew(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
+def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
     """A sentence if the ring of a run from a state does not go on from where it stood, or may not; or nothing."""
     start, free = scene.start, ~np.array(scene.ring_is_placed)
     if start.kind != "state" or not free.any():
