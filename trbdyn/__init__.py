@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from trbdyn.model.lubricants import Lubricant, Oil
     from trbdyn.model.motion import History
     from trbdyn.model.pocket import Face, OtherPocket, Pocket
+    from trbdyn.model.ring_body import RingBody
     from trbdyn.model.scene import RotatingLoad, Scene, Start
     from trbdyn.plot import animation
     from trbdyn.reporting import report
@@ -74,6 +75,7 @@ _NAMES = {
     "Result": "trbdyn.results.result",
     "Ribs": "trbdyn.model.bearing",
     "Roller": "trbdyn.model.bearing",
+    "RingBody": "trbdyn.model.ring_body",
     "RotatingLoad": "trbdyn.model.scene",
     "Roughness": "trbdyn.model.bearing",
     "RunOptions": "trbdyn.run.options",
@@ -117,6 +119,7 @@ __all__ = [
     "Result",
     "Ribs",
     "Roller",
+    "RingBody",
     "RotatingLoad",
     "Roughness",
     "RunOptions",

@@ -22,14 +22,15 @@
 /* Of pairs without one. */
 #define TRB_HUB_LOSSES(F, X) \
   F(X, land_film, TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "in the oil film between cage and land") \
-  F(X, land,      TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "by friction of the cage on the land")
+  F(X, land,      TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "by friction of the cage on the land") \
+  F(X, support,   TAKES, p->ring_free > 0.0, "by damping between the free inner ring and the surroundings")
 
 #define TRB_LOSSES(F, X) TRB_ROLLER_LOSSES(F, X) TRB_HUB_LOSSES(F, X)
 
 /* Works put in: F(X, name, text), each a quadrature and a field work_*. */
 #define TRB_WORKS(F, X) \
   F(X, shaft,   "work put in by the shaft's torque") \
-  F(X, ring,    "work put in by motion of the inner ring's position") \
+  F(X, ring,    "work put in by motion of the inner ring's position, or by the loads on a free ring") \
   F(X, gravity, "work of gravity (minus the change of potential energy)")
 
 /* TRB_TORQUES(F, X): F(X, name, text). The field reads "share of <text> in the shaft's torque". */

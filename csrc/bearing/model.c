@@ -289,9 +289,19 @@ static int allocate(trb_model *m)
   return ok;
 }
 
+static trb_status check_ring(const trb_params *p, trb_message *message)
+{
+  const double values[] = {p->ring_mass, p->ring_inertia_axial, p->ring_inertia_transverse};
+  const char  *names[] = {"ring_mass", "ring_inertia_axial", "ring_inertia_transverse"};
+  for (int i = 0; i < 3 && p->ring_free > 0.0; i++)
+    if (!(values[i] > 0.0)) return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be above 0 for a free ring", names[i], values[i]);
+  return TRB_OK;
+}
+
 static trb_status fill(trb_model *m, const double *deviation, const trb_face *faces, int n_faces, trb_message *message)
 {
   trb_status status = trb_geometry_derive(&m->params, &m->geometry, message);
+  if (status == TRB_OK) status = check_ring(&m->params, message);
   if (status != TRB_OK) return status;
   trb_surfaces_build(&m->params, &m->geometry, &m->surfaces);
   if ((status = check_front_rib(m, message)) != TRB_OK) return status;

@@ -58,6 +58,16 @@
   X(land_clearance,           "m",      1e-7,   0.1,    "radial clearance between cage and land") \
   X(land_contact_film,        "m",      1e-9,   1e-2,   "film height below which cage and land touch") \
   X(land_fill,                "1",      0,      1,      "share of the guiding surface's width that is filled with oil") \
+  /* inner ring, where it is free to move */ \
+  X(ring_free,                "choice",      0,      2,      "inner ring: 0 as prescribed, 1 free at a prescribed speed, 2 free, turned by a torque") \
+  X(ring_mass,                "kg",     0,      1e5,    "mass of the inner ring and what turns with it") \
+  X(ring_inertia_axial,       "kg m2",  0,      1e6,    "its moment of inertia about the axis") \
+  X(ring_inertia_transverse,  "kg m2",  0,      1e6,    "its moment of inertia about a transverse axis through the centre of mass") \
+  X(ring_offset,              "m",      -10,    10,     "axial position of its centre of mass from the roller-centre plane") \
+  X(ring_unbalance,           "kg m",   0,      1e3,    "its unbalance: mass times radius") \
+  X(ring_unbalance_angle,     "rad",    -7,     7,      "angle of the unbalance from the x axis at shaft angle 0") \
+  X(ring_damping,             "N s/m",  0,      1e9,    "damping between it and the surroundings, of translations") \
+  X(ring_damping_turns,       "N m s",  0,      1e9,    "damping between it and the surroundings, of turns about transverse axes") \
   /* lubricant */ \
   X(viscosity,                "Pa s",   1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \
   X(pressure_coefficient,     "1/Pa",   0,      1e-6,   "alpha0: pressure-viscosity coefficient, used by the films") \
@@ -146,6 +156,15 @@ typedef struct trb_face {
 
 enum { TRB_N_FACE_COLUMNS = (int)(sizeof(trb_face) / sizeof(double)) };
 
+/* Loads on a free inner ring, at the roller-centre plane on its axis. No contact depends on them directly. */
+#define TRB_LOAD_CHANNELS(X) \
+  X(force_x,        "N",     "free inner ring, load along x") \
+  X(force_y,        "N",     "free inner ring, load along y") \
+  X(force_z,        "N",     "free inner ring, load along z") \
+  X(moment_x,       "N m",   "free inner ring, moment about x") \
+  X(moment_y,       "N m",   "free inner ring, moment about y") \
+  X(torque,         "N m",   "free inner ring whose speed is not prescribed, torque about its axis")
+
 /* Prescribed motion: channels given as value and slope at knots, cubic Hermite between them, constant outside. */
 #define TRB_MOTION_CHANNELS(X) \
   X(displacement_x, "m",     "inner ring, translation along x") \
@@ -156,7 +175,8 @@ enum { TRB_N_FACE_COLUMNS = (int)(sizeof(trb_face) / sizeof(double)) };
   X(shaft_speed,    "rad/s", "inner ring, speed of rotation about its axis") \
   X(gravity_x,      "m/s2",  "acceleration of gravity along x") \
   X(gravity_y,      "m/s2",  "acceleration of gravity along y") \
-  X(gravity_z,      "m/s2",  "acceleration of gravity along z")
+  X(gravity_z,      "m/s2",  "acceleration of gravity along z") \
+  TRB_LOAD_CHANNELS(X)
 
 enum {
 #define TRB_CHANNEL_ENUM(name, unit, text) TRB_CHANNEL_##name,
@@ -164,6 +184,7 @@ enum {
 #undef TRB_CHANNEL_ENUM
       TRB_N_CHANNELS
 };
+enum { TRB_FIRST_LOAD_CHANNEL = TRB_CHANNEL_force_x };
 
 extern const trb_param_info trb_param_table[TRB_N_PARAMS];
 

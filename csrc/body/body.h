@@ -4,7 +4,8 @@
  * bodies of a system and names none.
  *
  * Bodies with coordinates together are the hub: their coordinates follow those of the rollers in the state, body after body. A body without
- * coordinates is where its drive puts it. */
+ * coordinates is where its drive puts it. A ring is a body whose surfaces are surfaces of revolution about one axis; contacts read its pose
+ * alone, whether a drive or coordinates put it there. */
 #ifndef TRB_BODY_BODY_H
 #define TRB_BODY_BODY_H
 
@@ -21,7 +22,8 @@ typedef struct trb_body trb_body;
 
 typedef struct trb_body_kind {
   const char *name;
-  /* of bodies without coordinates: a rigid surface that the drive places; NULL: nothing asks where it is */
+  /* of bodies without coordinates: a ring that the drive places; NULL: nothing asks where it is. A ring with coordinates stands there where
+   * no state is known, as in an equilibrium. */
   void (*place)(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose); /* in inertial coordinates */
   int rests; /* 1: its pose is the same at all times, and in every frame that turns about the bearing's axis */
   /* what its drive puts in against a wrench, in the same frame as the pose; NULL: the work is not booked */
@@ -32,12 +34,16 @@ typedef struct trb_body_kind {
   int                   skew;  /* coordinate that must stay below a right angle, or -1 */
   int                   loses; /* 1: its bodies lose energy in themselves (trb_rigid_pose) */
   void (*pose)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose);
+  /* of rings with coordinates: the ring in inertial coordinates; moments on it are about its centre */
+  void (*ring)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_ring_pose *pose);
   /* rates of the coordinates under a load, gravity and inertia */
   void (*rates)(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *pose, const double *y,
                 const trb_wrench *load, double *rates);
   trb_rigid (*motion)(const trb_rigid_pose *pose, int coordinate); /* what a coordinate does to its place, or to its velocity, in R */
   double (*mass)(const trb_model *m, const trb_body *body);        /* on which gravity acts, kg */
   double (*kinetic)(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose); /* energy, J */
+  /* what its drive and the loads on it put in while bodies act on it by a wrench; NULL: nothing */
+  trb_drive_power (*work)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, const trb_wrench *load);
 } trb_body_kind;
 
 /* A body of a system. */
@@ -54,15 +60,24 @@ struct trb_body {
 /* A body at an instant. */
 typedef struct trb_body_at {
   trb_rigid_pose pose;     /* of a body with coordinates, in R */
-  trb_ring_pose  ring;     /* of a body without, in inertial coordinates */
+  trb_ring_pose  ring;     /* of a ring, in inertial coordinates */
   trb_ring_pose *in_frame; /* n_rollers: the same in the cylindrical frame of each roller; NULL where nobody asks for them */
   int            rests;    /* as its kind says */
 } trb_body_at;
 
-/* A body without coordinates in a frame that is turned about z by the angle whose cosine and sine are given. */
+static inline int trb_is_ring(const trb_body_kind *kind) { return kind->place != NULL || kind->ring != NULL; }
+
+/* A ring in a frame that is turned about z by the angle whose cosine and sine are given. */
 static inline trb_ring_pose trb_body_in(const trb_body_at *body, double cosine, double sine)
 {
   return body->rests ? body->ring : trb_ring_pose_in_frame(&body->ring, cosine, sine);
+}
+
+/* Where a body with coordinates is. */
+static inline void trb_body_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_body_at *at)
+{
+  body->kind->pose(m, body, drive, y, &at->pose);
+  if (body->kind->ring != NULL) body->kind->ring(m, body, drive, y, &at->ring);
 }
 
 /* Whether a coordinate is a place, and not a velocity. */

@@ -1,4 +1,5 @@
-/* What is prescribed at an instant: where a ring is placed and how fast it turns, how fast the frame R of the rollers turns, and gravity. */
+/* What is prescribed at an instant: where a ring is placed and how fast it turns, how fast the frame R of the rollers turns, gravity, and
+ * loads on a ring that moves. */
 #ifndef TRB_BODY_DRIVE_H
 #define TRB_BODY_DRIVE_H
 
@@ -28,6 +29,8 @@ typedef struct trb_drive {
   trb_vec3      displacement;  /* of that ring, m */
   trb_vec3      ring_omega;    /* its angular velocity without the shaft's turn, rad/s */
   trb_vec3      gravity;       /* m/s2 */
+  trb_wrench    load;          /* on a ring with coordinates, about its centre */
+  double        torque;        /* about its axis, of a ring whose speed is not prescribed, N m */
 } trb_drive;
 
 /* The prescribed pose: displacement and misalignment (rotation vector in the x-y plane), with their rates, and the shaft's speed. */

@@ -13,7 +13,7 @@
 #include "body/roller.h"
 
 /* Most pairs and most bodies of a bearing: a roller keeps a word of bits for its pairs, and a wrench for each body that it may touch. */
-enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6 };
+enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6, TRB_MOST_MOVING_RINGS = 2 };
 
 /* What was evaluated, counted; an effect that is off stays at zero. X(name, text) */
 #define TRB_COUNTERS(X) \
@@ -60,9 +60,9 @@ typedef enum trb_mechanism {
   TRB_N_MECHANISMS
 } trb_mechanism;
 
-/* What the two bodies of a pair do to each other. Wrenches on a roller and on bodies without coordinates are in the roller's cylindrical
- * frame, those on bodies with coordinates and of pairs without a roller in R; moments are about the centre of mass, or the reference point
- * of a body without coordinates. */
+/* What the two bodies of a pair do to each other. Wrenches on a roller, and a roller's on a ring, are in the roller's cylindrical
+ * frame; those on other bodies, and of pairs without a roller, in R. Moments are about the centre of mass, or the reference
+ * point of a ring. */
 typedef struct trb_load {
   trb_wrench on_a, on_b;
   double     elastic;                  /* J */

@@ -38,7 +38,7 @@ static int make_bodies(trb_dynamics *d)
   trb_dynamics_place(d);
   for (int b = 0; b < d->system->n_bodies; b++) {
     trb_body_at *body = &d->bodies[b];
-    if (d->system->bodies[b].kind->place == NULL) continue;
+    if (!trb_is_ring(d->system->bodies[b].kind)) continue;
     body->in_frame = calloc((size_t)d->model->n_rollers, sizeof *body->in_frame);
     if (body->in_frame == NULL) return 0;
     for (int j = 0; j < d->model->n_rollers; j++) body->in_frame[j] = body->ring;
@@ -63,11 +63,12 @@ trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motio
   d->loads = calloc(n, sizeof *d->loads);
   d->everyone = calloc(n, sizeof *d->everyone);
   d->flows = trb_zeros(n, sizeof *d->flows);
+  d->reactions = calloc(n * (size_t)system->n_moving + 1, sizeof *d->reactions);
   d->exact = calloc(n, sizeof *d->exact);
   d->near = calloc(n, sizeof *d->near);
   trb_status status = TRB_OK;
   if (!make_bodies(d) || d->rollers == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
-      d->near == NULL) {
+      d->near == NULL || d->reactions == NULL) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   } else {
     for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
@@ -92,6 +93,7 @@ void trb_dynamics_free(trb_dynamics *d)
   free(d->everyone);
   for (int f = 0; f < d->n_fast; f++) free(d->fast[f].clearances);
   free(d->flows);
+  free(d->reactions);
   free(d->exact);
   free(d->near);
   free(d);
@@ -115,19 +117,22 @@ void trb_dynamics_drive(trb_dynamics *d, double time)
   trb_dynamics_place(d);
 }
 
+void trb_dynamics_pose_body(trb_dynamics *d, int body, const double *y_body)
+{
+  trb_body_pose(d->model, &d->system->bodies[body], &d->drive, y_body, &d->bodies[body]);
+}
+
 void trb_dynamics_pose_hub(trb_dynamics *d, const double *y)
 {
-  for (int b = 0; b < d->system->n_bodies; b++) {
-    const trb_body *body = &d->system->bodies[b];
-    if (body->size > 0) body->kind->pose(d->model, body, &d->drive, y + body->first, &d->bodies[b].pose);
-  }
+  for (int b = 0; b < d->system->n_bodies; b++)
+    if (d->system->bodies[b].size > 0) trb_dynamics_pose_body(d, b, y + d->system->bodies[b].first);
 }
 
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 {
   trb_dynamics_drive(d, time);
-  for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
   trb_dynamics_pose_hub(d, y);
+  for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
 }
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
@@ -181,6 +186,21 @@ void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads
   for (int k = 0; k < TRB_N_ROLLER_LOSSES; k++) quadratures[TRB_Q_losses + k] += loads->power[k];
   for (int b = 0; b < d->system->n_bodies; b++)
     if (d->system->bodies[b].kind->power != NULL) add_work(d, b, &d->bodies[b].in_frame[roller], loads, quadratures);
+}
+
+void trb_dynamics_roller_reactions(const trb_dynamics *d, int roller, const trb_loads *loads, trb_wrench *reactions)
+{
+  const trb_roller_pose *r = &d->rollers[roller];
+  for (int k = 0; k < d->system->n_moving; k++) {
+    const trb_wrench *on = &loads->on[d->system->moving[k]];
+    reactions[k] = (trb_wrench){trb_turn_z(on->force, r->cosine, r->sine), trb_turn_z(on->moment, r->cosine, r->sine)};
+  }
+}
+
+void trb_dynamics_add_reactions(trb_dynamics *d, int roller)
+{
+  for (int k = 0; k < d->system->n_moving; k++)
+    trb_add_wrench(&d->on_body[d->system->moving[k]], &trb_dynamics_reactions(d, roller)[k]);
 }
 
 void trb_dynamics_start(trb_dynamics *d, double *rates)
@@ -277,5 +297,9 @@ void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
     const trb_body *body = &d->system->bodies[b];
     if (body->size == 0) continue;
     body->kind->rates(d->model, body, &d->drive, &d->bodies[b].pose, y + body->first, &d->on_body[b], rates + body->first);
+    if (body->kind->work == NULL) continue;
+    const trb_drive_power power = body->kind->work(d->model, body, &d->drive, y + body->first, &d->on_body[b]);
+    rates[d->quadrature + TRB_Q_work_shaft] += power.shaft;
+    rates[d->quadrature + TRB_Q_work_ring] += power.place;
   }
 }

@@ -42,6 +42,7 @@ typedef struct trb_dynamics {
   trb_fast_pair     fast[TRB_MOST_PAIRS];
   int               n_fast;
   double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
+  trb_wrench *reactions;          /* of every roller: on each ring that has coordinates, in R */
   int      *exact;                /* rollers to evaluate exactly */
   unsigned *near;                 /* of every roller: bit by fast pair, those that may touch */
 } trb_dynamics;
@@ -59,7 +60,9 @@ void trb_dynamics_place(trb_dynamics *d);
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
 /* Poses of the bodies of the hub only. */
 void trb_dynamics_pose_hub(trb_dynamics *d, const double *y);
-/* Pose of one roller only, from its part of a state. */
+/* Pose of one body of the hub only, from its part of a state. */
+void trb_dynamics_pose_body(trb_dynamics *d, int body, const double *y_body);
+/* Pose of one roller only, from its part of a state; rings stand where they were put. */
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
 /* All loads at the poses kept; detail may be NULL. */
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
@@ -72,6 +75,15 @@ void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);
+/* What a roller's loads do to the rings that have coordinates, in R; its pose is kept. */
+void trb_dynamics_roller_reactions(const trb_dynamics *d, int roller, const trb_loads *loads, trb_wrench *reactions);
+/* Where a roller's reactions are kept. */
+static inline trb_wrench *trb_dynamics_reactions(const trb_dynamics *d, int roller)
+{
+  return d->reactions + (size_t)roller * (size_t)d->system->n_moving;
+}
+/* Adds the kept reactions of a roller to the loads of the bodies. */
+void trb_dynamics_add_reactions(trb_dynamics *d, int roller);
 
 /* A right-hand side is made in four steps: start it, put in the flow of each roller, add the pairs without a roller, put in the rates of
  * the hub. */

@@ -83,6 +83,9 @@ typedef enum trb_field_kind {
   X(pocket_force,                pocket,   POCKET_FACE, "N",     "normal force between roller and each face of its pocket") \
   X(pocket_friction,             pocket,   POCKET_FACE, "N",     "magnitude of the friction force at each face") \
   X(ring_position,               ring,     VEC3,        "m",     "displacement of the inner ring") \
+  X(ring_tilt,                   ring,     VEC2,        "rad",   "small rotations of the inner ring's axis about x and y") \
+  X(ring_velocity,               ring,     VEC3,        "m/s",   "velocity of the inner ring") \
+  X(ring_angular_velocity,       ring,     VEC3,        "rad/s", "angular velocity of the inner ring") \
   X(ring_force,                  ring,     VEC3,        "N",     "force of rollers and cage on the inner ring") \
   X(ring_moment,                 ring,     VEC3,        "N m",   "moment of rollers and cage on the inner ring, about the roller-centre plane") \
   X(inner_torque,                torque,   SCALAR,      "N m",   "friction torque that the shaft overcomes") \
@@ -90,7 +93,7 @@ typedef enum trb_field_kind {
   TRB_TORQUES(TRB_FIELD_OF_TORQUE, X) \
   X(power_loss,                  power,    SCALAR,      "W",     "sum of all losses") \
   TRB_LOSSES(TRB_FIELD_OF_POWER, X) \
-  X(kinetic_energy,              energy,   SCALAR,      "J",     "kinetic energy of rollers and cage") \
+  X(kinetic_energy,              energy,   SCALAR,      "J",     "kinetic energy of rollers, cage and a free inner ring") \
   X(elastic_energy,              energy,   SCALAR,      "J",     "elastic energy of all contacts") \
   TRB_WORKS(TRB_FIELD_OF_WORK, X) \
   TRB_LOSSES(TRB_FIELD_OF_LOSS, X)

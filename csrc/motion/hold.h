@@ -14,13 +14,17 @@ typedef struct trb_hold {
   double speed; /* change of velocity up to which it holds, m/s */
   /* where it was set */
   double y[TRB_ROLLER_SIZE];
-  double turn; /* of the roller about the bearing's axis, rad */
+  double        turn;                        /* of the roller about the bearing's axis, rad */
+  trb_ring_pose ring[TRB_MOST_MOVING_RINGS]; /* rings with coordinates */
 } trb_hold;
 
-/* How far a ring is off the bearing's axis, which a roller sees turning as it orbits. */
+/* How far a ring is off the bearing's axis, which a roller sees turning as it orbits; and the rings with coordinates. */
 typedef struct trb_hold_ring {
-  double place; /* m */
-  double speed; /* m/s */
+  double        place; /* m */
+  double        speed; /* m/s */
+  double        far;   /* distance of what meets a ring from its centre, m */
+  int           n;
+  trb_ring_pose moving[TRB_MOST_MOVING_RINGS]; /* in inertial coordinates */
 } trb_hold_ring;
 
 /* The largest over all bodies of a system. */
@@ -28,7 +32,7 @@ trb_hold_ring trb_hold_ring_of(const trb_system *system, const trb_body_at *bodi
 /* Of pairs that are held together: whatever bounds one of them bounds all. */
 trb_hold_arms trb_hold_arms_of(const trb_model *m, const trb_batch *batch);
 /* turn: of the roller about the bearing's axis, rad. */
-void trb_hold_set(const double *y_roller, double turn, double way, double speed, trb_hold *hold);
+void trb_hold_set(const trb_hold_ring *ring, const double *y_roller, double turn, double way, double speed, trb_hold *hold);
 int  trb_hold_holds(const trb_hold *hold, const trb_hold_arms *arms, const trb_hold_ring *ring, const double *y_roller, double turn);
 
 #endif

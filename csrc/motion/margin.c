@@ -30,10 +30,10 @@ static double turned_on_end(const trb_margin_arm *a, const double *place, const 
 
 trb_ring_offset trb_ring_offset_of(const trb_system *system, const trb_body_at *bodies)
 {
-  trb_ring_offset most = {0.0, 0.0};
+  trb_ring_offset most = {.lean = 0.0};
   for (int b = 0; b < system->n_bodies; b++) {
     const trb_ring_pose *ring = &bodies[b].ring;
-    if (system->bodies[b].kind->place == NULL) continue;
+    if (!trb_is_ring(system->bodies[b].kind)) continue;
     most.lean = fmax(most.lean, hypot(ring->axis.x, ring->axis.y));
     most.aside = fmax(most.aside, hypot(ring->centre.x, ring->centre.y));
   }
@@ -48,7 +48,8 @@ int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *ring, c
   for (int i = 0; i < arms->n; i++) {
     const trb_margin_arm *a = &arms->of[i];
     const double          by_turn = a->on_end ? turned_on_end(a, place, step, ring->lean) : a->arm * turned;
-    if (!(shift + by_turn + around * (ring->aside + ring->lean * a->ring) <= share * margin[arms->row[i]])) return 0;
+    const double by_ring = around * (ring->aside + ring->lean * a->ring) + (ring->shifted + ring->leaned * a->ring);
+    if (!(shift + by_turn + by_ring <= share * margin[arms->row[i]])) return 0;
   }
   return 1;
 }

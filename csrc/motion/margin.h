@@ -23,6 +23,9 @@ typedef struct trb_margin_arms {
 typedef struct trb_ring_offset {
   double lean;  /* sine of the angle between the axes */
   double aside; /* of the reference point from the bearing's axis, m */
+  /* of rings with coordinates, together: since the margins were found */
+  double shifted; /* of reference points, m */
+  double leaned;  /* of axes, rad */
 } trb_ring_offset;
 
 trb_margin_arms trb_margin_arms_of(const trb_system *system);

@@ -115,7 +115,7 @@ static double turn_of(const trb_peak_look *p, int j, const double *y)
 }
 
 /* A roller's contacts of a batch, looked at: values are written, and how far they hold. */
-static void put(trb_peak_look *p, int batch, int j, const trb_contact_look *looks, const double *y, double *values)
+static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, const trb_contact_look *looks, const double *y, double *values)
 {
   const trb_model *m = &p->normal;
   const trb_batch *b = &p->d->work->batches[batch];
@@ -131,7 +131,7 @@ static void put(trb_peak_look *p, int batch, int j, const trb_contact_look *look
       of(p, contact_peaks[q].quantity, values)[j] = !there ? -(double)INFINITY : contact_peaks[q].sense == TRB_PEAK_LEAST ? -value : value;
     }
   }
-  trb_hold_set(y + trb_state_roller(j), turn_of(p, j, y), way, speed, &p->holds[batch * m->n_rollers + j]);
+  trb_hold_set(ring, y + trb_state_roller(j), turn_of(p, j, y), way, speed, &p->holds[batch * m->n_rollers + j]);
 }
 
 static void pose(trb_peak_look *p, int j, const double *y)
@@ -173,7 +173,7 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
     }
     if (at.n == 0) continue;
     batch->pairs[0]->kind->look(m, &at, batch, d->work, d->loads, p->detail, TRB_PEAK_SHARE, looks);
-    for (int k = 0; k < at.n; k++) put(p, i, chosen[k], &looks[k * batch->n], y, values);
+    for (int k = 0; k < at.n; k++) put(p, &ring, i, chosen[k], &looks[k * batch->n], y, values);
   }
 }
 
@@ -222,7 +222,7 @@ void trb_peak_look_at(trb_peak_look *look, double time, const double *y, double 
   memcpy(before, look->d->bodies, sizeof before);
   trb_dynamics_drive(look->d, time);
   for (int b = 0; b < look->system.n_bodies; b++)
-    if (!ring_rests(&before[b].ring, &look->d->bodies[b].ring)) trb_peak_look_forget(look);
+    if (look->system.bodies[b].size == 0 && !ring_rests(&before[b].ring, &look->d->bodies[b].ring)) trb_peak_look_forget(look);
   memset(look->posed, 0, (size_t)look->normal.n_rollers * sizeof *look->posed);
   trb_dynamics_pose_hub(look->d, y);
   look_at_fast(look, y, values);

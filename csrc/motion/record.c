@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "body/cage.h"
+#include "body/free_ring.h"
 #include "contact/pair.h"
 #include "motion/audit.h"
 
@@ -187,6 +188,20 @@ static const int quadrature_fields[] = {TRB_QUADRATURES(QUADRATURE)};
 #undef POWER
 #undef QUADRATURE
 
+static void put_ring_place(writer *w)
+{
+  const trb_dynamics  *d = w->d;
+  const trb_ring_pose *ring = &d->bodies[d->system->driven].ring;
+  const int            free = d->system->bodies[d->system->driven].size > 0;
+  const trb_vec3       nominal = trb_v(0, 0, d->model->geometry.centre_plane);
+  put3(&PUT(ring_position, 0), free ? trb_sub(ring->centre, nominal) : d->drive.displacement);
+  put3(&PUT(ring_velocity, 0), ring->velocity);
+  put3(&PUT(ring_angular_velocity, 0), ring->omega);
+  /* small rotations that take z to the axis */
+  PUT(ring_tilt, 0) = -atan2(ring->axis.y, ring->axis.z);
+  PUT(ring_tilt, 1) = atan2(ring->axis.x, ring->axis.z);
+}
+
 static void put_ring(writer *w)
 {
   const trb_dynamics *d = w->d;
@@ -212,7 +227,7 @@ static void put_ring(writer *w)
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += d->hub.torque[k];
   }
   const double sign = d->drive.shaft_speed < 0.0 ? -1.0 : 1.0;
-  put3(&PUT(ring_position, 0), d->drive.displacement);
+  put_ring_place(w);
   put3(&PUT(ring_force, 0), force);
   put3(&PUT(ring_moment, 0), moment);
   PUT(inner_torque, 0) = -sign * all;
@@ -238,6 +253,13 @@ static void put_energy(writer *w, const double *quadratures)
   for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = k < trb_n_quadratures(d->system) ? quadratures[k] : 0.0;
 }
 
+/* Turn of a free ring beyond what is prescribed. */
+static double shaft_offset(const trb_dynamics *d, const double *y, int coordinate)
+{
+  const trb_body *ring = &d->system->bodies[d->system->driven];
+  return ring->kind == &trb_ring_free ? y[ring->first + coordinate] : 0.0;
+}
+
 void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record)
 {
   const trb_model *m = d->model;
@@ -255,8 +277,8 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
   trb_dynamics_loads_of(d, apart, &it.seen);
   d->work->counters = keep; /* looking is not integrating */
   PUT(time, 0) = time;
-  PUT(shaft_angle, 0) = d->drive.shaft_angle;
-  PUT(shaft_speed, 0) = d->drive.shaft_speed;
+  PUT(shaft_angle, 0) = d->drive.shaft_angle + shaft_offset(d, y, TRB_FREE_RING_psi);
+  PUT(shaft_speed, 0) = d->drive.shaft_speed + shaft_offset(d, y, TRB_FREE_RING_omega_a);
   put_cage(w, y + d->system->bodies[TRB_BODY_CAGE].first);
   put_land(w);
   for (int j = 0; j < m->n_rollers; j++) {

@@ -12,7 +12,7 @@ static int place(trb_dynamics *d, const trb_approximation *instead, double time,
   for (int j = 0; j < m->n_rollers; j++) {
     const double *own = y + trb_state_roller(j);
     d->near[j] = trb_dynamics_near(d, j, y);
-    const int follows = instead != NULL && instead->follow(instead->self, d, j, own, d->flows[j]);
+    const int follows = instead != NULL && instead->follow(instead->self, d, j, own, d->flows[j], trb_dynamics_reactions(d, j));
     if (!follows) d->exact[n_exact++] = j;
     if (!follows || d->near[j] != 0) trb_dynamics_pose_roller(d, j, own);
   }
@@ -30,8 +30,10 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
   trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
   for (int k = 0; k < n_exact; k++) {
     const int j = d->exact[k];
+    trb_wrench *const reactions = trb_dynamics_reactions(d, j);
     trb_dynamics_roller_flow(d, j, &d->loads[j], d->flows[j]);
-    if (instead != NULL) instead->learn(instead->self, d, j, y + trb_state_roller(j), d->flows[j]);
+    trb_dynamics_roller_reactions(d, j, &d->loads[j], reactions);
+    if (instead != NULL) instead->learn(instead->self, d, j, y + trb_state_roller(j), d->flows[j], reactions);
   }
 }
 
@@ -47,6 +49,7 @@ void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, con
   for (int j = 0; j < m->n_rollers; j++) {
     /* fast pairs that are not proven clear */
     if (d->near[j] != 0) trb_dynamics_add_fast(d, j, y, d->flows[j]);
+    trb_dynamics_add_reactions(d, j);
     /* rates of rollers */
     trb_dynamics_put(d, j, d->flows[j], rates);
   }

@@ -9,10 +9,10 @@ typedef struct trb_approximation {
   void *self;
   /* Before the rollers of an instant. */
   void (*begin)(void *self, const trb_dynamics *d, double time);
-  /* 1: the roller's flow is given, without fast pairs; 0: it is to be evaluated exactly. */
-  int (*follow)(void *self, const trb_dynamics *d, int roller, const double *y_roller, double *flow);
-  /* An exact flow, of a roller that follow refused. */
-  void (*learn)(void *self, const trb_dynamics *d, int roller, const double *y_roller, const double *flow);
+  /* 1: the roller's flow and its reactions on moving rings are given, without fast pairs; 0: they are to be evaluated exactly. */
+  int (*follow)(void *self, const trb_dynamics *d, int roller, const double *y_roller, double *flow, trb_wrench *reactions);
+  /* Exact ones, of a roller that follow refused. */
+  void (*learn)(void *self, const trb_dynamics *d, int roller, const double *y_roller, const double *flow, const trb_wrench *reactions);
 } trb_approximation;
 
 /* instead: NULL for exact forces of all pairs. */

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double *row_of(const trb_motion *motion, int i) { return motion->table + (size_t)i * TRB_MOTION_COLUMNS; }
+
 /* Whether the time of a knot is above that of the knot before it, or the same, once: a kink or a step. */
 static int follows(const double *table, int i)
 {
@@ -54,6 +56,9 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
     const int     c = 1 + 2 * TRB_CHANNEL_shaft_speed;
     m->angle[i] = m->angle[i - 1] + h * (0.5 * (a[c] + b[c]) + h * (a[c + 1] - b[c + 1]) / 12.0);
   }
+  for (int i = 1; i < n; i++)
+    for (int c = 1; c < 1 + 2 * TRB_FIRST_LOAD_CHANNEL; c++)
+      m->moves |= row_of(m, i)[c] != row_of(m, 0)[c] || (c % 2 == 0 && row_of(m, i)[c] != 0.0);
   find_joints(m);
   *motion = m;
   return TRB_OK;
@@ -69,7 +74,6 @@ void trb_motion_free(trb_motion *motion)
   free(motion);
 }
 
-static const double *row_of(const trb_motion *motion, int i) { return motion->table + (size_t)i * TRB_MOTION_COLUMNS; }
 static double        knot(const trb_motion *motion, int i) { return row_of(motion, i)[0]; }
 static double        first_time(const trb_motion *motion) { return knot(motion, 0); }
 static double        last_time(const trb_motion *motion) { return knot(motion, motion->n - 1); }
@@ -201,7 +205,7 @@ double trb_motion_longest_step(const trb_motion *motion, double time)
 
 int trb_motion_changes(const trb_motion *motion, double from, double to)
 {
-  return motion->n > 1 && to > first_time(motion) && (repeats(motion) || from < last_time(motion));
+  return motion->n > 1 && motion->moves && to > first_time(motion) && (repeats(motion) || from < last_time(motion));
 }
 
 int trb_motion_under_way(const trb_motion *motion, double time) { return trb_motion_changes(motion, time, time); }
@@ -248,6 +252,9 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
   drive->frame_rate = ratio * drive->rolling_rate;
   drive->cosine = cos(drive->frame_angle);
   drive->sine = sin(drive->frame_angle);
+  drive->load.force = trb_v(c[TRB_CHANNEL_force_x].value, c[TRB_CHANNEL_force_y].value, c[TRB_CHANNEL_force_z].value);
+  drive->load.moment = trb_v(c[TRB_CHANNEL_moment_x].value, c[TRB_CHANNEL_moment_y].value, 0.0);
+  drive->torque = c[TRB_CHANNEL_torque].value;
   drive->gravity = trb_v(c[TRB_CHANNEL_gravity_x].value, c[TRB_CHANNEL_gravity_y].value, c[TRB_CHANNEL_gravity_z].value);
   const double rotation[2] = {c[TRB_CHANNEL_rotation_x].value, c[TRB_CHANNEL_rotation_y].value};
   const double rate[2] = {c[TRB_CHANNEL_rotation_x].rate, c[TRB_CHANNEL_rotation_y].rate};

@@ -1,4 +1,4 @@
-/* What is prescribed in time: the inner ring's displacement, misalignment and speed, and gravity (docs/theory/motion.md#the-inner-ring).
+/* What is prescribed in time: the inner ring's displacement, misalignment and speed, gravity, and loads on a free ring (docs/theory/motion.md#the-inner-ring).
  * Cubic Hermite between knots, so that velocities are continuous. Steps end at joints: the ends of the parts that a history consists of.
  * A knot that only samples a smooth curve, as those of a ring's path, is none. Before the first knot everything is constant; after the last knot too,
  * or the last part of the table repeats. The shaft's angle is the exact integral of its speed. */
@@ -17,6 +17,7 @@ typedef struct trb_motion {
   int    *joint; /* for each knot, the last knot at or before it at which a history has a part of its own: 0, or one that is not smooth */
   int    *next;  /* and the first one after it; n: none */
   int     tail;  /* knot at which the part that repeats begins; n - 1: nothing repeats */
+  int     moves; /* 1: a channel that contacts depend on changes: any but the loads on a free ring */
 } trb_motion;
 
 /* table: n rows of TRB_MOTION_COLUMNS, times increasing. Two rows may have the same time: the motion has a kink or a step there, from
@@ -30,7 +31,7 @@ trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *mes
 /* Sets where the shaft's angle is counted from: it is `angle` at `time`. Without it the angle is zero at the first knot. */
 void trb_motion_set_angle(trb_motion *motion, double time, double angle);
 
-/* Whether speed, ring or gravity change at a time. */
+/* Whether speed, a prescribed ring's place or gravity change at a time: all that forces depend on but the state. */
 int trb_motion_under_way(const trb_motion *motion, double time);
 /* Whether they change at any time between two. */
 int trb_motion_changes(const trb_motion *motion, double from, double to);

@@ -112,6 +112,16 @@ static PyObject *peak_layout(PyObject *self, PyObject *none)
   return list;
 }
 
+/* A coordinate of a body, without blanks. */
+static PyObject *state_name(const trb_body *body, int coordinate)
+{
+  char name[64];
+  (void)PyOS_snprintf(name, sizeof name, "%s_%s", body->name, body->coordinates[coordinate].name);
+  for (char *at = name; *at != '\0'; at++)
+    if (*at == ' ') *at = '_';
+  return PyUnicode_FromString(name);
+}
+
 static PyObject *state_layout(PyObject *self, PyObject *none)
 {
 #define NAME(name, kind, text) #name,
@@ -129,7 +139,7 @@ static PyObject *state_layout(PyObject *self, PyObject *none)
       const int       at = trb_state_hub(s) + i - TRB_ROLLER_SIZE;
       int             coordinate;
       const trb_body *body = trb_state_body(s, at, &coordinate);
-      row = Py_BuildValue("(Ni())", PyUnicode_FromFormat("%s_%s", body->name, body->coordinates[coordinate].name), at);
+      row = Py_BuildValue("(Ni())", state_name(body, coordinate), at);
     } else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(s), s->model->n_rollers);
     else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(s), trb_n_quadratures(s));
     if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);

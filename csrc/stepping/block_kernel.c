@@ -175,11 +175,20 @@ static inline void add_product(const double (*columns)[TRB_NP], int n, const dou
   for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
 }
 
-/* to += scale columns x, for columns of a hub of any width */
-static void add_wide_product(const double *restrict columns, int room, int n, const double *restrict x, double scale, double *restrict to)
+/* to += scale columns x, for columns of a hub of any width; a room that the compiler knows is summed up in registers. */
+static inline void add_wide_product(const double *restrict columns, int room, int n, const double *restrict x, double scale,
+                                    double *restrict to)
 {
+  if (room != TRB_HUB_WITH_RING) {
+    for (int c = 0; c < n; c++)
+      for (int i = 0; i < room; i++) to[i] += scale * x[c] * columns[c * room + i];
+    return;
+  }
+  double sum[TRB_HUB_WITH_RING];
+  memcpy(sum, to, sizeof sum);
   for (int c = 0; c < n; c++)
-    for (int i = 0; i < room; i++) to[i] += scale * x[c] * columns[c * room + i];
+    for (int i = 0; i < TRB_HUB_WITH_RING; i++) sum[i] += scale * x[c] * columns[c * TRB_HUB_WITH_RING + i];
+  memcpy(to, sum, sizeof sum);
 }
 
 /* Columns of a hub of the usual width. */
@@ -323,10 +332,34 @@ static void follow(const double *restrict value, const double (*restrict slope)[
   memcpy(flow, sum, sizeof sum);
 }
 
+static void follow_ring(const trb_ring_slopes *restrict slopes, const double *restrict value, const double *restrict step,
+                        const double *restrict of_ring, const double *restrict least, double *restrict flow, double *restrict reaction)
+{
+  double sum[TRB_TANGENT_OUT], force[TRB_RING_OUT];
+  memcpy(sum, flow, sizeof sum);
+  memcpy(force, value, sizeof force);
+  for (int c = 0; c < TRB_RING_IN; c++)
+    for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] += of_ring[c] * slopes->flow[c][i];
+  for (int c = 0; c < TRB_TANGENT_IN; c++)
+    for (int i = 0; i < TRB_RING_OUT; i++) force[i] += step[c] * slopes->reaction[c][i];
+  for (int c = 0; c < TRB_RING_IN; c++)
+    for (int i = 0; i < TRB_RING_OUT; i++) force[i] += of_ring[c] * slopes->reaction[TRB_TANGENT_IN + c][i];
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = larger(sum[i], least[i]);
+  memcpy(flow, sum, sizeof sum);
+  memcpy(reaction, force, sizeof force);
+}
+
 static void weigh(const double *restrict relative, const double *restrict scale, const double *restrict y, int n, double *restrict weights)
 {
   for (int i = 0; i < n; i++) weights[i] = 1.0 / (relative[i] * fabs(y[i]) + scale[i]);
 }
 
-const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {factor,    border, invert_hub, solve,
-                                                                            step_from, follow, weigh,      all_finite};
+const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {.factor = factor,
+                                                                            .border = border,
+                                                                            .invert_hub = invert_hub,
+                                                                            .solve = solve,
+                                                                            .step_from = step_from,
+                                                                            .follow = follow,
+                                                                            .follow_ring = follow_ring,
+                                                                            .weigh = weigh,
+                                                                            .finite = all_finite};

@@ -4,14 +4,16 @@
 #define TRB_STEPPING_BLOCKS_H
 
 #include "motion/dynamics.h"
+#include "stepping/ring_tangent.h"
 
 /* TRB_NP: a roller's entries, padded; TRB_TANGENT_IN: a roller's state and the angle of the frame; TRB_TANGENT_OUT: its flow, padded. */
 enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGENT_OUT = TRB_FLOW_ROOM };
+_Static_assert((int)TRB_RING_OF_ROLLER == (int)TRB_TANGENT_IN, "a ring's part of a tangent has the roller's inputs, too");
 
 /* The hub: all bodies that are not rolling elements, with `width` coordinates together. The width is known when a simulation is made.
  * Columns of the hub's length are padded by zeros to a multiple of TRB_NP, their room, so that loops over them have no remainder. The
- * usual width, that of the cage alone, has loops of its own whose lengths the compiler knows. */
-enum { TRB_HUB_USUAL = 12 };
+ * usual width, that of the cage alone, and the room of a cage and a ring have loops of their own whose lengths the compiler knows. */
+enum { TRB_HUB_USUAL = 12, TRB_HUB_WITH_RING = 24 };
 static inline int trb_hub_room(int width) { return (width + TRB_NP - 1) / TRB_NP * TRB_NP; }
 
 /* Block and borders of a roller. They are stored apart, so that the blocks, which every system needs, lie in one stretch of memory. */
@@ -62,6 +64,10 @@ typedef struct trb_block_kernels {
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);
   /* flow = value + slope step, but no less than least; slope is stored column by column. */
   void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, const double *least, double *flow);
+  /* Adds what a ring's step does to a flow, which is then no less than least, and gives the reaction on the ring; see stepping/tangent.h.
+   * step: of the roller's inputs; of_ring: of the ring's. */
+  void (*follow_ring)(const trb_ring_slopes *slopes, const double *value, const double *step, const double *of_ring, const double *least,
+                      double *flow, double *reaction);
   /* Error weights 1/(relative |y| + scale). */
   void (*weigh)(const double *relative, const double *scale, const double *y, int n, double *weights);
   /* Whether all entries are finite. */

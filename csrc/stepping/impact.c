@@ -68,7 +68,7 @@ static void place(trb_impacts *impacts, const trb_dynamics *d, const trb_drive *
     trb_body_at    *at = &impacts->bodies[b];
     at->rests = body->kind->rests;
     if (body->kind->place != NULL) body->kind->place(d->model, drive, &at->ring);
-    if (body->size > 0) body->kind->pose(d->model, body, drive, y + body->first, &at->pose);
+    if (body->size > 0) trb_body_pose(d->model, body, drive, y + body->first, at);
   }
 }
 

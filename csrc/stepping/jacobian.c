@@ -18,7 +18,9 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
     j->moved = calloc((size_t)trb_state_size(system), sizeof *j->moved);
     j->rates = trb_zeros(3 * width, sizeof *j->rates);
     j->changes = trb_zeros(width, sizeof *j->changes);
-    if (j->moved == NULL || j->rates == NULL || j->changes == NULL)
+    j->response = trb_zeros(width, sizeof *j->response);
+    j->with = trb_zeros(width, sizeof *j->with);
+    if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL)
       status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
     else status = trb_tangents_create(system, &j->tangents, message);
   }
@@ -38,6 +40,8 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   free(jacobian->moved);
   free(jacobian->rates);
   free(jacobian->changes);
+  free(jacobian->response);
+  free(jacobian->with);
   free(jacobian);
 }
 
@@ -101,10 +105,9 @@ static void hub_rates(trb_jacobian *jac, const double *y, int moved, int at, dou
 /* The block of the hub, by differences of its rates. */
 static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
 {
-  trb_dynamics    *d = jac->d;
-  const trb_model *m = d->model;
-  const int        hub = trb_state_hub(d->system);
-  double          *rates = jac->rates, *base = rates + arrow->width;
+  trb_dynamics *d = jac->d;
+  const int     hub = trb_state_hub(d->system);
+  double       *rates = jac->rates, *base = rates + arrow->width;
   hub_rates(jac, y, -1, 0, 0.0, base);
   for (int b = 0; b < d->system->n_bodies; b++) {
     const trb_body *body = &d->system->bodies[b];
@@ -114,12 +117,90 @@ static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
       const int    at = body->first - hub + c;
       const double was = own[c], h = trb_difference[body->coordinates[c].tolerance], per = 1.0 / h;
       own[c] = was + h;
-      body->kind->pose(m, body, &d->drive, own, &d->bodies[b].pose);
+      trb_dynamics_pose_body(d, b, own);
       hub_rates(jac, jac->moved, b, at, h, rates);
       for (int i = 0; i < arrow->width; i++) arrow->hub[at * arrow->room + i] = per * (rates[i] - base[i]);
       own[c] = was;
     }
-    body->kind->pose(m, body, &d->drive, own, &d->bodies[b].pose);
+    trb_dynamics_pose_body(d, b, own);
+  }
+}
+
+static trb_ring_pose difference_of(const trb_ring_pose *to, const trb_ring_pose *from, double per)
+{
+  return (trb_ring_pose){trb_scale(per, trb_sub(to->axis, from->axis)), trb_scale(per, trb_sub(to->centre, from->centre)),
+                         trb_scale(per, trb_sub(to->velocity, from->velocity)), trb_scale(per, trb_sub(to->omega, from->omega))};
+}
+
+/* Of each ring with coordinates: what a wrench does to its rates, which is linear, and what its coordinates do to its pose. */
+static void prepare_rings(trb_jacobian *jac, const double *y, const double *still)
+{
+  trb_dynamics *d = jac->d;
+  const int     hub = trb_state_hub(d->system);
+  for (int k = 0; k < d->system->n_moving; k++) {
+    const int       b = d->system->moving[k];
+    const trb_body *body = &d->system->bodies[b];
+    const int       first = body->first - hub;
+    double         *own = jac->moved + body->first;
+    const double    force = body->kind->mass(d->model, body), arm = 0.5 * d->model->params.pitch_diameter;
+    for (int c = 0; c < 6; c++) {
+      const double unit[6] = {c == 0, c == 1, c == 2, c == 3, c == 4, c == 5}, size = c < 3 ? force : force * arm * arm;
+      trb_wrench   load = {trb_scale(size, trb_v(unit[0], unit[1], unit[2])), trb_scale(size, trb_v(unit[3], unit[4], unit[5]))};
+      body_rates(d, b, y, &load, jac->rates);
+      for (int i = 0; i < body->size; i++) jac->response[first + i][c] = (jac->rates[first + i] - still[first + i]) / size;
+    }
+    for (int c = 0; c < body->size; c++) {
+      const double  was = own[c], h = trb_difference[body->coordinates[c].tolerance];
+      trb_ring_pose moved;
+      own[c] = was + h;
+      body->kind->ring(d->model, body, &d->drive, own, &moved);
+      own[c] = was;
+      jac->with[first + c] = difference_of(&moved, &d->bodies[b].ring, 1.0 / h);
+    }
+  }
+}
+
+/* Change of the reaction with a column of slopes, in R. */
+static trb_wrench reaction_of(const trb_ring_tangent *tangent, const double (*columns)[TRB_RING_OUT], const double *inputs, int n)
+{
+  double sum[TRB_RING_OUT] = {0};
+  for (int c = 0; c < n; c++)
+    for (int i = 0; i < TRB_RING_OUT; i++) sum[i] += inputs[c] * columns[c][i];
+  return trb_ring_wrench(tangent, sum);
+}
+
+/* Borders of a roller to the rings with coordinates, and its part of the slopes of their loads. */
+static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
+{
+  trb_dynamics     *d = jac->d;
+  trb_arrow_border *border = &arrow->borders[j];
+  for (int k = 0; k < d->system->n_moving; k++) {
+    const int               b = d->system->moving[k];
+    const trb_body         *body = &d->system->bodies[b];
+    const int               first = body->first - trb_state_hub(d->system);
+    const trb_ring_tangent *tangent = trb_tangents_ring(jac->tangents, j, k);
+    const trb_ring_slopes  *slopes = trb_tangents_ring_slopes(jac->tangents, j, k);
+    const trb_drive        *drive = &d->drive;
+    const double            cosine = drive->cosine * tangent->cosine - drive->sine * tangent->sine;
+    const double            sine = drive->sine * tangent->cosine + drive->cosine * tangent->sine, one = 1.0;
+    const trb_wrench        now = trb_ring_wrench(tangent, tangent->value);
+    trb_add_wrench(&d->on_body[b], &now);
+    for (int c = 0; c < TRB_NR; c++) {
+      const trb_wrench w = reaction_of(tangent, &slopes->reaction[c], &one, 1);
+      const double     of[6] = {w.force.x, w.force.y, w.force.z, w.moment.x, w.moment.y, w.moment.z};
+      double          *from = border->from + c * arrow->room + first;
+      for (int i = 0; i < body->size; i++)
+        for (int q = 0; q < 6; q++) from[i] += of[q] * jac->response[first + i][q];
+    }
+    for (int c = 0; c < body->size; c++) {
+      double  inputs[TRB_RING_IN];
+      double *to = border->to_hub + (first + c) * TRB_NR;
+      trb_ring_inputs(&jac->with[first + c], cosine, sine, inputs);
+      for (int in = 0; in < TRB_RING_IN; in++)
+        for (int i = 0; i < TRB_NR; i++) to[i] += inputs[in] * slopes->flow[in][i];
+      const trb_wrench w = reaction_of(tangent, &slopes->reaction[TRB_TANGENT_IN], inputs, TRB_RING_IN);
+      trb_add_wrench(&jac->changes[first + c], &w);
+    }
   }
 }
 
@@ -129,7 +210,8 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
   trb_dynamics     *d = jac->d;
   const trb_instant at = trb_dynamics_instant(d);
   trb_arrow_border *border = &arrow->borders[j];
-  border->coupled = 0;
+  border->coupled = d->system->n_moving > 0;
+  if (border->coupled) trb_arrow_clear_border(arrow, j);
   for (int f = 0; f < d->n_fast; f++) {
     const trb_pair *pair = d->fast[f].pair;
     trb_coupling    k;
@@ -161,6 +243,10 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
   memset(d->on_body, 0, sizeof d->on_body);
   for (int b = 0; b < d->system->n_bodies; b++) body_rates(d, b, y, &none, still);
-  for (int j = 0; j < m->n_rollers; j++) fill_fast(jac, j, y, still, arrow);
+  prepare_rings(jac, y, still);
+  for (int j = 0; j < m->n_rollers; j++) {
+    fill_fast(jac, j, y, still, arrow);
+    fill_rings(jac, j, arrow);
+  }
   hub_block(jac, y, arrow);
 }

@@ -4,7 +4,8 @@
  * changes slowly and is computed by differences: one evaluation of these pairs for each coordinate, with all rollers moved at once. It is
  * reused until it is old, or until a second Jacobian is asked for within one step. The part of the fast pairs changes with each impact.
  * Only rollers that touch have it, and its slopes are computed in closed form together with the forces. Pairs without a roller are part of
- * the block of the hub, by differences. */
+ * the block of the hub, by differences. A ring with coordinates has borders to all rollers: they are the slopes that the tangents have with
+ * the ring's place and motion, times what each of its coordinates does to these. */
 #ifndef TRB_STEPPING_JACOBIAN_H
 #define TRB_STEPPING_JACOBIAN_H
 
@@ -17,7 +18,11 @@ typedef struct trb_jacobian {
   double       *moved;    /* scratch: a state with one coordinate moved */
   double       *rates;    /* scratch: three times the rates of the hub */
   trb_wrench   *changes;  /* scratch: slopes of the loads of the hub's bodies with each of their own coordinates */
-  long          rings_evaluations;
+  /* scratch, of rings with coordinates: what a unit of each force and moment in R does to the rates; their inputs' slopes with each
+   * coordinate, in inertial axes */
+  double (*response)[6];
+  trb_ring_pose *with;
+  long           rings_evaluations;
 } trb_jacobian;
 
 trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,

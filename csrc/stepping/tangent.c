@@ -38,14 +38,22 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
   *tangents = NULL;
   if (t != NULL) {
     t->model = m;
+    t->system = system;
     t->rollers = trb_zeros(n, sizeof *t->rollers);
+    t->rings = trb_zeros(n * (size_t)system->n_moving + 1, sizeof *t->rings);
+    t->seen = calloc(n * (size_t)system->n_moving + 1, sizeof *t->seen);
     t->beyond = calloc(n, sizeof *t->beyond);
   }
-  if (t == NULL || t->rollers == NULL || t->beyond == NULL) {
+  if (t == NULL || t->rollers == NULL || t->rings == NULL || t->seen == NULL || t->beyond == NULL) {
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
   t->arms = trb_margin_arms_of(system);
+  t->least_mass = INFINITY;
+  for (int k = 0; k < system->n_moving; k++) {
+    const trb_body *body = &system->bodies[system->moving[k]];
+    t->least_mass = fmin(t->least_mass, body->kind->mass(m, body) / m->n_rollers);
+  }
   set_bounds(t);
   *tangents = t;
   return TRB_OK;
@@ -55,6 +63,8 @@ void trb_tangents_free(trb_tangents *tangents)
 {
   if (tangents == NULL) return;
   free(tangents->rollers);
+  free(tangents->rings);
+  free(tangents->seen);
   free(tangents->beyond);
   free(tangents);
 }
@@ -64,6 +74,25 @@ void trb_tangents_forget(trb_tangents *t)
   memset(t->rollers, 0, (size_t)t->model->n_rollers * sizeof *t->rollers);
   t->has_slopes = 0;
   t->time = 0.0;
+}
+
+static trb_ring_tangent *ring_of(const trb_tangents *t, int roller, int ring)
+{
+  return &t->rings[(size_t)roller * (size_t)t->system->n_moving + (size_t)ring];
+}
+
+/* Slopes of the reactions with an input. */
+static void differentiate_reactions(trb_tangents *t, const trb_dynamics *d, int roller, int input, double per, int only)
+{
+  trb_wrench reactions[TRB_MOST_MOVING_RINGS];
+  trb_dynamics_roller_reactions(d, roller, &d->loads[roller], reactions);
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = ring_of(t, roller, k);
+    double            moved[TRB_RING_OUT];
+    if (only >= 0 && k != only) continue;
+    trb_ring_reaction(ring, &reactions[k], moved);
+    for (int i = 0; i < TRB_RING_OUT; i++) ring->slopes.reaction[input][i] = per * (moved[i] - ring->value[i]);
+  }
 }
 
 static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
@@ -76,7 +105,55 @@ static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double p
     trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
     for (int i = 0; i < TRB_FLOW_SIZE; i++) r->slope[column][i] = per * (flow[i] - r->value[i]);
     if (column < TRB_NR) memcpy(r->found[column], r->slope[column], sizeof r->found[column]);
+    differentiate_reactions(t, d, j, column, per, -1);
   }
+}
+
+/* The rings with coordinates as every roller sees them are kept, or put back. */
+static void see_rings(trb_tangents *t, trb_dynamics *d, int put_back)
+{
+  const size_t n = (size_t)d->model->n_rollers;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_pose *in_frame = d->bodies[t->system->moving[k]].in_frame, *seen = t->seen + (size_t)k * n;
+    memcpy(put_back ? in_frame : seen, put_back ? seen : in_frame, n * sizeof *seen);
+  }
+}
+
+/* The origin of each roller's part that belongs to a ring, and the frame in which it is written. */
+static void begin_rings(trb_tangents *t, const trb_dynamics *d, int roller)
+{
+  const trb_roller_pose *r = &d->rollers[roller];
+  trb_wrench             reactions[TRB_MOST_MOVING_RINGS];
+  trb_dynamics_roller_reactions(d, roller, &d->loads[roller], reactions);
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = ring_of(t, roller, k);
+    ring->cosine = r->cosine;
+    ring->sine = r->sine;
+    ring->from = d->bodies[t->system->moving[k]].ring;
+    trb_ring_inputs(&d->bodies[t->system->moving[k]].in_frame[roller], 1.0, 0.0, ring->origin);
+    trb_ring_reaction(ring, &reactions[k], ring->value);
+  }
+}
+
+/* Slopes with the inputs of the rings: every roller sees the ring moved along its own axes. */
+static void differentiate_rings(trb_tangents *t, trb_dynamics *d)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  for (int k = 0; k < t->system->n_moving; k++)
+    for (int c = 0; c < TRB_RING_IN; c++) {
+      const double h = trb_difference[trb_state_tolerance(d->system, trb_ring_like(c))], per = 1.0 / h;
+      for (int j = 0; j < d->model->n_rollers; j++) trb_ring_move(&d->bodies[t->system->moving[k]].in_frame[j], c, h);
+      trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
+      for (int j = 0; j < d->model->n_rollers; j++) {
+        trb_ring_tangent *ring = ring_of(t, j, k);
+        double            flow[TRB_FLOW_SIZE];
+        trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
+        for (int i = 0; i < TRB_FLOW_SIZE; i++) ring->slopes.flow[c][i] = per * (flow[i] - t->rollers[j].value[i]);
+        differentiate_reactions(t, d, j, TRB_TANGENT_IN + c, per, k);
+      }
+      see_rings(t, d, 1);
+    }
+  for (int i = 0; i < d->model->n_rollers * t->system->n_moving; i++) t->rings[i].found = t->rings[i].slopes;
 }
 
 static int all_finite(const trb_tangents *t)
@@ -85,6 +162,11 @@ static int all_finite(const trb_tangents *t)
   for (int j = 0; j < t->model->n_rollers; j++)
     for (int c = 0; c < TRB_TANGENT_IN; c++)
       for (int i = 0; i < TRB_TANGENT_OUT; i++) sum += 0.0 * t->rollers[j].slope[c][i];
+  for (int i = 0; i < t->model->n_rollers * t->system->n_moving; i++) {
+    const trb_ring_slopes *slopes = &t->rings[i].slopes;
+    for (int k = 0; k < TRB_RING_IN * TRB_FLOW_ROOM; k++) sum += 0.0 * (&slopes->flow[0][0])[k];
+    for (int k = 0; k < TRB_RING_ALL * TRB_RING_OUT; k++) sum += 0.0 * (&slopes->reaction[0][0])[k];
+  }
   return sum == 0.0;
 }
 
@@ -100,7 +182,9 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
     memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
     memcpy(r->origin, y + trb_state_roller(j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
+    begin_rings(t, d, j);
   }
+  see_rings(t, d, 0);
   for (int c = 0; c < TRB_NR; c++) {
     const double h = trb_difference[trb_state_tolerance(d->system, c)];
     for (int j = 0; j < m->n_rollers; j++) {
@@ -113,9 +197,11 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   }
   if (frame_speed != 0.0) {
     trb_dynamics_pose(d, time + turn_difference / fabs(frame_speed), y);
+    see_rings(t, d, 1);
     differentiate(t, d, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
   trb_dynamics_pose(d, time, y);
+  differentiate_rings(t, d);
   /* these slopes are exact, so tangents are used at once, with a small reach */
   for (int j = 0; j < m->n_rollers && !t->has_slopes; j++) {
     t->rollers[j].reach = first_reach;
@@ -132,9 +218,22 @@ const double *trb_tangents_column(const trb_tangents *t, int roller, int column)
   return r->usual >= enough ? r->slope[column] : r->found[column];
 }
 
+const trb_ring_tangent *trb_tangents_ring(const trb_tangents *t, int roller, int ring) { return ring_of(t, roller, ring); }
+
+const trb_ring_slopes *trb_tangents_ring_slopes(const trb_tangents *t, int roller, int ring)
+{
+  const trb_ring_tangent *of = ring_of(t, roller, ring);
+  return t->rollers[roller].usual >= enough ? &of->slopes : &of->found;
+}
+
+static double weight_of(const trb_tangent_measure *measure, int like, double value)
+{
+  return 1.0 / (sqrt((double)TRB_NR) * (measure->relative[like] * fabs(value) + measure->scale[like]));
+}
+
 static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const double *y)
 {
-  for (int i = 0; i < TRB_NR; i++) r->per[i] = 1.0 / (sqrt((double)TRB_NR) * (measure->relative[i] * fabs(y[i]) + measure->scale[i]));
+  for (int i = 0; i < TRB_NR; i++) r->per[i] = weight_of(measure, i, y[i]);
   r->per[TRB_TANGENT_TURN] = 1.0 / turn_unit;
 }
 
@@ -159,28 +258,93 @@ static double power_error(const double *flow, const double *error)
   return off / (all + 1e-300);
 }
 
+/* The same from an error in a reaction, if those of all rollers are alike; moments count by an arm of half the pitch diameter. */
+static double reaction_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error)
+{
+  const double share = measure->factors->gamma / t->least_mass, arm = 0.5 * t->model->params.pitch_diameter;
+  double       sum = 0.0;
+  for (int i = 0; i < 6; i++) {
+    const double off = share * ring->per[5] * error[i] / (i < 3 ? 1.0 : arm);
+    sum += off * off;
+  }
+  return sqrt(sum);
+}
+
+/* Steps of all inputs of rings, one after the other, from the origin to the poses kept; gives the sum of squares of weighted steps. */
+static double step_rings(const trb_tangents *t, const trb_dynamics *d, int roller, double (*steps)[TRB_RING_IN])
+{
+  double sum = 0.0;
+  for (int k = 0; k < t->system->n_moving; k++) sum += trb_ring_step(ring_of(t, roller, k), d, t->system->moving[k], steps[k]);
+  return sum;
+}
+
+/* Broyden's correction of the part of a ring by the errors of flow and reaction. to_roller, to_ring: directions of the correction. */
+static void correct_ring(trb_ring_tangent *ring, const double *in_flow, const double *in_reaction, const double *to_roller,
+                         const double *to_ring)
+{
+  for (int c = 0; c < TRB_RING_IN; c++)
+    for (int i = 0; i < TRB_TANGENT_OUT; i++) ring->slopes.flow[c][i] += in_flow[i] * to_ring[c];
+  for (int c = 0; c < TRB_RING_ALL; c++) {
+    const double along = c < TRB_TANGENT_IN ? to_roller[c] : to_ring[c - TRB_TANGENT_IN];
+    for (int i = 0; i < TRB_RING_OUT; i++) ring->slopes.reaction[c][i] += in_reaction[i] * along;
+  }
+}
+
+/* The rings where they are now, and the exact reactions on them, become the origin. */
+static void move_origin_of_rings(trb_tangents *t, const trb_dynamics *d, int roller, const trb_tangent_measure *measure,
+                                 const trb_wrench *reactions)
+{
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = ring_of(t, roller, k);
+    const trb_drive  *drive = &d->drive;
+    ring->from = d->bodies[t->system->moving[k]].ring;
+    trb_ring_inputs(&ring->from, drive->cosine * ring->cosine - drive->sine * ring->sine,
+                    drive->sine * ring->cosine + drive->cosine * ring->sine, ring->origin);
+    trb_ring_reaction(ring, &reactions[k], ring->value);
+    for (int i = 0; i < TRB_RING_IN; i++) ring->per[i] = weight_of(measure, trb_ring_like(i), ring->origin[i]);
+  }
+}
+
 /* An exact flow becomes the origin. With s the step from the old origin, P the diagonal matrix of weights and e = flow - prediction, the
  * slopes become L + e (P^2 s)^T/(s^T P^2 s) (Broyden 1965, Math. Comp. 19, 577, in the metric of the tolerances), so that they explain
  * this flow. As the error grows with the square of the distance, the reach becomes the distance times the root of allowed over found
  * error. */
-static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *y, double turn, const double *flow,
-                  const double *margin)
+static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_tangent_measure *measure, const double *y,
+                  const double *flow, const trb_wrench *reactions)
 {
+  const double             turn = d->drive.frame_angle, *margin = d->loads[roller].margin;
+  const int                n_moving = t->system->n_moving;
+  double                   of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN], off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
   trb_tangent             *r = &t->rollers[roller];
   const trb_block_kernels *kernels = measure->factors->kernels;
   double                   step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];
   if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
-  const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step)) : 0.0;
+  const double by_rings = r->known ? step_rings(t, d, roller, of_ring) : 0.0;
+  const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step) + by_rings) : 0.0;
   if (r->known && length < farthest) {
-    double direction[TRB_TANGENT_IN];
+    double direction[TRB_TANGENT_IN], in_state = 0.0;
     kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->anything, error);
+    for (int k = 0; k < n_moving; k++) {
+      const trb_ring_tangent *ring = ring_of(t, roller, k);
+      double                  exact[TRB_RING_OUT];
+      kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->anything, error, off[k]);
+      trb_ring_reaction(ring, &reactions[k], exact);
+      for (int i = 0; i < TRB_RING_OUT; i++) off[k][i] = exact[i] - off[k][i];
+      in_state = trb_max(in_state, reaction_error(t, ring, measure, off[k]));
+    }
     for (int i = 0; i < TRB_TANGENT_OUT; i++) error[i] = flow[i] - error[i];
-    const double in_state = step_error(r, measure, error), in_power = power_error(flow, error) / power_share;
+    in_state = trb_max(in_state, step_error(r, measure, error));
+    const double in_power = power_error(flow, error) / power_share;
     const double factor = caution / sqrt(trb_max(in_state / measure->share, in_power) + 1e-300);
     r->reach = trb_clamp(length * trb_clamp(factor, decline, growth), least_reach, largest_reach);
     for (int c = 0; c < TRB_TANGENT_IN; c++) direction[c] = step[c] * r->per[c] * r->per[c] / (length * length);
     for (int c = 0; c < TRB_TANGENT_IN; c++)
       for (int i = 0; i < TRB_TANGENT_OUT; i++) r->slope[c][i] += error[i] * direction[c];
+    for (int k = 0; k < n_moving; k++) {
+      trb_ring_tangent *ring = ring_of(t, roller, k);
+      for (int c = 0; c < TRB_RING_IN; c++) of_ring[k][c] *= ring->per[c] * ring->per[c] / (length * length);
+      correct_ring(ring, error, off[k], direction, of_ring[k]);
+    }
   } else {
     r->reach = first_reach;
   }
@@ -189,20 +353,39 @@ static void learn(trb_tangents *t, int roller, const trb_tangent_measure *measur
   memcpy(r->origin, y, TRB_NR * sizeof *y);
   r->origin[TRB_TANGENT_TURN] = turn;
   weigh(r, measure, y);
+  move_origin_of_rings(t, d, roller, measure, reactions);
   r->usual += newest * (r->served - r->usual);
   r->served = 0;
   r->known = 1;
 }
 
-/* Whether a roller has slipped away from its origin by no more than a share of the mean rolling speed. */
-static int slips_little(const trb_dynamics *d, double share, const double *step)
+/* How far the rings with coordinates have moved since a roller's origin: what margins need, and the speed at which surfaces there slide
+ * away, m/s. */
+static double moved_since(const trb_tangents *t, const trb_dynamics *d, int roller, trb_ring_offset *offset)
+{
+  double slid = 0.0;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    const trb_ring_pose *from = &ring_of(t, roller, k)->from, *to = &d->bodies[t->system->moving[k]].ring;
+    const double         leaned = trb_norm(trb_sub(to->axis, from->axis)), shifted = trb_norm(trb_sub(to->centre, from->centre));
+    offset->shifted += shifted;
+    offset->leaned += leaned;
+    offset->lean += leaned;
+    offset->aside += shifted;
+    slid += trb_norm(trb_sub(to->velocity, from->velocity)) +
+            0.5 * t->model->params.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
+  }
+  return slid;
+}
+
+/* Whether a roller has slipped away from its origin by no more than a share of the mean rolling speed; rings: by what the rings did. */
+static int slips_little(const trb_dynamics *d, double share, const double *step, double rings)
 {
   const trb_params *p = &d->model->params;
   const double      radius = 0.5 * p->roller_diameter, speed = radius * fabs(d->model->geometry.roller_spin_ratio * d->drive.shaft_speed);
   const double      slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
                            radius * fabs(step[TRB_ROLLER_omega_a]) +
                            p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
-  return slid <= share * trb_max(speed, p->speed_floor);
+  return slid + rings <= share * trb_max(speed, p->speed_floor);
 }
 
 /* No tangent holds while the prescribed motion is under way. */
@@ -214,28 +397,37 @@ static void begin(void *self, const trb_dynamics *d, double time)
   for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
 }
 
-static int follow(void *self, const trb_dynamics *d, int roller, const double *y, double *flow)
+static int follow(void *self, const trb_dynamics *d, int roller, const double *y, double *flow, trb_wrench *reactions)
 {
   trb_tangents              *t = self;
   trb_tangent               *r = &t->rollers[roller];
   const trb_tangent_measure *measure = t->measure;
   const trb_block_kernels   *kernels = measure->factors->kernels;
-  double                     step[TRB_TANGENT_IN] = {0};
+  double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
+  trb_ring_offset            offset = t->offset;
   if (t->under_way) return 0;
-  const double distance2 = r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) : (double)INFINITY;
-  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step) ||
-                      !trb_margin_holds(&t->arms, &t->offset, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
+  const double distance2 =
+      r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + step_rings(t, d, roller, of_ring) : (double)INFINITY;
+  const double slid = moved_since(t, d, roller, &offset);
+  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step, slid) ||
+                      !trb_margin_holds(&t->arms, &offset, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
   r->served += !t->beyond[roller];
   if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
   kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, flow);
+  for (int k = 0; k < t->system->n_moving; k++) {
+    const trb_ring_tangent *ring = ring_of(t, roller, k);
+    double                  reaction[TRB_RING_OUT];
+    kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->least, flow, reaction);
+    reactions[k] = trb_ring_wrench(ring, reaction);
+  }
   return 1;
 }
 
-static void learn_exact(void *self, const trb_dynamics *d, int roller, const double *y, const double *flow)
+static void learn_exact(void *self, const trb_dynamics *d, int roller, const double *y, const double *flow, const trb_wrench *reactions)
 {
   trb_tangents *t = self;
   if (t->under_way || !t->beyond[roller] || !t->has_slopes || !(t->measure->factors->gamma > 0.0)) return;
-  learn(t, roller, t->measure, y, d->drive.frame_angle, flow, d->loads[roller].margin);
+  learn(t, d, roller, t->measure, y, flow, reactions);
 }
 
 void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,

@@ -14,7 +14,9 @@
  * An error that was measured in one direction says little about another direction, and a tangent cannot foresee that a contact begins or
  * ends or that the oil yields. Two more bounds therefore hold, whatever the reach is. While a tangent is followed no contact with a
  * raceway or a rib can begin or end; motion/margin.h proves that. And the roller's slip changes by at most a share of its rolling speed,
- * within which friction is linear. */
+ * within which friction is linear.
+ *
+ * A ring that moves by itself adds its own inputs and outputs (stepping/ring_tangent.h). */
 #ifndef TRB_STEPPING_TANGENT_H
 #define TRB_STEPPING_TANGENT_H
 
@@ -40,8 +42,12 @@ typedef struct trb_tangent {
 } trb_tangent;
 
 typedef struct trb_tangents {
-  const trb_model *model;
-  trb_tangent     *rollers;
+  const trb_model  *model;
+  const trb_system *system;
+  trb_tangent      *rollers;
+  trb_ring_tangent *rings;                     /* of every roller, one for each ring with coordinates */
+  trb_ring_pose    *seen;                      /* scratch: those rings as each roller sees them */
+  double            least_mass;                /* of these rings, for one roller, kg */
   double           least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT]; /* lower bounds of a flow that follows a tangent; no bounds */
   const struct trb_tangent_measure *measure;                          /* of the evaluation under way */
   int                               under_way;                        /* the prescribed motion is: everything is exact */
@@ -74,6 +80,9 @@ void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const d
 
 /* Column of a roller's block of the Jacobian: from its tangent if that is in use, else as differences gave it. */
 const double *trb_tangents_column(const trb_tangents *tangents, int roller, int column);
+/* A roller's part that belongs to a ring with coordinates, and its slopes, chosen likewise. */
+const trb_ring_tangent *trb_tangents_ring(const trb_tangents *tangents, int roller, int ring);
+const trb_ring_slopes  *trb_tangents_ring_slopes(const trb_tangents *tangents, int roller, int ring);
 
 /* Right-hand side with tangents in place of the forces of raceways and ribs where their bounds allow it. All forces are exact while the
  * prescribed motion changes. */

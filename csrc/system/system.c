@@ -66,13 +66,14 @@ static trb_status join(const trb_system *s, trb_pair *pair, trb_message *message
   pair->a = s->surfaces[pair->surface[0]].body;
   pair->b = s->surfaces[pair->surface[1]].body;
   pair->own = s->surfaces[pair->surface[1]].is;
-  if (pair->kind->pace == TRB_PACE_FAST && (pair->b < 0 || s->bodies[pair->b].size == 0))
+  if (pair->kind->pace == TRB_PACE_FAST && (pair->b < 0 || s->bodies[pair->b].size == 0 || s->bodies[pair->b].kind->motion == NULL))
     return trb_fail(message, TRB_ERR_INPUT, "pair %s: a pair that comes and goes with impacts needs a body with coordinates", pair->name);
-  /* a roller's tangent does not say what a slow pair does to the other body */
-  if (pair->a == TRB_ROLLERS && pair->kind->pace == TRB_PACE_SLOW && pair->b >= 0 && s->bodies[pair->b].size > 0)
+  /* a roller's tangent knows what a slow pair does to a ring only */
+  if (pair->a == TRB_ROLLERS && pair->kind->pace == TRB_PACE_SLOW && pair->b >= 0 && s->bodies[pair->b].size > 0 &&
+      s->bodies[pair->b].kind->ring == NULL)
     return trb_fail(message, TRB_ERR_INPUT,
-                    "pair %s: its load would be lost on %s, which has coordinates: only pairs that come and go with "
-                    "impacts, and pairs without a roller, move a body",
+                    "pair %s: its load would be lost on %s, which has coordinates and is no ring: only pairs that come and go with "
+                    "impacts, and pairs without a roller, move such a body",
                     pair->name, s->bodies[pair->b].name);
   return TRB_OK;
 }
@@ -94,12 +95,17 @@ static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_mes
 trb_status trb_system_finish(trb_system *s, trb_message *message)
 {
   int points = 0;
-  s->hub_width = 0;
+  s->hub_width = s->n_moving = 0;
   for (int b = 0; b < s->n_bodies; b++) {
     trb_body *body = &s->bodies[b];
     if (body->size == 0) body->size = body->kind->size, body->coordinates = body->kind->coordinates;
     body->first = body->size > 0 ? trb_state_hub(s) + s->hub_width : -1;
     s->hub_width += body->size;
+    if (body->size > 0 && body->kind->ring != NULL) {
+      if (s->n_moving == TRB_MOST_MOVING_RINGS)
+        return trb_fail(message, TRB_ERR_INPUT, "body %s: at most %d rings may have coordinates", body->name, TRB_MOST_MOVING_RINGS);
+      s->moving[s->n_moving++] = b;
+    }
     if (body->kind->loses && !(body->loss >= 1 && body->loss <= s->model->n_losses))
       return trb_fail(message, TRB_ERR_INPUT, "body %s loses energy, which is booked nowhere", body->name);
     if (!body->kind->loses && body->loss != 0)

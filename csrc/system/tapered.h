@@ -5,7 +5,7 @@
 #include "system/system.h"
 
 /* Bodies. */
-enum { TRB_BODY_OUTER_RING, TRB_BODY_INNER_RING, TRB_BODY_CAGE, TRB_BODY_OIL, TRB_N_BODIES };
+enum { TRB_BODY_OUTER_RING, TRB_BODY_CAGE, TRB_BODY_INNER_RING, TRB_BODY_OIL, TRB_N_BODIES };
 
 /* Pairs, in the order in which they are evaluated: X(name). */
 #define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket) X(inner_land) X(outer_land)

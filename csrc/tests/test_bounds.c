@@ -14,7 +14,7 @@ static void test_ways_add_up(void)
   const double               from[TRB_ROLLER_SIZE] = {0}, way = 1e-6, speed = 1e-3;
   static const trb_hold_ring still = {0};
   trb_hold                   hold;
-  trb_hold_set(from, 0.0, way, speed, &hold);
+  trb_hold_set(&still, from, 0.0, way, speed, &hold);
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
       for (int signs = 0; signs < 4; signs++) {

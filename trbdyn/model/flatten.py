@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, InputError, Path, Problem
+from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
 from trbdyn.model.growth import running_clearance, running_pockets
@@ -201,6 +202,19 @@ def scene_entries(scene: Scene) -> Entries:
         "land_clearance": land,
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
+        **_ring_entries(scene),
+    }
+
+
+def _ring_entries(scene: Scene) -> Entries:
+    """Numbers of a free ring; zero where there is none."""
+    body = scene.ring_body
+    if body is None:
+        return {name: Entry(("ring",), 0.0) for name in PARAMETERS if name.startswith("ring_")}
+    return {
+        **prefixed("ring_body", named_entries(body)),
+        "ring_free": Entry(("ring",), 1.0 if scene.torque is None else 2.0),
+        "ring_unbalance_angle": Entry(("ring_body", "unbalance_angle_deg"), math.radians(body.unbalance_angle_deg)),
     }
 
 
@@ -287,15 +301,20 @@ def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
         size, turned = value_at(scene.rotating_load.load, time), scene.rotating_load_angle(time)
         force[:2] += size * np.array([math.cos(turned), math.sin(turned)])
     places = scene.displacement or (None, None, None)
-    moments = scene.moments
+    moment = np.array([0.0 if given is None else value_at(given, time) for given in scene.moments])
+    gravity = np.array([value_at(quantity, time) for quantity in _gravity(scene)])
+    if scene.ring_body is not None:
+        weight, arm = scene.ring_body.mass * gravity, scene.ring_body.mass_offset
+        force += weight
+        moment += arm * np.array([-weight[1], weight[0]])
     turns = (value_at(scene.misalignment_x, time), value_at(scene.misalignment_y, time))
     return RingLoad(
         force=force,
-        moment=np.array([0.0 if moment is None else value_at(moment, time) for moment in moments]),
+        moment=moment,
         fixed=np.array([float(held) for held in scene.ring_is_placed]),
         displacement=np.array([*(0.0 if place is None else value_at(place, time) for place in places), *turns]),
         shaft_speed=value_at(scene.speed_rpm, time) * math.pi / 30.0,
-        gravity=np.array([value_at(quantity, time) for quantity in _gravity(scene)]),
+        gravity=gravity,
     )
 
 
@@ -314,7 +333,7 @@ def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArr
 
     Returns
     -------
-    ndarray, shape (K, 20)
+    ndarray, shape (K, 32)
         Knot time, value and slope of each channel of `_core.motion_table()`, and 1 where a step need not end; the last
         `scene.period` repeats.
     """
@@ -334,6 +353,7 @@ def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArr
         "gravity_x": gravity[0],
         "gravity_y": gravity[1],
         "gravity_z": gravity[2],
+        **_loads_on_free_ring(scene),
     }
     names = [name for name, _, _ in _core.motion_table()]
     if set(names) != set(channels):
@@ -344,6 +364,35 @@ def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArr
         end = scene.settled + (scene.period or 0.0)
         joints = np.append(joints, joint_times(own, scene.start.time, end))
     return knot_table(quantities, scene.start.time, scene.settled, scene.period, joints)
+
+
+def _loads_on_free_ring(scene: Scene) -> dict[str, float | History]:
+    """Loads on a free ring, by the names of their channels; zero for any other."""
+    names = [name for name, _, _ in _core.motion_table() if name.startswith(("force_", "moment_", "torque"))]
+    loads: dict[str, float | History] = dict.fromkeys(names, 0.0)
+    if scene.ring != "free":
+        return loads
+    direction = math.radians(value_at(scene.radial_direction_deg, 0.0))
+    for axis, factor, quarter in (("x", math.cos(direction), 0.0), ("y", math.sin(direction), -90.0)):
+        loads[f"force_{axis}"] = _with_rotating(scene, _scaled(scene.radial_load, factor), quarter)
+    loads["force_z"] = _scaled(scene.axial_load, -1.0)
+    for axis, moment in zip("xy", scene.moments, strict=True):
+        loads[f"moment_{axis}"] = 0.0 if moment is None else moment
+    loads["torque"] = 0.0 if scene.torque is None else scene.torque
+    return loads
+
+
+def _with_rotating(scene: Scene, steady: float | History, phase_deg: float) -> float | History:
+    """A part of the radial load with its part of the load that rotates; both are constant where there is such a load."""
+    rotating = scene.rotating_load
+    if rotating is None or not (size := value_at(rotating.load, 0.0)):
+        return steady
+    turned = scene.rotating_load_angle(0.0)
+    later = (scene.rotating_load_angle(1.0) - turned) / (2.0 * math.pi)
+    phase, mean = math.degrees(turned) + phase_deg, value_at(steady, 0.0)
+    if not later:
+        return mean + size * math.cos(math.radians(phase))
+    return History.harmonic(mean, size, frequency_hz=abs(later), phase_deg=math.copysign(phase, later * phase))
 
 
 def _gravity(scene: Scene) -> tuple[float | History, float | History, float | History]:

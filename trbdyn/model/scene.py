@@ -27,6 +27,7 @@ from trbdyn.model.motion import (
     value_at,
     values_of,
 )
+from trbdyn.model.ring_body import RingBody
 from trbdyn.model.rotating_load import RotatingLoad, check_sign
 from trbdyn.model.shaft import angle_turned, turns
 from trbdyn.model.start import Start
@@ -78,9 +79,15 @@ class Scene(Model):
         Switches and choices; `Effects.standard` by default.
     start : Start
         How a run starts.
-    ring : {'held', 'follows'}
+    ring : {'held', 'follows', 'free'}
         Held: the ring stays at its equilibrium at the start, as in the paper. Follows: it moves through the equilibria
         of its load history, with evenly spaced rollers; its path lies within `trbdyn.statics.ring_path.PATH_TOLERANCE` of them.
+        Free: it is a body with mass that moves under its loads, its weight and the forces of its rollers; it begins in the
+        equilibrium of the loads at the start, and no load needs to hold it later.
+    ring_body : RingBody, optional
+        Mass, inertia and unbalance of a free ring; needed with ``ring = 'free'``.
+    torque : float or History, optional
+        Torque on a free ring about its axis (N m), in place of a prescribed speed: `speed_rpm` is then its speed at the start.
     growth : Growth, optional
         Temperatures of the bearing's parts, and growth of the cage by its rotation, for the plays of the pockets; without it
         all dimensions are as given.
@@ -110,7 +117,9 @@ class Scene(Model):
     lubricant: Lubricant = vg100()
     effects: Effects = Effects()
     start: Start = Start()
-    ring: Literal["held", "follows"] = "held"
+    ring: Literal["held", "follows", "free"] = "held"
+    ring_body: RingBody | None = None
+    torque: Annotated[Quantity | None, unit("N m")] = None
     growth: Growth | None = None
     gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
 
@@ -186,6 +195,8 @@ class Scene(Model):
         """Which coordinates of the ring (x, y, z, rotation about x and y) are prescribed; the others follow from
         loads.
         """
+        if self.ring == "free":
+            return False, False, False, False, False
         x, y, z = self.displacement or (None, None, None)
         return x is not None, y is not None, z is not None, self.moment_x is None, self.moment_y is None
 
@@ -204,6 +215,8 @@ class Scene(Model):
         }
         if self.rotating_load is not None:
             found["rotating_load.load"] = self.rotating_load.load
+        if self.torque is not None:
+            found["torque"] = self.torque
         return {name: quantity for name, quantity in found.items() if quantity is not None}
 
     def quantities(self) -> dict[str, float | History]:
@@ -282,6 +295,7 @@ class Scene(Model):
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_motion()
+        self._check_free()
         self._check_load()
         self._check_planar()
         self._check_start()
@@ -331,6 +345,39 @@ class Scene(Model):
                 if abs(shift) > limit:
                     raise InputError.of(("displacement", place), shift, f"must be from {-limit:g} to {limit:g} (m)")
 
+    def _check_free(self) -> None:
+        """What goes together with a free ring alone, or not with it."""
+        if self.ring != "free":
+            for name in ("ring_body", "torque"):
+                if (given := getattr(self, name)) is not None:
+                    raise InputError.of(name, given, "must not be given unless ring = 'free'")
+            return
+        if self.ring_body is None:
+            raise InputError.of("ring_body", MISSING, "must be given where ring = 'free': its mass and moments of inertia")
+        if self.displacement is not None:
+            limit = "must not be given where ring = 'free': it begins in the equilibrium of its loads (m)"
+            raise InputError.of("displacement", self.displacement, limit)
+        if self.unloaded != "refused":
+            raise InputError.of("unloaded", self.unloaded, "must be 'refused' where ring = 'free'")
+        for name in ("misalignment_x", "misalignment_y"):
+            if any(values_of(getattr(self, name))):
+                limit = f"must be 0 where ring = 'free': the ring turns under moment_{name[-1]} (rad)"
+                raise InputError.of(name, getattr(self, name), limit)
+        if not is_constant(self.radial_direction_deg):
+            limit = "must be constant where ring = 'free'; use rotating_load for a load that turns (deg)"
+            raise InputError.of("radial_direction_deg", self.radial_direction_deg, limit)
+        if self.torque is not None and not is_constant(self.speed_rpm):
+            limit = "must be a number with torque: the speed at the start (rpm)"
+            raise InputError.of("speed_rpm", self.speed_rpm, limit)
+        if self.rotating_load is not None and any(values_of(self.rotating_load.load)):
+            by_shaft = self.rotating_load.frequency_hz is None
+            for path, quantity in ((("rotating_load", "load"), self.rotating_load.load), (("radial_load",), self.radial_load)):
+                if not is_constant(quantity):
+                    raise InputError.of(path, quantity, "must be constant with a rotating_load where ring = 'free' (N)")
+            if by_shaft and (self.torque is not None or not is_constant(self.speed_rpm)):
+                limit = "must be 0 where the speed of a free ring changes; use ring_body.unbalance, or frequency_hz (N)"
+                raise InputError.of(("rotating_load", "load"), self.rotating_load.load, limit)
+
     def _check_load(self) -> None:
         loads: list[tuple[str, float | History]] = [("axial_load", self.axial_load), ("radial_load", self.radial_load)]
         x, y, z, *_ = self.ring_is_placed
@@ -372,7 +419,10 @@ class Scene(Model):
         turning = 0.0 if self.rotating_load is None else self.rotating_load.load
         parts = [self.axial_load, self.radial_load, turning]
         steady = all(is_constant(part) for part in parts)
-        for time in knot_times(parts, self.start.time):
+        times = [self.start.time] if self.ring == "free" else knot_times(parts, self.start.time)
+        if self.ring == "free" and self.start.kind == "state":
+            return
+        for time in times:
             axial, radial = value_at(self.axial_load, time), value_at(self.radial_load, time)
             when = "" if steady else f" at {time:g} s"
             if axial <= 0.0:

@@ -12,7 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
+from trbdyn.model.motion import value_at
 from trbdyn.run.simulation import Simulation
+from trbdyn.statics.free_ring import put_axis
+from trbdyn.statics.state_view import StateView
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -29,7 +32,7 @@ class Replay:
     Parameters
     ----------
     result : Result
-        Needs the groups time, cage and rollers.
+        Needs the groups time, cage and rollers, and the group ring where the ring is free.
 
     Raises
     ------
@@ -38,7 +41,7 @@ class Replay:
     """
 
     def __init__(self, result: Result) -> None:
-        for group in NEEDED:
+        for group in NEEDED if result.scene.ring_body is None else (*NEEDED, "ring"):
             if group not in result.groups:
                 raise InputError.of(
                     "result", f"groups {', '.join(result.groups)}", f"must have the recorded group {group!r}"
@@ -70,7 +73,7 @@ class Replay:
         result, geometry = self.result, self._geometry
         vector = np.zeros(self._simulation.state.vector.size)
         view = self._simulation.view(vector)
-        shaft_angle, shaft_speed = float(result["shaft_angle"][index]), float(result["shaft_speed"][index])
+        shaft_angle, shaft_speed = self._prescribed(index)
         frame, orbit = geometry.cage_speed_ratio * shaft_angle, geometry.cage_speed_ratio * shaft_speed
         nominal = geometry.roller_axis_angle
 
@@ -89,6 +92,8 @@ class Replay:
         view["roller_omega_a"] = spin[:, 2] - (orbit * np.cos(nominal) - geometry.roller_spin_ratio * shaft_speed)
         if result.has_cage:
             self._put_cage(view, index, frame, orbit)
+        if result.scene.ring_body is not None:
+            self._put_ring(view, index)
         return vector
 
     def _put_cage(self, view: object, index: int, frame: float, orbit: float) -> None:
@@ -113,6 +118,30 @@ class Replay:
         }
         for name, value in values.items():
             view[f"cage_{name}"] = value  # type: ignore[index]
+
+    def _put_ring(self, view: StateView, index: int) -> None:
+        result, body = self.result, self.result.scene.ring_body
+        assert body is not None
+        turn_x, turn_y = result["ring_tilt"][index]
+        axis = np.array([np.tan(turn_y), -np.tan(turn_x), 1.0])
+        axis /= np.linalg.norm(axis)
+        put_axis(view, result["ring_position"][index], axis, body.mass_offset)
+        spin, arm = result["ring_angular_velocity"][index], body.mass_offset * axis
+        for name, value in zip("xyz", result["ring_velocity"][index] + np.cross(spin, arm), strict=True):
+            view[f"inner_ring_v_{name}"] = value
+        own = _in_frame(spin[None, :], *(np.array([float(view[f"inner_ring_{name}"])]) for name in ("skew", "tilt")))[0]
+        angle, speed = self._prescribed(index)
+        values = (*own[:2], own[2] - speed, float(result["shaft_angle"][index]) - angle)
+        for name, value in zip(("omega_n", "omega_t", "omega_a", "psi"), values, strict=True):
+            view[f"inner_ring_{name}"] = value
+
+    def _prescribed(self, index: int) -> tuple[float, float]:
+        """Angle (rad) and speed (rad/s) that count as pure rolling: those of the shaft, unless a torque turns it."""
+        result, scene = self.result, self.result.scene
+        if scene.torque is None:
+            return float(result["shaft_angle"][index]), float(result["shaft_speed"][index])
+        time = float(result["time"][index])
+        return scene.start_shaft_angle + scene.shaft_turn(time), value_at(scene.speed_rpm, time) * np.pi / 30.0
 
     def contacts(self, index: int) -> dict[str, Array]:
         """Every quantity of every contact at a record; names, shapes and units as in `Simulation.contacts`.

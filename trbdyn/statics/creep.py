@@ -253,7 +253,7 @@ def creep_time(scene: Scene) -> float:
         return math.nan
     try:
         with np.errstate(all="ignore"):  # rollers without load creep without bound
-            found = creep(scene.replace(ring="held"))
+            found = creep(scene.replace(ring="held", ring_body=None, torque=None))
     except (TrbError, ArithmeticError):
         return math.nan
     bearing, cage = scene.bearing, scene.bearing.cage

@@ -51,7 +51,7 @@ class RingMotion:
 
     Attributes
     ----------
-    table : ndarray, shape (K, 20)
+    table : ndarray, shape (K, 32)
         As of `trbdyn.model.flatten.motion_table`.
     period : float
         After the last knot the last part of the table, this long, repeats (s); 0: everything stays.
@@ -111,7 +111,7 @@ class RingMotion:
 def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
     """A sentence if the ring of a run from a state does not go on from where it stood, or may not; or nothing."""
     start, free = scene.start, ~np.array(scene.ring_is_placed)
-    if start.kind != "state" or not free.any():
+    if start.kind != "state" or not free.any() or scene.ring == "free":
         return ""
     changes = not is_constant(scene.speed_rpm)
     if start.displacement is None:
@@ -157,6 +157,8 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
     even, angles, time = nominal_angles(scene), start_angles(scene), scene.start.time
     stands = scene.start.displacement if scene.ring == "held" else None
     place = None if stands is None else np.where(scene.ring_is_placed, ring_load(scene, time).displacement, stands)
+    if scene.ring == "free" and scene.start.kind == "state":  # the state says where the ring is; nothing need hold it there
+        place = np.zeros(5) if scene.start.displacement is None else np.array(scene.start.displacement)
     at_start = EquilibriumSolver(model, scene, even).solve(time, displacement=place)
     path: list[float | History] = list(at_start.displacement)
     joints: Array | None = None

@@ -14,6 +14,7 @@ from trbdyn.model.motion import value_at
 from trbdyn.statics.cage_start import place_cage
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium, nominal_angles
+from trbdyn.statics.free_ring import place_ring
 from trbdyn.statics.ring_motion import RingMotion, ring_motion
 from trbdyn.statics.state_view import StateView
 
@@ -54,6 +55,8 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
     state["roller_omega_a"] = orbit * (np.cos(angle + tilt) * np.cos(skew) - np.cos(angle))
     if scene.effects.planar:
         state["roller_omega_n"] = 0.0
+    if scene.ring_body is not None:
+        place_ring(state, equilibrium.displacement, scene.ring_body.mass_offset)
     if scene.effects.bodies == "rollers_and_cage":
         place_cage(model, scene, motion, vector)
     return vector

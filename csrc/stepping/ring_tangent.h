@@ -1,0 +1,41 @@
+/* The part of a roller's tangent (stepping/tangent.h) that belongs to a ring with coordinates. What a roller and a ring do to each other
+ * depends on where both are and how they move. Seen from the roller's cylindrical frame, the ring's place and motion are eleven numbers,
+ * the inputs of the ring; they stand beside the roller's own coordinates in the tangent. Besides the roller's flow the tangent then gives
+ * the reaction: the wrench on the ring about its centre. The frame is that of the roller at the state at which slopes were found; it turns
+ * with R, so that a ring which stands still off the bearing's axis moves in it, as the roller sees it. */
+#ifndef TRB_STEPPING_RING_TANGENT_H
+#define TRB_STEPPING_RING_TANGENT_H
+
+#include "motion/dynamics.h"
+
+/* Of the ring: its centre, its axis (x, y), its velocity, its angular velocity; of the reaction: force, moment, padding. */
+enum { TRB_RING_IN = 11, TRB_RING_OUT = 8, TRB_RING_OF_ROLLER = 12, TRB_RING_ALL = TRB_RING_OF_ROLLER + TRB_RING_IN };
+
+typedef struct trb_ring_slopes {
+  double flow[TRB_RING_IN][TRB_FLOW_ROOM];     /* of the roller's flow with the ring's inputs, column by column */
+  double reaction[TRB_RING_ALL][TRB_RING_OUT]; /* of the reaction, with the roller's inputs and then the ring's */
+} trb_ring_slopes;
+
+typedef struct trb_ring_tangent {
+  trb_ring_slopes slopes;              /* with Broyden's corrections */
+  trb_ring_slopes found;               /* as differences gave them */
+  double          value[TRB_RING_OUT]; /* reaction at the origin */
+  double          origin[TRB_RING_IN]; /* inputs there */
+  double          per[TRB_RING_IN];    /* weights of a distance */
+  trb_ring_pose   from;                /* the ring there, in inertial coordinates */
+  double          cosine, sine;        /* of the frame's angle in R */
+} trb_ring_tangent;
+
+/* Tolerances: those of a roller's coordinate of the same kind. */
+int trb_ring_like(int input);
+/* A ring's inputs in a frame; ring: in the frame of its coordinates, which the frame is turned against. */
+void trb_ring_inputs(const trb_ring_pose *ring, double cosine, double sine, double *inputs);
+/* Step of a ring's inputs from the origin at the poses kept in the dynamics; gives the sum of squares of step times per. */
+double trb_ring_step(const trb_ring_tangent *tangent, const trb_dynamics *d, int body, double *step);
+/* A wrench in R as a reaction in the tangent's frame, and back. */
+void       trb_ring_reaction(const trb_ring_tangent *tangent, const trb_wrench *in_r, double *reaction);
+trb_wrench trb_ring_wrench(const trb_ring_tangent *tangent, const double *reaction);
+/* Moves one input of a ring's pose. */
+void trb_ring_move(trb_ring_pose *ring, int input, double by);
+
+#endif
