@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from trbdyn.run.resume import resume
     from trbdyn.run.simulation import Simulation
     from trbdyn.run.toml_case import load_case
+    from trbdyn.statics.stiffness import stiffness
     from trbdyn.study.planning import plan
     from trbdyn.study.uncertainty import uncertainty
     from trbdyn.study.what_matters import sensitivity
@@ -74,8 +75,8 @@ _NAMES = {
     "Profile": "trbdyn.model.bearing",
     "Result": "trbdyn.results.result",
     "Ribs": "trbdyn.model.bearing",
-    "Roller": "trbdyn.model.bearing",
     "RingBody": "trbdyn.model.ring_body",
+    "Roller": "trbdyn.model.bearing",
     "RotatingLoad": "trbdyn.model.scene",
     "Roughness": "trbdyn.model.bearing",
     "RunOptions": "trbdyn.run.options",
@@ -94,6 +95,7 @@ _NAMES = {
     "report": "trbdyn.reporting",
     "resume": "trbdyn.run.resume",
     "sensitivity": "trbdyn.study.what_matters",
+    "stiffness": "trbdyn.statics.stiffness",
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
 }
@@ -118,8 +120,8 @@ __all__ = [
     "Profile",
     "Result",
     "Ribs",
-    "Roller",
     "RingBody",
+    "Roller",
     "RotatingLoad",
     "Roughness",
     "RunOptions",
@@ -146,6 +148,7 @@ __all__ = [
     "report",
     "resume",
     "sensitivity",
+    "stiffness",
     "study",
     "uncertainty",
     "view",

@@ -21,6 +21,8 @@ enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
 /* Steps of differences. */
 #define TRB_STEP_LENGTH 1e-10
 #define TRB_STEP_ANGLE 1e-8
+/* Steps of central differences, in these. */
+#define TRB_FINE_STEPS 10.0
 
 /* Coordinates of a roller and of the ring, short within this file. */
 enum { N = TRB_ROLLER_FREEDOMS, R = TRB_RING_FREEDOMS };
@@ -125,29 +127,56 @@ static double imbalance(const solver *s)
   return worst;
 }
 
+/* Forces with one coordinate of every roller, or of the ring, moved. */
+static void evaluate_moved(solver *s, int of_ring, int c, double by, double *forces, double *ring)
+{
+  double moved[TRB_RING_FREEDOMS];
+  memcpy(moved, s->e->displacement, sizeof moved);
+  memcpy(s->trial, s->e->rollers, (size_t)s->m->n_rollers * TRB_ROLLER_FREEDOMS * sizeof(double));
+  if (of_ring) moved[c] += by;
+  for (int j = 0; j < s->m->n_rollers && !of_ring; j++) s->trial[N * j + c] += by;
+  (void)evaluate(s, s->trial, moved, forces, ring);
+}
+
+/* A column of the stiffness: the change from other forces to those that are shifted, over a step. */
+static void put_column(solver *s, int of_ring, int c, double step, const double *forces, const double *ring)
+{
+  for (int j = 0; j < s->m->n_rollers; j++) {
+    double *own = s->own + (size_t)N * N * j, *from_ring = s->from_ring + (size_t)N * R * j, *to_ring = s->to_ring + (size_t)N * R * j;
+    for (int i = 0; i < N; i++) {
+      const double slope = -(s->shifted[N * j + i] - forces[N * j + i]) / step;
+      *(of_ring ? &to_ring[R * i + c] : &own[N * i + c]) = slope;
+    }
+    for (int i = 0; i < R; i++) {
+      const double change = (s->ring_shifted[R * j + i] - ring[R * j + i]) / step;
+      if (of_ring) s->stiffness[R * i + c] -= change;
+      else from_ring[N * i + c] = -change;
+    }
+  }
+}
+
 /* Stiffness by differences: one evaluation of all contacts for each column, with all rollers moved at once. */
 static void differentiate(solver *s)
 {
-  const int n = s->m->n_rollers;
-  double    moved[TRB_RING_FREEDOMS];
   memset(s->stiffness, 0, sizeof s->stiffness);
-  for (int c = 0; c < TRB_ROLLER_FREEDOMS; c++) {
-    memcpy(s->trial, s->e->rollers, (size_t)n * TRB_ROLLER_FREEDOMS * sizeof(double));
-    for (int j = 0; j < n; j++) s->trial[N * j + c] += difference[c];
-    (void)evaluate(s, s->trial, s->e->displacement, s->shifted, s->ring_shifted);
-    for (int j = 0; j < n; j++) {
-      for (int i = 0; i < N; i++) s->own[N * N * j + N * i + c] = -(s->shifted[N * j + i] - s->forces[N * j + i]) / difference[c];
-      for (int i = 0; i < R; i++) s->from_ring[N * R * j + N * i + c] = -(s->ring_shifted[R * j + i] - s->ring[R * j + i]) / difference[c];
-    }
+  for (int c = 0; c < N + R; c++) {
+    const int    of_ring = c >= N, at = of_ring ? c - N : c;
+    const double step = of_ring ? ring_difference[at] : difference[at];
+    evaluate_moved(s, of_ring, at, step, s->shifted, s->ring_shifted);
+    put_column(s, of_ring, at, step, s->forces, s->ring);
   }
-  for (int c = 0; c < TRB_RING_FREEDOMS; c++) {
-    memcpy(moved, s->e->displacement, sizeof moved);
-    moved[c] += ring_difference[c];
-    (void)evaluate(s, s->e->rollers, moved, s->shifted, s->ring_shifted);
-    for (int j = 0; j < n; j++) {
-      for (int i = 0; i < N; i++) s->to_ring[N * R * j + R * i + c] = -(s->shifted[N * j + i] - s->forces[N * j + i]) / ring_difference[c];
-      for (int i = 0; i < R; i++) s->stiffness[R * i + c] -= (s->ring_shifted[R * j + i] - s->ring[R * j + i]) / ring_difference[c];
-    }
+}
+
+/* The same by central differences at the solution, for those who read it: forces and ring are written to. */
+static void differentiate_finely(solver *s)
+{
+  memset(s->stiffness, 0, sizeof s->stiffness);
+  for (int c = 0; c < N + R; c++) {
+    const int    of_ring = c >= N, at = of_ring ? c - N : c;
+    const double step = TRB_FINE_STEPS * (of_ring ? ring_difference[at] : difference[at]);
+    evaluate_moved(s, of_ring, at, -step, s->forces, s->ring);
+    evaluate_moved(s, of_ring, at, step, s->shifted, s->ring_shifted);
+    put_column(s, of_ring, at, 2.0 * step, s->forces, s->ring);
   }
 }
 
@@ -336,6 +365,31 @@ static trb_status read_loads(solver *s, trb_message *message)
   return TRB_OK;
 }
 
+/* Stiffness of the ring whose rollers follow it, and how they follow: K = K_ring - F own^-1 T with the borders F and T. */
+static trb_status condense(solver *s, trb_message *message)
+{
+  enum { WIDTH = N + R };
+  differentiate_finely(s);
+  memcpy(s->e->stiffness, s->stiffness, sizeof s->stiffness);
+  for (int j = 0; j < s->m->n_rollers; j++) {
+    const double *from_ring = s->from_ring + (size_t)N * R * j;
+    double        a[N * WIDTH];
+    for (int i = 0; i < N; i++) {
+      for (int c = 0; c < N; c++) a[WIDTH * i + c] = s->own[N * N * j + N * i + c];
+      for (int c = 0; c < R; c++) a[WIDTH * i + N + c] = s->to_ring[N * R * j + R * i + c];
+      if (s->held[i]) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
+    }
+    if (!eliminate(a, N, R))
+      return trb_fail(message, TRB_ERR_LOAD, "no stiffness: nothing holds roller %d at its place (standstill without load?)", j);
+    for (int i = 0; i < N; i++)
+      for (int c = 0; c < R; c++) s->e->follow[N * R * j + R * i + c] = -a[WIDTH * i + N + c];
+    for (int i = 0; i < R; i++)
+      for (int q = 0; q < N; q++)
+        for (int c = 0; c < R; c++) s->e->stiffness[R * i + c] -= from_ring[N * i + q] * a[WIDTH * q + N + c];
+  }
+  return TRB_OK;
+}
+
 trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, trb_message *message)
 {
   const trb_model *m = system->model;
@@ -362,6 +416,7 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
   }
   status = iterate(&s, at, step_ring, message);
   if (status == TRB_OK && e->loads != NULL) status = read_loads(&s, message);
+  if (status == TRB_OK && e->stiffness != NULL) status = condense(&s, message);
   free(block);
   trb_dynamics_free(s.d);
   return status;

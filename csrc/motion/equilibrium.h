@@ -3,7 +3,10 @@
  *
  * Unknowns: (r, z, tilt, skew) of each roller and five coordinates of the ring (dx, dy, dz, rx, ry), each free under its load or prescribed.
  * Rollers are coupled only through the ring, so a Newton step solves one small system for each roller and one of five equations.
- * Contacts are gradients of an energy: steps are damped until the total potential falls (Levenberg-Marquardt). */
+ * Contacts are gradients of an energy: steps are damped until the total potential falls (Levenberg-Marquardt).
+ *
+ * The stiffness of the ring at the solution is that of its five coordinates, all free, with rollers that stay in equilibrium: their
+ * unknowns are eliminated (docs/theory/motion.md#stiffness). */
 #ifndef TRB_MOTION_EQUILIBRIUM_H
 #define TRB_MOTION_EQUILIBRIUM_H
 
@@ -20,6 +23,8 @@ typedef struct trb_equilibrium {
   int     warm;                            /* in: 1 where displacement and rollers are a guess close to the solution */
   double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt, skew) offsets */
   double *loads;      /* out: n_rollers rows of normal loads of the first three pairs (outer, inner, rib), N; NULL: not wanted */
+  double *stiffness;  /* out: of the ring with rollers in equilibrium, [force][displacement]; NULL: not wanted */
+  double *follow;     /* out, with stiffness: n_rollers blocks of [roller's coordinate][displacement of the ring] */
   double  residual;   /* out: largest unbalanced force, N */
   int     iterations; /* out */
 } trb_equilibrium;

@@ -172,29 +172,33 @@ static PyObject *columns(const double *values, int rows, int width)
 
 static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 {
-  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", NULL};
+  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", "stiffness", NULL};
   const trb_model *m = ((model_object *)self)->model;
   PyObject        *load, *fixed, *displacement, *angles, *rollers = Py_None;
   trb_equilibrium  e = {0};
   trb_message      message = {TRB_OK, ""};
   double           held[TRB_RING_FREEDOMS];
-  int              with_loads = 0;
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Op", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
-                                   &with_loads))
+  int              with_loads = 0, with_stiffness = 0;
+  double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS] = {0};
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Opp", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
+                                   &with_loads, &with_stiffness))
     return NULL;
   if (read_doubles(load, "load", TRB_RING_FREEDOMS, e.load) != 0 || read_doubles(fixed, "fixed", TRB_RING_FREEDOMS, held) != 0 ||
       read_doubles(displacement, "displacement", TRB_RING_FREEDOMS, e.displacement) != 0)
     return NULL;
   for (int i = 0; i < TRB_RING_FREEDOMS; i++) e.fixed[i] = held[i] != 0.0;
   const size_t n = (size_t)m->n_rollers;
-  double      *block = PyMem_Calloc(n * (1 + TRB_ROLLER_FREEDOMS + TRB_EQUILIBRIUM_LOADS), sizeof(double));
+  double *block = PyMem_Calloc(n * (1 + TRB_ROLLER_FREEDOMS * (1 + TRB_RING_FREEDOMS) + TRB_EQUILIBRIUM_LOADS), sizeof(double));
   if (block == NULL) return PyErr_NoMemory();
   e.angles = block;
   e.rollers = block + n;
   PyObject *out = NULL;
   e.warm = rollers != Py_None;
   double *const loads = e.rollers + TRB_ROLLER_FREEDOMS * n;
+  double *const follow = loads + TRB_EQUILIBRIUM_LOADS * n;
   e.loads = e.warm && !with_loads ? NULL : loads;
+  e.stiffness = with_stiffness ? stiffness : NULL;
+  e.follow = follow;
   if (read_doubles(angles, "angles", m->n_rollers, e.angles) == 0 &&
       (!e.warm || read_doubles(rollers, "rollers", TRB_ROLLER_FREEDOMS * m->n_rollers, e.rollers) == 0)) {
     trb_status status;
@@ -203,9 +207,11 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
     Py_END_ALLOW_THREADS
     if (status != TRB_OK) (void)trb_raise(status, &message);
     else
-      out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
+      out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i,s:N,s:N}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
                           columns(e.rollers, m->n_rollers, TRB_ROLLER_FREEDOMS), "loads",
-                          columns(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations);
+                          columns(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations, "stiffness",
+                          columns(stiffness, TRB_RING_FREEDOMS, TRB_RING_FREEDOMS), "follow",
+                          columns(follow, m->n_rollers, TRB_ROLLER_FREEDOMS * TRB_RING_FREEDOMS));
   }
   PyMem_Free(block);
   return out;

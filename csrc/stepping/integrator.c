@@ -28,7 +28,7 @@ void trb_integrator_set_tolerances(trb_integrator *it)
   const trb_settings *s = &it->settings;
   trb_drive           drive;
   trb_motion_at(it->motion, it->dynamics->model, it->time, &drive);
-  const double share = speed_share(it, drive.shaft_speed);
+  const double share = speed_share(it, trb_system_shaft_speed(it->dynamics->system, &drive, it->y));
   const double scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, share * s->atol_velocity, share * s->atol_spin, 1e30};
   const double relative[TRB_N_TOLERANCES] = {0.0, 0.0, s->rtol, s->rtol, 0.0};
   for (int i = 0; i < it->n; i++) {

@@ -156,7 +156,7 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
   trb_integrator *it = &s->integrator;
   const double    from = it->time;
   memcpy(s->between, it->y, (size_t)it->n * sizeof(double));
-  if (s->motion->n > 1) trb_integrator_set_tolerances(it);
+  if (s->motion->n > 1 || s->model->params.ring_free > 1.0) trb_integrator_set_tolerances(it);
   const trb_status status = it->kind->step(it, message);
   if (status == TRB_OK) {
     s->previous = from;

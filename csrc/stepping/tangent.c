@@ -381,7 +381,9 @@ static double moved_since(const trb_tangents *t, const trb_dynamics *d, int roll
 static int slips_little(const trb_dynamics *d, double share, const double *step, double rings)
 {
   const trb_params *p = &d->model->params;
-  const double      radius = 0.5 * p->roller_diameter, speed = radius * fabs(d->model->geometry.roller_spin_ratio * d->drive.shaft_speed);
+  const trb_body_at *driven = &d->bodies[d->system->driven];
+  const double shaft = d->system->n_moving > 0 ? trb_dot(driven->ring.omega, driven->ring.axis) : d->drive.shaft_speed;
+  const double radius = 0.5 * p->roller_diameter, speed = radius * fabs(d->model->geometry.roller_spin_ratio * shaft);
   const double      slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
                            radius * fabs(step[TRB_ROLLER_omega_a]) +
                            p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));

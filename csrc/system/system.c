@@ -38,6 +38,15 @@ int trb_system_pair(const trb_system *system, const char *name)
   return -1;
 }
 
+double trb_system_shaft_speed(const trb_system *system, const trb_drive *drive, const double *y)
+{
+  const trb_body *body = &system->bodies[system->driven];
+  trb_ring_pose   ring;
+  if (body->size == 0 || body->kind->ring == NULL) return drive->shaft_speed;
+  body->kind->ring(system->model, body, drive, y + body->first, &ring);
+  return trb_dot(ring.omega, ring.axis);
+}
+
 int trb_system_seats(const trb_system *system)
 {
   int seats = 0;

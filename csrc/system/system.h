@@ -43,6 +43,9 @@ trb_status trb_system_finish(trb_system *system, trb_message *message);
 int trb_system_body(const trb_system *system, const char *name);
 int trb_system_pair(const trb_system *system, const char *name);
 
+/* Speed of the driven ring at a state, rad/s. */
+double trb_system_shaft_speed(const trb_system *system, const trb_drive *drive, const double *y);
+
 /* Whether a pair that is on holds rollers along their axes. */
 int trb_system_seats(const trb_system *system);
 

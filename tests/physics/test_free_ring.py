@@ -1,0 +1,220 @@
+"""An inner ring that is free: its vibrations, its energy, its limits, runs that go on, and what is refused."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import trbdyn as trb
+from trbdyn import Effects, History, InputError, Result, RingBody, RotatingLoad, Scene, Simulation, Start
+from trbdyn.run.replay import Replay
+from trbdyn.statics.core_model import normal_contacts
+from trbdyn.statics.equilibrium import EquilibriumSolver, nominal_angles
+
+Array = NDArray[np.float64]
+
+RING = RingBody.hollow_cylinder(mass=0.7, inner_diameter=0.05, outer_diameter=0.072, length=0.027)
+ROTOR = RingBody.hollow_cylinder(mass=20.0, outer_diameter=0.08, length=0.1, mass_offset=0.003)
+FRICTIONLESS = Effects.standard().replace(
+    bodies="rollers",
+    gravity=False,
+    lubrication="full_film",
+    traction="none",
+    rolling_resistance=False,
+    rolling_pressure_force=False,
+)
+
+
+def scene_of(body: RingBody | None = RING, **given: Any) -> Scene:
+    free = {} if body is None else {"ring": "free", "ring_body": body}
+    return Scene(trb.cases.rig_30310(), **({"speed_rpm": 3000.0, "axial_load": 4930.0} | free | given))
+
+
+def closure(result: Result) -> float:
+    """Energy that is missing (J) at the end."""
+    names = [field.name for field in result.fields]
+    stored = result["kinetic_energy"] + result["elastic_energy"]
+    put_in = sum(np.asarray(result[name]) for name in names if name.startswith("work_"))
+    lost = sum(np.asarray(result[name]) for name in names if name.startswith("loss_"))
+    balance = stored - put_in + lost
+    return float(balance[-1] - balance[0])
+
+
+def lost(result: Result) -> float:
+    names = [field.name for field in result.fields if field.name.startswith("loss_")]
+    return float(sum(result[name][-1] - result[name][0] for name in names))
+
+
+def peaks_of(values: Array, step: float, near: float) -> float:
+    """Frequency (Hz) of the largest part of a spectrum within 5 % of a frequency."""
+    spectrum = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size), 16 * values.size))
+    frequencies = np.fft.rfftfreq(16 * values.size, step)
+    inside = np.abs(frequencies - near) < 0.05 * near
+    return float(frequencies[inside][np.argmax(spectrum[inside])])
+
+
+@pytest.mark.parametrize("body", [RING, ROTOR])
+def test_vibrations_have_the_frequencies_of_the_stiffness(body: RingBody) -> None:
+    """sqrt(k/(m + m_r)), with what the rollers add; radial ones come with tilt, and split by gyroscopic moments. Those of the ring
+    alone lie so high that its rollers, 0.3 kg beside 0.7, do not follow it as in an equilibrium: it is 2 to 4 % lower.
+    """
+    scene = scene_of(body, effects=FRICTIONLESS)
+    modes = trb.stiffness(scene).modes(body)
+    simulation = Simulation(scene, integrator="erk")
+    vector = simulation.state.vector
+    view = simulation.view(vector)
+    view["inner_ring_v_x"], view["inner_ring_v_z"] = 1e-3, 1e-3
+    simulation.set_state(vector)
+    step = 1.0 / modes.frequencies[-1] / 8.0
+    result = simulation.run(duration=60.0 / modes.frequencies[0], save_every=step)
+    axial = float(modes.frequencies[np.argmax(np.abs(modes.shapes[:, 2]))])
+    assert peaks_of(result["ring_position"][:, 2], step, axial) == pytest.approx(axial, rel=1e-2)
+    for place in (0, 1) if body is ROTOR else ():
+        found = peaks_of(result["ring_position"][:, 0], step, float(modes.frequencies[place]))
+        assert found == pytest.approx(modes.frequencies[place], rel=2e-2)
+
+
+def test_rollers_add_mass() -> None:
+    added = np.diag(trb.stiffness(scene_of(None)).roller_mass)
+    assert added[2] == pytest.approx(0.2764, rel=1e-3)
+    assert added[:2] == pytest.approx(0.0506, rel=2e-3)
+
+
+def test_stiffness_is_the_slope_of_equilibria_and_symmetric() -> None:
+    scene = scene_of(None, moment_x=10.0, moment_y=-5.0, radial_load=1500.0, axial_load=5000.0)
+    found = trb.stiffness(scene)
+    matrix = found.matrix
+    assert np.max(np.abs(matrix - matrix.T) / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))) < 1e-6
+    angles, changes = nominal_angles(scene), np.zeros((5, 5))
+    by = {"axial_load": 1.0, "radial_load": 1.0, "moment_x": 0.01, "moment_y": 0.01}
+    force = np.zeros((5, 4))
+    moved = np.zeros((5, 4))
+    for column, (name, step) in enumerate(by.items()):
+        ends = []
+        for sign in (1.0, -1.0):
+            other = scene.replace(**{name: getattr(scene, name) + sign * step})
+            ends.append(EquilibriumSolver(normal_contacts(other), other, angles).solve(0.0).displacement)
+        moved[:, column] = ends[0] - ends[1]
+        force[[2, 1, 3, 4][column], column] = 2.0 * step * (-1.0 if name == "axial_load" else 1.0)
+    changes = matrix @ moved
+    scale = np.array([2.0, 2.0, 2.0, 0.02, 0.02])
+    assert np.max(np.abs(changes - force) / scale[:, None]) < 1e-6
+
+
+def test_unbalance_moves_the_ring_as_a_rotor() -> None:
+    """m e W^2 over (K - W^2 M), within the tilt that comes with it."""
+    body = ROTOR.replace(unbalance=2e-4, mass_offset=0.0)
+    scene = scene_of(body, effects=FRICTIONLESS.replace(damping="hunt_crossley"), speed_rpm=4000.0)
+    stiff = trb.stiffness(scene)
+    speed = 4000.0 * np.pi / 30.0
+    inertia = np.diag([body.mass] * 3 + [body.inertia_transverse] * 2) + stiff.roller_mass
+    gyro = np.zeros((5, 5))
+    gyro[3, 4], gyro[4, 3] = body.inertia_axial * speed, -body.inertia_axial * speed
+    push = body.unbalance * speed**2 * np.array([1.0, -1j, 0.0, 0.0, 0.0])
+    predicted = np.linalg.solve(stiff.matrix - speed**2 * inertia + 1j * speed * gyro, push)
+    result = Simulation(scene).run(duration=0.2, save_every=2e-4)
+    late = result["time"] > 0.11  # six turns
+    turned = np.exp(-1j * result["shaft_angle"][late])
+    found = 2.0 * np.mean(result["ring_position"][late, 0] * turned)
+    assert abs(found - predicted[0]) < 3e-2 * abs(predicted[0])
+
+
+def test_energy_of_a_coast_down_a_run_up_and_a_drop_to_no_load() -> None:
+    """A ring that coasts loses what the audit says; a torque puts in its work; without load the ring floats and comes back."""
+    body = RingBody.hollow_cylinder(mass=2.0, outer_diameter=0.06, length=0.09)
+    coast = Simulation(scene_of(body, torque=0.0, speed_rpm=1500.0, axial_load=2000.0)).run(duration=0.15, save_every=1e-3)
+    assert coast["shaft_speed"][-1] < 0.7 * coast["shaft_speed"][0]
+    assert abs(closure(coast)) < 1e-3 * lost(coast)
+    kinetic = coast["kinetic_energy"]
+    assert kinetic[0] - kinetic[-1] == pytest.approx(lost(coast), rel=1e-3)
+    run_up = Simulation(scene_of(body, torque=9.0, speed_rpm=0.0, axial_load=3000.0)).run(duration=0.1, save_every=1e-3)
+    assert run_up["shaft_speed"][-1] > 600.0
+    assert abs(closure(run_up)) < 1e-3 * lost(run_up)
+    assert run_up["work_shaft"][-1] == pytest.approx(9.0 * (run_up["shaft_angle"][-1] - run_up["shaft_angle"][0]), rel=1e-4)
+    drop = History.step((0.005, 0.02), (3000.0, 0.0, 3000.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it falls back upon its rollers, and dents them
+        dropped = Simulation(scene_of(body, axial_load=drop)).run(duration=0.035, save_every=2e-4)
+    loads = dropped["inner_load"].sum(axis=1)
+    gone = (dropped["time"] > 0.012) & (dropped["time"] < 0.019)
+    assert np.median(loads[gone]) < 0.1 * loads[0]
+    assert dropped["ring_position"][-1, 2] == pytest.approx(dropped["ring_position"][0, 2], rel=0.1)
+
+
+def test_a_heavy_ring_is_a_held_one() -> None:
+    start = Start.whirl(0.5)
+    held = Simulation(scene_of(None, start=start, effects=Effects.standard().replace(gravity=False)))
+    heavy = RING.replace(mass=9e4, inertia_axial=1e3, inertia_transverse=1e3)
+    free = Simulation(scene_of(heavy, start=start, effects=Effects.standard().replace(gravity=False)))
+    runs = [simulation.run(duration=0.01, save_every=1e-3) for simulation in (held, free)]
+    off = runs[1]["cage_position"] - runs[0]["cage_position"]
+    assert np.max(np.abs(off)) < 2e-3 * trb.cases.rig_30310().cage.play_radial
+    assert runs[1]["inner_torque"] == pytest.approx(runs[0]["inner_torque"], rel=1e-2)
+
+
+def test_a_run_from_a_state_goes_on_and_records_are_found_again() -> None:
+    scene = scene_of(ROTOR.replace(unbalance=1e-4), radial_load=800.0, torque=1.2, effects=Effects.standard())
+    simulation = Simulation(scene)
+    result = simulation.run(duration=0.01, save_every=1e-3)
+    again = Simulation(scene.replace(start=Start.state(simulation.state)))
+    for name in ("ring_force", "ring_position", "shaft_speed", "shaft_angle", "inner_load"):
+        assert again.record()[name] == pytest.approx(simulation.record()[name], rel=1e-9, abs=1e-12), name
+    record = Replay(result).record(-1)
+    for name in ("ring_force", "ring_velocity", "ring_angular_velocity", "inner_load", "rib_load", "cage_force"):
+        assert record[name] == pytest.approx(result[name][-1], rel=1e-5, abs=2e-4), name
+
+
+def test_a_load_that_rotates_is_the_same_as_one_of_a_held_path() -> None:
+    """Slow against the ring's vibrations: the free ring lies where the path of equilibria lies."""
+    turning = {"rotating_load": RotatingLoad(400.0, frequency_hz=-20.0, direction_deg=30.0), "radial_load": 300.0}
+    quiet = Effects.standard().replace(gravity=False)
+    free = Simulation(scene_of(RING, effects=quiet, moment_x=0.0, moment_y=0.0, **turning))
+    path = Simulation(scene_of(None, effects=quiet, ring="follows", moment_x=0.0, moment_y=0.0, **turning))
+    runs = [simulation.run(duration=0.05, save_every=2.5e-3) for simulation in (free, path)]
+    force = [run["ring_force"][4:, :2] for run in runs]
+    assert np.max(np.abs(force[0] - force[1])) < 60.0
+    place = [run["ring_position"][4:, :2] for run in runs]
+    assert np.max(np.abs(place[0] - place[1])) < 0.1 * np.max(np.abs(place[1]))
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "no body": ({"ring_body": None}, r"ring_body .*must be given where ring = 'free'"),
+    "a body of a held ring": ({"ring": "held"}, r"ring_body .*must not be given unless ring = 'free'"),
+    "a torque on a held ring": ({"ring": "held", "ring_body": None, "torque": 1.0}, r"torque .*must not be given unless"),
+    "a place": ({"displacement": (None, None, -1e-5)}, r"displacement .*must not be given where ring = 'free'"),
+    "a misalignment": ({"misalignment_x": 1e-4}, r"misalignment_x .*must be 0 where ring = 'free'"),
+    "a ring that rests": ({"unloaded": "rests"}, r"unloaded .*must be 'refused' where ring = 'free'"),
+    "a load that turns its direction": (
+        {"radial_load": 10.0, "radial_direction_deg": History.ramp(0, 1, 0, 90)},
+        r"radial_direction_deg .*must be constant",
+    ),
+    "a torque and a speed in time": (
+        {"torque": 1.0, "speed_rpm": History.ramp(0, 1, 0, 90)},
+        r"speed_rpm .*must be a number with torque",
+    ),
+    "a load of the shaft's speed that changes": (
+        {"torque": 1.0, "rotating_load": RotatingLoad(100.0)},
+        r"rotating_load\.load .*ring_body\.unbalance",
+    ),
+    "no load at the start": ({"axial_load": 0.0}, r"axial_load .*must be > 0"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused(name: str) -> None:
+    given, said = REFUSED[name]
+    with pytest.raises(InputError, match=said):
+        scene_of(**given)
+
+
+def test_bodies_that_cannot_be() -> None:
+    with pytest.raises(InputError, match=r"ring_body\.inertia_axial .*must be <= 0\.002"):
+        RingBody(mass=1.0, inertia_axial=3e-3, inertia_transverse=1e-3)
+    with pytest.raises(InputError, match=r"ring_body\.mass .*must be > 0"):
+        RingBody(mass=0.0, inertia_axial=1e-3, inertia_transverse=1e-3)
+    with pytest.raises(InputError, match=r"inner_diameter .*must be from 0 to less than outer_diameter"):
+        RingBody.hollow_cylinder(mass=1.0, inner_diameter=0.1, outer_diameter=0.08, length=0.1)

@@ -1,0 +1,198 @@
+"""Stiffness of a bearing about its equilibrium at speed, and natural frequencies of a body on it
+(docs/theory/motion.md#stiffness).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eig
+
+from trbdyn import _core
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.errors import InputError, LoadError
+from trbdyn.model.flatten import ring_load
+from trbdyn.model.motion import value_at
+from trbdyn.model.ring_body import RingBody
+from trbdyn.model.scene import Scene
+from trbdyn.statics.core_model import normal_contacts
+from trbdyn.statics.equilibrium import EquilibriumSolver, nominal_angles
+
+Array = NDArray[np.float64]
+
+COORDINATES: Final = ("x", "y", "z", "rotation_x", "rotation_y")
+"""Coordinates of the ring: translations, and rotations about x and y, through the roller-centre plane on the axis."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural vibrations of a body on a bearing.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (5,)
+        Natural frequencies (Hz), ascending.
+    shapes : ndarray, shape (5, 5)
+        Shape of each vibration, complex: displacement along x, y, z (m) and rotation about x, y (rad), one row each; the largest
+        entry is 1, with rotations counted at half the pitch diameter.
+    """
+
+    frequencies: Array
+    shapes: NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffness(Displayed):
+    """Stiffness of the inner ring about an equilibrium, with the outer ring at rest and rollers in equilibrium at speed.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (5, 5)
+        Slopes of force (N) and moment (N m), along and about x and y, that hold the ring, with its displacement x, y, z (m) and
+        rotation about x, y (rad).
+    displacement : ndarray, shape (5,)
+        The equilibrium (m, rad).
+    load : ndarray, shape (5,)
+        Load on the ring there (N, N m).
+    roller_mass : ndarray, shape (5, 5)
+        What the rollers add to the mass of the ring as they follow it (kg, kg m, kg m2).
+    pitch_diameter : float
+        Of the bearing (m).
+    speed_rpm : float
+        Speed of the shaft (rpm).
+    """
+
+    matrix: Array
+    displacement: Array
+    load: Array
+    roller_mass: Array
+    pitch_diameter: float
+    speed_rpm: float
+
+    def __repr__(self) -> str:
+        return self._shown().text()
+
+    def _shown(self) -> Shown:
+        names = ("force_x", "force_y", "force_z", "moment_x", "moment_y")
+        rows = tuple((name, *(f"{value:.5g}" for value in row)) for name, row in zip(names, self.matrix, strict=True))
+        return Shown(
+            f"Stiffness of the inner ring at {self.speed_rpm:g} rpm",
+            rows,
+            head=("per m and rad", *COORDINATES),
+            notes=("Forces in N, moments in N m, about the roller-centre plane; rollers stay in equilibrium, without friction.",),
+        )
+
+    def modes(self, body: RingBody, *, gyroscopic: bool = True) -> Modes:
+        """Natural vibrations of a body that is fixed to the inner ring, without damping and friction.
+
+        Parameters
+        ----------
+        body : RingBody
+            The body; its dampers are left out.
+        gyroscopic : bool
+            Count the gyroscopic moments of the body's rotation.
+
+        Returns
+        -------
+        Modes
+            The five vibrations.
+
+        Raises
+        ------
+        InputError
+            If the body is no `RingBody`.
+
+        Notes
+        -----
+        M q'' + G q' + K q = 0 with K from `matrix`, M from the body and `roller_mass`, G from the body's axial inertia and speed
+        (Genta, Dynamics of Rotating Systems). Friction on the raceways damps these vibrations strongly, above all axial ones.
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0)
+        >>> body = trb.RingBody.hollow_cylinder(mass=20.0, outer_diameter=0.05, length=0.4)
+        >>> trb.stiffness(scene).modes(body).frequencies.round(-1)[-1] > 100.0
+        True
+        """
+        if not isinstance(body, RingBody):
+            raise InputError.of("body", body, "must be a RingBody")
+        arm = np.eye(5)  # from the reference point to the centre of mass
+        arm[0, 4], arm[1, 3] = body.mass_offset, -body.mass_offset
+        inertia = np.array([body.mass] * 3 + [body.inertia_transverse] * 2)
+        mass = arm.T @ np.diag(inertia) @ arm + self.roller_mass
+        gyro = np.zeros((5, 5))
+        if gyroscopic:
+            spin = body.inertia_axial * self.speed_rpm * np.pi / 30.0
+            gyro[3, 4], gyro[4, 3] = spin, -spin
+        zero, one = np.zeros((5, 5)), np.eye(5)
+        # both of equal size, or the eigenvalues lose their digits
+        size = np.sqrt(np.trace(self.matrix[:3, :3]) / np.trace(mass[:3, :3]))
+        whole = np.block([[zero, size * one], [-self.matrix / size, -gyro]])
+        values, vectors = eig(whole, np.block([[one, zero], [zero, mass]]))
+        up = np.flatnonzero(values.imag > 0.0)
+        up = up[np.argsort(values[up].imag)][:5]
+        shapes = vectors[:5, up].T
+        sizes = shapes * np.array([1.0, 1.0, 1.0, 0.5 * self.pitch_diameter, 0.5 * self.pitch_diameter])
+        largest = sizes[np.arange(len(up)), np.argmax(np.abs(sizes), axis=1)]
+        return Modes(frequencies=values[up].imag / (2.0 * np.pi), shapes=shapes / largest[:, None])
+
+
+def stiffness(scene: Scene, *, time: float | None = None) -> Stiffness:
+    """Stiffness of the inner ring about its equilibrium at speed: what rotor-dynamics programs read of a bearing.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; friction, cage and gravity on the rollers do not take part.
+    time : float, optional
+        Time of the load (s); that of the start by default.
+
+    Returns
+    -------
+    Stiffness
+        The 5 x 5 matrix with the equilibrium it belongs to. It is the tangent at this load: a tapered bearing is stiffer under
+        more load.
+
+    Raises
+    ------
+    LoadError
+        If the bearing cannot carry the load, or nothing holds a roller.
+
+    Notes
+    -----
+    docs/theory/motion.md#stiffness. All five coordinates of the ring are free in the matrix, prescribed ones as well.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0)
+    >>> round(trb.stiffness(scene).matrix[2, 2] * 1e-8, 2)
+    2.0
+    """
+    at = scene.start.time if time is None else time
+    model, angles = normal_contacts(scene), nominal_angles(scene)
+    solver = EquilibriumSolver(model, scene, angles)
+    found = solver.solve(at)
+    load = ring_load(scene, at)
+    force = np.concatenate([load.force, load.moment])
+    try:
+        fine = model.equilibrium(
+            force, load.fixed, found.displacement, load.shaft_speed, angles, found.rollers.ravel(), stiffness=True
+        )
+    except _core.CoreLoadError as error:
+        raise LoadError(str(error)) from None
+    geometry = scene.bearing.geometry
+    follow = fine["follow"].reshape(-1, 4, 5)
+    inertia = np.array([geometry.roller_mass] * 2 + [geometry.roller_inertia_transverse] * 2)
+    return Stiffness(
+        matrix=fine["stiffness"],
+        displacement=fine["displacement"],
+        load=force,
+        roller_mass=np.einsum("jia,i,jib->ab", follow, inertia, follow),
+        pitch_diameter=scene.bearing.pitch_diameter,
+        speed_rpm=value_at(scene.speed_rpm, at),
+    )
