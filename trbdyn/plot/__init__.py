@@ -22,6 +22,7 @@ from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocke
 from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
+from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
 from trbdyn.plot.style import SAVE_DPI, STYLE, styled
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
@@ -40,6 +41,7 @@ __all__ = [
     "conditions",
     "contact_loads",
     "contact_map",
+    "drawable",
     "energy_audit",
     "film_map",
     "film_parameter",
@@ -53,6 +55,10 @@ __all__ = [
     "poincare",
     "power_split",
     "pressure_map",
+    "ring_motion",
+    "ring_orbit",
+    "ring_orders",
+    "ring_spectrum",
     "save",
     "spacing_angles",
     "spectrum",
@@ -92,8 +98,13 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
     "pocket_polar": (pocket_polar, ("pocket",)),
     "poincare": (poincare, ("cage",)),
     "torque_sources": (torque_sources, ("torque",)),
+    "ring_orbit": (ring_orbit, ("ring",)),
+    "ring_motion": (ring_motion, ("ring",)),
 }
-"""Pictures of one result, by name, and the groups that each needs."""
+"""Pictures of one result, by name, and the groups that each needs; those of the group ring, a ring that moves by itself."""
+
+_OF_ROLLERS: Final = ("pressure_map", "film_map")
+"""Pictures that need the group cage where there is a cage, and are of the rollers."""
 
 _RENAMED: Final = {"whirl_radius": "orbit_radius"}
 
@@ -168,8 +179,7 @@ def all(
         If a picture is unknown, or needs a group that was not recorded.
     """
     if only is None:
-        there = set(result.groups) - (set() if result.has_cage else {"cage", "pocket"})
-        chosen = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
+        chosen = list(drawable(result))
     else:
         chosen = [_RENAMED.get(name, name) for name in only]
     if only is None and len(result) < SPECTRUM_RECORDS:
@@ -183,6 +193,21 @@ def all(
     folder = make_folder(folder)
     heading = conditions(result) if title is None else title
     return [save(PICTURES[name][0](result), folder / f"{name}.png", heading) for name in chosen]
+
+
+def drawable(result: Result) -> tuple[str, ...]:
+    """Names of the pictures that the recorded groups allow; those of the cage only if there is one, those of the ring if it is free.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+    """
+    there = set(result.groups) - (set() if result.has_cage else {"pocket"})
+    if result.scene.ring_body is None:
+        there -= {"ring"}
+    names = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
+    return tuple(name for name in names if result.has_cage or name in _OF_ROLLERS or "cage" not in PICTURES[name][1])
 
 
 def conditions(result: Result) -> str:

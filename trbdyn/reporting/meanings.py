@@ -111,5 +111,7 @@ CAPTIONS: Final[dict[str, str]] = {
     "pocket_polar": "Which pockets are hit, and how hard.",
     "poincare": "The cage's centre once a turn: one point is a steady whirl, a closed curve a second frequency, a cloud chaos.",
     "torque_sources": "Friction torque of the shaft over time, by source.",
+    "ring_orbit": "Path of the free inner ring's centre about its mean place.",
+    "ring_motion": "Radial and axial displacement and tilt of the free inner ring over time.",
 }
 """A sentence for each picture."""

@@ -120,15 +120,11 @@ def _figure(draw: Callable[[], Axes | Figure], caption: str) -> str:
 
 
 def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[str] | None) -> str:
-    from trbdyn.plot import PICTURES
+    from trbdyn.plot import PICTURES, drawable
 
-    def possible(result: Result, name: str) -> bool:
-        there = set(result.groups) - (set() if result.has_cage else {"pocket"})
-        needs_cage = "cage" in PICTURES[name][1] and name not in ("pressure_map", "film_map")
-        return set(PICTURES[name][1]) <= there and (result.has_cage or not needs_cage)
-
+    possible = [drawable(result) for result in results]
     chosen = [
-        name for name in (PICTURES if wanted is None else wanted) if all(possible(result, name) for result in results)
+        name for name in (PICTURES if wanted is None else wanted) if all(name in allowed for allowed in possible)
     ]
     if any(len(result) < 2 for result in results):
         return "<h2>Pictures</h2><p>There are too few records to draw.</p>"

@@ -1,0 +1,170 @@
+"""Pictures of an inner ring that moves: its path, its motion in time, and its spectrum with the bearing's orders."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from trbdyn.errors import InputError
+from trbdyn.plot.cage import last_turns, revolutions
+from trbdyn.plot.style import COLOURS, GREY, canvas, legend, line, sequence, styled
+from trbdyn.results import observables
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+__all__ = ["ring_motion", "ring_orbit", "ring_orders", "ring_spectrum"]
+
+
+def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> Axes:
+    """Path of the inner ring's centre in the plane of the rollers' centres, seen from the large ends, about its mean place.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and ring.
+    ax : Axes, optional
+        Axes to draw into.
+    last : float or None
+        Number of last shaft revolutions to show; None shows all.
+
+    Returns
+    -------
+    Axes
+    """
+    shown = last_turns(result, last)
+    place = 1e6 * shown["ring_position"][:, :2]
+    mean, turned = place.mean(axis=0), revolutions(shown)
+    with canvas(ax, (5.2, 4.4), "Path of the inner ring's centre") as ax:
+        path = place - mean
+        points = ax.scatter(path[:, 0], path[:, 1], c=turned, s=3, cmap=sequence(), linewidths=0)
+        ax.plot(path[:, 0], path[:, 1], color=GREY, linewidth=0.4, zorder=0)
+        ax.axhline(0, color=GREY, linewidth=0.6)
+        ax.axvline(0, color=GREY, linewidth=0.6)
+        ax.set(
+            xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)", ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)", aspect="equal"
+        )
+        ax.locator_params(nbins=5)
+        ax.figure.colorbar(points, ax=ax, label="shaft revolutions")
+    return ax
+
+
+def ring_motion(result: Result, last: float | None = None) -> Figure:
+    """Displacement and tilt of the inner ring over the turns of the shaft.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and ring.
+    last : float or None
+        Number of last shaft revolutions to show; None shows all.
+
+    Returns
+    -------
+    Figure
+    """
+    shown = last_turns(result, last)
+    turned, place, tilt = revolutions(shown), 1e6 * shown["ring_position"], 1e3 * shown["ring_tilt"]
+    with styled():
+        figure, axes = plt.subplots(3, 1, figsize=(6.4, 5.6), sharex=True)
+        figure.suptitle("Motion of the inner ring", fontsize=11)
+        for index, name in enumerate("xy"):
+            line(axes[0], turned, place[:, index], 2 * index, name, linestyle=("-", "--")[index])
+            line(axes[2], turned, tilt[:, index], 2 * index, f"about {name}", linestyle=("-", "--")[index])
+        line(axes[1], turned, place[:, 2], 0)
+        axes[0].set_ylabel("radial (µm)")
+        axes[1].set_ylabel("axial, z (µm)")
+        axes[2].set(ylabel="tilt (mrad)", xlabel="shaft revolutions", xlim=(turned[0], turned[-1]))
+        for ax in (axes[0], axes[2]):
+            ax.legend(fontsize=8, loc="best", frameon=True, framealpha=0.85, edgecolor="none")
+    return figure
+
+
+def ring_orders(result: Result) -> dict[str, float]:
+    """Orders of the bearing: frequencies over that of the shaft, with the outer ring at rest and pure rolling.
+
+    Parameters
+    ----------
+    result : Result
+        The run.
+
+    Returns
+    -------
+    dict of str to float
+        Turns of the cage, passes of rollers at a point of either raceway, and spin of a roller, which meets both raceways in each
+        turn (1).
+    """
+    geometry, count = result.scene.bearing.geometry, result.scene.bearing.n_rollers
+    cage = geometry.cage_speed_ratio
+    return {
+        "shaft": 1.0,
+        "cage": cage,
+        "rollers over the outer ring": count * cage,
+        "rollers over the inner ring": count * (1.0 - cage),
+        "spin of a roller, twice": 2.0 * geometry.roller_spin_ratio,
+    }
+
+
+def ring_spectrum(
+    result: Result,
+    ax: Axes | None = None,
+    *,
+    of: Literal["displacement", "velocity", "acceleration"] = "velocity",
+    along: Literal["x", "y", "z"] = "x",
+    orders: float = 20.0,
+    segments: int = 1,
+) -> Axes:
+    """Spectrum of the inner ring's vibration over the order of the shaft, with the bearing's orders marked.
+
+    Parameters
+    ----------
+    result : Result
+        Needs the groups time and ring; best after settling, at constant speed. Vibrations faster than half of the records are
+        folded to lower orders: save often enough.
+    ax : Axes, optional
+        Axes to draw into.
+    of : {'displacement', 'velocity', 'acceleration'}
+        What of the vibration.
+    along : {'x', 'y', 'z'}
+        Its direction.
+    orders : float
+        Highest order to show.
+    segments : int
+        Number of segments to average.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InputError
+        If an argument is not allowed.
+    """
+    powers = {"displacement": -1, "velocity": 0, "acceleration": 1}
+    if of not in powers:
+        raise InputError.of("of", of, f"must be one of {', '.join(map(repr, powers))}")
+    if along not in ("x", "y", "z"):
+        raise InputError.of("along", along, "must be 'x', 'y' or 'z'")
+    frequency, density = observables.spectrum(result["time"], result["ring_velocity"][:, "xyz".index(along)], segments)
+    shaft = abs(float(result["shaft_speed"].mean())) / (2.0 * np.pi)
+    kept = (frequency > 0.0) & (frequency <= orders * shaft)
+    scale = (2.0 * np.pi * frequency[kept]) ** powers[of]
+    amplitude = np.sqrt(density[kept]) * scale
+    unit = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s$^2$"}[of]
+    with canvas(ax, (6.4, 3.6), f"Vibration of the inner ring along {along}: {of}") as ax:
+        ax.semilogy(frequency[kept] / shaft, amplitude, color=COLOURS[0], linewidth=0.9)
+        for index, (name, order) in enumerate(ring_orders(result).items()):
+            if order <= orders:
+                label = f"{name}, {order:.3g}"
+                ax.axvline(order, color=COLOURS[(index + 1) % len(COLOURS)], linewidth=0.9, linestyle="--", label=label)
+        highest = float(amplitude.max(initial=0.0))
+        if highest > 0.0:
+            ax.set_ylim(max(1e-6 * highest, float(amplitude[amplitude > 0.0].min())), 3.0 * highest)
+        ax.set(xlabel="frequency / shaft frequency", ylabel=f"amplitude density ({unit}/$\\sqrt{{Hz}}$)", xlim=(0, orders))
+        legend(ax, ncols=2)
+    return ax
