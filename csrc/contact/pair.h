@@ -183,6 +183,9 @@ void trb_contact_all(const trb_model *m, const trb_instant *at, trb_workspace *w
 /* Zero the chosen rollers' loads and sum the slow pairs only. */
 void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
 
+/* The same for the slow pairs on one body only. */
+void trb_contact_slow_of(const trb_model *m, const trb_instant *at, int body, trb_workspace *work, trb_loads *loads);
+
 /* Zero the loads and sum the pairs without a roller; wrenches in R. detail may be NULL. */
 void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail);
 

@@ -27,6 +27,19 @@ void trb_contact_slow(const trb_model *m, const trb_instant *at, trb_workspace *
   }
 }
 
+void trb_contact_slow_of(const trb_model *m, const trb_instant *at, int body, trb_workspace *work, trb_loads *loads)
+{
+  clear(at, loads);
+  for (int i = 0; i < work->n_batches; i++) {
+    const trb_batch *all = &work->batches[i];
+    trb_batch        some = {.n = 0};
+    if (all->pairs[0]->kind->pace != TRB_PACE_SLOW) continue;
+    for (int k = 0; k < all->n; k++)
+      if (all->pairs[k]->b == body) some.pairs[some.n] = all->pairs[k], some.index[some.n++] = all->index[k];
+    if (some.n > 0) some.pairs[0]->kind->evaluate(m, at, &some, work, loads, NULL);
+  }
+}
+
 void trb_contact_hub(const trb_model *m, const trb_instant *at, trb_workspace *work, trb_loads *loads, trb_detail *detail)
 {
   memset(loads, 0, sizeof *loads);

@@ -47,11 +47,16 @@ void trb_arrow_free(trb_arrow *arrow)
   free(arrow);
 }
 
-void trb_arrow_clear_border(trb_arrow *arrow, int roller)
+void trb_arrow_add_parts(trb_arrow *arrow, int roller, unsigned parts)
 {
   trb_arrow_border *border = &arrow->borders[roller];
-  memset(border->to_hub, 0, (size_t)(arrow->width * TRB_NR) * sizeof(double));
-  memset(border->from, 0, (size_t)(TRB_NR * arrow->room) * sizeof(double));
+  for (int part = 0; part * TRB_NP < arrow->width; part++) {
+    const int from = part * TRB_NP, n = arrow->width - from < TRB_NP ? arrow->width - from : TRB_NP;
+    if (!(parts & ~border->parts & 1U << part)) continue;
+    memset(border->to_hub + from * TRB_NR, 0, (size_t)(n * TRB_NR) * sizeof(double));
+    for (int c = 0; c < TRB_NR; c++) memset(border->from + c * arrow->room + from, 0, TRB_NP * sizeof(double));
+  }
+  border->parts |= parts;
 }
 
 trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, trb_arrow_factors **factors, trb_message *message)
@@ -108,8 +113,8 @@ int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *f)
   for (int j = 0; j < arrow->n; j++)
     if (!f->kernels->factor(&arrow->rollers[j], arrow->gamma, &f->rollers[j])) return 0;
   for (int j = 0; j < arrow->n; j++) {
-    f->borders[j].coupled = arrow->borders[j].coupled;
-    if (arrow->borders[j].coupled) f->kernels->border(&arrow->borders[j], arrow->gamma, &f->rollers[j], &f->borders[j], hub);
+    f->borders[j].parts = arrow->borders[j].parts;
+    if (arrow->borders[j].parts != 0U) f->kernels->border(&arrow->borders[j], arrow->gamma, &f->rollers[j], &f->borders[j], hub);
   }
   if (!f->kernels->invert_hub(hub)) return 0;
   f->gamma = arrow->gamma;

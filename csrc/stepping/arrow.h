@@ -4,8 +4,8 @@
  * together are the hub. If the rollers come first in the state and the hub last, the system matrix I - gamma J therefore has a small block
  * A_j on the diagonal for each roller j, a border B_j in the columns of the hub, a border C_j in its rows, and the hub's block D; all else
  * is zero. Such a system is solved by eliminating the rollers: the Schur complement S = D - sum C_j A_j^-1 B_j gives the hub's part of the
- * solution, and that gives the part of each roller. The effort is proportional to the number of rollers. A roller that acts on no body of
- * the hub has no borders. One factorisation is used for many solutions and the blocks are small, so their inverses are computed and
+ * solution, and that gives the part of each roller. The effort is proportional to the number of rollers. A roller's borders have only the
+ * parts of the hub on whose bodies it acts. One factorisation is used for many solutions and the blocks are small, so their inverses are computed and
  * stored. */
 #ifndef TRB_STEPPING_ARROW_H
 #define TRB_STEPPING_ARROW_H
@@ -37,8 +37,8 @@ typedef struct trb_arrow_factors {
 /* hub_width: entries of the hub, from 0. */
 trb_status trb_arrow_create(int n_rollers, int hub_width, trb_arrow **arrow, trb_message *message);
 void       trb_arrow_free(trb_arrow *arrow);
-/* Sets a roller's borders to zero. */
-void trb_arrow_clear_border(trb_arrow *arrow, int roller);
+/* Adds parts of the hub, which are zero, to a roller's borders. */
+void trb_arrow_add_parts(trb_arrow *arrow, int roller, unsigned parts);
 
 /* variant: index of the kernels' instruction set. */
 trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, trb_arrow_factors **factors, trb_message *message);

@@ -175,21 +175,23 @@ static inline void add_product(const double (*columns)[TRB_NP], int n, const dou
   for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
 }
 
-/* to += scale columns x, for columns of a hub of any width; a room that the compiler knows is summed up in registers. */
-static inline void add_wide_product(const double *restrict columns, int room, int n, const double *restrict x, double scale,
-                                    double *restrict to)
+/* The same for a part of the columns of a hub, which are `room` apart. */
+static inline void add_part(const double *restrict columns, int room, int n, const double *restrict x, double scale, double *restrict to)
 {
-  if (room != TRB_HUB_WITH_RING) {
-    for (int c = 0; c < n; c++)
-      for (int i = 0; i < room; i++) to[i] += scale * x[c] * columns[c * room + i];
-    return;
-  }
-  double sum[TRB_HUB_WITH_RING];
+  double sum[TRB_NP];
   memcpy(sum, to, sizeof sum);
   for (int c = 0; c < n; c++)
-    for (int i = 0; i < TRB_HUB_WITH_RING; i++) sum[i] += scale * x[c] * columns[c * TRB_HUB_WITH_RING + i];
+    for (int i = 0; i < TRB_NP; i++) sum[i] += scale * x[c] * columns[c * room + i];
   memcpy(to, sum, sizeof sum);
 }
+
+/* Entries of a part, which may end beyond those of the hub. */
+static inline int part_size(int width, int part) { return width - part * TRB_NP < TRB_NP ? width - part * TRB_NP : TRB_NP; }
+
+/* Parts of a hub: for (each part that some bits have). */
+#define EACH_PART(part, bits) \
+  for (int part = 0; (bits) >> part != 0U; part++) \
+    if ((bits) >> part & 1U)
 
 /* Columns of a hub of the usual width. */
 typedef const double (*usual_columns)[TRB_HUB_USUAL];
@@ -199,13 +201,23 @@ static void border(const trb_arrow_border *b, double gamma, const trb_arrow_fact
 {
   const int     width = hub->width, room = hub->room;
   double *const schur = hub->schur;
-  for (int i = 0; i < TRB_NR * room; i++) g->from[i] = -gamma * b->from[i];
-  for (int c = 0; c < width; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
-  if (width == TRB_HUB_USUAL)
+  g->parts = b->parts;
+  if (width == TRB_HUB_USUAL) {
+    for (int i = 0; i < TRB_NR * TRB_HUB_USUAL; i++) g->from[i] = -gamma * b->from[i];
+    for (int c = 0; c < TRB_HUB_USUAL; c++) set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
     for (int c = 0; c < TRB_HUB_USUAL; c++)
       add_product((usual_columns)g->from, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * TRB_HUB_USUAL);
-  else
-    for (int c = 0; c < width; c++) add_wide_product(g->from, room, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * room);
+    return;
+  }
+  EACH_PART(part, b->parts)
+  for (int c = 0; c < TRB_NR; c++)
+    for (int i = part * TRB_NP; i < (part + 1) * TRB_NP; i++) g->from[c * room + i] = -gamma * b->from[c * room + i];
+  EACH_PART(part, b->parts)
+  for (int c = part * TRB_NP; c < part * TRB_NP + part_size(width, part); c++) {
+    set_product(own->inverse, TRB_NR, b->to_hub + c * TRB_NR, -gamma, g->solved + c * TRB_NP);
+    EACH_PART(row, b->parts)
+    add_part(g->from + row * TRB_NP, room, TRB_NR, g->solved + c * TRB_NP, -1.0, schur + c * room + row * TRB_NP);
+  }
 }
 
 /* Inverse in place by Gauss-Jordan elimination with exchanges of columns, as above, of a hub of any other width. */
@@ -277,12 +289,12 @@ static void solve_usual(const trb_arrow_factor_block *own, const trb_arrow_facto
   for (int j = 0; j < n; j++) {
     double *const z = x + j * TRB_NR;
     solve_roller(&own[j], z);
-    if (border[j].coupled) add_product((usual_columns)border[j].from, TRB_NR, z, -1.0, right);
+    if (border[j].parts != 0U) add_product((usual_columns)border[j].from, TRB_NR, z, -1.0, right);
   }
   set_product(inverse, TRB_HUB_USUAL, right, 1.0, y);
   memcpy(right, y, sizeof right);
   for (int j = 0; j < n; j++)
-    if (border[j].coupled) add_product((usual_columns)border[j].solved, TRB_HUB_USUAL, right, -1.0, x + j * TRB_NR);
+    if (border[j].parts != 0U) add_product((usual_columns)border[j].solved, TRB_HUB_USUAL, right, -1.0, x + j * TRB_NR);
 }
 
 /* The same for any width. right: of the hub's equations; found: its solution. */
@@ -295,12 +307,14 @@ static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor
   memcpy(right, y, (size_t)width * sizeof *right);
   for (int j = 0; j < n; j++) {
     solve_roller(&own[j], x + j * TRB_NR);
-    if (border[j].coupled) add_wide_product(border[j].from, room, TRB_NR, x + j * TRB_NR, -1.0, right);
+    EACH_PART(part, border[j].parts)
+    add_part(border[j].from + part * TRB_NP, room, TRB_NR, x + j * TRB_NR, -1.0, right + part * TRB_NP);
   }
-  add_wide_product(hub->inverse, room, width, right, 1.0, found);
+  for (int part = 0; part < room; part += TRB_NP) add_part(hub->inverse + part, room, width, right, 1.0, found + part);
   memcpy(y, found, (size_t)width * sizeof *y);
   for (int j = 0; j < n; j++)
-    if (border[j].coupled) add_product((const double (*)[TRB_NP])border[j].solved, width, found, -1.0, x + j * TRB_NR);
+    EACH_PART(part, border[j].parts)
+    add_product((usual_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0, x + j * TRB_NR);
 }
 
 static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x)

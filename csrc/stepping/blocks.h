@@ -11,9 +11,10 @@ enum { TRB_NR = TRB_ROLLER_SIZE, TRB_NP = 12, TRB_TANGENT_IN = TRB_NP, TRB_TANGE
 _Static_assert((int)TRB_RING_OF_ROLLER == (int)TRB_TANGENT_IN, "a ring's part of a tangent has the roller's inputs, too");
 
 /* The hub: all bodies that are not rolling elements, with `width` coordinates together. The width is known when a simulation is made.
- * Columns of the hub's length are padded by zeros to a multiple of TRB_NP, their room, so that loops over them have no remainder. The
- * usual width, that of the cage alone, and the room of a cage and a ring have loops of their own whose lengths the compiler knows. */
-enum { TRB_HUB_USUAL = 12, TRB_HUB_WITH_RING = 24 };
+ * Columns of the hub's length are padded by zeros to a multiple of TRB_NP, their room, so that loops over them have no remainder. They
+ * are made of parts of TRB_NP entries, and a border says which parts it has: a roller that touches no pocket has none of the cage. The
+ * usual width, that of the cage alone, has loops of its own. */
+enum { TRB_HUB_USUAL = TRB_NP };
 static inline int trb_hub_room(int width) { return (width + TRB_NP - 1) / TRB_NP * TRB_NP; }
 
 /* Block and borders of a roller. They are stored apart, so that the blocks, which every system needs, lie in one stretch of memory. */
@@ -25,8 +26,11 @@ typedef struct trb_arrow_block {
 typedef struct trb_arrow_border {
   double *to_hub;  /* [width][TRB_NR]: d roller / d hub */
   double *from;    /* [TRB_NR][room]: d hub / d roller */
-  int     coupled; /* 0: both are zero, whatever they hold */
+  unsigned parts;  /* bits of the parts of the hub that are not zero, whatever the others hold */
 } trb_arrow_border;
+
+/* Bits of the parts of a hub in which some of its entries lie. */
+static inline unsigned trb_hub_parts(int first, int n) { return (2U << ((first + n - 1) / TRB_NP)) - (1U << (first / TRB_NP)); }
 
 /* Columns are contiguous, so that a product with a vector is a sum of columns. */
 typedef struct trb_arrow_factor_block {
@@ -36,7 +40,7 @@ typedef struct trb_arrow_factor_block {
 typedef struct trb_arrow_factor_border {
   double *solved; /* [width][TRB_NP]: inverse to_hub */
   double *from;   /* [TRB_NR][room]: border of the hub's rows */
-  int     coupled;
+  unsigned parts;
 } trb_arrow_factor_border;
 
 /* The hub's Schur complement, and memory for the kernels. */
@@ -51,7 +55,7 @@ typedef struct trb_hub_factor {
 typedef struct trb_block_kernels {
   /* Of I - gamma J: the inverse of a roller's block; 0: singular. */
   int (*factor)(const trb_arrow_block *b, double gamma, trb_arrow_factor_block *g);
-  /* What a roller's border adds to a solution, and its share of the Schur complement. */
+  /* What a roller's border adds to a solution, and its share of the Schur complement; parts that it has not are not written. */
   void (*border)(const trb_arrow_border *b, double gamma, const trb_arrow_factor_block *own, trb_arrow_factor_border *g,
                  const trb_hub_factor *hub);
   /* Inverse of the Schur complement; 0: singular. */

@@ -126,6 +126,13 @@ static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
   }
 }
 
+/* Parts of the hub in which a body's coordinates lie. */
+static unsigned parts_of(const trb_dynamics *d, int body)
+{
+  const trb_body *is = &d->system->bodies[body];
+  return trb_hub_parts(is->first - trb_state_hub(d->system), is->size);
+}
+
 static trb_ring_pose difference_of(const trb_ring_pose *to, const trb_ring_pose *from, double per)
 {
   return (trb_ring_pose){trb_scale(per, trb_sub(to->axis, from->axis)), trb_scale(per, trb_sub(to->centre, from->centre)),
@@ -185,6 +192,7 @@ static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
     const double            sine = drive->sine * tangent->cosine + drive->cosine * tangent->sine, one = 1.0;
     const trb_wrench        now = trb_ring_wrench(tangent, tangent->value);
     trb_add_wrench(&d->on_body[b], &now);
+    trb_arrow_add_parts(arrow, j, parts_of(d, b));
     for (int c = 0; c < TRB_NR; c++) {
       const trb_wrench w = reaction_of(tangent, &slopes->reaction[c], &one, 1);
       const double     of[6] = {w.force.x, w.force.y, w.force.z, w.moment.x, w.moment.y, w.moment.z};
@@ -210,16 +218,14 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
   trb_dynamics     *d = jac->d;
   const trb_instant at = trb_dynamics_instant(d);
   trb_arrow_border *border = &arrow->borders[j];
-  border->coupled = d->system->n_moving > 0;
-  if (border->coupled) trb_arrow_clear_border(arrow, j);
+  border->parts = 0U;
   for (int f = 0; f < d->n_fast; f++) {
     const trb_pair *pair = d->fast[f].pair;
     trb_coupling    k;
     trb_load        load;
     const trb_gaps  gaps = pair->kind->touch(d->model, pair, &at, j, &d->work->counters, &load, &k.slopes, NULL);
     if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0)) continue;
-    if (!border->coupled) trb_arrow_clear_border(arrow, j);
-    border->coupled = 1;
+    trb_arrow_add_parts(arrow, j, parts_of(d, pair->b));
     trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[pair->b], &d->bodies[pair->b].pose, &load);
     trb_add_wrench(&d->on_body[pair->b], &load.on_b);
     add_fast(jac, j, &k, pair->b, y, still, arrow);

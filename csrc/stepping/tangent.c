@@ -42,9 +42,11 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
     t->rollers = trb_zeros(n, sizeof *t->rollers);
     t->rings = trb_zeros(n * (size_t)system->n_moving + 1, sizeof *t->rings);
     t->seen = calloc(n * (size_t)system->n_moving + 1, sizeof *t->seen);
+    t->partly = calloc(n, sizeof *t->partly);
     t->beyond = calloc(n, sizeof *t->beyond);
   }
-  if (t == NULL || t->rollers == NULL || t->rings == NULL || t->seen == NULL || t->beyond == NULL) {
+  if (t == NULL || t->rollers == NULL || t->rings == NULL || t->seen == NULL || t->partly == NULL ||
+      t->beyond == NULL) {
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
@@ -65,6 +67,7 @@ void trb_tangents_free(trb_tangents *tangents)
   free(tangents->rollers);
   free(tangents->rings);
   free(tangents->seen);
+  free(tangents->partly);
   free(tangents->beyond);
   free(tangents);
 }
@@ -135,24 +138,29 @@ static void begin_rings(trb_tangents *t, const trb_dynamics *d, int roller)
   }
 }
 
-/* Slopes with the inputs of the rings: every roller sees the ring moved along its own axes. */
+/* Slopes with the inputs of the rings: every roller sees the ring moved along its own axes. Only contacts with this ring change. */
 static void differentiate_rings(trb_tangents *t, trb_dynamics *d)
 {
   const trb_instant at = trb_dynamics_instant(d);
-  for (int k = 0; k < t->system->n_moving; k++)
+  const int         n = d->model->n_rollers;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    const int body = t->system->moving[k];
+    trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
+    for (int j = 0; j < n; j++) trb_dynamics_roller_flow(d, j, &d->loads[j], t->partly[j]);
     for (int c = 0; c < TRB_RING_IN; c++) {
       const double h = trb_difference[trb_state_tolerance(d->system, trb_ring_like(c))], per = 1.0 / h;
-      for (int j = 0; j < d->model->n_rollers; j++) trb_ring_move(&d->bodies[t->system->moving[k]].in_frame[j], c, h);
-      trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
-      for (int j = 0; j < d->model->n_rollers; j++) {
+      for (int j = 0; j < n; j++) trb_ring_move(&d->bodies[body].in_frame[j], c, h);
+      trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
+      for (int j = 0; j < n; j++) {
         trb_ring_tangent *ring = ring_of(t, j, k);
         double            flow[TRB_FLOW_SIZE];
         trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
-        for (int i = 0; i < TRB_FLOW_SIZE; i++) ring->slopes.flow[c][i] = per * (flow[i] - t->rollers[j].value[i]);
+        for (int i = 0; i < TRB_FLOW_SIZE; i++) ring->slopes.flow[c][i] = per * (flow[i] - t->partly[j][i]);
         differentiate_reactions(t, d, j, TRB_TANGENT_IN + c, per, k);
       }
       see_rings(t, d, 1);
     }
+  }
   for (int i = 0; i < d->model->n_rollers * t->system->n_moving; i++) t->rings[i].found = t->rings[i].slopes;
 }
 

@@ -47,6 +47,7 @@ typedef struct trb_tangents {
   trb_tangent      *rollers;
   trb_ring_tangent *rings;                     /* of every roller, one for each ring with coordinates */
   trb_ring_pose    *seen;                      /* scratch: those rings as each roller sees them */
+  double (*partly)[TRB_FLOW_ROOM];             /* scratch: flows of every roller under the contacts with one ring alone */
   double            least_mass;                /* of these rings, for one roller, kg */
   double           least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT]; /* lower bounds of a flow that follows a tangent; no bounds */
   const struct trb_tangent_measure *measure;                          /* of the evaluation under way */

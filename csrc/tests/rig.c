@@ -206,7 +206,8 @@ void rig_expand(const trb_arrow *a, int stride, double *whole)
     for (int i = 0; i < TRB_NR; i++) {
       double *row = whole + (size_t)(j * TRB_NR + i) * (size_t)stride;
       for (int c = 0; c < TRB_NR; c++) row[j * TRB_NR + c] = a->rollers[j].own[c][i];
-      for (int c = 0; c < a->width && a->borders[j].coupled; c++) {
+      for (int c = 0; c < a->width; c++) {
+        if (!(a->borders[j].parts >> c / TRB_NP & 1U)) continue;
         row[hub + c] = a->borders[j].to_hub[c * TRB_NR + i];
         whole[(size_t)(hub + c) * (size_t)stride + (size_t)(j * TRB_NR + i)] = a->borders[j].from[i * a->room + c];
       }

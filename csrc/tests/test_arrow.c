@@ -37,7 +37,7 @@ static void randomise_block(double *block, int n, int stride, int kind, int at)
     }
 }
 
-/* The Jacobian of I - gamma J = A; rollers that are not coupled have borders that must not count. */
+/* The Jacobian of I - gamma J = A; parts of the hub that a roller's borders do not have must not count. */
 static void of_system(trb_arrow *a)
 {
   const double per = 1.0 / a->gamma;
@@ -55,7 +55,8 @@ static void randomise(trb_arrow *a, int kind)
     randomise_block(&a->rollers[j].own[0][0], TRB_NR, TRB_NP, (kind + j / TRB_NR) % N_KINDS, j % TRB_NR);
     fill(border->to_hub, (size_t)(TRB_NR * a->width), 1.0);
     for (int q = 0; q < TRB_NR; q++) fill(border->from + q * a->room, (size_t)a->width, 1.0);
-    border->coupled = a->width > 0 && j % 3 != 1;
+    border->parts = a->width > 0 && j % 3 != 1 ? trb_hub_parts(0, a->width) : 0U;
+    if (j % 3 == 2) border->parts &= ~(1U << (unsigned)(j / 3 % 2));
   }
   randomise_block(a->hub, a->width, a->room, kind, a->width > 0 ? kind % a->width : 0);
   of_system(a);
@@ -206,7 +207,7 @@ static void test_singular_hub(trb_arrow *a, trb_arrow_factors *f, int kind, int 
   }
   for (int by_row = 0; by_row < 2; by_row++) {
     randomise(a, kind);
-    for (int j = 0; j < a->n; j++) a->borders[j].coupled = 0;
+    for (int j = 0; j < a->n; j++) a->borders[j].parts = 0U;
     for (int c = 0; c < a->width; c++) a->hub[by_row ? c * a->room + at : at * a->room + c] = (double)(c == at) / a->gamma;
     expect_singular(a, f);
   }
@@ -225,7 +226,10 @@ static void test_unit(trb_arrow *a, trb_arrow_factors *f)
   double    x[SIZE + SPARE];
   memset(a->rollers, 0, (size_t)a->n * sizeof *a->rollers);
   memset(a->hub, 0, (size_t)(a->width * a->room) * sizeof *a->hub);
-  for (int j = 0; j < a->n; j++) trb_arrow_clear_border(a, j);
+  for (int j = 0; j < a->n; j++) {
+    a->borders[j].parts = 0U;
+    if (a->width > 0) trb_arrow_add_parts(a, j, trb_hub_parts(0, a->width));
+  }
   CHECK(trb_arrow_factor(a, f) == 1);
   for (int i = 0; i < n + SPARE; i++) x[i] = i;
   trb_arrow_solve(f, x);
@@ -238,7 +242,7 @@ static void test_exchanges(trb_arrow *a, trb_arrow_factors *f)
   const int hub = a->n * TRB_NR, n = hub + a->width;
   double    x[SIZE + SPARE];
   for (int j = 0; j < a->n; j++) {
-    a->borders[j].coupled = 0;
+    a->borders[j].parts = 0U;
     for (int c = 0; c < TRB_NR; c++)
       for (int i = 0; i < TRB_NR; i++) a->rollers[j].own[c][i] = (i == (c + 1) % TRB_NR);
   }

@@ -255,7 +255,7 @@ static unsigned test_rows(void)
     check_audit(m, &full, &out, &alone);
     check_peaks(m, row, &full, &out);
     for (int j = 0; j < m->n_rollers; j++)
-      if (pair_of(row)->kind->touch != NULL) CHECK(!out.arrow->borders[j].coupled);
+      if (pair_of(row)->kind->touch != NULL) CHECK(out.arrow->borders[j].parts == 0U);
     forget(&out);
     forget(&alone);
   }
