@@ -199,8 +199,7 @@ void trb_dynamics_roller_reactions(const trb_dynamics *d, int roller, const trb_
 
 void trb_dynamics_add_reactions(trb_dynamics *d, int roller)
 {
-  for (int k = 0; k < d->system->n_moving; k++)
-    trb_add_wrench(&d->on_body[d->system->moving[k]], &trb_dynamics_reactions(d, roller)[k]);
+  for (int k = 0; k < d->system->n_moving; k++) trb_add_wrench(&d->on_body[d->system->moving[k]], &trb_dynamics_reactions(d, roller)[k]);
 }
 
 void trb_dynamics_start(trb_dynamics *d, double *rates)

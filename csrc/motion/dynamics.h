@@ -43,8 +43,8 @@ typedef struct trb_dynamics {
   int               n_fast;
   double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
   trb_wrench *reactions;          /* of every roller: on each ring that has coordinates, in R */
-  int      *exact;                /* rollers to evaluate exactly */
-  unsigned *near;                 /* of every roller: bit by fast pair, those that may touch */
+  int        *exact;              /* rollers to evaluate exactly */
+  unsigned   *near;               /* of every roller: bit by fast pair, those that may touch */
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */

@@ -13,7 +13,7 @@ typedef struct trb_hold {
   double way;   /* displacement up to which it holds, m; negative: it does not hold */
   double speed; /* change of velocity up to which it holds, m/s */
   /* where it was set */
-  double y[TRB_ROLLER_SIZE];
+  double        y[TRB_ROLLER_SIZE];
   double        turn;                        /* of the roller about the bearing's axis, rad */
   trb_ring_pose ring[TRB_MOST_MOVING_RINGS]; /* rings with coordinates */
 } trb_hold;

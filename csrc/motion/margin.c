@@ -48,7 +48,7 @@ int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *ring, c
   for (int i = 0; i < arms->n; i++) {
     const trb_margin_arm *a = &arms->of[i];
     const double          by_turn = a->on_end ? turned_on_end(a, place, step, ring->lean) : a->arm * turned;
-    const double by_ring = around * (ring->aside + ring->lean * a->ring) + (ring->shifted + ring->leaned * a->ring);
+    const double          by_ring = around * (ring->aside + ring->lean * a->ring) + (ring->shifted + ring->leaned * a->ring);
     if (!(shift + by_turn + by_ring <= share * margin[arms->row[i]])) return 0;
   }
   return 1;

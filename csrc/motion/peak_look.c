@@ -115,7 +115,8 @@ static double turn_of(const trb_peak_look *p, int j, const double *y)
 }
 
 /* A roller's contacts of a batch, looked at: values are written, and how far they hold. */
-static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, const trb_contact_look *looks, const double *y, double *values)
+static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, const trb_contact_look *looks, const double *y,
+                double *values)
 {
   const trb_model *m = &p->normal;
   const trb_batch *b = &p->d->work->batches[batch];

@@ -29,7 +29,7 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
   if (n_exact == 0) return;
   trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
   for (int k = 0; k < n_exact; k++) {
-    const int j = d->exact[k];
+    const int         j = d->exact[k];
     trb_wrench *const reactions = trb_dynamics_reactions(d, j);
     trb_dynamics_roller_flow(d, j, &d->loads[j], d->flows[j]);
     trb_dynamics_roller_reactions(d, j, &d->loads[j], reactions);

@@ -74,10 +74,10 @@ void trb_motion_free(trb_motion *motion)
   free(motion);
 }
 
-static double        knot(const trb_motion *motion, int i) { return row_of(motion, i)[0]; }
-static double        first_time(const trb_motion *motion) { return knot(motion, 0); }
-static double        last_time(const trb_motion *motion) { return knot(motion, motion->n - 1); }
-static int           repeats(const trb_motion *motion) { return motion->tail < motion->n - 1; }
+static double knot(const trb_motion *motion, int i) { return row_of(motion, i)[0]; }
+static double first_time(const trb_motion *motion) { return knot(motion, 0); }
+static double last_time(const trb_motion *motion) { return knot(motion, motion->n - 1); }
+static int    repeats(const trb_motion *motion) { return motion->tail < motion->n - 1; }
 
 /* Times of knots that belong together differ by rounding at most: by this share of an interval, and by a few units in the last place of
  * the times themselves, which are as large as the histories' times are. */

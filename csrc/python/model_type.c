@@ -188,7 +188,7 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
     return NULL;
   for (int i = 0; i < TRB_RING_FREEDOMS; i++) e.fixed[i] = held[i] != 0.0;
   const size_t n = (size_t)m->n_rollers;
-  double *block = PyMem_Calloc(n * (1 + TRB_ROLLER_FREEDOMS * (1 + TRB_RING_FREEDOMS) + TRB_EQUILIBRIUM_LOADS), sizeof(double));
+  double      *block = PyMem_Calloc(n * (1 + TRB_ROLLER_FREEDOMS * (1 + TRB_RING_FREEDOMS) + TRB_EQUILIBRIUM_LOADS), sizeof(double));
   if (block == NULL) return PyErr_NoMemory();
   e.angles = block;
   e.rollers = block + n;
@@ -209,8 +209,8 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
     else
       out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:i,s:N,s:N}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS), "rollers",
                           columns(e.rollers, m->n_rollers, TRB_ROLLER_FREEDOMS), "loads",
-                          columns(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations, "stiffness",
-                          columns(stiffness, TRB_RING_FREEDOMS, TRB_RING_FREEDOMS), "follow",
+                          columns(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations,
+                          "stiffness", columns(stiffness, TRB_RING_FREEDOMS, TRB_RING_FREEDOMS), "follow",
                           columns(follow, m->n_rollers, TRB_ROLLER_FREEDOMS * TRB_RING_FREEDOMS));
   }
   PyMem_Free(block);

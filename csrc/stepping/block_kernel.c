@@ -312,9 +312,9 @@ static void solve_wide(const trb_arrow_factor_block *own, const trb_arrow_factor
   }
   for (int part = 0; part < room; part += TRB_NP) add_part(hub->inverse + part, room, width, right, 1.0, found + part);
   memcpy(y, found, (size_t)width * sizeof *y);
-  for (int j = 0; j < n; j++)
-    EACH_PART(part, border[j].parts)
-    add_product((usual_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0, x + j * TRB_NR);
+  for (int j = 0; j < n; j++) EACH_PART(part, border[j].parts)
+  add_product((usual_columns)(border[j].solved + part * TRB_NP * TRB_NP), part_size(width, part), found + part * TRB_NP, -1.0,
+              x + j * TRB_NR);
 }
 
 static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x)

@@ -24,8 +24,8 @@ typedef struct trb_arrow_block {
 
 /* Column by column; the arrays belong to the matrix. */
 typedef struct trb_arrow_border {
-  double *to_hub;  /* [width][TRB_NR]: d roller / d hub */
-  double *from;    /* [TRB_NR][room]: d hub / d roller */
+  double  *to_hub; /* [width][TRB_NR]: d roller / d hub */
+  double  *from;   /* [TRB_NR][room]: d hub / d roller */
   unsigned parts;  /* bits of the parts of the hub that are not zero, whatever the others hold */
 } trb_arrow_border;
 
@@ -38,8 +38,8 @@ typedef struct trb_arrow_factor_block {
 } trb_arrow_factor_block;
 
 typedef struct trb_arrow_factor_border {
-  double *solved; /* [width][TRB_NP]: inverse to_hub */
-  double *from;   /* [TRB_NR][room]: border of the hub's rows */
+  double  *solved; /* [width][TRB_NP]: inverse to_hub */
+  double  *from;   /* [TRB_NR][room]: border of the hub's rows */
   unsigned parts;
 } trb_arrow_factor_border;
 

@@ -46,7 +46,8 @@ trb_wrench trb_ring_wrench(const trb_ring_tangent *t, const double *reaction)
 
 void trb_ring_move(trb_ring_pose *ring, int input, double by)
 {
-  double *const places[TRB_RING_IN] = {&ring->centre.x,   &ring->centre.y,   &ring->centre.z, &ring->axis.x,  &ring->axis.y, &ring->velocity.x,
-                                       &ring->velocity.y, &ring->velocity.z, &ring->omega.x,  &ring->omega.y, &ring->omega.z};
+  double *const places[TRB_RING_IN] = {&ring->centre.x, &ring->centre.y,   &ring->centre.z,   &ring->axis.x,
+                                       &ring->axis.y,   &ring->velocity.x, &ring->velocity.y, &ring->velocity.z,
+                                       &ring->omega.x,  &ring->omega.y,    &ring->omega.z};
   *places[input] += by;
 }

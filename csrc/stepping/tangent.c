@@ -45,8 +45,7 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
     t->partly = calloc(n, sizeof *t->partly);
     t->beyond = calloc(n, sizeof *t->beyond);
   }
-  if (t == NULL || t->rollers == NULL || t->rings == NULL || t->seen == NULL || t->partly == NULL ||
-      t->beyond == NULL) {
+  if (t == NULL || t->rollers == NULL || t->rings == NULL || t->seen == NULL || t->partly == NULL || t->beyond == NULL) {
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
@@ -379,8 +378,8 @@ static double moved_since(const trb_tangents *t, const trb_dynamics *d, int roll
     offset->leaned += leaned;
     offset->lean += leaned;
     offset->aside += shifted;
-    slid += trb_norm(trb_sub(to->velocity, from->velocity)) +
-            0.5 * t->model->params.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
+    slid +=
+        trb_norm(trb_sub(to->velocity, from->velocity)) + 0.5 * t->model->params.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
   }
   return slid;
 }
@@ -388,13 +387,13 @@ static double moved_since(const trb_tangents *t, const trb_dynamics *d, int roll
 /* Whether a roller has slipped away from its origin by no more than a share of the mean rolling speed; rings: by what the rings did. */
 static int slips_little(const trb_dynamics *d, double share, const double *step, double rings)
 {
-  const trb_params *p = &d->model->params;
+  const trb_params  *p = &d->model->params;
   const trb_body_at *driven = &d->bodies[d->system->driven];
-  const double shaft = d->system->n_moving > 0 ? trb_dot(driven->ring.omega, driven->ring.axis) : d->drive.shaft_speed;
-  const double radius = 0.5 * p->roller_diameter, speed = radius * fabs(d->model->geometry.roller_spin_ratio * shaft);
-  const double      slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
-                           radius * fabs(step[TRB_ROLLER_omega_a]) +
-                           p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
+  const double       shaft = d->system->n_moving > 0 ? trb_dot(driven->ring.omega, driven->ring.axis) : d->drive.shaft_speed;
+  const double       radius = 0.5 * p->roller_diameter, speed = radius * fabs(d->model->geometry.roller_spin_ratio * shaft);
+  const double       slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
+                            radius * fabs(step[TRB_ROLLER_omega_a]) +
+                            p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
   return slid + rings <= share * trb_max(speed, p->speed_floor);
 }
 
@@ -416,8 +415,9 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
   trb_ring_offset            offset = t->offset;
   if (t->under_way) return 0;
-  const double distance2 =
-      r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + step_rings(t, d, roller, of_ring) : (double)INFINITY;
+  const double distance2 = r->known
+                               ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + step_rings(t, d, roller, of_ring)
+                               : (double)INFINITY;
   const double slid = moved_since(t, d, roller, &offset);
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step, slid) ||
                       !trb_margin_holds(&t->arms, &offset, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);

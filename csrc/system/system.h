@@ -29,7 +29,7 @@ typedef struct trb_system {
   int              n_surfaces;
   trb_pair         pairs[TRB_MOST_PAIRS];
   int              n_pairs;
-  int              driven;    /* number of the body that its drive places and turns, and that loads act on */
+  int              driven;                        /* number of the body that its drive places and turns, and that loads act on */
   int              moving[TRB_MOST_MOVING_RINGS]; /* numbers of the rings with coordinates */
   int              n_moving;
   int              hub_width; /* coordinates of all bodies */

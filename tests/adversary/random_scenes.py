@@ -62,6 +62,13 @@ ORDINARY: Table = {
     "land_clearance": 1.0,
     "land_film": 1.0,
     "land_fill": 1.0,
+    "ring_mass": None,
+    "ring_length": 1.0,
+    "ring_offset": 0.0,
+    "unbalance_share": 0.0,
+    "ring_damping": 0.0,
+    "moment_share": 0.0,
+    "torque": None,
 }
 """What a table that says nothing means; shrinking a failure leads back to these."""
 
@@ -194,7 +201,32 @@ def pieces(rng: np.random.Generator) -> Table:
     return table | {"pieces": int(rng.integers(4, 17))}
 
 
+def free(rng: np.random.Generator) -> Table:
+    """A ring that is a body: light or heavy, out of balance, off its centre, turned by a torque, under loads that come and go."""
+    table = _one_of(rng, usual, light, guided)(rng)
+    for name in ("displacement_x", "misalignment_x", "misalignment_y", "end_speed_rpm", "end_axial_load"):
+        table.pop(name, None)
+    table |= {"speed_rpm": _log(rng, 10.0, 1e4), "ring_mass": _log(rng, 0.1, 300.0), "rotating_share": 0.0}
+    options: dict[str, Any] = {
+        "ring_length": lambda: _log(rng, 0.3, 10.0),
+        "ring_offset": lambda: float(rng.uniform(-0.1, 0.1)),
+        "unbalance_share": lambda: _log(rng, 1e-3, 0.3),
+        "ring_damping": lambda: _log(rng, 1.0, 1e5),
+        "moment_share": lambda: float(rng.uniform(-0.3, 0.3)),
+        "end_axial_load": lambda: table["axial_load"] * _one_of(rng, 0.0, float(rng.uniform(0.2, 2.0))),
+    }
+    for name, draw in options.items():
+        if rng.random() < 0.3:
+            table[name] = draw()
+    if "end_axial_load" in table:
+        table["history_s"] = _log(rng, 1e-3, 2e-2)
+    if rng.random() < 0.25:
+        table["torque"] = float(rng.uniform(-0.5, 2.0))
+    return table
+
+
 KINDS = {
+    "free": free,
     "usual": usual,
     "wide": wide,
     "guided": guided,
@@ -236,7 +268,7 @@ def make(table: Table) -> trb.Scene:
     if t["displacement_x"] is not None:
         fields["displacement"] = (t["displacement_x"], t["displacement_y"], t["displacement_z"])
     else:
-        lowest = min(t["axial_load"], t["end_axial_load"] or math.inf)
+        lowest = min(t["axial_load"], (t["ring_mass"] is None and t["end_axial_load"]) or math.inf)
         if t["repeating"] == "axial_load":
             lowest *= 1.0 - t["repeating_share"]
         fields |= {
@@ -248,7 +280,25 @@ def make(table: Table) -> trb.Scene:
             fields["rotating_load"] = trb.RotatingLoad(t["rotating_share"] * lowest / slope, turns=t["rotating_turns"])
         if t["end_axial_load"] is not None or t["rotating_share"] > 0.0 or t["repeating"] == "axial_load":
             fields["ring"] = "follows"
+        if t["ring_mass"] is not None:
+            fields |= _free_ring(t, bearing)
     return trb.Scene(bearing, start=_start_of(t), **fields)
+
+
+def _free_ring(t: Table, bearing: trb.Bearing) -> Table:
+    """A shaft as thick as half the pitch diameter; its mass, its torque and its moments go with the bearing's size and load."""
+    pitch = bearing.pitch_diameter
+    size = pitch / 0.08
+    mass, speed = t["ring_mass"] * size**3, abs(t["speed_rpm"]) * math.pi / 30.0
+    body = trb.RingBody.hollow_cylinder(
+        mass=mass, outer_diameter=0.5 * pitch, length=t["ring_length"] * pitch, mass_offset=t["ring_offset"] * size
+    )
+    body = body.replace(
+        unbalance=t["unbalance_share"] * t["axial_load"] / max(speed, 10.0) ** 2, damping=t["ring_damping"]
+    )
+    moment = t["moment_share"] * t["axial_load"] * 0.1 * pitch
+    torque = None if t["torque"] is None else t["torque"] * 5e-3 * t["axial_load"] * pitch
+    return {"ring": "free", "ring_body": body, "moment_x": moment, "moment_y": 0.0, "torque": torque}
 
 
 def _bearing(t: Table) -> trb.Bearing:

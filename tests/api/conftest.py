@@ -149,6 +149,7 @@ class StubScene:
         slot_names=("leading_bar", "trailing_bar", "large_end_wall", "small_end_wall"),
         cage=SimpleNamespace(play_radial=RADIAL_PLAY, play_circumferential=0.12e-3, play_axial=AXIAL_PLAY),
     )
+    ring_body = None
     effects = SimpleNamespace(
         bodies="rollers_and_cage",
         films=True,

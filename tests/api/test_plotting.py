@@ -98,8 +98,8 @@ def test_the_map_shows_the_orbit(build: Callable[..., tuple[Any, Result]]) -> No
 
 
 NEED_A_SCENE = ("pressure_map", "film_map", "ring_orbit", "ring_motion")
-"""Records are evaluated again for them, or belong to a free ring, so a stub of a scene does not do; tests/api/test_pictures.py and
-tests/physics/test_free_ring.py draw them."""
+"""Records are evaluated again for them, or belong to a free ring, so a stub of a scene does not do;
+tests/api/test_pictures.py and tests/physics/test_free_ring.py draw them."""
 
 WHOLE = ("pocket_forces", "attitude", "load_zone", "pocket_polar", *NEED_A_SCENE)
 """Pictures that are a figure of their own, or need polar axes."""
@@ -217,7 +217,9 @@ def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
     assert {file.stem for file in some} == cage_and_torque
     whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers"}))
     assert not whirling.has_cage
-    bare = plot.all(whirling.select(["cage", "rollers", "pocket"]), tmp_path / "bare")
+    without_cage = whirling.select(["cage", "rollers", "pocket"])
+    assert plot.drawable(without_cage) == ("spacing_angles", "pressure_map", "film_map", "attitude")
+    bare = plot.all(without_cage.select(["rollers", "pocket"]), tmp_path / "bare")
     assert [file.stem for file in bare] == ["spacing_angles", "attitude"]
     assert whirling.summary()["orbit_radius_over_cpr"] is None
     assert plot.conditions(whirling) == "stub: 3000 rpm, $F_a$ 4930 N"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -59,8 +61,8 @@ def peaks_of(values: Array, step: float, near: float) -> float:
 
 @pytest.mark.parametrize("body", [RING, ROTOR])
 def test_vibrations_have_the_frequencies_of_the_stiffness(body: RingBody) -> None:
-    """sqrt(k/(m + m_r)), with what the rollers add; radial ones come with tilt, and split by gyroscopic moments. Those of the ring
-    alone lie so high that its rollers, 0.3 kg beside 0.7, do not follow it as in an equilibrium: it is 2 to 4 % lower.
+    """sqrt(k/(m + m_r)), with what the rollers add; radial ones come with tilt, and split by gyroscopic moments. Those of the
+    ring alone lie so high that its rollers, 0.3 kg beside 0.7, do not follow it as in an equilibrium: they are 2 to 4 % lower.
     """
     scene = scene_of(body, effects=FRICTIONLESS)
     modes = trb.stiffness(scene).modes(body)
@@ -126,7 +128,9 @@ def test_unbalance_moves_the_ring_as_a_rotor() -> None:
 def test_energy_of_a_coast_down_a_run_up_and_a_drop_to_no_load() -> None:
     """A ring that coasts loses what the audit says; a torque puts in its work; without load the ring floats and comes back."""
     body = RingBody.hollow_cylinder(mass=2.0, outer_diameter=0.06, length=0.09)
-    coast = Simulation(scene_of(body, torque=0.0, speed_rpm=1500.0, axial_load=2000.0)).run(duration=0.15, save_every=1e-3)
+    coast = Simulation(scene_of(body, torque=0.0, speed_rpm=1500.0, axial_load=2000.0)).run(
+        duration=0.15, save_every=1e-3
+    )
     assert coast["shaft_speed"][-1] < 0.7 * coast["shaft_speed"][0]
     assert abs(closure(coast)) < 1e-3 * lost(coast)
     kinetic = coast["kinetic_energy"]
@@ -134,7 +138,9 @@ def test_energy_of_a_coast_down_a_run_up_and_a_drop_to_no_load() -> None:
     run_up = Simulation(scene_of(body, torque=9.0, speed_rpm=0.0, axial_load=3000.0)).run(duration=0.1, save_every=1e-3)
     assert run_up["shaft_speed"][-1] > 600.0
     assert abs(closure(run_up)) < 1e-3 * lost(run_up)
-    assert run_up["work_shaft"][-1] == pytest.approx(9.0 * (run_up["shaft_angle"][-1] - run_up["shaft_angle"][0]), rel=1e-4)
+    assert run_up["work_shaft"][-1] == pytest.approx(
+        9.0 * (run_up["shaft_angle"][-1] - run_up["shaft_angle"][0]), rel=1e-4
+    )
     drop = History.step((0.005, 0.02), (3000.0, 0.0, 3000.0))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # it falls back upon its rollers, and dents them
@@ -181,10 +187,69 @@ def test_a_load_that_rotates_is_the_same_as_one_of_a_held_path() -> None:
     assert np.max(np.abs(place[0] - place[1])) < 0.1 * np.max(np.abs(place[1]))
 
 
+def test_every_number_of_the_ring_acts() -> None:
+    """Rates of a ring that moves, with each number of it changed by a factor, as its equations say."""
+    body = ROTOR.replace(unbalance=1e-3, unbalance_angle_deg=40.0, damping=50.0, damping_turns=0.2)
+    still = Effects.standard().replace(gravity=False)
+    turning = {"effects": still, "torque": 3.0, "moment_x": 5.0, "radial_load": 300.0}
+
+    def rates(changed: RingBody) -> dict[str, float]:
+        simulation = Simulation(scene_of(changed, **turning))
+        vector = Simulation(scene_of(body, **turning)).state.vector
+        view = simulation.view(vector)
+        view["inner_ring_v_x"], view["inner_ring_v_y"], view["inner_ring_omega_n"] = 0.3, -0.2, 0.5
+        found = simulation.view(simulation.derivative(vector, 0.0))
+        return {name: float(found[f"inner_ring_{name}"]) for name in ("v_x", "v_y", "omega_n", "omega_t", "omega_a")}
+
+    plain, free = rates(body), rates(body.replace(unbalance=0.0))
+    speed = 3000.0 * np.pi / 30.0
+    push = 1e-3 * speed**2 / body.mass
+    assert plain["v_x"] - free["v_x"] == pytest.approx(push * np.cos(np.radians(40.0)), rel=1e-6)
+    assert plain["v_y"] - free["v_y"] == pytest.approx(push * np.sin(np.radians(40.0)), rel=1e-6)
+    turned = rates(body.replace(unbalance_angle_deg=100.0))
+    assert turned["v_x"] - free["v_x"] == pytest.approx(push * np.cos(np.radians(100.0)), rel=1e-6)
+    assert rates(body.replace(mass=2.0 * body.mass))["v_x"] == pytest.approx(0.5 * plain["v_x"], rel=1e-9)
+    assert rates(body.replace(damping=0.0))["v_x"] - plain["v_x"] == pytest.approx(50.0 * 0.3 / body.mass, rel=1e-6)
+    undamped = rates(body.replace(damping_turns=0.0))["omega_n"] - plain["omega_n"]
+    assert undamped == pytest.approx(0.2 * 0.5 / body.inertia_transverse, rel=1e-4)
+    light = rates(body.replace(inertia_axial=0.5 * body.inertia_axial))
+    assert light["omega_a"] == pytest.approx(2.0 * plain["omega_a"], rel=1e-9)
+    gyroscopic = body.inertia_axial * speed * 0.5 / body.inertia_transverse  # a turn about n precesses about t
+    assert abs(light["omega_t"] - plain["omega_t"]) == pytest.approx(0.5 * gyroscopic, rel=1e-3)
+    heavy = rates(body.replace(inertia_transverse=2.0 * body.inertia_transverse))
+    assert heavy["omega_n"] == pytest.approx(0.5 * plain["omega_n"], rel=1e-6)
+    shifted = rates(body.replace(mass_offset=body.mass_offset + 0.01))
+    assert abs(shifted["omega_t"] - plain["omega_t"]) > 1.0
+
+
+def test_pictures_of_a_ring(tmp_path: Path) -> None:
+    scene = scene_of(ROTOR.replace(unbalance=1e-4), radial_load=800.0)
+    result = Simulation(scene, accuracy="fast").run(revolutions=2, save_every=1e-4)
+    written = trb.plot.all(result, tmp_path, only=("ring_orbit", "ring_motion"))
+    assert [path.name for path in written] == ["ring_orbit.png", "ring_motion.png"]
+    assert {"ring_orbit", "ring_motion"} <= set(trb.plot.drawable(result))
+    ax = trb.plot.ring_spectrum(result, of="acceleration", along="z", orders=10.0)
+    assert "acceleration" in ax.figure.get_suptitle()
+    marked = [line.get_xdata()[0] for line in ax.lines[1:]]
+    orders = trb.plot.ring_orders(result)
+    assert marked == [order for order in orders.values() if order <= 10.0]
+    assert orders["rollers over the outer ring"] + orders["rollers over the inner ring"] == pytest.approx(12.0)
+    plt.close("all")
+    for given, said in (({"of": "jerk"}, "must be one of"), ({"along": "r"}, "must be 'x', 'y' or 'z'")):
+        with pytest.raises(InputError, match=said):
+            trb.plot.ring_spectrum(result, **given)
+    report = tmp_path / "report.html"
+    trb.report(result, report)
+    assert "Path of the free inner ring" in report.read_text(encoding="utf-8")
+
+
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "no body": ({"ring_body": None}, r"ring_body .*must be given where ring = 'free'"),
     "a body of a held ring": ({"ring": "held"}, r"ring_body .*must not be given unless ring = 'free'"),
-    "a torque on a held ring": ({"ring": "held", "ring_body": None, "torque": 1.0}, r"torque .*must not be given unless"),
+    "a torque on a held ring": (
+        {"ring": "held", "ring_body": None, "torque": 1.0},
+        r"torque .*must not be given unless",
+    ),
     "a place": ({"displacement": (None, None, -1e-5)}, r"displacement .*must not be given where ring = 'free'"),
     "a misalignment": ({"misalignment_x": 1e-4}, r"misalignment_x .*must be 0 where ring = 'free'"),
     "a ring that rests": ({"unloaded": "rests"}, r"unloaded .*must be 'refused' where ring = 'free'"),

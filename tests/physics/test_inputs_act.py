@@ -389,9 +389,16 @@ def test_nothing_is_forgotten() -> None:
         "pocket_ends",
         "pocket_edges",
     }
-    switches |= {"profile", "viscosity_law", "n_rollers", "n_slices"}
+    switches |= {"profile", "viscosity_law", "n_rollers", "n_slices", "ring_free"}
+    here |= OF_FREE_RINGS
     assert here | switches | set(TRACTION) | set(RIBS) | set(PROFILES) >= set(scene_entries(trb.cases.paper_30310()))
 
+
+OF_FREE_RINGS = {
+    f"ring_{name}" for name in ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
+}
+OF_FREE_RINGS |= {"ring_unbalance", "ring_unbalance_angle"}
+"""Numbers of a free ring: tests/physics/test_free_ring.py."""
 
 TRACTION = {
     "eyring_stress": 4e6,

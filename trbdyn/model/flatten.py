@@ -202,12 +202,12 @@ def scene_entries(scene: Scene) -> Entries:
         "land_clearance": land,
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
-        **_ring_entries(scene),
+        **ring_entries(scene),
     }
 
 
-def _ring_entries(scene: Scene) -> Entries:
-    """Numbers of a free ring; zero where there is none."""
+def ring_entries(scene: Scene) -> Entries:
+    """Numbers of a free ring, by their names in the core's table; zero where there is none. Paths start at the scene."""
     body = scene.ring_body
     if body is None:
         return {name: Entry(("ring",), 0.0) for name in PARAMETERS if name.startswith("ring_")}

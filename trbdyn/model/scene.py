@@ -353,7 +353,9 @@ class Scene(Model):
                     raise InputError.of(name, given, "must not be given unless ring = 'free'")
             return
         if self.ring_body is None:
-            raise InputError.of("ring_body", MISSING, "must be given where ring = 'free': its mass and moments of inertia")
+            raise InputError.of(
+                "ring_body", MISSING, "must be given where ring = 'free': its mass and moments of inertia"
+            )
         if self.displacement is not None:
             limit = "must not be given where ring = 'free': it begins in the equilibrium of its loads (m)"
             raise InputError.of("displacement", self.displacement, limit)
@@ -371,7 +373,10 @@ class Scene(Model):
             raise InputError.of("speed_rpm", self.speed_rpm, limit)
         if self.rotating_load is not None and any(values_of(self.rotating_load.load)):
             by_shaft = self.rotating_load.frequency_hz is None
-            for path, quantity in ((("rotating_load", "load"), self.rotating_load.load), (("radial_load",), self.radial_load)):
+            for path, quantity in (
+                (("rotating_load", "load"), self.rotating_load.load),
+                (("radial_load",), self.radial_load),
+            ):
                 if not is_constant(quantity):
                     raise InputError.of(path, quantity, "must be constant with a rotating_load where ring = 'free' (N)")
             if by_shaft and (self.torque is not None or not is_constant(self.speed_rpm)):

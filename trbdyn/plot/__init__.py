@@ -196,7 +196,7 @@ def all(
 
 
 def drawable(result: Result) -> tuple[str, ...]:
-    """Names of the pictures that the recorded groups allow; those of the cage only if there is one, those of the ring if it is free.
+    """Names of the pictures that the recorded groups allow; those of the cage if there is one, of the ring if it is free.
 
     Parameters
     ----------

@@ -46,7 +46,9 @@ def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0
         ax.axhline(0, color=GREY, linewidth=0.6)
         ax.axvline(0, color=GREY, linewidth=0.6)
         ax.set(
-            xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)", ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)", aspect="equal"
+            xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)",
+            ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)",
+            aspect="equal",
         )
         ax.locator_params(nbins=5)
         ax.figure.colorbar(points, ax=ax, label="shaft revolutions")
@@ -165,6 +167,8 @@ def ring_spectrum(
         highest = float(amplitude.max(initial=0.0))
         if highest > 0.0:
             ax.set_ylim(max(1e-6 * highest, float(amplitude[amplitude > 0.0].min())), 3.0 * highest)
-        ax.set(xlabel="frequency / shaft frequency", ylabel=f"amplitude density ({unit}/$\\sqrt{{Hz}}$)", xlim=(0, orders))
+        ax.set(
+            xlabel="frequency / shaft frequency", ylabel=f"amplitude density ({unit}/$\\sqrt{{Hz}}$)", xlim=(0, orders)
+        )
         legend(ax, ncols=2)
     return ax

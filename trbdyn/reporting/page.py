@@ -123,9 +123,7 @@ def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[
     from trbdyn.plot import PICTURES, drawable
 
     possible = [drawable(result) for result in results]
-    chosen = [
-        name for name in (PICTURES if wanted is None else wanted) if all(name in allowed for allowed in possible)
-    ]
+    chosen = [name for name in (PICTURES if wanted is None else wanted) if all(name in allowed for allowed in possible)]
     if any(len(result) < 2 for result in results):
         return "<h2>Pictures</h2><p>There are too few records to draw.</p>"
     out = []

@@ -30,8 +30,8 @@ from trbdyn.run.watch import Account
 from trbdyn.statics.cage_start import pressed_rollers
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium
-from trbdyn.statics.plausible import UnusualInput, unusual
 from trbdyn.statics.free_ring import displacement_of
+from trbdyn.statics.plausible import UnusualInput, unusual
 from trbdyn.statics.ring_motion import placed_again, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView

@@ -157,7 +157,9 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
     even, angles, time = nominal_angles(scene), start_angles(scene), scene.start.time
     stands = scene.start.displacement if scene.ring == "held" else None
     place = None if stands is None else np.where(scene.ring_is_placed, ring_load(scene, time).displacement, stands)
-    if scene.ring == "free" and scene.start.kind == "state":  # the state says where the ring is; nothing need hold it there
+    if (
+        scene.ring == "free" and scene.start.kind == "state"
+    ):  # the state says where the ring is; nothing need hold it there
         place = np.zeros(5) if scene.start.displacement is None else np.array(scene.start.displacement)
     at_start = EquilibriumSolver(model, scene, even).solve(time, displacement=place)
     path: list[float | History] = list(at_start.displacement)

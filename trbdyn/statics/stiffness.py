@@ -82,7 +82,9 @@ class Stiffness(Displayed):
             f"Stiffness of the inner ring at {self.speed_rpm:g} rpm",
             rows,
             head=("per m and rad", *COORDINATES),
-            notes=("Forces in N, moments in N m, about the roller-centre plane; rollers stay in equilibrium, without friction.",),
+            notes=(
+                "Forces in N, moments in N m, about the roller-centre plane; rollers stay in equilibrium, without friction.",
+            ),
         )
 
     def modes(self, body: RingBody, *, gyroscopic: bool = True) -> Modes:
