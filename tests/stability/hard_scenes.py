@@ -220,6 +220,13 @@ def _vg(**changes: Any) -> trb.Lubricant:
     return trb.lubricants.vg100(temperature_c=60.0).replace(**changes)
 
 
+def free_ring(mass: float, speed_rpm: float = 3000.0, *, unbalance: float = 0.0, mass_offset: float = 0.0, **fields: Any) -> trb.Scene:
+    """A ring that is free, with a shaft of its mass."""
+    body = trb.RingBody.hollow_cylinder(mass=mass, outer_diameter=0.06, length=0.09, mass_offset=mass_offset)
+    given = {"axial_load": 4930.0} | fields
+    return trb.Scene(rig_30310(), speed_rpm=speed_rpm, ring="free", ring_body=body.replace(unbalance=unbalance), **given)
+
+
 HARD: tuple[Hard, ...] = (
     Hard(
         "no_load",
@@ -732,6 +739,34 @@ HARD: tuple[Hard, ...] = (
             bearing=guided({"fill": 0.0}),
             effects=trb.Effects.standard().replace(guidance="outer_land"),
         ),
+    ),
+    Hard(
+        "free_ring_as_light_as_a_roller",
+        "a ring of 25 g, as one roller, between twelve of them",
+        lambda: free_ring(0.025),
+    ),
+    Hard(
+        "free_ring_without_load",
+        "the load of a free ring drops to zero for 15 ms: the ring floats, falls back upon its rollers and bounces",
+        lambda: free_ring(2.0, axial_load=trb.History.step((2e-3, 17e-3), (3000.0, 0.0, 3000.0))),
+        duration=0.03,
+        compared=2e-3,
+    ),
+    Hard(
+        "free_ring_out_of_balance",
+        "an unbalance of 2 kg mm at 10 000 rpm: 2.2 kN that turn with the shaft",
+        lambda: free_ring(6.0, 10000.0, unbalance=2e-3, axial_load=8000.0),
+    ),
+    Hard(
+        "free_ring_run_up",
+        "from standstill to 6000 rpm within 60 ms by a torque: the rollers leave the speed at which their coordinates stand still",
+        lambda: free_ring(2.0, 0.0, torque=9.0, axial_load=3000.0),
+        duration=0.06,
+    ),
+    Hard(
+        "free_ring_on_a_rotor",
+        "a rotor of 300 kg, whose centre of mass lies 20 mm from the rollers' plane, tilts them under its weight",
+        lambda: free_ring(300.0, mass_offset=0.02, axial_load=20000.0),
     ),
 )
 """Every hard scene."""
