@@ -45,6 +45,58 @@ def test_basic_life_by_hand() -> None:
     assert found.speed_over_limit == pytest.approx(2000 / 9000)
 
 
+NSK_EXAMPLE = {
+    "HR30305DJ": (
+        {"bore": 0.025, "outside": 0.062, "width": 0.01825, "C": 38e3, "e": 0.83, "Y": 0.73},
+        {"radial_load": 1569.0, "axial_load": 3474.0},
+        (3164.0, 109_750.0),
+    ),
+    "HR30206J": (
+        {"bore": 0.030, "outside": 0.062, "width": 0.01725, "C": 43e3, "e": 0.38, "Y": 1.60},
+        {"radial_load": 3931.0, "axial_load": 0.6 / 1.60 * 3931.0},
+        (3931.0, 80_400.0),
+    ),
+}
+"""NSK, Rolling Bearings, CAT. No. E1102, examples of bearing calculations, example 5: two bearings back to back at 600 rpm, one
+beyond e and one below it, where the axial load is the bearing's own 0.6 Fr/Y; catalogue, loads (N), P (N) and Lh (h).
+"""
+
+
+@pytest.mark.parametrize("name", NSK_EXAMPLE)
+def test_a_worked_example_of_a_catalogue(name: str) -> None:
+    """Lh of the example is computed with factors of two and three digits, fn = 0.42, so that it is right to a percent."""
+    numbers, loads, (equivalent, life) = NSK_EXAMPLE[name]
+    bearing = trb.Bearing.from_catalogue(**numbers)
+    found = trb.rating(trb.Scene(bearing, speed_rpm=600.0, lubricant="vg68", **loads))
+    assert found.equivalent_load == pytest.approx(equivalent, abs=0.5)
+    assert found.life_hours == pytest.approx(life, rel=5e-3)
+
+
+@pytest.mark.parametrize("speed", [100.0, 400.0, 5000.0])
+@pytest.mark.parametrize("cleanliness", ["13/10", "17/14"])
+def test_the_modified_life_backwards(speed: float, cleanliness: str) -> None:
+    """No worked example of a_ISO of a roller bearing with all its numbers is at hand. The standard's formulas written the other
+    way round, with constants typed again: from a_ISO of the sheet to the load ratio, and from there to kappa and the speed.
+    """
+    found = trb.rating(SCENE.replace(speed_rpm=speed, axial_load=9e3, radial_load=11e3), cleanliness=cleanliness)
+    assert found.life_factor is not None
+    assert 0.1 < found.life_factor < 50.0
+    kappa = found.viscosity_ratio
+    assert kappa is not None
+    c, power = (1.3993, 0.054381) if kappa < 0.4 else (1.2348, 0.19087) if kappa < 1.0 else (1.2348, 0.071739)
+    ratio = ((1.0 - (10.0 * found.life_factor) ** (-1.0 / 9.185)) / (1.5859 - c * min(kappa, 4.0) ** -power)) ** 2.5
+    pitch = 1e3 * BEARING.pitch_diameter
+    first, second = {"13/10": (0.0864, 0.5796), "17/14": (0.0133, 1.67)}[cleanliness]
+    share = min(first * math.exp(0.68 * math.log(kappa) + 0.55 * math.log(pitch)), 1.0)
+    limit = ratio * found.equivalent_load / (share * (1.0 - second / pitch ** (1.0 / 3.0)))
+    assert limit == pytest.approx(86.5e3 / 8.2, rel=1e-9)  # pitch diameter below 100 mm
+    asked = found.viscosity / kappa
+    back = (45000.0 / (asked * math.sqrt(pitch))) ** (1.0 / 0.83)
+    back = back if back < 1000.0 else (4500.0 / (asked * math.sqrt(pitch))) ** 2
+    assert back == pytest.approx(speed, rel=1e-9)
+    assert found.modified_life == pytest.approx(found.life_factor * (74.8e3 / found.equivalent_load) ** (10 / 3), rel=1e-9)
+
+
 def test_curves_of_the_standard_join() -> None:
     """Constants that were mistyped would leave steps: a_ISO at kappa = 0.4 and 1, nu1 at 1000 rpm (within the standard's
     own rounding), Cu at 100 mm.
