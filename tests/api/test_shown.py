@@ -149,3 +149,41 @@ def test_completion_in_modules_shows_what_users_need(name: str) -> None:
     module = getattr(trb, name)
     assert not {"Any", "TYPE_CHECKING", "annotations", "np", "plt", "dataclass"} & set(dir(module))
     assert all(hasattr(module, found) for found in dir(module))
+
+
+PYDANTIC = ("model_dump", "model_fields", "model_config", "model_copy", "copy", "dict", "json", "schema", "parse_obj", "construct")
+
+
+@pytest.mark.parametrize("kind", ["Scene", "Bearing", "Lubricant", "Effects", "Start"])
+def test_completion_of_an_input_shows_what_users_need(kind: str) -> None:
+    """It listed the forty names that pydantic gives to every model; they work as before."""
+    scene = trb.cases.scene_30310()
+    model = scene if kind == "Scene" else getattr(scene, kind.lower())
+    names = dir(model)
+    assert set(type(model).model_fields) | {"replace", "to_dict", "to_json"} <= set(names)
+    assert not set(PYDANTIC) & set(names)
+    assert not [name for name in names if name.startswith(("_", "model_"))]
+    assert all(hasattr(model, name) for name in names)
+    assert model.model_copy() == model
+    assert set(model.model_dump()) <= set(names)
+
+
+def test_an_estimate_and_peaks_show_as_tables(simulation: trb.Simulation, result: trb.Result) -> None:
+    estimate = simulation.estimate(revolutions=1)
+    rows = {row[0]: row[1:] for row in cells(estimate)}
+    assert rows["steps"][0] == f"{estimate.steps:,}"
+    assert rows["expected wall time"][1] == "s"
+    assert repr(estimate) == str(estimate)
+    assert "Estimate(" not in repr(estimate)
+    rows = {row[0]: row[1:] for row in cells(result.peaks)}
+    assert rows["pocket_force_peak"][:2] == [f"{result.peaks['pocket_force_peak'].max():.5g}", "N"]
+    assert rows["spacing_min"][0] == f"{result.peaks['spacing_min'].min():.5g}"
+    assert "pocket_force_peak_time" not in rows
+    assert len(repr(result.peaks)) < 120
+
+
+def test_a_lubricant_is_short_as_text() -> None:
+    oil = trb.Lubricant(oil="vg68", temperature_c=60.0)
+    assert str(oil) == repr(oil) == "<Lubricant VG68 at 60 C, 24.48 mPa s>"
+    assert str(oil.oil) == "<Oil VG68: 68 and 8.7 mm2/s at 40 and 100 C>"
+    assert "law of Vogel" in str(trb.lubricants.FVA3)

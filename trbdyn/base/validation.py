@@ -180,6 +180,10 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
         ]
         cls.__signature__ = full.replace(parameters=parameters, return_annotation=inspect.Signature.empty)
 
+    def __dir__(self) -> list[str]:
+        """What `dir` of the class lists, so that completion shows fields and methods of the model, none of pydantic's."""
+        return dir(type(self))
+
     def __init__(self, /, **fields: Any) -> None:
         try:
             super().__init__(**fields)

@@ -182,8 +182,7 @@ class Scene(Model):
             return f"standard but for {', '.join(changed)}" if changed else "standard"
         if name == "start":
             return self.start.kind
-        name, temperature = self.lubricant.name, f" at {self.lubricant.temperature_c:g} C"
-        return name if name.endswith(temperature) else f"{name}{temperature}"
+        return self.lubricant._title()
 
     @property
     def moments(self) -> tuple[float | History | None, float | History | None]:

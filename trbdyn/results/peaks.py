@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
+from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.results import fields as field_table
 from trbdyn.results.fields import Field, Layout
@@ -38,7 +39,7 @@ def _joined() -> dict[str, str]:
     return {row[0]: row[5] for row in _core.peak_table()}
 
 
-class Peaks(Mapping[str, Array]):
+class Peaks(Mapping[str, Array], Displayed):
     """Extremes, means and impacts over a stretch of time, by name.
 
     ``peaks["pocket_force_peak"]`` is the largest normal force between each roller and each face of its pocket (N), shape
@@ -76,7 +77,17 @@ class Peaks(Mapping[str, Array]):
         return len(self._values)
 
     def __repr__(self) -> str:
-        return f"<Peaks: {', '.join(self._values)}>"
+        return f"<Peaks: {len(self._values)} of the pockets, raceways, ribs, skew, spacing and land; list(peaks) names them>"
+
+    def _shown(self) -> Shown:
+        rows = []
+        for field in table():
+            how = _joined()[field.name]
+            if field.name in self._values and how != "time":
+                worst = (np.fmin if how == "smallest" else np.fmax).reduce(self._values[field.name], axis=None)
+                unit = "" if field.unit == "1" else field.unit
+                rows.append((field.name, "" if np.isnan(worst) else f"{worst:.5g}", unit, field.text))
+        return Shown("Peaks: over all rollers and faces the largest number, of minima the smallest", tuple(rows))
 
 
 def from_row(row: ArrayLike, layout: Layout) -> Peaks:

@@ -14,6 +14,7 @@ import numpy as np
 
 from trbdyn import _core
 from trbdyn.base.shipped import DATA
+from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, StepError
 from trbdyn.model.flatten import diameter_deviation
 from trbdyn.model.motion import History, values_of
@@ -46,8 +47,8 @@ LEAST_SCATTER: Final = 1e-7
 """Range of the rollers' diameters from which they count as unequal (m)."""
 
 
-@dataclass(frozen=True)
-class Estimate:
+@dataclass(frozen=True, repr=False)
+class Estimate(Displayed):
     """What a run is expected to take and give.
 
     Attributes
@@ -131,6 +132,37 @@ class Estimate:
                 f"raceway loads {100.0 * self.bias_raceway_peak:+.2g} %"
             )
         return "\n".join(lines)
+
+    __repr__ = __str__
+
+    def _shown(self) -> Shown:
+        numbers = {
+            "time in the bearing": (self.bearing_time, "s"),
+            "expected wall time": (self.wall_s, "s"),
+            "at least": (self.wall_s_low, "s"),
+            "at most": (self.wall_s_high, "s"),
+            "steps": (self.steps, ""),
+            "evaluations of all forces": (self.evaluations, ""),
+            "records": (self.records, ""),
+            "size of the records in memory": (self.memory_mb, "MB"),
+            "error of the cage's centre over Cpr": (100.0 * self.error_cage_over_cpr, "%"),
+            "error of contact loads": (100.0 * self.error_load, "%"),
+            "error of the power loss": (100.0 * self.error_power, "%"),
+            "bias of mean pocket forces": (100.0 * self.bias_pocket_force, "%"),
+            "bias of contact duty": (100.0 * self.bias_contact_duty, "%"),
+            "bias of largest pocket forces": (100.0 * self.bias_pocket_peak, "%"),
+            "bias of largest loads on raceways": (100.0 * self.bias_raceway_peak, "%"),
+        }
+        rows = tuple(
+            (words, f"{value:,}" if isinstance(value, int) else f"{value:.3g}", unit)
+            for words, (value, unit) in numbers.items()
+            if math.isfinite(value)
+        )
+        note = (
+            f"Errors and biases are those of the measured scene '{self.case}', the one most like this; "
+            f"errors over {1e3 * self.window:.2g} ms."
+        )
+        return Shown("Estimate of a run", rows, ("quantity", "value", "unit"), (note,))
 
 
 _BIASES: Final = {

@@ -93,6 +93,12 @@ class Oil(Model):
             raise InputError.of("pressure_coefficient", self.pressure_coefficient, limit)
         return self
 
+    def __repr__(self) -> str:
+        known = f"{self.nu40:g} and {self.nu100:g} mm2/s at 40 and 100 C" if self.vogel is None else "law of Vogel"
+        return f"<Oil {self.name}: {known}>"
+
+    __str__ = __repr__
+
     def density_at(self, temperature_c: float) -> float:
         """Density (kg/m3) at a temperature (C)."""
         return self.density * (1.0 - self.expansion * (temperature_c - 15.0))
@@ -208,6 +214,15 @@ class Lubricant(Model):
     name: str = "oil"
 
     _root: ClassVar[str | None] = "lubricant"
+
+    def __repr__(self) -> str:
+        return f"<Lubricant {self._title()}, {1e3 * self.viscosity:.4g} mPa s>"
+
+    __str__ = __repr__
+
+    def _title(self) -> str:
+        temperature = f" at {self.temperature_c:g} C"
+        return self.name if self.name.endswith(temperature) else f"{self.name}{temperature}"
 
     @model_validator(mode="before")
     @classmethod
