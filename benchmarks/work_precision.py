@@ -394,6 +394,8 @@ def write_table(report: common.Report, path: Path) -> None:
         "points": {name: sorted(found, key=lambda one: one["scale"]) for name, found in rows.items()},
     }
     before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    if "load_drop" in before:  # of load_drop.py
+        table["load_drop"] = before["load_drop"]
     for case, found in before.get("presets_of_scenes", {}).items():
         for name, preset in found.items():
             # what preset_bias.py has measured stays

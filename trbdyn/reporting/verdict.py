@@ -194,12 +194,14 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     load = numbers.get("outer_load_mean")
     if load:
         compared += f" and {100.0 * peak / load:.2g} % of the mean load of a roller"
+    low, high = numbers.get("pocket_force_peak_low"), numbers.get("pocket_force_peak_high")
+    band = f" The load drops and comes back: other starts and accuracies give {low:.2g} to {high:.2g} N." if low and high else ""
     return (
         "good" if settled and _soft(numbers) else "plain",
         f"Hits on the cage{so_far}",
         f"The hardest force between a roller and its pocket{so_far} is {peak:.3g} N, {compared}; while they touch, 95 % of the "
         f"forces stay below {numbers['pocket_force_p95']:.3g} N. A pocket is touched "
-        f"{100.0 * numbers['pocket_duty']:.2g} % of the time.{_bias(result, 'pocket_force_peak')}",
+        f"{100.0 * numbers['pocket_duty']:.2g} % of the time.{_bias(result, 'pocket_force_peak')}{band}",
     )
 
 

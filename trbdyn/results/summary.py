@@ -21,7 +21,7 @@ from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import FileError, TrbError
 from trbdyn.model.motion import is_constant
-from trbdyn.results import observables
+from trbdyn.results import observables, peak_band
 from trbdyn.results.confidence import confidence
 from trbdyn.results.ranges import rolling_note
 from trbdyn.standards.sheet import at_equilibrium, sheet
@@ -66,6 +66,8 @@ LABELS: dict[str, tuple[str, str]] = {
     "spacing_std_deg": ("roller spacing, deviation", "deg"),
     "pocket_force_p95": ("pocket force, 95 % in contact", "N"),
     "pocket_force_peak": ("pocket force, largest at any step", "N"),
+    "pocket_force_peak_low": ("the same with other starts or accuracies, at least", "N"),
+    "pocket_force_peak_high": ("the same with other starts or accuracies, at most", "N"),
     "pocket_impacts": ("impacts in the pockets", ""),
     "pocket_impulse_peak": ("largest impulse of one impact", "N s"),
     "land_force_peak": ("force of the land on the cage, largest at any step", "N"),
@@ -212,6 +214,8 @@ def _motion(result: Result) -> dict[str, Any]:
     out |= {"window_start": float(time[0]), "window_end": float(time[-1])}
     out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
     out |= averages(window)
+    if "pocket_force_peak" in out and peak_band.drops(window):
+        out["pocket_force_peak_low"], out["pocket_force_peak_high"] = peak_band.band(out["pocket_force_peak"])
     out["confidence"], out["confidence_note"] = confidence(window, averages, unsettled)
     if not result.has_cage:
         out |= dict.fromkeys(name for name in out if name.startswith("pocket_"))

@@ -29,7 +29,7 @@ READ: Final = {
 NONE_SEEN: Final = "peaks, percentiles and contact times: no bias by these tolerances was seen"
 CHANGING: Final = (
     "that was measured under constant loads and speeds; after a change the largest forces differ more from start to start than "
-    "from accuracy to accuracy: run several seeds of Start.unequal for their band"
+    "from accuracy to accuracy: a summary gives their band where a load drops, several seeds of Start.unequal that of this scene"
 )
 LEAST: Final = 0.01
 """Bias below which nothing is said."""
