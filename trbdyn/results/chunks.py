@@ -1,7 +1,7 @@
 """Whole chunks of a dataset, made as HDF5's filters make them: bytes sorted by place in a number, a zlib stream, a checksum.
 
-HDF5 packs with zlib, which takes longer than many a run takes for its steps. ISA-L makes the same kind of stream, of the same
-length, in a third to a quarter of that time; any HDF5 program reads it. Where ISA-L is not to be had, zlib packs.
+HDF5 packs with zlib, which takes longer than many a run takes for its steps. ISA-L makes the same kind of stream, 6 % longer, in
+a third to a quarter of that time; any HDF5 program reads it. Where ISA-L is not to be had, zlib packs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ except ImportError:  # ISA-L knows x86-64 and 64-bit ARM alone
     import zlib as packer  # type: ignore[no-redef]
 
 LEVEL = 1
-"""Level of compression, of HDF5's filter too: higher ones gain a few hundredths at twice the time."""
+"""Level of compression, of HDF5's filter too: higher ones gain 6 % at twice the time with zlib, nothing with ISA-L."""
 
 
 def fletcher32(data: bytes) -> int:
