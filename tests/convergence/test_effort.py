@@ -59,6 +59,18 @@ MEASURED: dict[str, tuple[float, dict[str, Any], dict[str, Any], dict[str, float
         TIGHT,
         {"steps": 3133, "iterations": 2.016, "setups": 209, "jacobians": 165, "refused": 21, "tangents": 0.978},
     ),
+    "radial load, backwards": (
+        0.02,
+        {"speed_rpm": -3000.0, "radial_load": 4000.0},
+        USUAL,
+        {"steps": 786, "iterations": 2.207, "setups": 124, "jacobians": 54, "refused": 30, "tangents": 0.632},
+    ),
+    "speed that turns back": (
+        0.012,
+        {"speed_rpm": trb.History.ramp(0.0, 0.01, -2000.0, 2000.0), "effects": Effects.standard()},
+        USUAL,
+        {"steps": 1741, "iterations": 2.18, "setups": 162, "jacobians": 107, "refused": 21, "tangents": 0.041},
+    ),
     "explicit": (
         0.002,
         WHIRL,
