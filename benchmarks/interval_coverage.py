@@ -6,7 +6,7 @@ run itself. Averages without an interval are counted, too: what cannot be told i
     python benchmarks/interval_coverage.py [--runs 40] [--folder DIR] [--json FILE]
 
 Each scene is run twice from each start: for a stated number of turns, and until the torque is known to 1 %. Whoever ends when an
-interval is narrow ends with those that are narrow by chance, so these runs are judged apart; of them only those that `until` ended.
+interval is narrow ends with those that are narrow by chance, so these runs are judged apart, and only those that `until` ended.
 Half an hour of processor time.
 
 With --folder the runs are kept as files, and taken from there the next time: to judge another estimate, nothing is run again.
@@ -131,7 +131,9 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
         "share_given": given / max(sum(row["runs"] for row in rows), 1),
     }
     for scene, end in dict.fromkeys((row["scene"], row["end"]) for row in rows):
-        given, held = (sum(row[key] for row in rows if (row["scene"], row["end"]) == (scene, end)) for key in ("given", "held"))
+        given, held = (
+            sum(row[key] for row in rows if (row["scene"], row["end"]) == (scene, end)) for key in ("given", "held")
+        )
         report.notes.append(f"{scene}, ended by {end}: {held} of {given} intervals hold the long run's value")
     print("\n".join(report.notes))
     report.finish()

@@ -28,7 +28,10 @@ from trbdyn.model.cases import scene_30310
 from trbdyn.run.estimate import TABLE
 from trbdyn.run.options import ACCURACY
 
-DROPS: Final = {"3000 to 300 N at 3000 rpm": (3000.0, 3000.0, 300.0), "4930 to 500 N at 1500 rpm": (1500.0, 4930.0, 500.0)}
+DROPS: Final = {
+    "3000 to 300 N at 3000 rpm": (3000.0, 3000.0, 300.0),
+    "4930 to 500 N at 1500 rpm": (1500.0, 4930.0, 500.0),
+}
 """Speed (rpm), load before and after (N), load between (N)."""
 TIMES: Final = (0.02, 0.04)
 """When the load drops and when it is back (s); each step takes a millisecond."""
@@ -94,8 +97,12 @@ def write_table(report: common.Report, path: Path) -> None:
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
     parser.add_argument("--seeds", type=int, help="runs of each preset; by default 6, 2 with --quick")
-    parser.add_argument("--make-table", nargs="?", type=Path, const=TABLE, metavar="FILE", help="write the package's table")
-    parser.add_argument("--from-json", type=Path, metavar="FILE", help="measure nothing, take the results of such a file")
+    parser.add_argument(
+        "--make-table", nargs="?", type=Path, const=TABLE, metavar="FILE", help="write the package's table"
+    )
+    parser.add_argument(
+        "--from-json", type=Path, metavar="FILE", help="measure nothing, take the results of such a file"
+    )
     options = parser.parse_args(arguments)
     report = common.Report("load_drop", options, COLUMNS)
     report.inputs = {"times_s": TIMES, "length_s": LENGTH}

@@ -93,7 +93,9 @@ def test_bands_after_a_load_drop_hold_the_peaks_of_other_starts_and_accuracies()
         for accuracy in ("fast", "standard", "reference")
         for seed in (11, 12, 13)
     ]
-    held = [low < other < high for one in peaks for low, high in [peak_band.band(one)] for other in peaks if other != one]
+    held = [
+        low < other < high for one in peaks for low, high in [peak_band.band(one)] for other in peaks if other != one
+    ]
     assert sum(held) >= 0.9 * len(held), peaks
 
 

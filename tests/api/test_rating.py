@@ -94,7 +94,9 @@ def test_the_modified_life_backwards(speed: float, cleanliness: str) -> None:
     back = (45000.0 / (asked * math.sqrt(pitch))) ** (1.0 / 0.83)
     back = back if back < 1000.0 else (4500.0 / (asked * math.sqrt(pitch))) ** 2
     assert back == pytest.approx(speed, rel=1e-9)
-    assert found.modified_life == pytest.approx(found.life_factor * (74.8e3 / found.equivalent_load) ** (10 / 3), rel=1e-9)
+    assert found.modified_life == pytest.approx(
+        found.life_factor * (74.8e3 / found.equivalent_load) ** (10 / 3), rel=1e-9
+    )
 
 
 def test_curves_of_the_standard_join() -> None:

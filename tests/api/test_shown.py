@@ -151,7 +151,18 @@ def test_completion_in_modules_shows_what_users_need(name: str) -> None:
     assert all(hasattr(module, found) for found in dir(module))
 
 
-PYDANTIC = ("model_dump", "model_fields", "model_config", "model_copy", "copy", "dict", "json", "schema", "parse_obj", "construct")
+PYDANTIC = (
+    "model_dump",
+    "model_fields",
+    "model_config",
+    "model_copy",
+    "copy",
+    "dict",
+    "json",
+    "schema",
+    "parse_obj",
+    "construct",
+)
 
 
 @pytest.mark.parametrize("kind", ["Scene", "Bearing", "Lubricant", "Effects", "Start"])

@@ -44,8 +44,8 @@ MEANINGS: Final[dict[str, str]] = {
     "spacing_std_deg": "Spread of the angles between neighbouring rollers.",
     "pocket_force_p95": "While a roller touches the cage, 95 % of the forces stay below this.",
     "pocket_force_peak": "The hardest hit on a pocket.",
-    "pocket_force_peak_low": "Where the load drops and comes back, other starts and accuracies give a hardest hit above this in 97 of 100 "
-    "cases, as measured on a 30310.",
+    "pocket_force_peak_low": "Where the load drops and comes back, other starts and accuracies give a hardest hit above this "
+    "in 97 of 100 cases, as measured on a 30310.",
     "pocket_force_peak_high": "And one below this in 97 of 100 cases.",
     "pocket_impacts": "How often a roller began to touch its pocket.",
     "pocket_impulse_peak": "Momentum that the hardest impact passed on.",

@@ -195,7 +195,11 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     if load:
         compared += f" and {100.0 * peak / load:.2g} % of the mean load of a roller"
     low, high = numbers.get("pocket_force_peak_low"), numbers.get("pocket_force_peak_high")
-    band = f" The load drops and comes back: other starts and accuracies give {low:.2g} to {high:.2g} N." if low and high else ""
+    band = (
+        f" The load drops and comes back: other starts and accuracies give {low:.2g} to {high:.2g} N."
+        if low and high
+        else ""
+    )
     return (
         "good" if settled and _soft(numbers) else "plain",
         f"Hits on the cage{so_far}",

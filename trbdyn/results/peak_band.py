@@ -38,7 +38,7 @@ def band(peak: float) -> tuple[float, float]:
 
 
 def drops(window: Result) -> bool:
-    """Whether the axial or the radial load, where it changes in time, is small within the window beside what it is there at most."""
+    """Whether the axial or the radial load changes in time and falls, within the window, below a share of its largest value."""
     scene, time = window.scene, window["time"]
     for load in (scene.axial_load, scene.radial_load):
         if isinstance(load, History):
