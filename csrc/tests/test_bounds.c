@@ -36,6 +36,25 @@ static void test_ways_add_up(void)
     }
 }
 
+/* A roller that skews to the other side has moved by both angles. */
+static void test_skew_to_the_other_side(void)
+{
+  const trb_hold_arms arms = {.radial = 0.9, .axial = 0.2, .tilt = 0.02, .skew = 0.01, .reach = 0.03, .off = 0.05};
+  const trb_hold_ring still = {0};
+  double              from[TRB_ROLLER_SIZE] = {0}, y[TRB_ROLLER_SIZE] = {0};
+  trb_hold            hold;
+  from[TRB_ROLLER_skew] = 1e-2;
+  /* the way of both angles is aside times slant over off: half of it is not enough to hold, a little more than it is */
+  const double aside = arms.skew * 2e-2, slant = arms.skew * 1e-2 + aside;
+  trb_hold_set(&still, from, 0.0, 0.5 * aside * slant / arms.off, 1.0, &hold);
+  y[TRB_ROLLER_skew] = 1e-2;
+  CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
+  y[TRB_ROLLER_skew] = -1e-2;
+  CHECK(!trb_hold_holds(&hold, &arms, &still, y, 0.0));
+  trb_hold_set(&still, from, 0.0, 1.01 * aside * slant / arms.off, 1.0, &hold);
+  CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
+}
+
 /* The edge of the small end, seen from the roller's centre of mass, which lies nearer to the large end. */
 static void test_arm_of_the_small_end(const trb_system *system)
 {
@@ -67,6 +86,7 @@ int main(void)
   const trb_params p = rig_params();
   trb_system      *system = rig_system(&p);
   test_ways_add_up();
+  test_skew_to_the_other_side();
   test_arm_of_the_small_end(system);
   test_arms_of_pockets(system->model);
   rig_free(system);

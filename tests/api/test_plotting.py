@@ -46,6 +46,8 @@ def test_cage_locus_shows_the_path_and_the_circles(whirling: Result) -> None:
     plain = plot.cage_locus(whirling, plane="rail", colour_by_time=False, circles={"Cpr": 1.0, "equal spacing": 0.436})
     assert len(plain.patches) == 2
     assert not plain.collections
+    for shown in (ax, plain):  # the largest circle fills the picture
+        assert 1.0 < shown.get_xlim()[1] == shown.get_ylim()[1] < 1.2
 
 
 def test_the_legend_of_the_locus_lies_beside_the_colour_bar(whirling: Result) -> None:
@@ -283,4 +285,9 @@ def test_animation_draws_the_cage_as_a_circle_and_marks_on_the_rollers(whirling:
             (x0, x1), (y0, y1) = mark.get_data()
             assert (x0, y0) == pytest.approx(roller.center)
             assert np.hypot(x1 - x0, y1 - y0) == pytest.approx(roller.radius)
+            if frame == 0:  # marks begin on the rays from the axis
+                assert (x1 - x0) * roller.center[1] == pytest.approx(
+                    (y1 - y0) * roller.center[0], abs=0.02 * roller.radius**2
+                )
+                assert (x1 - x0) * roller.center[0] + (y1 - y0) * roller.center[1] > 0.0
     plt.close(moving._fig)

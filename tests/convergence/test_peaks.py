@@ -74,6 +74,18 @@ def test_intervals_make_the_run(runs: dict[float, Result], every: float) -> None
     np.testing.assert_array_equal(joined["pocket_impacts"], result.pocket_impacts.sum(axis=0))
 
 
+def test_the_first_record_has_the_peaks_of_its_instant() -> None:
+    """Its interval has no length: of a run that begins, and of one that goes on with a ring of another load."""
+    sim = Simulation(paper_30310(3000.0, 4930.0, 2000.0), accuracy="fast")
+    for _ in range(2):
+        result = sim.run(duration=1e-3, save_every=2e-4)
+        for name in ("outer", "inner", "rib"):
+            for kind in ("peak", "mean"):
+                np.testing.assert_allclose(result[f"{name}_load_{kind}"][0], result[f"{name}_load"][0], rtol=SHARE)
+        assert result.outer_load[0].min() > 100.0
+        assert (result.outer_load_peak_time[0] == result.time[0]).all()
+
+
 def test_means_do_not_alias(runs: dict[float, Result]) -> None:
     """Samples of the pockets' forces do not tell their mean; the impulse does, and a fine record agrees."""
     fine, coarse = runs[EVERY[-1]], runs[EVERY[0]]
