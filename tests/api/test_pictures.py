@@ -47,6 +47,9 @@ def test_pressure_map_shows_the_recorded_pressures(loaded: trb.Result) -> None:
     outer, inner = (axes.collections[0].get_array() for axes in figure.axes[:2])
     assert np.nanmax(outer) == pytest.approx(1e-9 * loaded.outer_pressure.max(), rel=0.02)
     assert np.nanmax(inner) == pytest.approx(1e-9 * loaded.inner_pressure.max(), rel=0.02)
+    least, most = min(np.nanmin(outer), np.nanmin(inner)), max(np.nanmax(outer), np.nanmax(inner))
+    for axes in figure.axes[:2]:  # both rings by the same colours
+        assert axes.collections[0].get_clim() == pytest.approx((least, most))
     places, _ = np.asarray(inner).T.shape[::-1] if np.asarray(inner).ndim == 2 else (72, 24)
     assert places in (24, 72)
 

@@ -281,6 +281,8 @@ def test_animation_draws_the_cage_as_a_circle_and_marks_on_the_rollers(whirling:
         rollers = [one for one in drawn if isinstance(one, Circle)]
         marks = [one for one in drawn if isinstance(one, Line2D) and len(one.get_xdata()) == 2]
         assert len(marks) == len(rollers) > 0
+        path = hub.axes.figure.axes[1]  # the locus and the play fill its picture
+        assert max(1.0, np.abs(whirling.cage_locus()).max()) < path.get_xlim()[1] == path.get_ylim()[1] < 1.3
         for roller, mark in zip(rollers, marks, strict=True):
             (x0, x1), (y0, y1) = mark.get_data()
             assert (x0, y0) == pytest.approx(roller.center)
