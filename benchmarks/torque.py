@@ -3,7 +3,7 @@
     .venv/bin/python benchmarks/torque.py [--quick] [--json FILE]
 
 Oil FVA3 at 50 C; axial load 6 kN, and 6 kN with a radial load of 6.5 kN. Measured values: Wingertszahn et al. 2023, Lubricants
-11:369, read from its figures (another reading of the axial ones: 1.20, 2.75, 3.80 N m). What it leaves open is assumed, see
+11:369, read from its figures (1.20, 2.75, 3.80 N m are results of its own simulation). What it leaves open is assumed, see
 `trb.cases.bearing_32216`. The torques of both rings are shown: where they differ, the rolling film's pressure force is left out.
 """
 

@@ -773,19 +773,22 @@ def test_a_summary_opens_the_file_once(tmp_path: Path, monkeypatch: pytest.Monke
         again.summary()
 
 
-def test_a_law_outside_of_its_loads_says_so() -> None:
-    """By hand: W = Q/(l E' Re) of a roller's outer contact under 4930 N; and a law whose range nobody states says nothing."""
+def test_a_law_outside_of_its_range_says_so() -> None:
+    """By hand: W = Q/(l E' Re) of a roller's outer contact under 4930 N, and G = alpha0 E' of a cold oil."""
     from trbdyn.results.ranges import load_groups
 
-    heavy = trb.cases.scene_30310(3000.0, 4930.0)
-    result = trb.Simulation(heavy).run(duration=2e-3, save_every=1e-4)
+    default = trb.cases.scene_30310(3000.0, 4930.0)
+    other = default.replace(effects=default.effects.replace(rolling_law="zhou_hoeprich"))
+    result = trb.Simulation(other).run(duration=2e-3, save_every=1e-4)
     assert load_groups(result).min() == pytest.approx(1832.9 / (19.8e-3 * 226.37e9 * 8.163e-3), rel=0.01)
     note = result.summary()["rolling_note"]
     assert "zhou_hoeprich" in note
     assert "100 % of the loaded contacts lie outside, W is 5e-05 to " in note
-    other = heavy.replace(effects=heavy.effects.replace(rolling_law="biboulet_houpert"))
-    assert trb.Simulation(other).run(duration=2e-3).summary()["rolling_note"] is None
-    tilted = other.replace(misalignment_x=3e-4)
+    assert trb.Simulation(default).run(duration=2e-3).summary()["rolling_note"] is None
+    tilted = default.replace(misalignment_x=3e-4)
     assert "tilted ring" in trb.Simulation(tilted).run(duration=2e-3).summary()["rolling_note"]
-    inside = trb.cases.scene_30310(3000.0, 15_000.0)
+    oil = default.lubricant.replace(pressure_coefficient=3e-8, pressure_law="barus", dicke=None)
+    cold = trb.Simulation(default.replace(lubricant=oil)).run(duration=2e-3, save_groups=("cage", "rollers", "torque"))
+    assert "G = alpha0 E' is 6791" in cold.summary()["rolling_note"]
+    inside = trb.cases.scene_30310(3000.0, 15_000.0).replace(effects=other.effects)
     assert trb.Simulation(inside).run(duration=2e-3, save_every=1e-4).summary()["rolling_note"] is None

@@ -356,7 +356,8 @@ def test_a_number_shows(kit: SimpleNamespace, name: str) -> None:
         roller = scene.bearing.roller.replace(profile=Profile.crowned(100.0))
         scene = scene.replace(bearing=scene.bearing.replace(roller=roller))
     if name == "rolling_blend":
-        scene = scene.replace(lubricant=scene.lubricant.replace(viscosity=1e-3))
+        effects = scene.effects.replace(rolling_law="zhou_hoeprich")
+        scene = scene.replace(lubricant=scene.lubricant.replace(viscosity=1e-3), effects=effects)
     one, two = (
         Simulation(changed(scene, name, number)).record(vector, 0.0)[field]
         for number in (scene_entries(scene)[name].value if name == "temperature" else None, value)

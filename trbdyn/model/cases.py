@@ -69,7 +69,7 @@ OPERATING_POINTS: Final = {
 MEASURED_TORQUE_32216: Final = {500.0: 1.30, 2000.0: 2.95, 4000.0: 3.75}
 """Measured torque (N m) of the 32216 at an axial load of 6 kN, FVA3 at 50 C, by speed (rpm); Wingertszahn et al. 2023.
 
-Read from a figure; another reading of the same figure gives 1.20, 2.75 and 3.80 N m.
+Read from a figure. 1.20, 2.75 and 3.80 N m, which are quoted as well, are results of that paper's own simulation.
 """
 
 MEASURED_TORQUE_32216_COMBINED: Final = {500.0: 1.50, 1000.0: 1.95, 2000.0: 2.50, 4000.0: 3.25}

@@ -31,7 +31,7 @@ class Friction(Model):
     thermal_floor : float
         Smallest thermal film reduction factor, smooth (1).
     rolling_blend : float
-        Half width in h_PE/h_IR over which rolling resistance sets in (1); assumed.
+        Half width in h_PE/h_IR over which rolling resistance sets in, with every law but 'biboulet_houpert' (1); assumed.
 
     Notes
     -----
@@ -66,7 +66,8 @@ class Effects(Model):
     pushes the roller, too. With this force (`rolling_pressure_force`) the moments on a roller balance, and both rings carry the
     same friction torque, as they must in steady rotation; without it they differ by about 40 %. The film at the rib is that of
     the piezoviscous-elastic regime (`rib_film` 'pe'): the other formula gives tens of micrometres there, so that no rib would
-    ever run in mixed friction. Contacts damp a little (assumed). `paper` has none of these: it repeats the paper.
+    ever run in mixed friction. Rolling resistance follows the law that holds at the loads of bearings (`rolling_law`). Contacts
+    damp a little (assumed). `paper` has none of these: it repeats the paper.
 
     Parameters
     ----------
@@ -86,9 +87,9 @@ class Effects(Model):
     rolling_resistance : bool
         EHL rolling resistance; acts where there are films.
     rolling_law : {'zhou_hoeprich', 'goksem_hargreaves', 'aihara', 'matsuyama', 'biboulet_houpert'}
-        Law of the rolling resistance. The paper's is 'zhou_hoeprich', which was fitted to loads W of 1e-4 to 3.5e-4; most
-        bearings run below that, where 'matsuyama' and 'biboulet_houpert' give nearly twice as much
-        (docs/theory/lubrication.md#rolling-resistance).
+        Law of the rolling resistance. The default holds at the loads of most bearings, and agrees with a numerical solution;
+        the paper's is 'zhou_hoeprich', which gives about half as much where W is below 1e-4
+        (docs/theory/lubrication.md#which-law-of-rolling-resistance).
     rolling_pressure_force : bool
         Pressure force of the rolling film on the roller; needs `rolling_resistance`, and is off by default without it.
     starvation_factor : float
@@ -131,7 +132,7 @@ class Effects(Model):
     thermal: Flag = True
     rolling_resistance: Flag = True
     rolling_law: Literal["zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert"] = (
-        "zhou_hoeprich"
+        "biboulet_houpert"
     )
     rolling_pressure_force: Flag = True
     starvation_factor: Annotated[Number, parameter("starvation_factor")] = 1.0
@@ -181,16 +182,24 @@ class Effects(Model):
     @classmethod
     def standard(cls) -> Self:
         """What we recommend, and the default: the paper's effects, and the rolling film's pressure force (torques on both rings
-        agree), normal damping, the piezoviscous-elastic film at the rib, Gauss nodes.
+        agree), the law of rolling resistance of Biboulet and Houpert, normal damping, the piezoviscous-elastic film at the
+        rib, Gauss nodes.
         """
         return cls()
 
     @classmethod
     def paper(cls) -> Self:
         """The assumptions of Sakaguchi and Harada 2006, errata corrected: no damping, no pressure force of the rolling film,
-        uniform slices.
+        the law of rolling resistance of Zhou and Hoeprich, uniform slices.
         """
-        return cls(rolling_pressure_force=False, rib_film="max", damping="off", quadrature="uniform", n_slices=24)
+        return cls(
+            rolling_law="zhou_hoeprich",
+            rolling_pressure_force=False,
+            rib_film="max",
+            damping="off",
+            quadrature="uniform",
+            n_slices=24,
+        )
 
     @classmethod
     def frictionless(cls) -> Self:

@@ -1,8 +1,8 @@
-"""Whether a run stays within the loads that its law of rolling resistance was fitted to, in words."""
+"""Whether a run stays within the loads and oils that its law of rolling resistance was made for, in words."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,31 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
     from trbdyn.results.result import Result
 
-FITTED: Final = {"zhou_hoeprich": (1e-4, 3.5e-4)}
-"""Range of the load group W = Q/(l E' Re) of a law's data, by the name in `Effects.rolling_law`; for the other laws none is known
-(docs/theory/lubrication.md#rolling-resistance)."""
+
+class Range(NamedTuple):
+    """Loads and oils that a law was made for.
+
+    Attributes
+    ----------
+    load : tuple of float
+        Smallest and largest load group W = Q/(l E' Re).
+    material : tuple of float
+        Smallest and largest material group G = alpha0 E'.
+    """
+
+    load: tuple[float, float]
+    material: tuple[float, float]
+
+
+RANGES: Final = {
+    "zhou_hoeprich": Range((1e-4, 3.5e-4), (3000.0, 4500.0)),
+    "goksem_hargreaves": Range((1e-5, 3.5e-4), (2500.0, 6000.0)),
+    "aihara": Range((2.8e-5, 1e-4), (2500.0, 6000.0)),
+    "matsuyama": Range((2.8e-5, 3.5e-4), (2500.0, 6000.0)),
+    "biboulet_houpert": Range((2e-7, 3.5e-4), (1000.0, 6000.0)),
+}
+"""By the name in `Effects.rolling_law`: for 'zhou_hoeprich' that of its data, for the others where they were compared with a
+numerical solution (docs/theory/lubrication.md#which-law-of-rolling-resistance)."""
 
 
 def load_groups(result: Result) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -50,18 +72,23 @@ def rolling_note(result: Result) -> str | None:
 
 
 def _outside(result: Result) -> str:
-    law = result.scene.effects.rolling_law
-    if law not in FITTED or "contacts" not in result.groups:
+    law, scene = result.scene.effects.rolling_law, result.scene
+    (low, high), (thin, thick) = RANGES[law]
+    said = []
+    material = scene.lubricant.pressure_coefficient * scene.bearing.geometry.effective_modulus
+    if not thin <= material <= thick:
+        said.append(f"G = alpha0 E' is {material:.4g}")
+    if "contacts" in result.groups:
+        found = load_groups(result)
+        share = 100.0 * float(np.mean((found < low) | (found > high))) if found.size else 0.0
+        if share > 0.0:
+            where = f"{found.min():.2g} to {found.max():.2g}"
+            said.append(f"{share:.3g} % of the loaded contacts lie outside, W is {where}")
+    if not said:
         return ""
-    low, high = FITTED[law]
-    found = load_groups(result)
-    if not found.size or (low <= found.min() and found.max() <= high):
-        return ""
-    share = 100.0 * float(np.mean((found < low) | (found > high)))
     return (
-        f"the law of rolling resistance, {law}, was fitted to loads W = Q/(l E' Re) of {low:g} to {high:g}; "
-        f"{share:.3g} % of the loaded contacts lie outside, W is {found.min():.2g} to {found.max():.2g}. At W of 2.8e-5 "
-        "to 1e-4 independent laws give 1.7 to 1.9 times as much: compare effects.rolling_law = 'biboulet_houpert'"
+        f"the law of rolling resistance, {law}, holds for loads W = Q/(l E' Re) of {low:g} to {high:g} and for G of "
+        f"{thin:g} to {thick:g}; {' and '.join(said)}: see effects.rolling_law"
     )
 
 

@@ -1,0 +1,1 @@
+"""Rolling resistance of a line contact: laws beside a numerical solution."""
