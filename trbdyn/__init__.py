@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from trbdyn.run.toml_case import load_case
     from trbdyn.statics.stiffness import stiffness
     from trbdyn.study.planning import plan
+    from trbdyn.study.torque_map import torque_map
     from trbdyn.study.uncertainty import uncertainty
     from trbdyn.study.what_matters import sensitivity
     from trbdyn.viewer import view
@@ -96,6 +97,7 @@ _NAMES = {
     "resume": "trbdyn.run.resume",
     "sensitivity": "trbdyn.study.what_matters",
     "stiffness": "trbdyn.statics.stiffness",
+    "torque_map": "trbdyn.study.torque_map",
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
 }
@@ -150,6 +152,7 @@ __all__ = [
     "sensitivity",
     "stiffness",
     "study",
+    "torque_map",
     "uncertainty",
     "view",
 ]

@@ -270,14 +270,17 @@ def uncertainty(
     >>> found["torque"].low < found["torque"].high
     True
     """
-    drawn = _checked(open_inputs(scene) if bands is None else bands)
+    drawn = checked_bands(open_inputs(scene) if bands is None else bands)
     for field, value, least in (("samples", samples, FEWEST), ("seed", seed, 0)):
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
             raise InputError.of(field, value, f"must be a whole number, at least {least}")
     options = RunOptions(revolutions=5.0, accuracy="fast") if options is None else options
     base = Base.of(scene, options)
-    unit = _unit_draws(len(drawn), int(samples), int(seed))
-    made = [Case({"draw": 0}, scene, options), *(_case(base, options, drawn, row, k + 1) for k, row in enumerate(unit))]
+    unit = unit_draws(len(drawn), int(samples), int(seed))
+    made = [
+        Case({"draw": 0}, scene, options),
+        *(drawn_case(base, options, drawn, row, k + 1) for k, row in enumerate(unit)),
+    ]
     if all(case.scene is None for case in made[1:]):
         raise InputError.of("bands", drawn[0].path, f"no draw can be built; the first: {made[1].error}")
     data = run_study(
@@ -286,7 +289,8 @@ def uncertainty(
     return _gathered(data, drawn, unit, quantities)
 
 
-def _checked(bands: Mapping[str, tuple[float, float]] | Sequence[Band]) -> tuple[Band, ...]:
+def checked_bands(bands: Mapping[str, tuple[float, float]] | Sequence[Band]) -> tuple[Band, ...]:
+    """Bands as a user gives them, checked."""
     if isinstance(bands, Mapping):
         made = []
         for path, ends in bands.items():
@@ -306,7 +310,7 @@ def _checked(bands: Mapping[str, tuple[float, float]] | Sequence[Band]) -> tuple
     return tuple(made)
 
 
-def _unit_draws(inputs: int, count: int, seed: int) -> Array:
+def unit_draws(inputs: int, count: int, seed: int) -> Array:
     """Points of the unit cube, shape (count, inputs)."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "The balance properties", UserWarning)  # counts that are no powers of two
@@ -322,7 +326,8 @@ def _is_whole(base: Base, band: Band) -> bool:
     return whole and float(band.low).is_integer() and float(band.high).is_integer()
 
 
-def _case(base: Base, options: RunOptions, bands: Sequence[Band], row: Array, number: int) -> Case:
+def drawn_case(base: Base, options: RunOptions, bands: Sequence[Band], row: Array, number: int) -> Case:
+    """The case of a draw; `row` tells how far between the ends of each band."""
     overrides: dict[str, Any] = {}
     for band, share in zip(bands, row, strict=True):
         if _is_whole(base, band):

@@ -1,0 +1,91 @@
+"""The command ``torque``: friction torque of a case over speed, load and temperature."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.outcome import DONE, FAILED
+from trbdyn.errors import InputError
+
+
+def add_torque_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
+    """Add the command ``torque``."""
+    torque = commands.add_parser(
+        "torque",
+        parents=[*parents],
+        help="friction torque over speed, load and temperature",
+        description="Friction torque of a case over speed, load and temperature of the oil, split by what loses it. Writes the "
+        "numbers as NAME.nc and a picture NAME.png.",
+    )
+    torque.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
+    torque.add_argument("--speeds", type=float, nargs="+", required=True, metavar="RPM", help="speeds of the shaft")
+    torque.add_argument(
+        "--loads",
+        nargs="+",
+        metavar="FA[:FR]",
+        help="axial loads (N), with a radial one behind a colon (default: those of the case)",
+    )
+    torque.add_argument(
+        "--temperatures", type=float, nargs="+", metavar="C", help="temperatures of the oil (default: that of the case)"
+    )
+    torque.add_argument(
+        "--tolerance", type=float, default=0.01, metavar="SHARE", help="change of a settled torque (default: 0.01)"
+    )
+    torque.add_argument(
+        "--bands", action="store_true", help="draw inputs that nobody knows exactly, and tell the band of each torque"
+    )
+    torque.add_argument("--samples", type=int, default=16, metavar="N", help="draws of each point (default: 16)")
+    torque.add_argument("--workers", type=int, metavar="N", help="runs at a time (default, and at most: the cores)")
+    torque.add_argument("-o", "--output", metavar="NAME", help="writes NAME.nc and NAME.png (default: CASE_torque)")
+    torque.add_argument("--overwrite", action="store_true", help="replace these files")
+    torque.add_argument("--quiet", action="store_true", help="no progress bar, no table")
+    add_set(torque)
+    torque.set_defaults(command=_torque)
+
+
+def _torque(options: argparse.Namespace) -> int:
+    from trbdyn.base.own_files import output_path
+    from trbdyn.model.motion import value_at
+    from trbdyn.study.gather import save
+    from trbdyn.study.torque_map import torque_map
+
+    scene, run = case_with_changes(options.case, options.changes)
+    own: list[float | tuple[float, float]] = [(value_at(scene.axial_load, 0.0), value_at(scene.radial_load, 0.0))]
+    loads = own if options.loads is None else [_load(text) for text in options.loads]
+    name = options.output or f"{Path(options.case).stem}_torque"
+    numbers, picture = (output_path(f"{name}{ending}", overwrite=options.overwrite) for ending in (".nc", ".png"))
+    if not numbers.parent.is_dir():
+        raise InputError.of("--output", name, f"must lie in a folder that is there: there is no {numbers.parent}")
+    found = torque_map(
+        scene,
+        options.speeds,
+        loads,
+        temperatures=options.temperatures,
+        tolerance=options.tolerance,
+        bands=options.bands,
+        samples=options.samples,
+        options=run,
+        workers=options.workers,
+        progress=not options.quiet,
+    )
+    save(found.data, numbers)
+    found.picture(picture)
+    if not options.quiet:
+        print(found)
+        print(f"\n{numbers}\n{picture}")
+    if not found.settled:
+        print("trbdyn: not every torque has settled; the table says which, and why", file=sys.stderr)
+    return DONE if found.settled else FAILED
+
+
+def _load(text: str) -> tuple[float, float]:
+    try:
+        axial, _, radial = text.partition(":")
+        return float(axial), float(radial or 0.0)
+    except ValueError:
+        raise InputError.of("--loads", text, "must be FA or FA:FR, for instance 4930:2780 (N)") from None

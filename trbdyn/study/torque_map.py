@@ -1,0 +1,415 @@
+"""Friction torque over speed, load and temperature of the oil: many short runs, each repeated longer until its torque stands."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.validation import number_of
+from trbdyn.errors import InputError
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.scene import Scene
+from trbdyn.results.result import Result
+from trbdyn.results.summary import mean_loss, shaft_torque
+from trbdyn.run.options import RunOptions
+from trbdyn.study.definition import Base, Case, Study
+from trbdyn.study.runner import run as run_study
+from trbdyn.study.uncertainty import FEWEST, LEVEL, Band, checked_bands, drawn_case, open_inputs, unit_draws
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = NDArray[np.float64]
+
+TURNS: Final = (2.0, 8.0, 32.0)
+"""Turns of the shaft after which a torque is judged; the next number where it does not stand yet."""
+RECORDS: Final = 64
+"""Records of a run."""
+STEADY: Final = 0.9
+"""Largest factor from quarter to quarter by which a change is taken to shrink."""
+GROUPS: Final = ("contacts", "torque", "power", "energy")
+SOURCES: Final = ("rolling", "rib", "traction", "pocket", "drag", "land", "front_rib", "damping")
+"""Names of the shares of a torque. What a run calls rolling_pressure belongs to rolling, both raceways make traction, film and
+contact of a land are one."""
+FILMS: Final = ("film_parameter_inner", "film_parameter_rib")
+
+
+def drift(result: Result) -> float:
+    """How far the torque at the end of a run may still be from where it settles, over that torque (1).
+
+    From the means over the last three quarters of the run: a change that shrinks from quarter to quarter by a steady factor
+    goes on so. A factor above 0.9 counts as 0.9, as a mean that only scatters has any.
+    """
+    start, end = result["time"][0], result["time"][-1]
+    cuts = [start + share * (end - start) for share in (0.25, 0.5, 0.75)]
+    # means from each cut to the end, and from them those of the quarters
+    third, half, quarter = (shaft_torque(result.window(cut)) for cut in cuts)
+    quarters = (3.0 * third - 2.0 * half, 2.0 * half - quarter, quarter)
+    before, last = abs(quarters[1] - quarters[0]), abs(quarters[2] - quarters[1])
+    shrinking = min(last / before, STEADY) if before > 0.0 else 0.0
+    return float(last / (1.0 - shrinking) / max(abs(quarter), 1e-300))
+
+
+def stored(result: Result) -> float:
+    """How much of the shaft's power over the second half of a run was not lost but went into motion or springs (1)."""
+    half = result.window(0.5 * (result["time"][0] + result["time"][-1]))
+    power = abs(shaft_torque(half) * half["shaft_speed"].mean())
+    return abs(power - mean_loss(half)) / max(power, 1e-300)
+
+
+@dataclass(frozen=True, repr=False)
+class TorqueMap(Displayed):
+    """Torques by temperature, speed and load; print it for a table.
+
+    Attributes
+    ----------
+    data : xarray.Dataset
+        Dimensions temperature_c, speed_rpm and load, the latter with the coordinates axial_load and radial_load, and source.
+        Variables: torque, share (torque of each source), film_parameter_inner and film_parameter_rib, settled, drift,
+        stored, turns, message; with bands torque_low and torque_high.
+    tolerance : float
+        Change of the torque that was allowed (1).
+    """
+
+    data: xarray.Dataset
+    tolerance: float
+
+    @property
+    def settled(self) -> bool:
+        """Whether every torque stands."""
+        return bool(self.data["settled"].all())
+
+    def lowest(self, *, load: int = 0, temperature: int = 0) -> tuple[float, float]:
+        """Speed (rpm) at which the torque is smallest, and that torque (N m), of the settled points of a load.
+
+        Parameters
+        ----------
+        load, temperature : int
+            Places in the map.
+
+        Raises
+        ------
+        InputError
+            If no point of this load has settled.
+        """
+        line = self.data.isel(load=load, temperature_c=temperature)
+        torque = np.where(line["settled"], line["torque"], np.inf)
+        if not np.isfinite(torque).any():
+            raise InputError.of("load", load, "has no point whose torque has settled")
+        place = int(np.argmin(torque))
+        return float(line["speed_rpm"][place]), float(torque[place])
+
+    def picture(self, path: str | Path | None = None, *, temperature: int | None = None) -> Any:
+        """Draw torque over speed, a line for each load or temperature, and its sources.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            Where to save the picture.
+        temperature : int, optional
+            The one temperature to draw, by its place; all by default.
+
+        Returns
+        -------
+        Figure
+            The matplotlib figure.
+        """
+        from trbdyn.plot.torque import draw_map
+
+        return draw_map(self.data, path, temperature)
+
+    def __str__(self) -> str:
+        shown = self._shown()
+        return Shown(shown.title, (shown.head, *shown.rows), shown.head, shown.notes).text()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _shown(self) -> Shown:
+        data = self.data
+        rows = []
+        banded = "torque_low" in data
+        for t, temperature in enumerate(data["temperature_c"].values):
+            for k in range(data.sizes["load"]):
+                for s, speed in enumerate(data["speed_rpm"].values):
+                    at = data.isel(temperature_c=t, load=k, speed_rpm=s)
+                    value = float(at["torque"])
+                    largest = sorted(
+                        ((float(at["share"].sel(source=name)), name) for name in SOURCES), key=lambda entry: -entry[0]
+                    )
+                    causes = ", ".join(
+                        f"{name.replace('_', ' ')} {100.0 * share / value:.0f} %"
+                        for share, name in largest[:3]
+                        if value and share > 0.005 * value
+                    )
+                    row = [f"{temperature:g}", _load_words(at), f"{speed:g}", f"{value:.4g}"]
+                    if banded:
+                        row.append(f"{float(at['torque_low']):.4g} to {float(at['torque_high']):.4g}")
+                    rows.append((*row, causes, _state(at)))
+        head = ["oil (C)", "load (N)", "speed (rpm)", "torque (N m)"]
+        head += [f"{100.0 * LEVEL:.0f} % of the draws"] if banded else []
+        open_points = int((~data["settled"]).sum())
+        notes = () if not open_points else (f"{open_points} points without a settled torque: see the last column",)
+        return Shown("Friction torque of the shaft", tuple(rows), (*head, "sources", "settled"), notes)
+
+
+def _load_words(at: xarray.Dataset) -> str:
+    radial = float(at["radial_load"])
+    return f"{float(at['axial_load']):g}" + (f", radial {radial:g}" if radial else "")
+
+
+def _state(at: xarray.Dataset) -> str:
+    if bool(at["settled"]):
+        return "yes"
+    message = str(at["message"].values)
+    return (
+        message or f"no: it may still change by {100.0 * float(at['drift']):.2g} % after {float(at['turns']):g} turns"
+    )
+
+
+def torque_map(
+    subject: Bearing | Scene,
+    speeds: Sequence[float],
+    loads: Sequence[float | tuple[float, float]],
+    *,
+    temperatures: Sequence[float] | None = None,
+    tolerance: float = 0.01,
+    bands: bool | Mapping[str, tuple[float, float]] | Sequence[Band] = False,
+    samples: int = 16,
+    seed: int = 0,
+    options: RunOptions | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    executor: Any = "threads",
+    workers: int | None = None,
+    progress: bool = False,
+) -> TorqueMap:
+    """Friction torque of the shaft over speed, load and temperature of the oil, split by what loses it.
+
+    Every point is a run of its own. It lasts 2 turns of the shaft; where its torque does not stand, it is run again over 8, and
+    then over 32. A torque stands where what it has still to go, as the means of the last three quarters of the run tell, is no
+    more than `tolerance`, and where no more than this share of the shaft's power went into anything but losses over the last
+    half. A point whose torque does not stand after that keeps its number, is marked as not settled, and says why.
+
+    Parameters
+    ----------
+    subject : Bearing or Scene
+        A bearing takes the default oil and effects; a scene gives all but speed and loads.
+    speeds : sequence of float
+        Speeds of the shaft (rpm), none of them 0.
+    loads : sequence of float or tuple
+        Axial loads (N), or pairs of axial and radial load.
+    temperatures : sequence of float, optional
+        Temperatures of the oil (C); that of the scene by default.
+    tolerance : float
+        Change that may still come, and share of the power that is not lost, up to which a torque has settled (1).
+    bands : bool, mapping of str to tuple, or sequence of Band
+        Draw inputs that nobody knows exactly, as `trbdyn.uncertainty` does, and tell between which torques 95 % of the draws of
+        each point lie: those of `trbdyn.study.open_inputs` if true, or bands of your own.
+    samples : int
+        Draws of each point, at least 8.
+    seed : int
+        Seed of the draws.
+    options : RunOptions, optional
+        Accuracy and settings of each run, not its length; 'fast' by default.
+    folder : path-like, optional
+        Where the runs are kept; a second call with the same folder runs only those that are missing.
+    executor : {'threads', 'processes', 'serial'} or object
+        As in `trbdyn.study.run`.
+    workers : int, optional
+        As in `trbdyn.study.run`.
+    progress : bool
+        Show a progress bar.
+
+    Returns
+    -------
+    TorqueMap
+        Print it for a table; `TorqueMap.picture` draws it.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used, or no point at all can be built.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> found = trb.torque_map(trb.cases.rig_30310(), speeds=[500.0, 3000.0], loads=[1230.0, (4930.0, 2780.0)])
+    >>> found.settled
+    True
+    >>> found.data["torque"].sel(speed_rpm=3000.0).values[0, 1] > found.data["torque"].sel(speed_rpm=500.0).values[0, 1]
+    True
+    """
+    scene = _scene(subject)
+    run = RunOptions(accuracy="fast") if options is None else options
+    places = _places(scene, speeds, loads, temperatures)
+    if not 0.0 < number_of("tolerance", tolerance) < 1.0:
+        raise InputError.of("tolerance", tolerance, "must be above 0 and below 1")
+    drawn = () if bands is False else checked_bands(open_inputs(scene) if bands is True else bands)
+    for field, value, least in (("samples", samples, FEWEST), ("seed", seed, 0)):
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+            raise InputError.of(field, value, f"must be a whole number, at least {least}")
+    unit = unit_draws(len(drawn), int(samples), int(seed)) if drawn else np.empty((0, 0))
+    bases = [_at_place(scene, place) for place in places]
+    if not any(base for base, _ in bases):
+        raise InputError.of("loads", loads, f"no point can be built; the first: {bases[0][1]}")
+    rows = {}
+    waiting = [(p, d) for p in range(len(places)) for d in range(1 + len(unit))]
+    for turns in TURNS:
+        cases = [_case(bases[p], drawn, unit, p, d, places[p][1], run, turns) for p, d in waiting]
+        data = run_study(
+            Study(tuple(cases), (), "torque_map"),
+            folder,
+            executor=executor,
+            workers=workers,
+            observables={"drift": drift, "stored": stored},
+            progress=progress,
+        )
+        for k, key in enumerate(waiting):
+            rows[key] = _row(data.isel(case=k), turns, tolerance)
+        waiting = [key for key in waiting if not rows[key]["settled"] and not rows[key]["message"]]
+        if not waiting:
+            break
+    return TorqueMap(_gathered(scene, places, rows, len(unit), (speeds, loads, temperatures)), float(tolerance))
+
+
+def _scene(subject: Bearing | Scene) -> Scene:
+    if isinstance(subject, Bearing):
+        return Scene(subject, speed_rpm=1000.0, axial_load=1000.0)
+    if not isinstance(subject, Scene):
+        raise InputError.of("subject", type(subject).__name__, "must be a Bearing or a Scene")
+    return subject
+
+
+Place = tuple[float, float, tuple[float, float]]
+
+
+def _places(scene: Scene, speeds: Any, loads: Any, temperatures: Any) -> list[Place]:
+    """(temperature, speed, (axial, radial)) of every point, the last changing fastest."""
+    listed = {"speeds": speeds, "loads": loads}
+    listed |= {} if temperatures is None else {"temperatures": temperatures}
+    for field, values in listed.items():
+        if isinstance(values, str) or not isinstance(values, Iterable) or not len(list(values)):
+            raise InputError.of(field, values, "must be a sequence of at least one number")
+    pairs = []
+    for load in loads:
+        pair = tuple(load) if isinstance(load, Sequence) and not isinstance(load, str) else (load, 0.0)
+        if len(pair) != 2:
+            raise InputError.of("loads", load, "must be an axial load, or a pair of axial and radial load (N)")
+        pairs.append((number_of("loads", pair[0]), number_of("loads", pair[1])))
+    turned = [number_of("speeds", speed) for speed in speeds]
+    if not all(turned):
+        raise InputError.of("speeds", speeds, "must not hold 0: a shaft that stands has no friction torque (rpm)")
+    own = [scene.lubricant.temperature_c] if temperatures is None else temperatures
+    warm = [number_of("temperatures", temperature) for temperature in own]
+    for field, found in (("speeds", turned), ("loads", pairs), ("temperatures", warm)):
+        if len(set(found)) != len(found):
+            raise InputError.of(field, listed.get(field), "must not hold a value twice")
+    return [(t, n, load) for t in warm for n in turned for load in pairs]
+
+
+def _at_place(scene: Scene, place: Place) -> tuple[Base | None, str]:
+    temperature, speed, (axial, radial) = place
+    overrides: dict[str, Any] = {"scene.speed_rpm": speed, "scene.axial_load": axial, "scene.radial_load": radial}
+    if temperature != scene.lubricant.temperature_c:
+        overrides["lubricant.temperature_c"] = temperature
+    try:
+        return Base.of(Base.of(scene).build(overrides)[0]), ""
+    except InputError as error:
+        return None, str(error).splitlines()[0]
+
+
+def _case(
+    made: tuple[Base | None, str],
+    bands: Sequence[Band],
+    unit: Array,
+    place: int,
+    draw: int,
+    speed: float,
+    run: RunOptions,
+    turns: float,
+) -> Case:
+    base, error = made
+    parameters = {"point": place, "draw": draw}
+    if base is None:
+        return Case(parameters, None, run, error)
+    save_every = 60.0 / abs(speed) * turns / RECORDS
+    own = run.replace(revolutions=turns, duration=None, save_every=save_every, save_groups=GROUPS)
+    if draw == 0:
+        return Case(parameters, base.build({})[0], own)
+    found = drawn_case(base, own, bands, unit[draw - 1], draw)
+    return Case(parameters, found.scene, own, found.error)
+
+
+def _row(found: xarray.Dataset, turns: float, tolerance: float) -> dict[str, Any]:
+    """What is kept of a run."""
+    done = str(found["status"].values) == "done"
+    row: dict[str, Any] = {"turns": turns, "message": "" if done else str(found["message"].values).splitlines()[0]}
+    for name in ("torque", "drift", "stored", *FILMS):
+        row[name] = float(found[name]) if done and name in found else np.nan
+    row["share"] = _shares(found) if done else np.full(len(SOURCES), np.nan)
+    row["settled"] = done and max(row["drift"], row["stored"]) <= tolerance
+    return row
+
+
+def _shares(found: xarray.Dataset) -> Array:
+    sums = dict.fromkeys(SOURCES, 0.0)
+    for name, value in found.data_vars.items():
+        part = str(name).removeprefix("torque_by_loss_")
+        if part == name:
+            continue
+        kind = next((kind for kind in SOURCES if part.startswith(kind)), part)
+        sums[kind] += float(np.nan_to_num(value))
+    return np.array([sums[name] for name in SOURCES])
+
+
+def _gathered(
+    scene: Scene, places: Sequence[Place], rows: Mapping[tuple[int, int], Mapping[str, Any]], draws: int, given: Any
+) -> xarray.Dataset:
+    import xarray
+
+    warm = list(dict.fromkeys(place[0] for place in places))
+    speeds = list(dict.fromkeys(place[1] for place in places))
+    loads = list(dict.fromkeys(place[2] for place in places))
+    dims, shape = ("temperature_c", "speed_rpm", "load"), (len(warm), len(speeds), len(loads))
+    first = [rows[p, 0] for p in range(len(places))]
+
+    def column(name: str) -> Any:
+        return np.array([row[name] for row in first]).reshape(shape)
+
+    variables: dict[str, Any] = {
+        "torque": (dims, column("torque"), {"long_name": "friction torque of the shaft", "units": "N m"}),
+        "share": (
+            (*dims, "source"),
+            np.array([row["share"] for row in first]).reshape(*shape, len(SOURCES)),
+            {"long_name": "torque by what loses it", "units": "N m"},
+        ),
+        "settled": (dims, column("settled")),
+        "drift": (dims, column("drift"), {"long_name": "change of the torque that may still come", "units": "1"}),
+        "stored": (dims, column("stored"), {"long_name": "share of the power that was not lost", "units": "1"}),
+        "turns": (dims, column("turns"), {"units": "1"}),
+        "message": (dims, np.array([row["message"] for row in first], dtype=object).reshape(shape)),
+        **{name: (dims, column(name), {"units": "1"}) for name in FILMS},
+    }
+    if draws:
+        low, high = (np.full(len(places), np.nan) for _ in range(2))
+        for p in range(len(places)):
+            torques = [rows[p, d]["torque"] for d in range(1, draws + 1) if rows[p, d]["settled"]]
+            if len(torques) >= FEWEST:
+                low[p], high[p] = np.quantile(torques, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+        variables["torque_low"] = (dims, low.reshape(shape), {"units": "N m"})
+        variables["torque_high"] = (dims, high.reshape(shape), {"units": "N m"})
+    coordinates = {
+        "temperature_c": ("temperature_c", warm, {"units": "C"}),
+        "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"}),
+        "axial_load": ("load", [load[0] for load in loads], {"units": "N"}),
+        "radial_load": ("load", [load[1] for load in loads], {"units": "N"}),
+        "source": ("source", list(SOURCES)),
+    }
+    return xarray.Dataset(variables, coords=coordinates, attrs={"bearing": scene.bearing.name})
