@@ -147,6 +147,10 @@ class StubScene:
         n_rollers=Z,
         pitch_diameter=82.389e-3,
         slot_names=("leading_bar", "trailing_bar", "large_end_wall", "small_end_wall"),
+        geometry=SimpleNamespace(
+            effective_modulus=226.37e9, outer_equivalent_radius=8.163e-3, inner_equivalent_radius=5.830e-3
+        ),
+        roller=SimpleNamespace(effective_length=19.8e-3),
         cage=SimpleNamespace(play_radial=RADIAL_PLAY, play_circumferential=0.12e-3, play_axial=AXIAL_PLAY),
     )
     ring_body = None
@@ -159,6 +163,7 @@ class StubScene:
         rolling_pressure_force=False,
         friction=SimpleNamespace(lambda_full=1.5),
     )
+    lubricant = SimpleNamespace(pressure_coefficient=1.973e-8)
     axial_load, radial_load = 4930.0, 0.0
     rotating_load = None
     growth = None

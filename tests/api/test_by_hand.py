@@ -33,6 +33,7 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     scene = SimpleNamespace(**{name: getattr(build()[1].scene, name) for name in ("bearing", "effects")})
     scene.to_dict, scene.ring_quantities = dict, build()[1].scene.ring_quantities
     scene.rotating_load = scene.growth = None
+    scene.lubricant = build()[1].scene.lubricant
     scene.misalignment_x = scene.misalignment_y = 0.0
     about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
     return run, from_records(run.records, run.layout, **about)

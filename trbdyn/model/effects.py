@@ -7,8 +7,9 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import model_validator
 
 from trbdyn.base.validation import Flag, Model, Number, Whole
-from trbdyn.errors import InputError
+from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.core_table import parameter
+from trbdyn.model.lubricants.supply import OIL_SUPPLIES
 
 
 class Friction(Model):
@@ -106,9 +107,10 @@ class Effects(Model):
         What guides the cage: its rollers alone, or also a land of the inner or outer ring, whose numbers are `Bearing.land`.
         The land has an oil film where lubrication is mixed or full film; below a stated height of the film the cage touches
         it, with the friction of pockets.
-    oil_fill : float
-        Share of oil in the mixture of oil and air round the rollers, from 0 (no drag) to 1 (a flooded bearing). It is
-        known in no bearing: show its effect over a band, 0 to 0.3 (assumed). The mixture rests.
+    oil_fill : float or {'minimum', 'oil_air', 'bath', 'flooded'}
+        Share of oil in the mixture of oil and air round the rollers, from 0 (no drag) to 1 (a flooded bearing), or the name of
+        a state of lubrication with its assumed share, `trbdyn.lubricants.OIL_SUPPLIES`: 0.01, 0.03, 0.1 and 1. It is known in no
+        bearing: show its effect over a band, which `trbdyn.uncertainty` has for each state. The mixture rests.
     drag_coefficient : float
         Cd of a roller that moves across its axis, on its diameter times its length (assumed; a cylinder alone has 1.0 to
         1.2). Acts where `oil_fill` is not 0.
@@ -155,13 +157,18 @@ class Effects(Model):
     @model_validator(mode="before")
     @classmethod
     def _follow(cls, values: Any) -> Any:
-        """Without rolling resistance its pressure force is off, unless it is asked for."""
-        if (
-            isinstance(values, dict)
-            and values.get("rolling_resistance") is False
-            and "rolling_pressure_force" not in values
-        ):
-            return {**values, "rolling_pressure_force": False}
+        """Without rolling resistance its pressure force is off, unless it is asked for; the name of a supply is its share."""
+        if not isinstance(values, dict):
+            return values
+        if values.get("rolling_resistance") is False and "rolling_pressure_force" not in values:
+            values = {**values, "rolling_pressure_force": False}
+        fill = values.get("oil_fill")
+        if isinstance(fill, str):
+            if fill not in OIL_SUPPLIES:
+                raise InputError.of(
+                    "oil_fill", fill, f"must be from 0 to 1, or a name: {unknown_name(fill, OIL_SUPPLIES)}"
+                )
+            values = {**values, "oil_fill": OIL_SUPPLIES[fill].fill}
         return values
 
     @model_validator(mode="after")

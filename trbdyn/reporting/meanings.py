@@ -77,6 +77,7 @@ MEANINGS: Final[dict[str, str]] = {
     "skew_rms": "How far the rollers turn out of their rolling direction.",
     "torque": "Friction torque that the shaft has to overcome.",
     "torque_outer": "Friction torque that the outer ring passes on to the housing.",
+    "drag_share": "Drag of the oil round the rollers; 0 where `effects.oil_fill` is 0, as by default: then no drag is counted.",
     "power_loss": "Heat that the bearing makes.",
     "energy_closure": "Energy that does not add up, over the dissipated work: below 0.001 is good, above 0.01 too much.",
     "energy_residual": "Error of the energy balance.",

@@ -97,6 +97,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "skew_rms": ("roller skew, rms", "rad"),
     "torque": ("friction torque of the shaft", "N m"),
     "torque_outer": ("friction torque on the outer ring", "N m"),
+    "drag_share": ("share of the oil's drag in the torque", ""),
     "power_loss": ("power loss", "W"),
     "energy_closure": ("energy audit: residual / dissipated work", ""),
     "energy_residual": ("energy audit: residual", "J"),
@@ -363,9 +364,12 @@ def torque_note(window: Result, inner: float, outer: float) -> str | None:
 
 
 def _power(window: Result) -> dict[str, Any]:
+    split = window.power_split
+    lost = sum(split.values())
     return {
+        "drag_share": split.get("drag", 0.0) / lost if lost > 0.0 else None,
         "power_loss": mean_loss(window),
-        "power_split": window.power_split,
+        "power_split": split,
         "torque_by_loss": window.torque_by_loss,
     }
 

@@ -17,6 +17,7 @@ from scipy.stats import qmc
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import Model, Number
 from trbdyn.errors import InputError, unknown_name
+from trbdyn.model.lubricants import supply_of
 from trbdyn.model.scene import Scene
 from trbdyn.results.summary import LABELS
 from trbdyn.run.options import RunOptions
@@ -202,8 +203,10 @@ def open_inputs(scene: Scene) -> tuple[Band, ...]:
             )
         )
     if effects.oil_fill > 0.0:
-        high = min(2.0 * effects.oil_fill, 1.0)
-        found.append(Band(path="effects.oil_fill", low=0.0, high=high, source="known in no bearing: assumed"))
+        supply = supply_of(effects.oil_fill)
+        low, high = (0.0, min(2.0 * effects.oil_fill, 1.0)) if supply is None else (supply.low, supply.high)
+        source = "known in no bearing: assumed" if supply is None else f"{supply.words}: assumed"
+        found.append(Band(path="effects.oil_fill", low=low, high=high, source=source))
     return tuple(found)
 
 

@@ -35,6 +35,7 @@ from trbdyn.model.lubricants.shipped import (
     vg320,
     vg460,
 )
+from trbdyn.model.lubricants.supply import OIL_SUPPLIES, OilSupply, bath_fill, supply_of
 from trbdyn.model.lubricants.viscosity import Dicke, Vogel, astm_d341, wooster
 
 __all__ = [
@@ -47,17 +48,21 @@ __all__ = [
     "LOWEST_TEMPERATURE_C",
     "MINERAL",
     "OILS",
+    "OIL_SUPPLIES",
     "Dicke",
     "Lubricant",
     "Oil",
+    "OilSupply",
     "PressureLaw",
     "Vogel",
     "astm_d341",
     "atf",
+    "bath_fill",
     "fva3",
     "gear_75w90",
     "gear_80w90",
     "iso_vg",
+    "supply_of",
     "vg32",
     "vg46",
     "vg68",

@@ -1,0 +1,90 @@
+"""How much oil is round the rollers: states of lubrication by name, and the fill of a bath at rest."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from trbdyn.base.validation import number_of
+from trbdyn.errors import InputError
+
+if TYPE_CHECKING:
+    from trbdyn.model.bearing import Bearing
+
+
+class OilSupply(NamedTuple):
+    """A state of lubrication.
+
+    Attributes
+    ----------
+    fill : float
+        Share of oil in the mixture of oil and air round the rollers (1).
+    low, high : float
+        Band in which it may lie (1).
+    words : str
+        What the state is.
+    """
+
+    fill: float
+    low: float
+    high: float
+    words: str
+
+
+OIL_SUPPLIES: Final = {
+    "minimum": OilSupply(0.01, 0.0, 0.03, "minimum oil: drops or grease that has run in"),
+    "oil_air": OilSupply(0.03, 0.0, 0.1, "oil and air, or mist"),
+    "bath": OilSupply(0.1, 0.02, 0.3, "bath to the middle of the lowest roller"),
+    "flooded": OilSupply(1.0, 0.5, 1.0, "flooded: the bearing lies below the oil, or a jet fills it"),
+}
+"""States by the names that `Effects.oil_fill` takes. No measurement gives these shares: they and their bands are assumed, and the
+same for all bearings and speeds."""
+
+
+def supply_of(fill: float) -> OilSupply | None:
+    """The named state that has this fill; None if none has."""
+    return next((supply for supply in OIL_SUPPLIES.values() if supply.fill == fill), None)
+
+
+def bath_fill(bearing: Bearing, level: float) -> float:
+    """Share of the space between the raceways that lies below the oil of a bath at rest.
+
+    A bearing that turns carries oil round and throws it off: take this as the middle of a wide band, a third to three times.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Its axis lies level.
+    level : float
+        Height of the oil above the lowest point of the outer raceway at mid roller (m).
+
+    Returns
+    -------
+    float
+        Share of the ring between both raceways at mid roller (1).
+
+    Raises
+    ------
+    InputError
+        If the level is below 0 or above the outer raceway's diameter.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> bearing = trb.cases.rig_30310()
+    >>> round(trb.lubricants.bath_fill(bearing, level=7e-3), 3)
+    0.066
+    >>> trb.lubricants.bath_fill(bearing, level=bearing.geometry.outer_race_radius)
+    0.5
+    """
+    outer, inner = bearing.geometry.outer_race_radius, bearing.geometry.inner_race_radius
+    if not 0.0 <= number_of("level", level) <= 2.0 * outer:
+        raise InputError.of("level", level, f"must be from 0 to the raceway's diameter, {2.0 * outer:g} (m)")
+    below = _segment(outer, level - outer) - _segment(inner, level - outer)
+    return below / (math.pi * (outer**2 - inner**2))
+
+
+def _segment(radius: float, height: float) -> float:
+    """Area of a circle that lies below a height above its centre."""
+    height = min(max(height, -radius), radius)
+    return radius**2 * math.acos(-height / radius) + height * math.sqrt(radius**2 - height**2)
