@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing, Cage, CageBody, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.model.effects import Effects
     from trbdyn.model.growth import Growth
+    from trbdyn.model.heat import HeatPaths
     from trbdyn.model.land import Land
     from trbdyn.model.lubricants import Lubricant, Oil
     from trbdyn.model.motion import History
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from trbdyn.run.toml_case import load_case
     from trbdyn.statics.stiffness import stiffness
     from trbdyn.study.planning import plan
+    from trbdyn.study.thermal import thermal
     from trbdyn.study.torque_map import torque_map
     from trbdyn.study.uncertainty import uncertainty
     from trbdyn.study.what_matters import sensitivity
@@ -64,6 +66,7 @@ _NAMES = {
     "Face": "trbdyn.model.pocket",
     "FileError": "trbdyn.errors",
     "Growth": "trbdyn.model.growth",
+    "HeatPaths": "trbdyn.model.heat",
     "History": "trbdyn.model.motion",
     "InputError": "trbdyn.errors",
     "Land": "trbdyn.model.land",
@@ -97,6 +100,7 @@ _NAMES = {
     "resume": "trbdyn.run.resume",
     "sensitivity": "trbdyn.study.what_matters",
     "stiffness": "trbdyn.statics.stiffness",
+    "thermal": "trbdyn.study.thermal",
     "torque_map": "trbdyn.study.torque_map",
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
@@ -110,6 +114,7 @@ __all__ = [
     "Face",
     "FileError",
     "Growth",
+    "HeatPaths",
     "History",
     "InputError",
     "Land",
@@ -152,6 +157,7 @@ __all__ = [
     "sensitivity",
     "stiffness",
     "study",
+    "thermal",
     "torque_map",
     "uncertainty",
     "view",

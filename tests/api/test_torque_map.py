@@ -11,6 +11,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.study import torque_map as module
+from trbdyn.study.settled import drift
 from trbdyn.study.torque_map import SOURCES, TorqueMap, torque_map
 
 
@@ -68,7 +69,7 @@ def test_what_may_still_come(time_scale: float, left: float | None) -> None:
     torque = 1.0 + np.exp(-time / time_scale)
     work = np.concatenate([[0.0], np.cumsum(0.5 * (torque[1:] + torque[:-1]) * np.diff(time))])
     run = FakeRun(time, {"shaft_speed": np.ones_like(time), "shaft_angle": time, "work_shaft": work})
-    found, last = module.drift(run), float((work[-1] - np.interp(0.75, time, work)) / 0.25)  # type: ignore[arg-type]
+    found, last = drift(run), float((work[-1] - np.interp(0.75, time, work)) / 0.25)  # type: ignore[arg-type]
     shrinks = np.exp(-0.25 / time_scale)
     change = (last - 1.0) / shrinks - (last - 1.0)
     assert found == pytest.approx(change / (1.0 - min(shrinks, 0.9)) / last, rel=1e-3)

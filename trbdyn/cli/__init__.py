@@ -20,6 +20,7 @@ from trbdyn.cli.plan import add_plan_parser
 from trbdyn.cli.report import add_report_parser
 from trbdyn.cli.run import add_run_parsers
 from trbdyn.cli.sweep import add_sweep_parser
+from trbdyn.cli.thermal import add_thermal_parser
 from trbdyn.cli.torque import add_torque_parser
 from trbdyn.cli.view import add_view_parser
 
@@ -64,5 +65,6 @@ def make_parser() -> argparse.ArgumentParser:
     add_sweep_parser(commands, common)
     add_plan_parser(commands, common)
     add_torque_parser(commands, common)
+    add_thermal_parser(commands, common)
     add_case_parsers(commands, common)
     return parser

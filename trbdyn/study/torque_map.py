@@ -16,11 +16,10 @@ from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.scene import Scene
-from trbdyn.results.result import Result
-from trbdyn.results.summary import mean_loss, shaft_torque
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Base, Case, Study
 from trbdyn.study.runner import run as run_study
+from trbdyn.study.settled import TURNS, drift, short_run, stored
 from trbdyn.study.uncertainty import FEWEST, LEVEL, Band, checked_bands, drawn_case, open_inputs, unit_draws
 
 if TYPE_CHECKING:
@@ -28,40 +27,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-TURNS: Final = (2.0, 8.0, 32.0)
-"""Turns of the shaft after which a torque is judged; the next number where it does not stand yet."""
-RECORDS: Final = 64
-"""Records of a run."""
-STEADY: Final = 0.9
-"""Largest factor from quarter to quarter by which a change is taken to shrink."""
-GROUPS: Final = ("contacts", "torque", "power", "energy")
 SOURCES: Final = ("rolling", "rib", "traction", "pocket", "drag", "land", "front_rib", "damping")
 """Names of the shares of a torque. What a run calls rolling_pressure belongs to rolling, both raceways make traction, film and
 contact of a land are one."""
 FILMS: Final = ("film_parameter_inner", "film_parameter_rib")
-
-
-def drift(result: Result) -> float:
-    """How far the torque at the end of a run may still be from where it settles, over that torque (1).
-
-    From the means over the last three quarters of the run: a change that shrinks from quarter to quarter by a steady factor
-    goes on so. A factor above 0.9 counts as 0.9, as a mean that only scatters has any.
-    """
-    start, end = result["time"][0], result["time"][-1]
-    cuts = [start + share * (end - start) for share in (0.25, 0.5, 0.75)]
-    # means from each cut to the end, and from them those of the quarters
-    third, half, quarter = (shaft_torque(result.window(cut)) for cut in cuts)
-    quarters = (3.0 * third - 2.0 * half, 2.0 * half - quarter, quarter)
-    before, last = abs(quarters[1] - quarters[0]), abs(quarters[2] - quarters[1])
-    shrinking = min(last / before, STEADY) if before > 0.0 else 0.0
-    return float(last / (1.0 - shrinking) / max(abs(quarter), 1e-300))
-
-
-def stored(result: Result) -> float:
-    """How much of the shaft's power over the second half of a run was not lost but went into motion or springs (1)."""
-    half = result.window(0.5 * (result["time"][0] + result["time"][-1]))
-    power = abs(shaft_torque(half) * half["shaft_speed"].mean())
-    return abs(power - mean_loss(half)) / max(power, 1e-300)
 
 
 @dataclass(frozen=True, repr=False)
@@ -339,8 +308,7 @@ def _case(
     parameters = {"point": place, "draw": draw}
     if base is None:
         return Case(parameters, None, run, error)
-    save_every = 60.0 / abs(speed) * turns / RECORDS
-    own = run.replace(revolutions=turns, duration=None, save_every=save_every, save_groups=GROUPS)
+    own = short_run(run, speed, turns)
     if draw == 0:
         return Case(parameters, base.build({})[0], own)
     found = drawn_case(base, own, bands, unit[draw - 1], draw)

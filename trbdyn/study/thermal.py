@@ -1,0 +1,391 @@
+"""The temperatures at which a bearing makes as much heat as it gives off: losses of runs, and a network of four nodes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
+from scipy.stats import qmc
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.errors import InputError, TrbError
+from trbdyn.model.growth import Growth
+from trbdyn.model.heat import CONDUCTANCES, FACTOR, PARTS, HeatPaths
+from trbdyn.model.lubricants import LOWEST_MEASURED_C, LOWEST_TEMPERATURE_C
+from trbdyn.model.motion import is_constant, value_at
+from trbdyn.model.scene import Scene
+from trbdyn.run.options import RunOptions
+from trbdyn.study.definition import Base
+from trbdyn.study.runner import run as run_study
+from trbdyn.study.settled import TURNS, drift, short_run, stored
+
+Array = NDArray[np.float64]
+
+CLOSE: Final = 2e-3
+"""How near the film's temperature of network and run are in the end (K)."""
+HOTTEST: Final = 180.0
+"""Films hotter than this are not looked for (C)."""
+SETTLED: Final = 0.01
+"""Change of the torque that may still come, and share of the power that is not lost, at the end of each run."""
+CURVE: Final = 7
+"""Temperatures at which losses are computed for the bands."""
+DRAWS: Final = 512
+"""Draws of conductances; each costs nothing but the solution of the network."""
+SURFACES: Final = {"outer_ring": 0.25, "inner_ring": 0.25, "rollers": 0.5}
+"""What the temperature of films is made of: each film lies between a ring and the rollers."""
+
+
+def heat_of(losses: Mapping[str, float], oil_share: float) -> dict[str, float]:
+    """Heat that each node gets (W).
+
+    Parameters
+    ----------
+    losses : mapping of str to float
+        Power by mechanism (W), as `Result.power_split`. Rolling resistance is that of both raceways, half each.
+    oil_share : float
+        `HeatPaths.oil_share`.
+    """
+    got = dict.fromkeys(PARTS, 0.0)
+
+    def film(power: float, ring: str) -> None:
+        got["oil"] += oil_share * power
+        got[ring] += 0.5 * (1.0 - oil_share) * power
+        got["rollers"] += 0.5 * (1.0 - oil_share) * power
+
+    for name, power in losses.items():
+        if name in ("rolling", "rolling_pressure", "damping"):
+            film(0.5 * power, "outer_ring")
+            film(0.5 * power, "inner_ring")
+        elif name == "traction_outer":
+            film(power, "outer_ring")
+        elif name in ("traction_inner", "rib", "front_rib"):
+            film(power, "inner_ring")
+        elif name == "drag":
+            got["oil"] += power
+        elif name in ("pocket", "land", "land_film"):
+            got["rollers"] += power
+        else:
+            raise RuntimeError(f"no node takes the loss {name}")
+    return got
+
+
+def network(paths: HeatPaths, heat: Mapping[str, float]) -> dict[str, float]:
+    """Temperatures (C) of the nodes that give off the heat (W) that they get."""
+    place = {name: k for k, name in enumerate(PARTS)}
+    matrix, right = np.zeros((len(PARTS), len(PARTS))), np.array([heat[name] for name in PARTS])
+    for (one, two), conductance in paths.inner_links.items():
+        i, j = place[one], place[two]
+        matrix[i, i] += conductance
+        matrix[j, j] += conductance
+        matrix[i, j] -= conductance
+        matrix[j, i] -= conductance
+    for name, (conductance, outside) in paths.outer_links.items():
+        matrix[place[name], place[name]] += conductance
+        right[place[name]] += conductance * outside
+    try:
+        found = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        raise InputError.of("paths", "conductances", "leave a node without a way out for its heat (W/K)") from None
+    return dict(zip(PARTS, found.tolist(), strict=True))
+
+
+def film_temperature(nodes: Mapping[str, float]) -> float:
+    """Temperature of films (C): the mean of both rings and, twice, the rollers."""
+    return sum(share * nodes[name] for name, share in SURFACES.items())
+
+
+@dataclass(frozen=True, repr=False)
+class Thermal(Displayed):
+    """A bearing in thermal balance; print it for a table.
+
+    Attributes
+    ----------
+    temperatures : dict of str to float
+        Of the nodes `trbdyn.model.heat.PARTS` and of films, ``film`` (C).
+    bands : dict of str to tuple
+        Where 95 % of the draws of the conductances lie (C), by the same names, and of ``power`` (W).
+    losses : dict of str to float
+        Power by mechanism at these temperatures (W).
+    flows : dict of str to float
+        Heat that leaves each node to the outside (W).
+    balance : float
+        Heat that leaves over the power that is lost, less 1.
+    scene : Scene
+        The scene at these temperatures.
+    curve : ndarray, shape (n, 2)
+        Temperatures of films that were run (C), and power lost (W).
+    paths : HeatPaths
+        The network.
+    """
+
+    temperatures: dict[str, float]
+    bands: dict[str, tuple[float, float]]
+    losses: dict[str, float]
+    flows: dict[str, float]
+    balance: float
+    scene: Scene
+    curve: Array
+    paths: HeatPaths
+
+    @property
+    def power(self) -> float:
+        """Power that is lost (W)."""
+        return sum(self.losses.values())
+
+    def picture(self, path: str | Path | None = None) -> Any:
+        """Draw the balance of heat made and given off, and the temperatures with their bands.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            Where to save the picture.
+
+        Returns
+        -------
+        Figure
+            The matplotlib figure.
+        """
+        from trbdyn.plot.heat import draw_balance
+
+        return draw_balance(self, path)
+
+    def __str__(self) -> str:
+        shown = self._shown()
+        return Shown(shown.title, (shown.head, *shown.rows), shown.head, shown.notes).text()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _shown(self) -> Shown:
+        rows = []
+        for name, value in self.temperatures.items():
+            low, high = self.bands[name]
+            out = f"{self.flows[name]:.4g} W" if name in self.flows else ""
+            rows.append((name.replace("_", " "), f"{value:.4g} C", f"{low:.3g} to {high:.3g} C", out))
+        low, high = self.bands["power"]
+        rows.append(("power that is lost", f"{self.power:.4g} W", f"{low:.3g} to {high:.3g} W", ""))
+        note = (
+            f"Heat that leaves is {100.0 * self.balance:+.2g} % off the power that is lost; {len(self.curve)} temperatures "
+            "were run."
+        )
+        return Shown(
+            f"Thermal balance: {self.scene._title()}",
+            tuple(rows),
+            ("part", "value", "95 % of the draws", "gives off"),
+            (
+                note,
+                f"Drawn are conductances, each from a third to three times ({FACTOR:g}); temperatures outside are as given.",
+            ),
+        )
+
+
+def thermal(
+    scene: Scene,
+    paths: HeatPaths,
+    *,
+    options: RunOptions | None = None,
+    seed: int = 0,
+    folder: str | os.PathLike[str] | None = None,
+    executor: Any = "threads",
+    workers: int | None = None,
+) -> Thermal:
+    """The temperatures at which a bearing gives off as much heat as it makes.
+
+    Losses come from runs, each until they stand as in `trbdyn.torque_map`; heat goes through a network of four nodes. The
+    temperature of films, the mean of rings and rollers, is the oil's in the run; where the scene has a `Growth`, its parts
+    get the temperatures of the nodes, which change the plays of the pockets. The film's temperature is found by bracketing, as
+    plain iteration of run and network can swing.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated; speed and loads must be constant, and its lubricant an oil that is known at other temperatures.
+    paths : HeatPaths
+        Conductances and temperatures outside.
+    options : RunOptions, optional
+        Accuracy and settings of each run, not its length; 'fast' by default.
+    seed : int
+        Seed of the draws of conductances.
+    folder, executor, workers : optional
+        As in `trbdyn.study.run`; the runs of the bands go side by side.
+
+    Returns
+    -------
+    Thermal
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used, or films would be hotter than 180 C.
+    TrbError
+        If a run fails, or its losses do not stand after 32 turns.
+
+    Notes
+    -----
+    What is left out: the clearance of the bearing (a given load sets the ring's place, whatever grows), heat that one
+    film gets from another, and the time that parts take to warm up. docs/theory/heat.md.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> paths = trb.HeatPaths.reference(bore=0.050, outside=0.110, width=0.02925, oil_flow=15.0, oil_inlet_c=40.0)
+    >>> found = trb.thermal(trb.cases.scene_30310(), paths)
+    >>> abs(found.balance) < 1e-3
+    True
+    """
+    if not isinstance(scene, Scene) or not isinstance(paths, HeatPaths):
+        raise InputError.of("scene", f"{type(scene).__name__}, {type(paths).__name__}", "must be a Scene and HeatPaths")
+    if scene.lubricant.oil is None:
+        raise InputError.of("lubricant.oil", None, "must be given: heat changes the temperature of the lubricant")
+    if not all(is_constant(quantity) for quantity in scene.ring_quantities().values()):
+        raise InputError.of("scene", "speed or loads", "must be constant in time")
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise InputError.of("seed", seed, "must be a whole number, at least 0")
+    runs = _Runs(scene, RunOptions(accuracy="fast") if options is None else options, folder, executor, workers)
+    nodes = _balanced(runs, paths)
+    film = film_temperature(nodes)
+    losses, flows = runs.losses(film, nodes), {}
+    for name, (conductance, outside) in paths.outer_links.items():
+        flows[name] = conductance * (nodes[name] - outside)
+    bands = _bands(runs, paths, film, int(seed))
+    curve = np.array(sorted((t, sum(found.values())) for t, found in runs.known.items()))
+    balance = sum(flows.values()) / sum(losses.values()) - 1.0
+    return Thermal({**nodes, "film": film}, bands, losses, flows, balance, runs.scene_at(film, nodes), curve, paths)
+
+
+def _balanced(runs: _Runs, paths: HeatPaths) -> dict[str, float]:
+    """Temperatures of the nodes whose films make as much heat as the network gives off."""
+    nodes: dict[str, float] = {}
+
+    def excess(film: float) -> float:
+        nonlocal nodes
+        nodes = network(paths, heat_of(runs.losses(film, nodes), paths.oil_share))
+        return film_temperature(nodes) - film
+
+    low = max(film_temperature(network(paths, dict.fromkeys(PARTS, 0.0))), runs.coldest)
+    if excess(low) <= 0.0:
+        raise InputError.of("paths", low, "temperatures outside lie below what the oil is known at (C)")
+    high = min(low + 30.0, HOTTEST)
+    while excess(high) > 0.0:
+        if high >= HOTTEST:
+            limit = f"would make films hotter than {HOTTEST:g} C: the conductances are too small for these losses (W/K)"
+            raise InputError.of("paths", "conductances", limit)
+        low, high = high, min(high + 30.0, HOTTEST)
+    excess(float(brentq(excess, low, high, xtol=CLOSE, rtol=1e-6)))
+    return nodes
+
+
+def _bands(runs: _Runs, paths: HeatPaths, film: float, seed: int) -> dict[str, tuple[float, float]]:
+    """Bands of temperatures and power from draws of all conductances; losses between the runs are interpolated."""
+    names = [name for name in CONDUCTANCES if getattr(paths, name) > 0.0]
+    coldest = film_temperature(network(paths, dict.fromkeys(PARTS, 0.0)))
+    grid = np.linspace(max(coldest, runs.coldest), min(film + 1.2 * (film - coldest), HOTTEST), CURVE)
+    runs.side_by_side(grid.tolist())
+    known = np.array(sorted(runs.known))
+    mechanisms = sorted({name for found in runs.known.values() for name in found})
+    curves = {
+        name: PchipInterpolator(known, [runs.known[t].get(name, 0.0) for t in known.tolist()]) for name in mechanisms
+    }
+    unit = qmc.Sobol(len(names) + 1, seed=seed).random(DRAWS)
+    found: dict[str, list[float]] = {name: [] for name in (*PARTS, "film", "power")}
+    for row in unit:
+        changes = {name: getattr(paths, name) * FACTOR ** (2.0 * u - 1.0) for name, u in zip(names, row, strict=False)}
+        drawn = paths.replace(**changes, oil_share=float(row[-1]))
+
+        def nodes_at(t: float, drawn: HeatPaths = drawn) -> dict[str, float]:
+            return network(drawn, heat_of({name: float(curve(t)) for name, curve in curves.items()}, drawn.oil_share))
+
+        def excess(t: float) -> float:
+            return film_temperature(nodes_at(t)) - t
+
+        if excess(known[-1]) > 0.0:  # hotter than the runs go: the band ends there
+            t = float(known[-1])
+        else:
+            t = float(brentq(excess, known[0], known[-1], xtol=1e-3)) if excess(known[0]) > 0.0 else float(known[0])
+        nodes = nodes_at(t)
+        for name, value in {**nodes, "film": t, "power": sum(float(c(t)) for c in curves.values())}.items():
+            found[name].append(value)
+    return {name: tuple(np.quantile(values, [0.025, 0.975]).tolist()) for name, values in found.items()}
+
+
+@dataclass
+class _Runs:
+    """Losses of a scene at temperatures of its films."""
+
+    scene: Scene
+    options: RunOptions
+    folder: str | os.PathLike[str] | None
+    executor: Any
+    workers: int | None
+    known: dict[float, dict[str, float]] = field(default_factory=dict)
+
+    @property
+    def coldest(self) -> float:
+        """Below this the oil is not known (C)."""
+        oil = self.scene.lubricant.oil
+        return LOWEST_TEMPERATURE_C if oil is not None and oil.vogel is None else LOWEST_MEASURED_C
+
+    def scene_at(self, film: float, nodes: Mapping[str, float]) -> Scene:
+        """The scene with its films, and the parts that grow, at their temperatures."""
+        growth, changes = self.scene.growth, {}
+        if growth is not None and nodes:
+            changes["growth"] = Growth(
+                cage_c=nodes["rollers"],
+                rollers_c=nodes["rollers"],
+                inner_ring_c=nodes["inner_ring"],
+                outer_ring_c=nodes["outer_ring"],
+                reference_c=growth.reference_c,
+                centrifugal=growth.centrifugal,
+            )
+        warm, _ = Base.of(self.scene).build({"lubricant.temperature_c": film})
+        return warm.replace(**changes) if changes else warm
+
+    def losses(self, film: float, nodes: Mapping[str, float]) -> dict[str, float]:
+        """Power by mechanism (W)."""
+        if film not in self.known:
+            self._run({film: self.scene_at(film, nodes)})
+        return self.known[film]
+
+    def side_by_side(self, films: list[float]) -> None:
+        self._run({film: self.scene_at(film, {}) for film in films if film not in self.known})
+
+    def _run(self, waiting: dict[float, Scene]) -> None:
+        speed = value_at(self.scene.speed_rpm, 0.0)
+        for turns in TURNS:
+            run = short_run(self.options, speed, turns)
+            data = run_study(
+                [(scene, run) for scene in waiting.values()],
+                self.folder,
+                executor=self.executor,
+                workers=self.workers,
+                observables={"drift": drift, "stored": stored},
+            )
+            left = {}
+            for k, (film, scene) in enumerate(waiting.items()):
+                one = data.isel(case=k)
+                if str(one["status"].values) != "done":
+                    raise TrbError(f"the run at {film:.4g} C failed: {one['message'].values}")
+                if max(float(one["drift"]), float(one["stored"])) > SETTLED:
+                    left[film] = scene
+                else:
+                    self.known[film] = _losses(one)
+            waiting = left
+            if not waiting:
+                return
+        film = next(iter(waiting))
+        raise TrbError(
+            f"the losses at {film:.4g} C do not stand after {TURNS[-1]:g} turns, within {100.0 * SETTLED:g} %"
+        )
+
+
+def _losses(run: Any) -> dict[str, float]:
+    """Power by mechanism (W) of a run in a dataset."""
+    prefix = "power_split_"
+    return {str(name)[len(prefix) :]: float(run[name]) for name in run.data_vars if str(name).startswith(prefix)}
