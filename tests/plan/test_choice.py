@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from trbdyn.study.planning.choice import Choice, Option, Task, choose
+from trbdyn.study.planning.choice import LEAST_ROOM, Choice, Option, Task, choose
 
 NONE = np.zeros(1)
 PLAIN = Option("plain", NONE, 1.0)
@@ -53,6 +53,13 @@ def test_a_wish_out_of_reach_is_said() -> None:
     assert not found.within
     assert found.errors[0] > 0.05
     assert not choose(task(most=0.1), [], [PLAIN]).within
+
+
+def test_no_averaging_is_spent_on_what_it_cannot_take_away() -> None:
+    """An error of the settling of five times the wish: the statistical one may be as large as the wish."""
+    found = choose(task(want=0.02, scatter=0.04, fixed=0.1), [], [PLAIN])
+    assert not found.within
+    assert found.errors[0] - found.bounds[0] == pytest.approx(LEAST_ROOM * 0.1)
 
 
 def test_a_budget_gives_the_most_exact() -> None:

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 LEAST_ROOM = 0.2
-"""Share of the wish that is kept for the statistical error."""
+"""Statistical error that is always allowed, over the wish or over the other errors, whichever is larger: no length of a run helps
+against the others."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,7 @@ def _priced(task: Task, made: Sequence[Option], numbers: Option, budget: float |
     bounds = task.fixed + numbers.bounds + sum((one.bounds for one in made), np.zeros(task.want.size))
     rate = task.rate * numbers.time_ratio * float(np.prod([one.time_ratio for one in made]))
     if budget is None:
-        room = np.maximum(task.want - bounds, LEAST_ROOM * task.want)
+        room = np.maximum(task.want - bounds, LEAST_ROOM * np.maximum(task.want, bounds))
         averaging = float(np.max(task.window * (task.scatter / room) ** 2))
     else:
         averaging = budget / rate - task.settle

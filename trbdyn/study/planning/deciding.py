@@ -81,7 +81,7 @@ def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
         fixed=ground.drift + unseen_of(ground.drift),
         scatter=ground.scatter,
         window=ground.window,
-        settle=ground.settle,
+        settle=looker.settle,
         least=LEAST_AVERAGING * wishes.period,
         most=MOST_AVERAGING * wishes.period,
         rate=seen.base.rate,
@@ -104,7 +104,7 @@ def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
     unseen = unseen_of(whole + ground.drift)
     bounds = whole + ground.drift + unseen
     errors = bounds + (choice.errors - choice.bounds)
-    cost = looker.seconds(found) * (ground.settle + choice.averaging)
+    cost = looker.seconds(found) * (looker.settle + choice.averaging)
     affordable = wishes.budget is None or cost <= 1.1 * wishes.budget
     within = bool(np.all(errors <= wish * (1.0 + 1e-9))) and affordable
     choice = replace(choice, bounds=bounds, errors=errors, cost=cost, within=within)

@@ -1,5 +1,6 @@
 """What a plan stands on: a run of the scene with everything on, from its start until the motion has settled, as far as the time
-for it reaches. It gives the state that the probes start from, the averages with their scatter, and what is left of settling.
+for it reaches. It gives the state that the probes and the run of the plan start from, the averages with their scatter, and what
+is left of settling.
 """
 
 from __future__ import annotations
@@ -29,10 +30,6 @@ LEAST_RECORDS: Final = 200
 """Records of a run at least."""
 MOST_TURNS: Final = 1000.0
 """Turns of the shaft after which the run ends, however fast it is."""
-SETTLING_BATCHES: Final = 40
-"""Batches in which the run is looked through for the end of the transient."""
-LEFT_OF_SETTLING: Final = 0.1
-"""Share of the wish that the mean of three batches may be off after settling, beside their scatter."""
 UNKNOWN_SCATTER: Final = 2.0 * 2.1
 """Half width over the standard error of twenty batches (Student's t: 2.1), twice as large as they may not be independent."""
 SIZES_OF_WHIRL: Final = ("orbit_radius_over_cpr", "axis_distance_over_cpr")
@@ -57,8 +54,8 @@ class Ground:
         Half widths of their confidence intervals over their sizes.
     drift : ndarray, shape (W,)
         What the averages may still change by, over their sizes.
-    window, settle : float
-        Lengths of the settled part, and of the part before it (s).
+    window : float
+        Length of the settled part (s).
     creep_time : float
         Time of the rollers' creep (s); nan where it is not known.
     rate : float
@@ -73,7 +70,6 @@ class Ground:
     scatter: Array
     drift: Array
     window: float
-    settle: float
     creep_time: float
     rate: float
     notes: tuple[str, ...]
@@ -133,28 +129,7 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     assert result.final_state is not None
     angle = scene.start_shaft_angle + scene.shaft_turn(result.final_time)
     state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle)
-    settle = _settle(result, want, value, size, settled_from)
-    return Ground(
-        state, value, size, scatter, drift, end - settled_from, settle, settling.creep_time, spent, tuple(notes)
-    )
-
-
-def _settle(
-    result: Result, want: Mapping[str, float], value: Mapping[str, float], size: Mapping[str, float], latest: float
-) -> float:
-    """Time after the start from which each wanted average is that of the settled part, but for its scatter (s)."""
-    time = result["time"]
-    batches = in_batches(result, list(want), 0.0, SETTLING_BATCHES)
-    ends = np.linspace(time[0], time[-1], SETTLING_BATCHES + 1)
-    last = int(np.searchsorted(ends, latest))
-    first = 0
-    for name, wish in want.items():
-        values = batches[name]
-        noise = 2.0 * float(np.std(values[last:], ddof=1)) / math.sqrt(3.0)
-        threes = np.array([values[k : k + 3].mean() for k in range(last)])
-        off = np.flatnonzero(~(np.abs(threes - value[name]) <= noise + LEFT_OF_SETTLING * wish * size[name]))
-        first = max(first, int(off[-1]) + 1 if off.size else 0)
-    return min(float(ends[max(first, 1)]), latest) - float(time[0])
+    return Ground(state, value, size, scatter, drift, end - settled_from, settling.creep_time, spent, tuple(notes))
 
 
 def _value(found: dict[str, Any], name: str) -> float:

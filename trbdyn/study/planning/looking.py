@@ -20,7 +20,7 @@ from trbdyn.study.planning.candidates import (
     numerics,
 )
 from trbdyn.study.planning.ground import LEAST_RECORDS, Ground, run_ground
-from trbdyn.study.planning.probes import PATIENCE, Influence, Length, Probe, influence, probe
+from trbdyn.study.planning.probes import PATIENCE, TRANSIENT, Influence, Length, Probe, influence, probe
 from trbdyn.study.planning.proposal import Row, words
 from trbdyn.study.planning.sizes import least_size
 from trbdyn.study.planning.wishes import Wishes, changed
@@ -151,6 +151,11 @@ class Looker:
         seen.rows += [other] if other else []
         seen.notes += self.notes
         return seen
+
+    @property
+    def settle(self) -> float:
+        """Time in which the motion follows a change of the model, at the begin of a probe and of the run of the plan (s)."""
+        return TRANSIENT * self.length.duration
 
     def probe(self, effects: Mapping[str, Any], accuracy: str, cost: float = 1.0, share: float = 1.0) -> Probe:
         """Run the scene with other effects from the state that all probes start from.

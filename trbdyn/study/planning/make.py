@@ -6,6 +6,9 @@ each simplification, alone, runs from the state that the first run has reached (
 and what it saves. The cheapest set whose errors add up to less than the wish is chosen (`trbdyn.study.planning.choice`), and it
 is run once more as a whole against the most exact probe, since simplifications may act together. Where that shows a larger error
 than promised, the simplification with the largest error of its own is struck out, and the choice is made again.
+
+The run that is proposed starts from the same state. From the start of the scene a simplified model may go elsewhere: without
+gravity a cage that begins in the middle stays there, where it is not stable, and what planar motion holds stays where it began.
 """
 
 from __future__ import annotations
@@ -82,7 +85,7 @@ def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, no
     ground, choice = seen.ground, decision.choice
     given = next((seen.probes[one.name].rate for one in seen.candidates if one.kind == "as given"), seen.base.rate)
     exact = choose(decision.task, [], [Option(EXACT, np.zeros(wishes.size.size), seen.truth.rate / seen.base.rate)])
-    length = ground.settle + choice.averaging
+    length = looker.settle + choice.averaging
     settling, statistics, unseen = ground.drift, choice.errors - choice.bounds, decision.unseen
     parts = {
         name: {
@@ -99,10 +102,10 @@ def _proposal(wishes: Wishes, seen: Seen, decision: Decision, looker: Looker, no
         *(_row(one, wishes, seen, decision) for one in seen.candidates),
     ]
     return Plan(
-        scene=changed(wishes.scene, decision.effects, wishes.scene.start),
+        scene=changed(looker.usual, decision.effects, ground.start),
         accuracy=decision.accuracy,
         duration=length,
-        settle=ground.settle,
+        settle=looker.settle,
         save_every=looker.keep.save_every,
         save_groups=looker.keep.groups,
         want=dict(wishes.want),

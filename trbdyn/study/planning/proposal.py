@@ -59,7 +59,8 @@ class Plan(Displayed):
     Attributes
     ----------
     scene : Scene
-        What to simulate: the scene with the chosen effects and nodes.
+        What to simulate: the scene with the chosen effects and nodes. It starts from the state that a run with everything on has
+        reached from the start that was given, as the probes did: what they have shown holds from there.
     accuracy : str
         Preset of the tolerances.
     duration : float
@@ -218,7 +219,8 @@ def _run_lines(plan: Plan) -> list[str]:
     nodes, kind = plan.scene.effects.n_slices, plan.scene.effects.quadrature
     said = ", ".join(plan.left_out) or "nothing"
     return [
-        f"run: {plan.duration:.3g} s of bearing time, averages after {plan.settle:.3g} s",
+        f"run: {plan.duration:.3g} s of bearing time from the state that the first run reached at {plan.scene.start.time:.3g} s, "
+        f"averages after {plan.settle:.3g} s",
         f"effects left out: {said}; {nodes} {kind} nodes, tolerances '{plan.accuracy}'",
         f"computing time: about {plan.computing_s:.2g} s; as long with the scene as given {plan.computing_s_given:.2g} s; "
         f"as exact with all effects, 32 nodes and 'reference' {plan.computing_s_everything:.2g} s",
