@@ -147,6 +147,8 @@ static double channel_integral(const double *a, int channel, double s, double h)
  * bearings take at usual speeds, s. */
 enum { STEPS_AN_INTERVAL = 8, STEPS_FOR_POWERS = 32 };
 static const double usual_step = 5e-5;
+/* What the number of steps to a joint may be above a whole number. */
+#define SAME_NUMBER 1e-6
 
 /* Index of the last knot at or before a time between the first and the last. */
 static int interval_of(const trb_motion *motion, double time)
@@ -160,30 +162,34 @@ static int interval_of(const trb_motion *motion, double time)
   return low;
 }
 
-/* What lies between two joints: how long it is, and how far a time lies from its end, s. A time just before a joint, by rounding, belongs
- * to what comes after that joint: from there no step could get on. */
+/* What lies between two joints: how long it is, when it ends, and how far a time lies from there, s. A time just before a joint, by
+ * rounding, belongs to what comes after that joint: from there no step could get on. */
 typedef struct stretch {
-  double length, left;
+  double length, end, left;
 } stretch;
 
 static stretch stretch_at(const trb_motion *motion, double time)
 {
   double       turns;
-  const double inside = time_in_table(motion, time, &turns);
+  const double inside = time_in_table(motion, time, &turns), period = last_time(motion) - knot(motion, motion->tail);
   int          end = motion->next[interval_of(motion, inside)], begin = motion->joint[end - 1];
   double       length = knot(motion, end) - knot(motion, begin), left = knot(motion, end) - inside;
   for (int i = 0; i < 2 * motion->n && left <= same_time(length, time); i++) {
     if (end == motion->n - 1) {
       if (!repeats(motion)) break;
-      left += knot(motion, motion->joint[motion->tail]) - knot(motion, end);
       end = motion->joint[motion->tail];
+      left += knot(motion, end) - last_time(motion);
+      turns += 1.0;
     }
     begin = end;
     end = motion->next[begin];
     length = knot(motion, end) - knot(motion, begin);
     left += length;
   }
-  return left > 0.0 ? (stretch){length, left} : (stretch){length, length};
+  if (!(left > 0.0)) return (stretch){length, time + length, length};
+  /* from wherever it is looked for, a joint has one time to the last bit: else steps that are to end there end beside it */
+  const int again = repeats(motion) && end == motion->n - 1;
+  return (stretch){length, again ? knot(motion, motion->tail) + (turns + 1.0) * period : knot(motion, end) + turns * period, left};
 }
 
 double trb_motion_stop(const trb_motion *motion, double time)
@@ -192,15 +198,17 @@ double trb_motion_stop(const trb_motion *motion, double time)
   if (time < first_time(motion)) return first_time(motion);
   const stretch at = stretch_at(motion, time);
   const double  part = at.length / STEPS_AN_INTERVAL;
-  /* counted from the time itself, so that no rounding comes between; no sliver of a step is left before the joint */
-  return time + (part < at.left - 0.5 * part ? part : at.left);
+  /* no sliver of a step is left before the joint */
+  return part < at.left - 0.5 * part ? time + part : at.end;
 }
 
-double trb_motion_longest_step(const trb_motion *motion, double time)
+double trb_motion_longest_step(const trb_motion *motion, double time, double most)
 {
-  if (motion->n == 1 || time < first_time(motion) || (time >= last_time(motion) && !repeats(motion))) return INFINITY;
-  const double length = stretch_at(motion, time).length;
-  return fmax(length / STEPS_FOR_POWERS, fmin(length / STEPS_AN_INTERVAL, usual_step));
+  if (motion->n == 1 || time < first_time(motion) || (time >= last_time(motion) && !repeats(motion))) return most;
+  const stretch at = stretch_at(motion, time);
+  const double  longest = fmin(most, fmax(at.length / STEPS_FOR_POWERS, fmin(at.length / STEPS_AN_INTERVAL, usual_step)));
+  /* a hair more, so that by rounding the last of them does not end almost there */
+  return (1.0 + TRB_SAME_TIME) * at.left / fmax(ceil(at.left / longest - SAME_NUMBER), 1.0);
 }
 
 int trb_motion_changes(const trb_motion *motion, double from, double to)

@@ -39,8 +39,9 @@ int trb_motion_changes(const trb_motion *motion, double from, double to);
  * joints a part of what lies between. INFINITY where nothing changes any more. */
 double trb_motion_stop(const trb_motion *motion, double time);
 /* The longest step from a time on. Works and losses are integrated beside the motion and control no step: where bodies follow a smooth
- * history in long steps, a power that rises and falls within it would be summed up from a few values. INFINITY where nothing changes. */
-double trb_motion_longest_step(const trb_motion *motion, double time);
+ * history in long steps, a power that rises and falls within it would be summed up from a few values. Where nothing changes it is `most`,
+ * what steps may be at most otherwise; elsewhere a whole number of such steps reaches the next joint, so that no sliver is left before it. */
+double trb_motion_longest_step(const trb_motion *motion, double time, double most);
 void   trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive);
 
 #endif

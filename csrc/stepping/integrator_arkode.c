@@ -105,7 +105,7 @@ static trb_status erk_step(trb_integrator *it, trb_message *message)
   const double stop = trb_motion_stop(it->motion, it->time);
   if (it->motion->n > 1) {
     CHECK(TRB_ARK(SetStopTime)(self->memory, fmin(stop, TRB_NEVER)));
-    CHECK(TRB_ARK(SetMaxStep)(self->memory, fmin(it->settings.max_step, trb_motion_longest_step(it->motion, it->time))));
+    CHECK(TRB_ARK(SetMaxStep)(self->memory, trb_motion_longest_step(it->motion, it->time, it->settings.max_step)));
   }
   const int flag = TRB_ARK(Evolve)(self->memory, it->time + 1.0, self->y, &reached, ARK_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "ARKODE stopped (%d): %s", flag, self->sundials.text);

@@ -199,7 +199,7 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
   const double stop = trb_motion_stop(it->motion, it->time);
   if (it->motion->n > 1) {
     CHECK(CVodeSetStopTime(self->memory, fmin(stop, TRB_NEVER)));
-    CHECK(CVodeSetMaxStep(self->memory, fmin(it->settings.max_step, trb_motion_longest_step(it->motion, it->time))));
+    CHECK(CVodeSetMaxStep(self->memory, trb_motion_longest_step(it->motion, it->time, it->settings.max_step)));
   }
   CHECK(CVodeGetCurrentStep(self->memory, &step));
   const trb_impact_measure measure = {.share = it->settings.impact_share,

@@ -150,6 +150,13 @@ static void test_rotation_vectors(const trb_model *m)
   }
 }
 
+static double end_of(double time)
+{
+  for (int i = 1; i < KNOTS; i++)
+    if (table[i][0] > time) return table[i][0];
+  return INFINITY;
+}
+
 /* From stop to stop every knot is met, every interval in eight parts at least, none a sliver; outside there is but the first knot. */
 static void test_stops(const trb_motion *motion)
 {
@@ -157,7 +164,7 @@ static void test_stops(const trb_motion *motion)
   double       time = first - 1.0;
   int          met = 0, steps = 0;
   CHECK(trb_motion_stop(motion, time) == first);
-  CHECK(trb_motion_longest_step(motion, time) == (double)INFINITY && trb_motion_longest_step(motion, last) == (double)INFINITY);
+  CHECK(trb_motion_longest_step(motion, time, INFINITY) == (double)INFINITY && trb_motion_longest_step(motion, last, 0.2) == 0.2);
   CHECK(trb_motion_stop(motion, last) == (double)INFINITY && trb_motion_stop(motion, last + 1.0) == (double)INFINITY);
   for (time = first; time < last && steps < 1000; steps++) {
     const double stop = trb_motion_stop(motion, time);
@@ -169,7 +176,14 @@ static void test_stops(const trb_motion *motion)
       met += stop == table[i][0];
     }
     CHECK(stop - time < 0.19 * interval && stop - time > 0.05 * interval);
-    CHECK_NEAR(trb_motion_longest_step(motion, time), fmax(interval / 32.0, fmin(interval / 8.0, 5e-5)), 1e-12 * interval);
+    const double longest = fmax(interval / 32.0, fmin(interval / 8.0, 5e-5));
+    for (int k = 0; k < 20; k++) {
+      const double from = time + 0.05 * k * (stop - time), most = k % 2 ? 0.3 * longest : (double)INFINITY,
+                   step = trb_motion_longest_step(motion, from, most);
+      const double number = (end_of(from) - from) / step;
+      CHECK(step < fmin(most, longest) * (1.0 + 1e-5) && (number < 1.0 || step > 0.5 * fmin(most, longest)));
+      CHECK(number < ceil(number) && ceil(number) - number < 1e-6);
+    }
     time = stop;
   }
   CHECK(met == KNOTS - 1);
@@ -249,6 +263,12 @@ static void test_repetition(const trb_model *m)
     time = stop;
   }
   CHECK(time > begin + 5e4 * period + 400.0 * period);
+  /* from wherever it is looked for, a joint has one time */
+  for (int i = 0; i < 400; i++) {
+    const double joint = begin + (1 + i % 4) * period + (i % 2) * 0.05, stop = trb_motion_stop(motion, joint - 1e-4);
+    CHECK_NEAR(stop, joint, 1e-14);
+    CHECK(trb_motion_stop(motion, joint - 1e-3 * (0.01 + fabs(rig_random(&seed)))) == stop);
+  }
   for (int c = 1; c < TRB_MOTION_COLUMNS; c++) table[KNOTS - 1][c] = keep[c];
   trb_motion_free(motion);
 }

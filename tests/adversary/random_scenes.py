@@ -25,6 +25,7 @@ ORDINARY: Table = {
     "start": "equal",
     "seed": 0,
     "eccentricity": 0.9,
+    "start_time": 0.0,
     "nodes": 8,
     "gravity": True,
     "misalignment_x": 0.0,
@@ -183,16 +184,20 @@ def light(rng: np.random.Generator) -> Table:
 
 
 def repeating(rng: np.random.Generator) -> Table:
-    """Speeds and loads that repeat, and loads that rotate, without end."""
+    """Speeds and loads that repeat, and loads that rotate, without end; runs that begin before t = 0 or long after it."""
     table = usual(rng) | {"speed_rpm": _log(rng, 100.0, 6000.0), "accuracy": _one_of(rng, "fast", "standard")}
     what = _one_of(rng, "speed", "axial_load", "rotating")
     if what == "rotating":
-        return table | {"rotating_share": _log(rng, 1e-2, 0.5), "rotating_turns": float(rng.uniform(-2.0, 3.0))}
-    return table | {
-        "repeating": what,
-        "repeating_hz": _log(rng, 2.0, 500.0),
-        "repeating_share": _log(rng, 0.01, 0.5 if what == "speed" else 0.3),
-    }
+        table |= {"rotating_share": _log(rng, 1e-2, 0.9), "rotating_turns": float(rng.uniform(-2.0, 3.0))}
+    else:
+        table |= {
+            "repeating": what,
+            "repeating_hz": _log(rng, 2.0, 500.0),
+            "repeating_share": _log(rng, 0.01, 0.5 if what == "speed" else 0.3),
+        }
+    if rng.random() < 0.4:
+        table["start_time"] = _one_of(rng, -_log(rng, 1e-5, 0.02), -_log(rng, 1e-5, 0.02), _log(rng, 1e3, 9e5))
+    return table
 
 
 def pieces(rng: np.random.Generator) -> Table:
@@ -358,10 +363,12 @@ def _start(rng: np.random.Generator) -> Table:
 
 def _start_of(t: Table) -> trb.Start:
     if t["start"] == "unequal":
-        return trb.Start.unequal(t["seed"])
-    if t["start"] == "whirl":
-        return trb.Start.whirl(t["eccentricity"])
-    return trb.Start.equal()
+        start = trb.Start.unequal(t["seed"])
+    elif t["start"] == "whirl":
+        start = trb.Start.whirl(t["eccentricity"])
+    else:
+        start = trb.Start.equal()
+    return start.replace(time=t["start_time"])
 
 
 def _quantity(t: Table, name: str, begin: float, end: float | None) -> float | trb.History:

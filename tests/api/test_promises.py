@@ -1,4 +1,4 @@
-"""The tables of promises in the documentation: every test that they name exists."""
+"""The tables of promises in the documentation, and that of what was found: every test that they name exists."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "promises.md"
+FOUND = ROOT / "tests" / "adversary" / "found" / "README.md"
 NAMED = re.compile(r"`([\w/.]*)::(\w+)`")
 pytestmark = pytest.mark.skipif(not PAGE.is_file(), reason="the documentation is not part of a source distribution")
 
@@ -17,9 +18,10 @@ pytestmark = pytest.mark.skipif(not PAGE.is_file(), reason="the documentation is
 def promises() -> list[tuple[str, list[tuple[str, str]]]]:
     """(promise, [(file, test)]) of each row; `::name` alone is in the file named before it."""
     rows = []
-    for line in PAGE.read_text(encoding="utf-8").splitlines() if PAGE.is_file() else ():
+    pages = (PAGE, FOUND) if PAGE.is_file() else ()
+    for line in [line for page in pages for line in page.read_text(encoding="utf-8").splitlines()]:
         cells = [cell.strip() for cell in line.strip("|").split("|")]
-        if not line.startswith("|") or cells[0] in ("promise", "---"):
+        if not line.startswith("|") or cells[0] in ("promise", "found", "---"):
             continue
         named, file = [], ""
         for path, name in NAMED.findall(cells[1]):
