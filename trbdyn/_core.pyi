@@ -88,6 +88,8 @@ class Model:
         """(name, offset, shape) of every field of a record."""
     def peak_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of every field of a row of peaks."""
+    def system_table(self) -> dict[str, list[Any]]:
+        """bodies: (name, kind, number of coordinates); surfaces: (name, body); pairs: (name, text, surface, surface, on)."""
     def state_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of the parts of a state vector."""
 

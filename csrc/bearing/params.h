@@ -68,6 +68,10 @@
   X(ring_unbalance_angle,     "rad",    -7,     7,      "angle of the unbalance from the x axis at shaft angle 0") \
   X(ring_damping,             "N s/m",  0,      1e9,    "damping between it and the surroundings, of translations") \
   X(ring_damping_turns,       "N m s",  0,      1e9,    "damping between it and the surroundings, of turns about transverse axes") \
+  X(ring_support_radial,      "N/m",    0,      1e13,   "stiffness of a support of it, across the axis; a support carries nothing at the start") \
+  X(ring_support_axial,       "N/m",    0,      1e13,   "stiffness of the support along the axis") \
+  X(ring_support_tilt,        "N m",    0,      1e12,   "stiffness of the support against tilt, per radian") \
+  X(ring_support_position,    "m",      -100,   100,    "axial position of the support from the roller-centre plane") \
   /* lubricant */ \
   X(viscosity,                "Pa s",   1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \
   X(pressure_coefficient,     "1/Pa",   0,      1e-6,   "alpha0: pressure-viscosity coefficient, used by the films") \

@@ -35,6 +35,29 @@ static void ring_of(const trb_model *m, const trb_body *body, const trb_drive *d
   ring->velocity = trb_add(velocity_of(y), trb_cross(ring->omega, arm));
 }
 
+/* Springs between a point of the axis and the surroundings, without force where the drive places the ring: at the start. */
+typedef struct support {
+  trb_vec3 force, moment; /* on the ring, about its reference point */
+  double   energy;        /* J */
+} support;
+
+static support support_of(const trb_model *m, const trb_drive *drive, const double *y)
+{
+  const trb_params    *p = &m->params;
+  const trb_ring_pose *start = &drive->ring;
+  support              s = {{0, 0, 0}, {0, 0, 0}, 0.0};
+  trb_ring_pose        ring;
+  if (p->ring_support_radial <= 0.0 && p->ring_support_axial <= 0.0 && p->ring_support_tilt <= 0.0) return s;
+  ring_of(m, NULL, drive, y, &ring);
+  const trb_vec3 leaned = trb_sub(ring.axis, start->axis);
+  const trb_vec3 shift = trb_axpy(trb_sub(ring.centre, start->centre), p->ring_support_position, leaned);
+  s.force = trb_v(-p->ring_support_radial * shift.x, -p->ring_support_radial * shift.y, -p->ring_support_axial * shift.z);
+  s.moment = trb_axpy(trb_cross(trb_scale(p->ring_support_position, ring.axis), s.force), -p->ring_support_tilt,
+                      trb_cross(start->axis, ring.axis));
+  s.energy = -0.5 * trb_dot(s.force, shift) + 0.5 * p->ring_support_tilt * trb_dot(leaned, leaned);
+  return s;
+}
+
 static void pose_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
 {
   (void)body;
@@ -50,7 +73,8 @@ static void pose_of(const trb_model *m, const trb_body *body, const trb_drive *d
   pose->v = into_r(drive, v);
   pose->omega_frame = turn_rate(drive, y);
   pose->omega = trb_from_frame(&pose->frame, pose->omega_frame);
-  pose->moving = pose->stored = 0.0;
+  pose->moving = 0.0;
+  pose->stored = support_of(m, drive, y).energy;
   pose->lost = p->ring_damping * trb_dot(v, v) + p->ring_damping_turns * trb_dot(about, about);
 }
 
@@ -75,10 +99,12 @@ static loading loading_of(const trb_model *m, const trb_drive *drive, const trb_
 {
   const trb_params *p = &m->params;
   const trb_vec3    across = trb_v(y[TRB_FREE_RING_omega_n], y[TRB_FREE_RING_omega_t], 0.0);
-  const trb_vec3    at_centre = trb_add(from_r(drive, load->force), drive->load.force);
+  const support     held = support_of(m, drive, y);
+  const trb_vec3    at_centre = trb_add(trb_add(from_r(drive, load->force), drive->load.force), held.force);
   loading           on = {.unbalance = unbalance_of(m, drive, y)};
   on.force = trb_axpy(trb_add(at_centre, on.unbalance), -p->ring_damping, velocity_of(y));
   on.moment = trb_add(trb_add(from_r(drive, load->moment), drive->load.moment), trb_cross(arm_of(m, f), at_centre));
+  on.moment = trb_add(on.moment, held.moment);
   on.moment = trb_axpy(on.moment, -p->ring_damping_turns, trb_from_frame(f, across));
   return on;
 }

@@ -148,6 +148,36 @@ static PyObject *state_layout(PyObject *self, PyObject *none)
   return list;
 }
 
+static const char *body_of(const trb_system *s, int body) { return body == TRB_ROLLERS ? "rollers" : s->bodies[body].name; }
+
+/* Adds a row to a list; takes the row. */
+static void append(PyObject **list, PyObject *row)
+{
+  if (*list != NULL && (row == NULL || PyList_Append(*list, row) != 0)) Py_CLEAR(*list);
+  Py_XDECREF(row);
+}
+
+static PyObject *system_table(PyObject *self, PyObject *none)
+{
+  const trb_system *s = ((model_object *)self)->system;
+  PyObject         *bodies = PyList_New(0), *surfaces = PyList_New(0), *pairs = PyList_New(0);
+  (void)none;
+  for (int b = 0; b < s->n_bodies; b++)
+    append(&bodies, Py_BuildValue("(ssi)", s->bodies[b].name, s->bodies[b].kind->name, s->bodies[b].size));
+  for (int i = 0; i < s->n_surfaces; i++) append(&surfaces, Py_BuildValue("(ss)", s->surfaces[i].name, body_of(s, s->surfaces[i].body)));
+  for (int i = 0; i < s->n_pairs; i++) {
+    const trb_pair *pair = &s->pairs[i];
+    append(&pairs, Py_BuildValue("(ssssO)", pair->name, pair->text, s->surfaces[pair->surface[0]].name, s->surfaces[pair->surface[1]].name,
+                                 pair->on ? Py_True : Py_False));
+  }
+  if (bodies != NULL && surfaces != NULL && pairs != NULL)
+    return Py_BuildValue("{s:N,s:N,s:N}", "bodies", bodies, "surfaces", surfaces, "pairs", pairs);
+  Py_XDECREF(bodies);
+  Py_XDECREF(surfaces);
+  Py_XDECREF(pairs);
+  return NULL;
+}
+
 static int read_doubles(PyObject *object, const char *name, npy_intp n, double *to)
 {
   PyArrayObject *array = trb_array(object, 1, name);
@@ -220,6 +250,7 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 static PyMethodDef methods[] = {
     {"record_layout", record_layout, METH_NOARGS, "(name, offset, shape) of every field of a record."},
     {"peak_layout", peak_layout, METH_NOARGS, "(name, offset, shape) of every field of a row of peaks."},
+    {"system_table", system_table, METH_NOARGS, "Bodies (name, kind, coordinates), surfaces and pairs that are simulated."},
     {"state_layout", state_layout, METH_NOARGS, "(name, offset, shape) of the parts of a state vector."},
     {"equilibrium", (PyCFunction)(void (*)(void))equilibrium, METH_VARARGS | METH_KEYWORDS, "Static equilibrium at speed."},
     {NULL, NULL, 0, NULL},

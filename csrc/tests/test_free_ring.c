@@ -24,6 +24,7 @@ static trb_params params_of(double free, double mass)
   p.ring_offset = 4e-3;
   p.ring_unbalance = 2e-5, p.ring_unbalance_angle = 0.4;
   p.ring_damping = 30.0, p.ring_damping_turns = 0.02;
+  p.ring_support_radial = 3e7, p.ring_support_axial = 2e7, p.ring_support_tilt = 5e3, p.ring_support_position = 0.03;
   p.damping = 1.0;
   return p;
 }

@@ -351,3 +351,27 @@ def test_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
     sim.set_state(sim.state.vector, time=1e3)
     assert sim.step() == 1e3
     assert capfd.readouterr() == ("", "")
+
+
+def test_the_system_lists_what_is_simulated_and_what_is_off() -> None:
+    """What the effects leave out is listed as off, and its counters stay at zero."""
+    scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000.0, axial_load=4930.0)
+    simulation = Simulation(scene)
+    system = simulation.system
+    assert sum(body.coordinates for body in system.bodies) == 12 * 11 + 12
+    on = {pair.name for pair in system.pairs if pair.on}
+    assert on == {"outer", "inner", "rib", "front_rib", "pocket"}
+    by_name = {pair.name: pair for pair in system.pairs}
+    assert by_name["pocket"].bodies == ("rollers", "cage")
+    assert by_name["inner_land"].surfaces == ("guiding surface", "land of the inner ring")
+    assert "drag" in repr(system)
+    assert "<table" in system._repr_html_()
+    body = trb.RingBody.hollow_cylinder(mass=1.0, outer_diameter=0.06, length=0.1)
+    other = scene.replace(
+        ring="free",
+        ring_body=body,
+        effects=trb.Effects.standard().replace(oil_fill=0.1, back_rib=False, guidance="outer_land"),
+    )
+    system = Simulation(other).system
+    assert {pair.name for pair in system.pairs if pair.on} == on - {"rib"} | {"drag", "outer_land"}
+    assert {body.name: body.coordinates for body in system.bodies}["inner ring"] == 12

@@ -399,6 +399,7 @@ OF_FREE_RINGS = {
     f"ring_{name}" for name in ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
 }
 OF_FREE_RINGS |= {"ring_unbalance", "ring_unbalance_angle"}
+OF_FREE_RINGS |= {f"ring_support_{name}" for name in ("radial", "axial", "tilt", "position")}
 """Numbers of a free ring: tests/physics/test_free_ring.py."""
 
 TRACTION = {

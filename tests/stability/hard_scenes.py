@@ -220,11 +220,15 @@ def _vg(**changes: Any) -> trb.Lubricant:
     return trb.lubricants.vg100(temperature_c=60.0).replace(**changes)
 
 
-def free_ring(mass: float, speed_rpm: float = 3000.0, *, unbalance: float = 0.0, mass_offset: float = 0.0, **fields: Any) -> trb.Scene:
+def free_ring(
+    mass: float, speed_rpm: float = 3000.0, *, unbalance: float = 0.0, mass_offset: float = 0.0, **fields: Any
+) -> trb.Scene:
     """A ring that is free, with a shaft of its mass."""
     body = trb.RingBody.hollow_cylinder(mass=mass, outer_diameter=0.06, length=0.09, mass_offset=mass_offset)
     given = {"axial_load": 4930.0} | fields
-    return trb.Scene(rig_30310(), speed_rpm=speed_rpm, ring="free", ring_body=body.replace(unbalance=unbalance), **given)
+    return trb.Scene(
+        rig_30310(), speed_rpm=speed_rpm, ring="free", ring_body=body.replace(unbalance=unbalance), **given
+    )
 
 
 HARD: tuple[Hard, ...] = (
@@ -759,7 +763,7 @@ HARD: tuple[Hard, ...] = (
     ),
     Hard(
         "free_ring_run_up",
-        "from standstill to 6000 rpm within 60 ms by a torque: the rollers leave the speed at which their coordinates stand still",
+        "from standstill to 6000 rpm within 60 ms by a torque: rollers leave the speed at which their coordinates stand still",
         lambda: free_ring(2.0, 0.0, torque=9.0, axial_load=3000.0),
         duration=0.06,
     ),

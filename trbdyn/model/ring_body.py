@@ -32,6 +32,13 @@ class RingBody(Model):
         shaft's vibrations; none by default.
     damping_turns : float
         The same of turns about transverse axes (N m s).
+    support_radial, support_axial : float
+        Stiffness across and along the axis (N/m) of a support of the shaft, such as a second bearing: `Stiffness.springs`. It
+        carries nothing at the start, and then what moves the shaft from there.
+    support_tilt : float
+        Its stiffness against tilt (N m/rad).
+    support_position : float
+        Axial position of the support from the roller-centre plane, positive towards the large ends (m).
 
     Raises
     ------
@@ -56,6 +63,10 @@ class RingBody(Model):
     unbalance_angle_deg: Annotated[Number, unit("deg", ge=-360.0, le=360.0)] = 0.0
     damping: Annotated[Number, parameter("ring_damping")] = 0.0
     damping_turns: Annotated[Number, parameter("ring_damping_turns")] = 0.0
+    support_radial: Annotated[Number, parameter("ring_support_radial")] = 0.0
+    support_axial: Annotated[Number, parameter("ring_support_axial")] = 0.0
+    support_tilt: Annotated[Number, parameter("ring_support_tilt")] = 0.0
+    support_position: Annotated[Number, parameter("ring_support_position")] = 0.0
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -26,6 +26,7 @@ from trbdyn.run.estimate import Estimate, estimate
 from trbdyn.run.keeping import kept_by_default
 from trbdyn.run.options import Group, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
+from trbdyn.run.system import System, system_of
 from trbdyn.run.watch import Account
 from trbdyn.statics.cage_start import pressed_rollers
 from trbdyn.statics.core_model import build_model
@@ -172,6 +173,11 @@ class Simulation(Displayed):
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
         return StateView(self._model, self.state.vector if vector is None else vector)
+
+    @property
+    def system(self) -> System:
+        """The bodies and the pairs that are simulated, and those that the effects leave out; prints as a table."""
+        return system_of(self._model)
 
     def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
         """Go on from another state; the integrator is started again.

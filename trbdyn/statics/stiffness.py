@@ -87,13 +87,27 @@ class Stiffness(Displayed):
             ),
         )
 
+    @property
+    def springs(self) -> dict[str, float]:
+        """The same as springs at one point of the axis, without coupling between them: `radial` and `axial` (N/m), `tilt`
+        (N m/rad), and the axial `position` of the point from the roller-centre plane (m), positive towards the large ends. Exact
+        under an axial load alone; else the means of both directions.
+
+        A second bearing that faces the first, with its roller-centre plane at the distance L towards the large ends, is the
+        support ``support_radial=radial, support_axial=axial, support_tilt=tilt, support_position=L - position`` of a `RingBody`.
+        """
+        k = self.matrix
+        radial, coupling = 0.5 * (k[0, 0] + k[1, 1]), 0.5 * (k[0, 4] - k[1, 3])
+        tilt = 0.5 * (k[3, 3] + k[4, 4]) - coupling**2 / radial
+        return {"radial": radial, "axial": k[2, 2], "tilt": tilt, "position": coupling / radial}
+
     def modes(self, body: RingBody, *, gyroscopic: bool = True) -> Modes:
         """Natural vibrations of a body that is fixed to the inner ring, without damping and friction.
 
         Parameters
         ----------
         body : RingBody
-            The body; its dampers are left out.
+            The body with its support; its dampers are left out.
         gyroscopic : bool
             Count the gyroscopic moments of the body's rotation.
 
@@ -109,7 +123,7 @@ class Stiffness(Displayed):
 
         Notes
         -----
-        M q'' + G q' + K q = 0 with K from `matrix`, M from the body and `roller_mass`, G from the body's axial inertia and speed
+        M q'' + G q' + K q = 0 with K from `matrix` and the support, M from the body and `roller_mass`, G from the body's axial inertia and speed
         (Genta, Dynamics of Rotating Systems). Friction on the raceways damps these vibrations strongly, above all axial ones.
 
         Examples
@@ -124,6 +138,9 @@ class Stiffness(Displayed):
             raise InputError.of("body", body, "must be a RingBody")
         arm = np.eye(5)  # from the reference point to the centre of mass
         arm[0, 4], arm[1, 3] = body.mass_offset, -body.mass_offset
+        held, radial, tilt = np.eye(5), body.support_radial, body.support_tilt
+        held[0, 4], held[1, 3] = body.support_position, -body.support_position
+        whole_stiffness = self.matrix + held.T @ np.diag([radial, radial, body.support_axial, tilt, tilt]) @ held
         inertia = np.array([body.mass] * 3 + [body.inertia_transverse] * 2)
         mass = arm.T @ np.diag(inertia) @ arm + self.roller_mass
         gyro = np.zeros((5, 5))
@@ -132,8 +149,8 @@ class Stiffness(Displayed):
             gyro[3, 4], gyro[4, 3] = spin, -spin
         zero, one = np.zeros((5, 5)), np.eye(5)
         # both of equal size, or the eigenvalues lose their digits
-        size = np.sqrt(np.trace(self.matrix[:3, :3]) / np.trace(mass[:3, :3]))
-        whole = np.block([[zero, size * one], [-self.matrix / size, -gyro]])
+        size = np.sqrt(np.trace(whole_stiffness[:3, :3]) / np.trace(mass[:3, :3]))
+        whole = np.block([[zero, size * one], [-whole_stiffness / size, -gyro]])
         values, vectors = eig(whole, np.block([[one, zero], [zero, mass]]))
         up = np.flatnonzero(values.imag > 0.0)
         up = up[np.argsort(values[up].imag)][:5]
