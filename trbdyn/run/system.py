@@ -81,8 +81,9 @@ class System(Displayed):
             for body in self.bodies
         ]
         rows += [(pair.name, "on" if pair.on else "off", pair.text) for pair in self.pairs]
+        on = sum(pair.on for pair in self.pairs)
         return Shown(
-            f"{size} coordinates of {len(self.bodies)} kinds of bodies; {sum(pair.on for pair in self.pairs)} of {len(self.pairs)} pairs",
+            f"{size} coordinates; {on} of {len(self.pairs)} pairs are on",
             tuple(rows),
             head=("name", "state", "what it is"),
             notes=("A pair that is off is a row that nothing evaluates: it costs no time.",),

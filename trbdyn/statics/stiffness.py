@@ -123,8 +123,9 @@ class Stiffness(Displayed):
 
         Notes
         -----
-        M q'' + G q' + K q = 0 with K from `matrix` and the support, M from the body and `roller_mass`, G from the body's axial inertia and speed
-        (Genta, Dynamics of Rotating Systems). Friction on the raceways damps these vibrations strongly, above all axial ones.
+        M q'' + G q' + K q = 0 with K from `matrix` and the support, M from the body and `roller_mass`, G from the body's axial
+        inertia and speed (Genta, Dynamics of Rotating Systems). Friction on the raceways damps these vibrations strongly, above
+        all axial ones.
 
         Examples
         --------
