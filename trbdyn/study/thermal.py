@@ -386,6 +386,8 @@ class _Runs:
 
 
 def _losses(run: Any) -> dict[str, float]:
-    """Power by mechanism (W) of a run in a dataset."""
+    """Power by mechanism (W) of a run in a dataset; without that of a free ring's damping, which heats the surroundings."""
     prefix = "power_split_"
-    return {str(name)[len(prefix) :]: float(run[name]) for name in run.data_vars if str(name).startswith(prefix)}
+    found = {str(name)[len(prefix) :]: float(run[name]) for name in run.data_vars if str(name).startswith(prefix)}
+    found.pop("support", None)
+    return found
