@@ -30,7 +30,7 @@ SECTIONS = {
         "Where to read on",
     ),
     "docs/install.md": ("From the checkout", "From a wheel", "Into another environment", "What was not tried"),
-    "docs/validation.md": ("What accuracy costs", "Friction torque beside measured values"),
+    "docs/validation.md": ("What accuracy costs", "Friction torque beside measured values", "Blind, with bands"),
     "docs/promises.md": ("To the last bit", "No silent wrong answer"),
     "docs/design.md": ("The folders",),
     "docs/tutorials/reading_a_result.md": ("Words that are easily mixed up",),
@@ -59,10 +59,12 @@ WHEEL = re.compile(r"pip install trbdyn-([\d.]+)-cp311-abi3-(manylinux_\d+_\d+)_
 MINUTES = {
     ".venv/bin/python benchmarks/work_precision.py",
     ".venv/bin/python benchmarks/peers.py --quick",
+    ".venv/bin/python benchmarks/validation",
     "python benchmarks/paper",
 }
 SHORTER = {  # options that the page or the command itself names
     ".venv/bin/python benchmarks/work_precision.py": " --quick",
+    ".venv/bin/python benchmarks/validation": " --quick",
     "python benchmarks/paper": " --help",
 }
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
