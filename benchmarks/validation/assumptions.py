@@ -12,7 +12,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 import trbdyn as trb
@@ -28,29 +27,24 @@ ANGLES: Final = {"32216": (13.7, 15.7)}
 """Bands of the cup's half angle (deg)."""
 
 
-def replenishment(point: Measurement, factor: float) -> float:
-    """SKF's kinematic replenishment, exp(-K_rs nu n (d + D) sqrt(K_Z/(2 (D - d)))), K_Z = 6 for tapered roller bearings; nu in
-    mm2/s, n in rpm, d and D in mm (SKF, Rolling Bearings, general catalogue).
+def replenishment(point: Measurement, supply: str) -> float:
+    """SKF's kinematic replenishment (`trbdyn.lubricants.replenishment`).
 
     Parameters
     ----------
     point : Measurement
         Speed and bearing.
-    factor : float
-        K_rs: 3e-8 for a low bath or a jet, 6e-8 for oil and air or grease.
+    supply : {'low_bath', 'oil_air'}
+        K_rs of 3e-8 or 6e-8.
     """
     page = CATALOGUE[point.bearing]
-    bore, outside = 1e3 * page["bore"], 1e3 * page["outside"]
     oil = trb.lubricants.vg100(point.ring_c)
-    viscosity = 1e6 * oil.viscosity / oil.density
-    return math.exp(
-        -factor * viscosity * point.speed_rpm * (bore + outside) * math.sqrt(6.0 / (2.0 * (outside - bore)))
-    )
+    return trb.lubricants.replenishment(oil, point.speed_rpm, bore=page["bore"], outside=page["outside"], supply=supply)
 
 
 def scene_of(point: Measurement) -> trb.Scene:
     """The scene of a measurement, every open input at its value."""
-    effects = trb.Effects.standard().replace(oil_fill="bath", starvation_factor=replenishment(point, 3e-8))
+    effects = trb.Effects.standard().replace(oil_fill="bath", starvation_factor=replenishment(point, "low_bath"))
     return trb.Scene(
         trb.cases.BEARINGS[point.bearing](),
         speed_rpm=point.speed_rpm,
@@ -74,7 +68,12 @@ def bands_of(point: Measurement) -> tuple[Band, ...]:
             high=point.ring_c + 10.0,
             source="films over the ring",
         ),
-        Band(path="effects.starvation_factor", low=replenishment(point, 6e-8), high=1.0, source="SKF's replenishment"),
+        Band(
+            path="effects.starvation_factor",
+            low=replenishment(point, "oil_air"),
+            high=1.0,
+            source="SKF's replenishment",
+        ),
         Band(path="effects.oil_fill", low=bath.low, high=bath.high, source=bath.words),
         Band(path="bearing.roughness.raceway", low=0.7 * rough.raceway, high=1.5 * rough.raceway, source="finishing"),
         Band(path="bearing.roughness.rib", low=0.7 * rough.rib, high=1.5 * rough.rib, source="finishing"),

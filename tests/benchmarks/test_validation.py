@@ -63,10 +63,16 @@ def test_replenishment() -> None:
     from validation.assumptions import replenishment
     from validation.measured import MEASUREMENTS
 
-    by_speed = {point.speed_rpm: replenishment(point, 3e-8) for point in MEASUREMENTS}
+    by_speed = {point.speed_rpm: replenishment(point, "low_bath") for point in MEASUREMENTS}
     assert by_speed[4000.0] == pytest.approx(0.70, abs=0.01)
     assert by_speed[2000.0] == pytest.approx(0.84, abs=0.01)
-    assert replenishment(MEASUREMENTS[0], 0.0) == 1.0
+    oil = trb.lubricants.vg100(50.0)
+    assert trb.lubricants.replenishment(oil, 0.0, bore=0.08, outside=0.14) == 1.0
+    assert replenishment(MEASUREMENTS[2], "oil_air") == pytest.approx(by_speed[4000.0] ** 2, rel=1e-12)
+    with pytest.raises(trb.InputError, match="supply = 'jet'"):
+        trb.lubricants.replenishment(oil, 100.0, bore=0.08, outside=0.14, supply="jet")
+    with pytest.raises(trb.InputError, match="must be above 0 and below outside"):
+        trb.lubricants.replenishment(oil, 100.0, bore=0.14, outside=0.08)
 
 
 def test_measurements_are_those_of_the_package() -> None:

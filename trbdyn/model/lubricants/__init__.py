@@ -35,7 +35,7 @@ from trbdyn.model.lubricants.shipped import (
     vg320,
     vg460,
 )
-from trbdyn.model.lubricants.supply import OIL_SUPPLIES, OilSupply, bath_fill, supply_of
+from trbdyn.model.lubricants.supply import OIL_SUPPLIES, OilSupply, bath_fill, replenishment, supply_of
 from trbdyn.model.lubricants.viscosity import Dicke, Vogel, astm_d341, wooster
 
 __all__ = [
@@ -62,6 +62,7 @@ __all__ = [
     "gear_75w90",
     "gear_80w90",
     "iso_vg",
+    "replenishment",
     "supply_of",
     "vg32",
     "vg46",

@@ -6,10 +6,11 @@ import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from trbdyn.base.validation import number_of
-from trbdyn.errors import InputError
+from trbdyn.errors import InputError, unknown_name
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
+    from trbdyn.model.lubricants.lubricant import Lubricant
 
 
 class OilSupply(NamedTuple):
@@ -39,6 +40,10 @@ OIL_SUPPLIES: Final = {
 }
 """States by the names that `Effects.oil_fill` takes. No measurement gives these shares: they and their bands are assumed, and the
 same for all bearings and speeds."""
+
+
+REPLENISHMENT: Final = {"low_bath": 3e-8, "oil_air": 6e-8}
+"""SKF's constant K_rs by the supply of oil."""
 
 
 def supply_of(fill: float) -> OilSupply | None:
@@ -82,6 +87,53 @@ def bath_fill(bearing: Bearing, level: float) -> float:
         raise InputError.of("level", level, f"must be from 0 to the raceway's diameter, {2.0 * outer:g} (m)")
     below = _segment(outer, level - outer) - _segment(inner, level - outer)
     return below / (math.pi * (outer**2 - inner**2))
+
+
+def replenishment(
+    lubricant: Lubricant, speed_rpm: float, *, bore: float, outside: float, supply: str = "low_bath"
+) -> float:
+    """How much of the oil that rollers push aside is back when the next one comes: SKF's kinematic replenishment of a tapered
+    roller bearing. SKF multiplies rolling resistance by it; given as `Effects.starvation_factor` it thins the films as well.
+
+    Parameters
+    ----------
+    lubricant : Lubricant
+        The oil at its temperature.
+    speed_rpm : float
+        Speed of the shaft (rpm).
+    bore, outside : float
+        Bore d and outside diameter D of the bearing (m).
+    supply : {'low_bath', 'oil_air'}
+        A low bath or a jet (K_rs 3e-8), or oil and air or grease (6e-8).
+
+    Returns
+    -------
+    float
+        exp(-K_rs nu n (d + D) sqrt(K_Z/(2 (D - d)))) with K_Z = 6, nu in mm2/s, n in rpm, d and D in mm (1).
+
+    Raises
+    ------
+    InputError
+        If the supply is unknown, or the diameters are no bearing's.
+
+    Notes
+    -----
+    Source: SKF, Rolling Bearings (general catalogue), kinematic replenishment. No range is given.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> round(trb.lubricants.replenishment(trb.lubricants.vg100(50.0), 4000.0, bore=0.080, outside=0.140), 3)
+    0.699
+    """
+    if supply not in REPLENISHMENT:
+        raise InputError.of("supply", supply, unknown_name(supply, REPLENISHMENT))
+    if not 0.0 < number_of("bore", bore) < number_of("outside", outside) < 10.0:
+        raise InputError.of("bore", bore, f"must be above 0 and below outside, {outside:g}, below 10 (m)")
+    d, outer = 1e3 * bore, 1e3 * outside
+    viscosity = 1e6 * lubricant.viscosity / lubricant.density
+    speed = abs(number_of("speed_rpm", speed_rpm))
+    return math.exp(-REPLENISHMENT[supply] * viscosity * speed * (d + outer) * math.sqrt(6.0 / (2.0 * (outer - d))))
 
 
 def _segment(radius: float, height: float) -> float:
