@@ -78,7 +78,7 @@ def bath_fill(bearing: Bearing, level: float) -> float:
     >>> import trbdyn as trb
     >>> bearing = trb.cases.rig_30310()
     >>> round(trb.lubricants.bath_fill(bearing, level=7e-3), 3)
-    0.066
+    0.067
     >>> trb.lubricants.bath_fill(bearing, level=bearing.geometry.outer_race_radius)
     0.5
     """
