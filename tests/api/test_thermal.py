@@ -14,7 +14,8 @@ import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.model.heat import PARTS
 from trbdyn.results.result import Result
-from trbdyn.study.thermal import Thermal, film_temperature, heat_of, network
+from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
+from trbdyn.study.thermal import Thermal
 
 REFERENCE: dict[str, Any] = {"bore": 0.050, "outside": 0.110, "width": 0.02925}
 
@@ -83,6 +84,40 @@ def test_the_rig_balances(rig: Thermal) -> None:
     assert rig.scene.growth.rollers_c == pytest.approx(rig.temperatures["rollers"])
     # the curve falls, so that the balance is the only one
     assert all(one[1] > two[1] for one, two in pairwise(rig.curve))
+
+
+CAPACITIES = {"outer_ring": 900.0, "inner_ring": 600.0, "rollers": 250.0, "oil": 100.0}
+
+
+def test_warming_ends_in_the_balance(rig: Thermal) -> None:
+    """From the temperatures without losses to those of the balance; heat that is stored is what was made and not given off."""
+    found = rig.warming(CAPACITIES, duration=3000.0, points=3001)
+    assert found["temperature"].sel(part="film").values[0] == pytest.approx(rig.curve[0, 0], abs=1e-6)
+    for name, value in rig.temperatures.items():
+        assert float(found["temperature"].sel(part=name)[-1]) == pytest.approx(value, abs=0.05)
+    out = sum(
+        g * (found["temperature"].sel(part=name) - outside) for name, (g, outside) in rig.paths.outer_links.items()
+    )
+    kept = sum(CAPACITIES[name] * np.ptp(found["temperature"].sel(part=name).values[[0, -1]]) for name in CAPACITIES)
+    assert float((found["power"] - out).integrate("time")) == pytest.approx(kept, rel=5e-4)  # by trapezoids
+
+
+def test_warming_of_one_body_is_exponential() -> None:
+    """Constant losses and well connected nodes: one time constant, C/G."""
+    inside = {name: 1e6 for name in trb.HeatPaths.model_fields if "_to_rollers" in name or "_to_oil" in name}
+    paths = trb.HeatPaths(outer_ring_to_surroundings=5.0, **inside)
+    found = rise(paths, LossCurves({0.0: {"rib": 100.0}, 200.0: {"rib": 100.0}}), CAPACITIES, 1000.0, 50)
+    expected = 20.0 + 20.0 * (1.0 - np.exp(-found["time"] * 5.0 / sum(CAPACITIES.values())))
+    np.testing.assert_allclose(found["temperature"].sel(part="film"), expected, atol=1e-3)
+
+
+def test_warming_refuses(rig: Thermal) -> None:
+    with pytest.raises(trb.InputError, match="must be those of outer_ring"):
+        rig.warming({"oil": 1.0}, 10.0)
+    with pytest.raises(trb.InputError, match="duration = -1"):
+        rig.warming(CAPACITIES, -1.0)
+    with pytest.raises(trb.InputError, match=r"heat_capacities\.oil = 0"):
+        rig.warming({**CAPACITIES, "oil": 0.0}, 1.0)
 
 
 def test_bands_hold_the_value(rig: Thermal) -> None:

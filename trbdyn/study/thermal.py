@@ -6,11 +6,10 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 from scipy.stats import qmc
 
@@ -23,8 +22,12 @@ from trbdyn.model.motion import is_constant, value_at
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Base
+from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
 from trbdyn.study.runner import run as run_study
 from trbdyn.study.settled import TURNS, drift, short_run, stored
+
+if TYPE_CHECKING:
+    import xarray
 
 Array = NDArray[np.float64]
 
@@ -38,67 +41,6 @@ CURVE: Final = 7
 """Temperatures at which losses are computed for the bands."""
 DRAWS: Final = 512
 """Draws of conductances; each costs nothing but the solution of the network."""
-SURFACES: Final = {"outer_ring": 0.25, "inner_ring": 0.25, "rollers": 0.5}
-"""What the temperature of films is made of: each film lies between a ring and the rollers."""
-
-
-def heat_of(losses: Mapping[str, float], oil_share: float) -> dict[str, float]:
-    """Heat that each node gets (W).
-
-    Parameters
-    ----------
-    losses : mapping of str to float
-        Power by mechanism (W), as `Result.power_split`. Rolling resistance is that of both raceways, half each.
-    oil_share : float
-        `HeatPaths.oil_share`.
-    """
-    got = dict.fromkeys(PARTS, 0.0)
-
-    def film(power: float, ring: str) -> None:
-        got["oil"] += oil_share * power
-        got[ring] += 0.5 * (1.0 - oil_share) * power
-        got["rollers"] += 0.5 * (1.0 - oil_share) * power
-
-    for name, power in losses.items():
-        if name in ("rolling", "rolling_pressure", "damping"):
-            film(0.5 * power, "outer_ring")
-            film(0.5 * power, "inner_ring")
-        elif name == "traction_outer":
-            film(power, "outer_ring")
-        elif name in ("traction_inner", "rib", "front_rib"):
-            film(power, "inner_ring")
-        elif name == "drag":
-            got["oil"] += power
-        elif name in ("pocket", "land", "land_film"):
-            got["rollers"] += power
-        else:
-            raise RuntimeError(f"no node takes the loss {name}")
-    return got
-
-
-def network(paths: HeatPaths, heat: Mapping[str, float]) -> dict[str, float]:
-    """Temperatures (C) of the nodes that give off the heat (W) that they get."""
-    place = {name: k for k, name in enumerate(PARTS)}
-    matrix, right = np.zeros((len(PARTS), len(PARTS))), np.array([heat[name] for name in PARTS])
-    for (one, two), conductance in paths.inner_links.items():
-        i, j = place[one], place[two]
-        matrix[i, i] += conductance
-        matrix[j, j] += conductance
-        matrix[i, j] -= conductance
-        matrix[j, i] -= conductance
-    for name, (conductance, outside) in paths.outer_links.items():
-        matrix[place[name], place[name]] += conductance
-        right[place[name]] += conductance * outside
-    try:
-        found = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:
-        raise InputError.of("paths", "conductances", "leave a node without a way out for its heat (W/K)") from None
-    return dict(zip(PARTS, found.tolist(), strict=True))
-
-
-def film_temperature(nodes: Mapping[str, float]) -> float:
-    """Temperature of films (C): the mean of both rings and, twice, the rollers."""
-    return sum(share * nodes[name] for name, share in SURFACES.items())
 
 
 @dataclass(frozen=True, repr=False)
@@ -119,8 +61,8 @@ class Thermal(Displayed):
         Heat that leaves over the power that is lost, less 1.
     scene : Scene
         The scene at these temperatures.
-    curve : ndarray, shape (n, 2)
-        Temperatures of films that were run (C), and power lost (W).
+    known : dict of float to dict
+        Power by mechanism (W), by the temperatures of films that were run (C).
     paths : HeatPaths
         The network.
     """
@@ -131,13 +73,46 @@ class Thermal(Displayed):
     flows: dict[str, float]
     balance: float
     scene: Scene
-    curve: Array
+    known: dict[float, dict[str, float]]
     paths: HeatPaths
 
     @property
     def power(self) -> float:
         """Power that is lost (W)."""
         return sum(self.losses.values())
+
+    @property
+    def curve(self) -> Array:
+        """Temperatures of films that were run (C), and power that is lost (W), shape (n, 2)."""
+        return np.array(sorted((t, sum(found.values())) for t, found in self.known.items()))
+
+    def warming(self, heat_capacities: Mapping[str, float], duration: float, *, points: int = 200) -> xarray.Dataset:
+        """How the parts warm up in slow time, from the temperatures that they have without losses.
+
+        The motion follows the temperature at once, as it settles within some turns: losses are those of the runs, between
+        them by interpolation.
+
+        Parameters
+        ----------
+        heat_capacities : mapping of str to float
+            Mass times specific heat of each node, outer_ring, inner_ring, rollers and oil (J/K); 460 J/kgK for steel, 2000 J/kgK
+            for oil.
+        duration : float
+            How long (s).
+        points : int
+            Number of times in the result.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``temperature`` (C) by time and part, and ``power`` (W) by time.
+
+        Raises
+        ------
+        InputError
+            If a number is missing or not allowed.
+        """
+        return rise(self.paths, LossCurves(self.known), heat_capacities, duration, points)
 
     def picture(self, path: str | Path | None = None) -> Any:
         """Draw the balance of heat made and given off, and the temperatures with their bands.
@@ -172,7 +147,7 @@ class Thermal(Displayed):
         low, high = self.bands["power"]
         rows.append(("power that is lost", f"{self.power:.4g} W", f"{low:.3g} to {high:.3g} W", ""))
         note = (
-            f"Heat that leaves is {100.0 * self.balance:+.2g} % off the power that is lost; {len(self.curve)} temperatures "
+            f"Heat that leaves is {100.0 * self.balance:+.2g} % off the power that is lost; {len(self.known)} temperatures "
             "were run."
         )
         return Shown(
@@ -230,7 +205,7 @@ def thermal(
     Notes
     -----
     What is left out: the clearance of the bearing (a given load sets the ring's place, whatever grows), heat that one
-    film gets from another, and the time that parts take to warm up. docs/theory/heat.md.
+    film gets from another. docs/theory/heat.md.
 
     Examples
     --------
@@ -255,9 +230,10 @@ def thermal(
     for name, (conductance, outside) in paths.outer_links.items():
         flows[name] = conductance * (nodes[name] - outside)
     bands = _bands(runs, paths, film, int(seed))
-    curve = np.array(sorted((t, sum(found.values())) for t, found in runs.known.items()))
     balance = sum(flows.values()) / sum(losses.values()) - 1.0
-    return Thermal({**nodes, "film": film}, bands, losses, flows, balance, runs.scene_at(film, nodes), curve, paths)
+    return Thermal(
+        {**nodes, "film": film}, bands, losses, flows, balance, runs.scene_at(film, nodes), dict(runs.known), paths
+    )
 
 
 def _balanced(runs: _Runs, paths: HeatPaths) -> dict[str, float]:
@@ -288,11 +264,8 @@ def _bands(runs: _Runs, paths: HeatPaths, film: float, seed: int) -> dict[str, t
     coldest = film_temperature(network(paths, dict.fromkeys(PARTS, 0.0)))
     grid = np.linspace(max(coldest, runs.coldest), min(film + 1.2 * (film - coldest), HOTTEST), CURVE)
     runs.side_by_side(grid.tolist())
-    known = np.array(sorted(runs.known))
-    mechanisms = sorted({name for found in runs.known.values() for name in found})
-    curves = {
-        name: PchipInterpolator(known, [runs.known[t].get(name, 0.0) for t in known.tolist()]) for name in mechanisms
-    }
+    curves = LossCurves(runs.known)
+    known = curves.temperatures
     unit = qmc.Sobol(len(names) + 1, seed=seed).random(DRAWS)
     found: dict[str, list[float]] = {name: [] for name in (*PARTS, "film", "power")}
     for row in unit:
@@ -300,7 +273,7 @@ def _bands(runs: _Runs, paths: HeatPaths, film: float, seed: int) -> dict[str, t
         drawn = paths.replace(**changes, oil_share=float(row[-1]))
 
         def nodes_at(t: float, drawn: HeatPaths = drawn) -> dict[str, float]:
-            return network(drawn, heat_of({name: float(curve(t)) for name, curve in curves.items()}, drawn.oil_share))
+            return network(drawn, heat_of(curves(t), drawn.oil_share))
 
         def excess(t: float) -> float:
             return film_temperature(nodes_at(t)) - t
@@ -310,7 +283,7 @@ def _bands(runs: _Runs, paths: HeatPaths, film: float, seed: int) -> dict[str, t
         else:
             t = float(brentq(excess, known[0], known[-1], xtol=1e-3)) if excess(known[0]) > 0.0 else float(known[0])
         nodes = nodes_at(t)
-        for name, value in {**nodes, "film": t, "power": sum(float(c(t)) for c in curves.values())}.items():
+        for name, value in {**nodes, "film": t, "power": sum(curves(t).values())}.items():
             found[name].append(value)
     return {name: tuple(np.quantile(values, [0.025, 0.975]).tolist()) for name, values in found.items()}
 
