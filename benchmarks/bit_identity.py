@@ -151,7 +151,11 @@ def compare(now: Mapping[str, Any], before: Mapping[str, Any] | None) -> dict[st
     differ = [part for part in ("state", "peaks") if now[part] != before[part]]
     # a quantity that one of the builds alone records says nothing
     common = now["records"].keys() & before["records"].keys()
-    differ += sorted(f"record of {name}" for name in common if now["records"][name] != before["records"][name])
+    others = sorted(name for name in common if now["records"][name] != before["records"][name])
+    if others:
+        differ.append(
+            f"records of {', '.join(others[:3])}" + (f" and {len(others) - 3} more" if len(others) > 3 else "")
+        )
     steps = str(now["steps"]) if now["steps"] == before["steps"] else f"{before['steps']} -> {now['steps']}"
     if now["instruction_set"] != before["instruction_set"]:
         differ.append(f"instruction set {before['instruction_set']} -> {now['instruction_set']}")

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "stepping/tangent_rings.h"
 
 const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
@@ -78,25 +79,6 @@ void trb_tangents_forget(trb_tangents *t)
   t->time = 0.0;
 }
 
-static trb_ring_tangent *ring_of(const trb_tangents *t, int roller, int ring)
-{
-  return &t->rings[(size_t)roller * (size_t)t->system->n_moving + (size_t)ring];
-}
-
-/* Slopes of the reactions with an input. */
-static void differentiate_reactions(trb_tangents *t, const trb_dynamics *d, int roller, int input, double per, int only)
-{
-  trb_wrench reactions[TRB_MOST_MOVING_RINGS];
-  trb_dynamics_roller_reactions(d, roller, &d->loads[roller], reactions);
-  for (int k = 0; k < t->system->n_moving; k++) {
-    trb_ring_tangent *ring = ring_of(t, roller, k);
-    double            moved[TRB_RING_OUT];
-    if (only >= 0 && k != only) continue;
-    trb_ring_reaction(ring, &reactions[k], moved);
-    for (int i = 0; i < TRB_RING_OUT; i++) ring->slopes.reaction[input][i] = per * (moved[i] - ring->value[i]);
-  }
-}
-
 static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
 {
   const trb_instant at = trb_dynamics_instant(d);
@@ -107,60 +89,8 @@ static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double p
     trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
     for (int i = 0; i < TRB_FLOW_SIZE; i++) r->slope[column][i] = per * (flow[i] - r->value[i]);
     if (column < TRB_NR) memcpy(r->found[column], r->slope[column], sizeof r->found[column]);
-    differentiate_reactions(t, d, j, column, per, -1);
+    trb_rings_differentiate_reactions(t, d, j, column, per, -1);
   }
-}
-
-/* The rings with coordinates as every roller sees them are kept, or put back. */
-static void see_rings(trb_tangents *t, trb_dynamics *d, int put_back)
-{
-  const size_t n = (size_t)d->model->n_rollers;
-  for (int k = 0; k < t->system->n_moving; k++) {
-    trb_ring_pose *in_frame = d->bodies[t->system->moving[k]].in_frame, *seen = t->seen + (size_t)k * n;
-    memcpy(put_back ? in_frame : seen, put_back ? seen : in_frame, n * sizeof *seen);
-  }
-}
-
-/* The origin of each roller's part that belongs to a ring, and the frame in which it is written. */
-static void begin_rings(trb_tangents *t, const trb_dynamics *d, int roller)
-{
-  const trb_roller_pose *r = &d->rollers[roller];
-  trb_wrench             reactions[TRB_MOST_MOVING_RINGS];
-  trb_dynamics_roller_reactions(d, roller, &d->loads[roller], reactions);
-  for (int k = 0; k < t->system->n_moving; k++) {
-    trb_ring_tangent *ring = ring_of(t, roller, k);
-    ring->cosine = r->cosine;
-    ring->sine = r->sine;
-    ring->from = d->bodies[t->system->moving[k]].ring;
-    trb_ring_inputs(&d->bodies[t->system->moving[k]].in_frame[roller], 1.0, 0.0, ring->origin);
-    trb_ring_reaction(ring, &reactions[k], ring->value);
-  }
-}
-
-/* Slopes with the inputs of the rings: every roller sees the ring moved along its own axes. Only contacts with this ring change. */
-static void differentiate_rings(trb_tangents *t, trb_dynamics *d)
-{
-  const trb_instant at = trb_dynamics_instant(d);
-  const int         n = d->model->n_rollers;
-  for (int k = 0; k < t->system->n_moving; k++) {
-    const int body = t->system->moving[k];
-    trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
-    for (int j = 0; j < n; j++) trb_dynamics_roller_flow(d, j, &d->loads[j], t->partly[j]);
-    for (int c = 0; c < TRB_RING_IN; c++) {
-      const double h = trb_difference[trb_state_tolerance(d->system, trb_ring_like(c))], per = 1.0 / h;
-      for (int j = 0; j < n; j++) trb_ring_move(&d->bodies[body].in_frame[j], c, h);
-      trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
-      for (int j = 0; j < n; j++) {
-        trb_ring_tangent *ring = ring_of(t, j, k);
-        double            flow[TRB_FLOW_SIZE];
-        trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
-        for (int i = 0; i < TRB_FLOW_SIZE; i++) ring->slopes.flow[c][i] = per * (flow[i] - t->partly[j][i]);
-        differentiate_reactions(t, d, j, TRB_TANGENT_IN + c, per, k);
-      }
-      see_rings(t, d, 1);
-    }
-  }
-  for (int i = 0; i < d->model->n_rollers * t->system->n_moving; i++) t->rings[i].found = t->rings[i].slopes;
 }
 
 static int all_finite(const trb_tangents *t)
@@ -189,9 +119,9 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
     memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
     memcpy(r->origin, y + trb_state_roller(j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
-    begin_rings(t, d, j);
+    trb_rings_begin(t, d, j);
   }
-  see_rings(t, d, 0);
+  trb_rings_see(t, d, 0);
   for (int c = 0; c < TRB_NR; c++) {
     const double h = trb_difference[trb_state_tolerance(d->system, c)];
     for (int j = 0; j < m->n_rollers; j++) {
@@ -204,11 +134,11 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   }
   if (frame_speed != 0.0) {
     trb_dynamics_pose(d, time + turn_difference / fabs(frame_speed), y);
-    see_rings(t, d, 1);
+    trb_rings_see(t, d, 1);
     differentiate(t, d, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
   trb_dynamics_pose(d, time, y);
-  differentiate_rings(t, d);
+  trb_rings_differentiate(t, d);
   /* these slopes are exact, so tangents are used at once, with a small reach */
   for (int j = 0; j < m->n_rollers && !t->has_slopes; j++) {
     t->rollers[j].reach = first_reach;
@@ -225,22 +155,17 @@ const double *trb_tangents_column(const trb_tangents *t, int roller, int column)
   return r->usual >= enough ? r->slope[column] : r->found[column];
 }
 
-const trb_ring_tangent *trb_tangents_ring(const trb_tangents *t, int roller, int ring) { return ring_of(t, roller, ring); }
+const trb_ring_tangent *trb_tangents_ring(const trb_tangents *t, int roller, int ring) { return trb_tangents_ring_of(t, roller, ring); }
 
 const trb_ring_slopes *trb_tangents_ring_slopes(const trb_tangents *t, int roller, int ring)
 {
-  const trb_ring_tangent *of = ring_of(t, roller, ring);
+  const trb_ring_tangent *of = trb_tangents_ring_of(t, roller, ring);
   return t->rollers[roller].usual >= enough ? &of->slopes : &of->found;
-}
-
-static double weight_of(const trb_tangent_measure *measure, int like, double value)
-{
-  return 1.0 / (sqrt((double)TRB_NR) * (measure->relative[like] * fabs(value) + measure->scale[like]));
 }
 
 static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const double *y)
 {
-  for (int i = 0; i < TRB_NR; i++) r->per[i] = weight_of(measure, i, y[i]);
+  for (int i = 0; i < TRB_NR; i++) r->per[i] = trb_tangent_weight(measure, i, y[i]);
   r->per[TRB_TANGENT_TURN] = 1.0 / turn_unit;
 }
 
@@ -265,53 +190,6 @@ static double power_error(const double *flow, const double *error)
   return off / (all + 1e-300);
 }
 
-/* The same from an error in a reaction, if those of all rollers are alike; moments count by an arm of half the pitch diameter. */
-static double reaction_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error)
-{
-  const double share = measure->factors->gamma / t->least_mass, arm = 0.5 * t->model->params.pitch_diameter;
-  double       sum = 0.0;
-  for (int i = 0; i < 6; i++) {
-    const double off = share * ring->per[5] * error[i] / (i < 3 ? 1.0 : arm);
-    sum += off * off;
-  }
-  return sqrt(sum);
-}
-
-/* Steps of all inputs of rings, one after the other, from the origin to the poses kept; gives the sum of squares of weighted steps. */
-static double step_rings(const trb_tangents *t, const trb_dynamics *d, int roller, double (*steps)[TRB_RING_IN])
-{
-  double sum = 0.0;
-  for (int k = 0; k < t->system->n_moving; k++) sum += trb_ring_step(ring_of(t, roller, k), d, t->system->moving[k], steps[k]);
-  return sum;
-}
-
-/* Broyden's correction of the part of a ring by the errors of flow and reaction. to_roller, to_ring: directions of the correction. */
-static void correct_ring(trb_ring_tangent *ring, const double *in_flow, const double *in_reaction, const double *to_roller,
-                         const double *to_ring)
-{
-  for (int c = 0; c < TRB_RING_IN; c++)
-    for (int i = 0; i < TRB_TANGENT_OUT; i++) ring->slopes.flow[c][i] += in_flow[i] * to_ring[c];
-  for (int c = 0; c < TRB_RING_ALL; c++) {
-    const double along = c < TRB_TANGENT_IN ? to_roller[c] : to_ring[c - TRB_TANGENT_IN];
-    for (int i = 0; i < TRB_RING_OUT; i++) ring->slopes.reaction[c][i] += in_reaction[i] * along;
-  }
-}
-
-/* The rings where they are now, and the exact reactions on them, become the origin. */
-static void move_origin_of_rings(trb_tangents *t, const trb_dynamics *d, int roller, const trb_tangent_measure *measure,
-                                 const trb_wrench *reactions)
-{
-  for (int k = 0; k < t->system->n_moving; k++) {
-    trb_ring_tangent *ring = ring_of(t, roller, k);
-    const trb_drive  *drive = &d->drive;
-    ring->from = d->bodies[t->system->moving[k]].ring;
-    trb_ring_inputs(&ring->from, drive->cosine * ring->cosine - drive->sine * ring->sine,
-                    drive->sine * ring->cosine + drive->cosine * ring->sine, ring->origin);
-    trb_ring_reaction(ring, &reactions[k], ring->value);
-    for (int i = 0; i < TRB_RING_IN; i++) ring->per[i] = weight_of(measure, trb_ring_like(i), ring->origin[i]);
-  }
-}
-
 /* An exact flow becomes the origin. With s the step from the old origin, P the diagonal matrix of weights and e = flow - prediction, the
  * slopes become L + e (P^2 s)^T/(s^T P^2 s) (Broyden 1965, Math. Comp. 19, 577, in the metric of the tolerances), so that they explain
  * this flow. As the error grows with the square of the distance, the reach becomes the distance times the root of allowed over found
@@ -326,18 +204,18 @@ static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_
   const trb_block_kernels *kernels = measure->factors->kernels;
   double                   step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];
   if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
-  const double by_rings = r->known ? step_rings(t, d, roller, of_ring) : 0.0;
+  const double by_rings = r->known ? trb_rings_step(t, d, roller, of_ring) : 0.0;
   const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step) + by_rings) : 0.0;
   if (r->known && length < farthest) {
     double direction[TRB_TANGENT_IN], in_state = 0.0;
     kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->anything, error);
     for (int k = 0; k < n_moving; k++) {
-      const trb_ring_tangent *ring = ring_of(t, roller, k);
+      const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
       double                  exact[TRB_RING_OUT];
       kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->anything, error, off[k]);
       trb_ring_reaction(ring, &reactions[k], exact);
       for (int i = 0; i < TRB_RING_OUT; i++) off[k][i] = exact[i] - off[k][i];
-      in_state = trb_max(in_state, reaction_error(t, ring, measure, off[k]));
+      in_state = trb_max(in_state, trb_rings_error(t, ring, measure, off[k]));
     }
     for (int i = 0; i < TRB_TANGENT_OUT; i++) error[i] = flow[i] - error[i];
     in_state = trb_max(in_state, step_error(r, measure, error));
@@ -348,9 +226,9 @@ static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_
     for (int c = 0; c < TRB_TANGENT_IN; c++)
       for (int i = 0; i < TRB_TANGENT_OUT; i++) r->slope[c][i] += error[i] * direction[c];
     for (int k = 0; k < n_moving; k++) {
-      trb_ring_tangent *ring = ring_of(t, roller, k);
+      trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
       for (int c = 0; c < TRB_RING_IN; c++) of_ring[k][c] *= ring->per[c] * ring->per[c] / (length * length);
-      correct_ring(ring, error, off[k], direction, of_ring[k]);
+      trb_rings_correct(ring, error, off[k], direction, of_ring[k]);
     }
   } else {
     r->reach = first_reach;
@@ -360,28 +238,10 @@ static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_
   memcpy(r->origin, y, TRB_NR * sizeof *y);
   r->origin[TRB_TANGENT_TURN] = turn;
   weigh(r, measure, y);
-  move_origin_of_rings(t, d, roller, measure, reactions);
+  trb_rings_move_origin(t, d, roller, measure, reactions);
   r->usual += newest * (r->served - r->usual);
   r->served = 0;
   r->known = 1;
-}
-
-/* How far the rings with coordinates have moved since a roller's origin: what margins need, and the speed at which surfaces there slide
- * away, m/s. */
-static double moved_since(const trb_tangents *t, const trb_dynamics *d, int roller, trb_ring_offset *offset)
-{
-  double slid = 0.0;
-  for (int k = 0; k < t->system->n_moving; k++) {
-    const trb_ring_pose *from = &ring_of(t, roller, k)->from, *to = &d->bodies[t->system->moving[k]].ring;
-    const double         leaned = trb_norm(trb_sub(to->axis, from->axis)), shifted = trb_norm(trb_sub(to->centre, from->centre));
-    offset->shifted += shifted;
-    offset->leaned += leaned;
-    offset->lean += leaned;
-    offset->aside += shifted;
-    slid +=
-        trb_norm(trb_sub(to->velocity, from->velocity)) + 0.5 * t->model->params.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
-  }
-  return slid;
 }
 
 /* Whether a roller has slipped away from its origin by no more than a share of the mean rolling speed; rings: by what the rings did. */
@@ -415,17 +275,17 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
   trb_ring_offset            offset = t->offset;
   if (t->under_way) return 0;
-  const double distance2 = r->known
-                               ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + step_rings(t, d, roller, of_ring)
-                               : (double)INFINITY;
-  const double slid = moved_since(t, d, roller, &offset);
+  const double distance2 =
+      r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, d, roller, of_ring)
+               : (double)INFINITY;
+  const double slid = trb_rings_moved(t, d, roller, &offset);
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step, slid) ||
                       !trb_margin_holds(&t->arms, &offset, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
   r->served += !t->beyond[roller];
   if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
   kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, flow);
   for (int k = 0; k < t->system->n_moving; k++) {
-    const trb_ring_tangent *ring = ring_of(t, roller, k);
+    const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
     double                  reaction[TRB_RING_OUT];
     kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->least, flow, reaction);
     reactions[k] = trb_ring_wrench(ring, reaction);

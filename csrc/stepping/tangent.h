@@ -20,6 +20,8 @@
 #ifndef TRB_STEPPING_TANGENT_H
 #define TRB_STEPPING_TANGENT_H
 
+#include <math.h>
+
 #include "motion/margin.h"
 #include "motion/rhs.h"
 #include "stepping/arrow.h"
@@ -67,6 +69,12 @@ typedef struct trb_tangent_measure {
   double                   margin_share;     /* of the margins that a roller may use up */
   double                   slip_share;       /* of the mean rolling speed that a roller may slip away */
 } trb_tangent_measure;
+
+/* Weight of a coordinate in a distance, one over its tolerance; like: a roller's coordinate of the same kind. */
+static inline double trb_tangent_weight(const trb_tangent_measure *measure, int like, double value)
+{
+  return 1.0 / (sqrt((double)TRB_NR) * (measure->relative[like] * fabs(value) + measure->scale[like]));
+}
 
 /* Steps of the differences, by kind of entry: small beside the scale on which the laws curve (micrometres of interference, a slip of 1e-4)
  * and large beside rounding. */

@@ -1,0 +1,130 @@
+#include "stepping/tangent_rings.h"
+
+#include <math.h>
+#include <string.h>
+
+trb_ring_tangent *trb_tangents_ring_of(const trb_tangents *t, int roller, int ring)
+{
+  return &t->rings[(size_t)roller * (size_t)t->system->n_moving + (size_t)ring];
+}
+
+void trb_rings_differentiate_reactions(trb_tangents *t, const trb_dynamics *d, int roller, int input, double per, int only)
+{
+  trb_wrench reactions[TRB_MOST_MOVING_RINGS];
+  trb_dynamics_roller_reactions(d, roller, &d->loads[roller], reactions);
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
+    double            moved[TRB_RING_OUT];
+    if (only >= 0 && k != only) continue;
+    trb_ring_reaction(ring, &reactions[k], moved);
+    for (int i = 0; i < TRB_RING_OUT; i++) ring->slopes.reaction[input][i] = per * (moved[i] - ring->value[i]);
+  }
+}
+
+void trb_rings_see(trb_tangents *t, trb_dynamics *d, int put_back)
+{
+  const size_t n = (size_t)d->model->n_rollers;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_pose *in_frame = d->bodies[t->system->moving[k]].in_frame, *seen = t->seen + (size_t)k * n;
+    memcpy(put_back ? in_frame : seen, put_back ? seen : in_frame, n * sizeof *seen);
+  }
+}
+
+void trb_rings_begin(trb_tangents *t, const trb_dynamics *d, int roller)
+{
+  const trb_roller_pose *r = &d->rollers[roller];
+  trb_wrench             reactions[TRB_MOST_MOVING_RINGS];
+  trb_dynamics_roller_reactions(d, roller, &d->loads[roller], reactions);
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
+    ring->cosine = r->cosine;
+    ring->sine = r->sine;
+    ring->from = d->bodies[t->system->moving[k]].ring;
+    trb_ring_inputs(&d->bodies[t->system->moving[k]].in_frame[roller], 1.0, 0.0, ring->origin);
+    trb_ring_reaction(ring, &reactions[k], ring->value);
+  }
+}
+
+void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d)
+{
+  const trb_instant at = trb_dynamics_instant(d);
+  const int         n = d->model->n_rollers;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    const int body = t->system->moving[k];
+    trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
+    for (int j = 0; j < n; j++) trb_dynamics_roller_flow(d, j, &d->loads[j], t->partly[j]);
+    for (int c = 0; c < TRB_RING_IN; c++) {
+      const double h = trb_difference[trb_state_tolerance(d->system, trb_ring_like(c))], per = 1.0 / h;
+      for (int j = 0; j < n; j++) trb_ring_move(&d->bodies[body].in_frame[j], c, h);
+      trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
+      for (int j = 0; j < n; j++) {
+        trb_ring_tangent *ring = trb_tangents_ring_of(t, j, k);
+        double            flow[TRB_FLOW_SIZE];
+        trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
+        for (int i = 0; i < TRB_FLOW_SIZE; i++) ring->slopes.flow[c][i] = per * (flow[i] - t->partly[j][i]);
+        trb_rings_differentiate_reactions(t, d, j, TRB_TANGENT_IN + c, per, k);
+      }
+      trb_rings_see(t, d, 1);
+    }
+  }
+  for (int i = 0; i < d->model->n_rollers * t->system->n_moving; i++) t->rings[i].found = t->rings[i].slopes;
+}
+
+double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error)
+{
+  const double share = measure->factors->gamma / t->least_mass, arm = 0.5 * t->model->params.pitch_diameter;
+  double       sum = 0.0;
+  for (int i = 0; i < 6; i++) {
+    const double off = share * ring->per[5] * error[i] / (i < 3 ? 1.0 : arm);
+    sum += off * off;
+  }
+  return sqrt(sum);
+}
+
+double trb_rings_step(const trb_tangents *t, const trb_dynamics *d, int roller, double (*steps)[TRB_RING_IN])
+{
+  double sum = 0.0;
+  for (int k = 0; k < t->system->n_moving; k++) sum += trb_ring_step(trb_tangents_ring_of(t, roller, k), d, t->system->moving[k], steps[k]);
+  return sum;
+}
+
+void trb_rings_correct(trb_ring_tangent *ring, const double *in_flow, const double *in_reaction, const double *to_roller,
+                       const double *to_ring)
+{
+  for (int c = 0; c < TRB_RING_IN; c++)
+    for (int i = 0; i < TRB_TANGENT_OUT; i++) ring->slopes.flow[c][i] += in_flow[i] * to_ring[c];
+  for (int c = 0; c < TRB_RING_ALL; c++) {
+    const double along = c < TRB_TANGENT_IN ? to_roller[c] : to_ring[c - TRB_TANGENT_IN];
+    for (int i = 0; i < TRB_RING_OUT; i++) ring->slopes.reaction[c][i] += in_reaction[i] * along;
+  }
+}
+
+void trb_rings_move_origin(trb_tangents *t, const trb_dynamics *d, int roller, const trb_tangent_measure *measure,
+                           const trb_wrench *reactions)
+{
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
+    const trb_drive  *drive = &d->drive;
+    ring->from = d->bodies[t->system->moving[k]].ring;
+    trb_ring_inputs(&ring->from, drive->cosine * ring->cosine - drive->sine * ring->sine,
+                    drive->sine * ring->cosine + drive->cosine * ring->sine, ring->origin);
+    trb_ring_reaction(ring, &reactions[k], ring->value);
+    for (int i = 0; i < TRB_RING_IN; i++) ring->per[i] = trb_tangent_weight(measure, trb_ring_like(i), ring->origin[i]);
+  }
+}
+
+double trb_rings_moved(const trb_tangents *t, const trb_dynamics *d, int roller, trb_ring_offset *offset)
+{
+  double slid = 0.0;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    const trb_ring_pose *from = &trb_tangents_ring_of(t, roller, k)->from, *to = &d->bodies[t->system->moving[k]].ring;
+    const double         leaned = trb_norm(trb_sub(to->axis, from->axis)), shifted = trb_norm(trb_sub(to->centre, from->centre));
+    offset->shifted += shifted;
+    offset->leaned += leaned;
+    offset->lean += leaned;
+    offset->aside += shifted;
+    slid +=
+        trb_norm(trb_sub(to->velocity, from->velocity)) + 0.5 * t->model->params.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
+  }
+  return slid;
+}
