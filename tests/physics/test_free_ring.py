@@ -189,12 +189,23 @@ def test_a_heavy_ring_is_a_held_one() -> None:
 
 
 def test_a_run_from_a_state_goes_on_and_records_are_found_again() -> None:
-    scene = scene_of(ROTOR.replace(unbalance=1e-4), radial_load=800.0, torque=1.2, effects=Effects.standard())
+    body = ROTOR.replace(unbalance=1e-4, support_radial=1e8, support_tilt=1e4, support_position=0.05)
+    push = History.ramp(0.0, 0.005, 800.0, 1500.0)
+    scene = scene_of(body, radial_load=push, torque=1.2, effects=Effects.standard())
     simulation = Simulation(scene)
     result = simulation.run(duration=0.01, save_every=1e-3)
     again = Simulation(scene.replace(start=Start.state(simulation.state)))
     for name in ("ring_force", "ring_position", "shaft_speed", "shaft_angle", "inner_load"):
         assert again.record()[name] == pytest.approx(simulation.record()[name], rel=1e-9, abs=1e-12), name
+    for name in ("elastic_energy", "kinetic_energy"):  # of the support, too, which keeps its place
+        assert again.record()[name] == pytest.approx(simulation.record()[name], rel=1e-9), name
+    rates = [sim.derivative(simulation.state.vector, simulation.time) for sim in (again, simulation)]
+    assert again.view(rates[0])["inner_ring_v_y"] == pytest.approx(
+        simulation.view(rates[1])["inner_ring_v_y"], rel=1e-9
+    )
+    state = simulation.state
+    with pytest.raises(InputError, match=r"start\.displacement .*must be given with a support"):
+        scene.replace(start=Start.state(state.vector, time=state.time, shaft_angle=state.shaft_angle))
     record = Replay(result).record(-1)
     for name in ("ring_force", "ring_velocity", "ring_angular_velocity", "inner_load", "rib_load", "cage_force"):
         assert record[name] == pytest.approx(result[name][-1], rel=1e-5, abs=2e-4), name

@@ -355,6 +355,10 @@ class Scene(Model):
             raise InputError.of(
                 "ring_body", MISSING, "must be given where ring = 'free': its mass and moments of inertia"
             )
+        supported = self.ring_body.support_radial or self.ring_body.support_axial or self.ring_body.support_tilt
+        if supported and self.start.kind == "state" and self.start.displacement is None:
+            limit = "must be given with a support of ring_body, which is without force there: Start.state(simulation.state) (m)"
+            raise InputError.of(("start", "displacement"), None, limit)
         if self.displacement is not None:
             limit = "must not be given where ring = 'free': it begins in the equilibrium of its loads (m)"
             raise InputError.of("displacement", self.displacement, limit)

@@ -27,7 +27,8 @@ class State:
     shaft_angle : float, optional
         Angle of the shaft (rad).
     displacement : ndarray, shape (5,), optional
-        Where the inner ring stands: translation along x, y, z (m), rotation about x, y (rad).
+        Where the inner ring stands: translation along x, y, z (m), rotation about x, y (rad). Of a free ring, whose place is in
+        the vector: where it began, and its support is without force.
     """
 
     time: float
@@ -60,7 +61,8 @@ class Start(Model):
     shaft_angle : float, optional
         State: angle of the shaft at that time (rad); by default what it has turned by since t = 0.
     displacement : tuple of float, shape (5,), optional
-        State: where the inner ring stands then (m, rad). A ring that is held stays there, as it does in the run that goes on.
+        State: where the inner ring stands then (m, rad). A ring that is held stays there, as it does in the run that goes on. Of a
+        free ring: where its support is without force.
     """
 
     kind: Literal["equal", "unequal", "whirl", "state"] = "equal"

@@ -31,7 +31,6 @@ from trbdyn.run.watch import Account
 from trbdyn.statics.cage_start import pressed_rollers
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium
-from trbdyn.statics.free_ring import displacement_of
 from trbdyn.statics.plausible import UnusualInput, unusual
 from trbdyn.statics.ring_motion import placed_again, ring_motion
 from trbdyn.statics.start import start_state
@@ -163,12 +162,7 @@ class Simulation(Displayed):
         else:
             time, vector = self._core.time, self._core.state()
         angle = self.scene.start_shaft_angle + self.scene.shaft_turn(time)
-        return State(time, vector, angle, self._displacement(time, vector))
-
-    def _displacement(self, time: float, vector: Array) -> Array:
-        """Where the ring stands at a time and a state, shape (5,)."""
-        body = self.scene.ring_body
-        return self._motion.displacement(time) if body is None else displacement_of(self.view(vector), body.mass_offset)
+        return State(time, vector, angle, self._motion.displacement(time))
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""

@@ -1,4 +1,4 @@
-"""Between the coordinates of a free ring in the state and the displacement by which equilibria and users know a ring."""
+"""The coordinates of a free ring in the state, from the place by which equilibria and results know it."""
 
 from __future__ import annotations
 
@@ -38,13 +38,3 @@ def put_axis(state: StateView, place: Array, axis: Array, offset: float) -> None
         state[f"inner_ring_{name}"] = value
     state["inner_ring_skew"] = math.asin(min(max(axis[1], -1.0), 1.0))
     state["inner_ring_tilt"] = math.atan2(axis[0], axis[2])
-
-
-def displacement_of(state: StateView, offset: float) -> Array:
-    """Displacement of a free ring, shape (5,): the inverse of `place_ring`."""
-    skew, tilt = float(state["inner_ring_skew"]), float(state["inner_ring_tilt"])
-    axis = np.array([math.cos(skew) * math.sin(tilt), math.sin(skew), math.cos(skew) * math.cos(tilt)])
-    centre = np.array([float(state[f"inner_ring_{name}"]) for name in "xyz"])
-    across = math.hypot(axis[0], axis[1])
-    turn = math.atan2(across, axis[2]) / across if across > 0.0 else 1.0
-    return np.array([*(centre - offset * (axis - _ALONG)), -turn * axis[1], turn * axis[0]])
