@@ -61,8 +61,8 @@ class Start(Model):
     shaft_angle : float, optional
         State: angle of the shaft at that time (rad); by default what it has turned by since t = 0.
     displacement : tuple of float, shape (5,), optional
-        State: where the inner ring stands then (m, rad). A ring that is held stays there, as it does in the run that goes on. Of a
-        free ring: where its support is without force.
+        State: where the inner ring stands then (m, rad). A ring that is held stays there, as it does in the run that goes on.
+        Of a free ring: where its support is without force.
     """
 
     kind: Literal["equal", "unequal", "whirl", "state"] = "equal"
