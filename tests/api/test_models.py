@@ -188,7 +188,7 @@ class TestScene:
             ({"start": {"kind": "state"}}, "start.state_vector", "given"),
             ({"start": {"kind": "whirl", "eccentricity": 1.5}}, "start.eccentricity", "<= 1"),
             ({"start": Start.whirl(), "effects": Effects(bodies="rollers")}, "start.kind", "cage"),
-            ({"ring": "free"}, "ring", "'held' or 'follows'"),
+            ({"ring": "loose"}, "ring", "'held', 'follows' or 'free'"),
             ({"bearing": None}, "bearing", ""),
         ],
     )
