@@ -208,9 +208,14 @@ class Case:
         return replace(self, **first)
 
 
+STORED_LAW = "zhou_hoeprich"
+"""Law of rolling resistance with which the states were stored; they are compared with cores that had no other."""
+
+
 def scene_of(definition: CaseDefinition) -> Scene:
     """The scene of a case, with 8 Gauss nodes along each contact."""
-    effects = {"paper": Effects.paper, "standard": Effects.standard}[definition.effects]()
+    standard = Effects.standard().replace(rolling_law=STORED_LAW)
+    effects = {"paper": Effects.paper(), "standard": standard}[definition.effects]
     bearing = cases.rig_30310()
     if definition.diameter_range > 0.0:
         scatter = Scatter(range=definition.diameter_range, seed=1)
@@ -286,6 +291,8 @@ def make_file(names: Sequence[str] = (), path: Path = FILE) -> None:
 def load_case(name: str, path: Path = FILE) -> Case:
     """A case from the file."""
     with np.load(path) as data:
+        scene = json.loads(str(data[f"{name}_scene"]))
+        scene["effects"].setdefault("rolling_law", STORED_LAW)
         states = tuple(
             State(float(time), vector)
             for time, vector in zip(data[f"{name}_time"], data[f"{name}_vector"], strict=True)
@@ -293,7 +300,7 @@ def load_case(name: str, path: Path = FILE) -> Case:
         return Case(
             name,
             ALL[name].text,
-            Scene.from_dict(json.loads(str(data[f"{name}_scene"]))),
+            Scene.from_dict(scene),
             states,
             tuple(map(float, data[f"{name}_window"])),
             tuple(map(int, data[f"{name}_impacts"])),

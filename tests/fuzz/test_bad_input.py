@@ -107,7 +107,13 @@ SCENE = paper_30310(
     ),
 ).to_dict()
 FULL = full_scene().to_dict()
+FREE = SCENE | {
+    "ring": "free",
+    "ring_body": trb.RingBody.hollow_cylinder(mass=2.0, outer_diameter=0.06, length=0.1).to_dict(),
+    "torque": 1.0,
+}
 PLACES = leaves(SCENE)[1:]
+FREE_PLACES = [place for place in leaves(FREE)[1:] if place[0] in ("ring", "ring_body", "torque")]
 FULL_PLACES = leaves(FULL)[1:]
 CASES = {name: tomllib.loads(find_case(name).read_text(encoding="utf-8")) for name in shipped_cases()}
 CASE_PLACES = [(name, place) for name, case in CASES.items() for place in leaves(case)[1:]]
@@ -166,9 +172,11 @@ def test_no_field_is_left_out() -> None:
     """What the properties below change is every field of every model."""
     full = {tuple(key for key in place if isinstance(key, str)) for place in FULL_PLACES}
     plain = {tuple(key for key in place if isinstance(key, str)) for place in PLACES}
-    left_out = set(fields_of(trb.Scene)) - full - plain
+    free = {tuple(key for key in place if isinstance(key, str)) for place in FREE_PLACES}
+    left_out = set(fields_of(trb.Scene)) - full - plain - free
     # a load that rotates needs a path of equilibria, a second each: its fields are tested in tests/physics/test_ring_path.py
     assert {field[0] for field in left_out} <= {"rotating_load"}
+    assert len(free) > 10
 
 
 def full_places() -> st.SearchStrategy[tuple[str, tuple[str | int, ...]]]:
@@ -178,11 +186,18 @@ def full_places() -> st.SearchStrategy[tuple[str, tuple[str | int, ...]]]:
 
 
 @COMMON
-@given(st.one_of(st.tuples(st.just("plain"), st.sampled_from(PLACES)), full_places()), ANYTHING)
+@given(
+    st.one_of(
+        st.tuples(st.just("plain"), st.sampled_from(PLACES)),
+        st.tuples(st.just("free"), st.sampled_from(FREE_PLACES)),
+        full_places(),
+    ),
+    ANYTHING,
+)
 def test_any_value_in_any_field_of_a_scene(where: tuple[str, tuple[str | int, ...]], value: Any) -> None:
     kind, place = where
     try:
-        scene = trb.Scene.from_dict(put(FULL if kind == "full" else SCENE, place, value))
+        scene = trb.Scene.from_dict(put({"full": FULL, "free": FREE, "plain": SCENE}[kind], place, value))
     except InputError as error:
         say(error)
     else:
