@@ -130,7 +130,7 @@ def judge(table: Table) -> Verdict:
         verdict.broken.append(f"closure {run.closure:.2g}")
     verdict.tight = bounded_run(trb.Simulation(scene, **TIGHT), run.time, MOST_TIGHT_STEPS, watched=False)
     if verdict.tight.status == "done":
-        _compare(scene, run, verdict.tight, verdict)
+        _compare(scene, sim, run, verdict.tight, verdict)
     elif not verdict.broken:
         verdict.status, verdict.broken = "unjudged", [f"tight run: {verdict.tight.status} {verdict.tight.message}"]
         return verdict
@@ -139,28 +139,40 @@ def judge(table: Table) -> Verdict:
     return verdict
 
 
-def _compare(scene: trb.Scene, run: Run, tight: Run, verdict: Verdict) -> None:
-    """Against the tight run. Bodies that hit each other go their own ways after some impacts: where the judged run is off, other
-    tight runs show by how much such a scene's losses and speeds differ that are all as good."""
+def _compare(scene: trb.Scene, sim: trb.Simulation, run: Run, tight: Run, verdict: Verdict) -> None:
+    """Against the tight run. Bodies that hit each other go their own ways after some impacts, and each run is one of many that
+    are as good: where the judged run is off, more runs with tolerances near those of both tell whether their means are.
+    """
 
     # the last step of a tight run reaches beyond the end of the judged one, in a short run by much of it
     tight_loss, tight_speed = tight.asked
     scale = max(abs(run.loss), abs(tight_loss), 1e-3 * tight.turned_over, 1e-6 * tight.stored, 1e-9)
-    loss = abs(run.loss - tight_loss) / scale
-    speed = abs(run.roller_speed - tight_speed)
-    if loss <= LOSS and speed <= SLIP:
+    if abs(run.loss - tight_loss) <= LOSS * scale and abs(run.roller_speed - tight_speed) <= SLIP:
         return
-    others = [
-        bounded_run(trb.Simulation(scene, **TIGHT | changed), run.time, MOST_TIGHT_STEPS, watched=False)
-        for changed in ({"rtol": 0.5 * TIGHT["rtol"]}, {"rtol": 2.0 * TIGHT["rtol"]})
-    ]
-    losses, speeds = zip(*(other.asked for other in (tight, *others) if other.status == "done"), strict=True)
-    loss -= 2.0 * (max(losses) - min(losses)) / scale
-    speed -= 2.0 * (max(speeds) - min(speeds))
-    if loss > LOSS:
-        verdict.broken.append(f"loss off by {loss:.2g}")
-    if speed > SLIP:
-        verdict.broken.append(f"speed of the rollers off by {speed:.2g}")
+    accuracy, rtol = sim.options.accuracy, sim.options.tolerances.rtol
+    options = [{"accuracy": accuracy, "rtol": factor * rtol} for factor in NEARBY]
+    tighter = [TIGHT | {"rtol": factor * TIGHT["rtol"]} for factor in NEARBY]
+    judged = [(run.loss, run.roller_speed), *_asked_of(scene, options, run.time)]
+    best = [tight.asked, *_asked_of(scene, tighter, run.time)]
+    for place, (name, allowed) in enumerate((("loss", LOSS * scale), ("speed of the rollers", SLIP))):
+        ours, theirs = (np.array([one[place] for one in runs]) for runs in (judged, best))
+        off = abs(ours.mean() - theirs.mean()) - 2.0 * math.sqrt(_error_of_mean(ours) + _error_of_mean(theirs))
+        if off > allowed:
+            verdict.broken.append(f"{name} off by {off / (scale if name == 'loss' else 1.0):.2g} in the mean")
+
+
+NEARBY = (0.5, 0.7, 1.4, 2.0)
+"""Factors of the relative tolerance of runs that are as good."""
+
+
+def _asked_of(scene: trb.Scene, options: list[dict[str, Any]], duration: float) -> list[tuple[float, float]]:
+    runs = [bounded_run(trb.Simulation(scene, **one), duration, MOST_TIGHT_STEPS, watched=False) for one in options]
+    return [run.asked for run in runs if run.status == "done"]
+
+
+def _error_of_mean(values: np.ndarray) -> float:
+    """Square of the standard error."""
+    return float(np.var(values, ddof=1) / values.size) if values.size > 1 else 0.0
 
 
 def bounded_run(
