@@ -20,10 +20,10 @@ FOUND = sorted((HERE / "found").glob("*.json"))
 
 
 def _seeds() -> list[Any]:
-    """Five scenes of each kind; of those that take longer two, and the others among the slow tests."""
-    dear = ("light", "pieces", "repeating")
+    """Five scenes of each kind; of those that take longer one or two, and the others among the slow tests."""
+    dear = {"light": 1, "pieces": 1, "repeating": 0}
     return [
-        pytest.param(kind, seed, marks=[pytest.mark.slow] if kind in dear and seed > 1 else [])
+        pytest.param(kind, seed, marks=[pytest.mark.slow] if seed > dear.get(kind, 4) else [])
         for kind in sorted(KINDS)
         for seed in range(5)
     ]

@@ -279,7 +279,7 @@ def test_pictures_of_a_ring(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=said):
             trb.plot.ring_spectrum(result, **given)
     report = tmp_path / "report.html"
-    trb.report(result, report)
+    trb.report(result, report, pictures=("ring_orbit", "ring_motion"))
     assert "Path of the free inner ring" in report.read_text(encoding="utf-8")
 
 
