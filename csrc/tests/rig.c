@@ -215,3 +215,34 @@ void rig_expand(const trb_arrow *a, int stride, double *whole)
   for (int c = 0; c < a->width; c++)
     for (int i = 0; i < a->width; i++) whole[(size_t)(hub + i) * (size_t)stride + (size_t)(hub + c)] = a->hub[c * a->room + i];
 }
+
+double rig_jacobian_error(trb_dynamics *d, const trb_arrow *a, double time, double *y)
+{
+  static const double unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-5, 1e-3, 1.0};
+  enum { MOST = 200 };
+  static double found[MOST][MOST], dense[MOST][MOST];
+  double        low[2 * MOST], high[2 * MOST], worst = 0.0;
+  const int     all = trb_state_main_size(d->system);
+  if (all > MOST || trb_state_size(d->system) > 2 * MOST) return INFINITY;
+  rig_expand(a, MOST, &found[0][0]);
+  for (int c = 0; c < all; c++) {
+    const double of = unit[trb_state_tolerance(d->system, c)], was = y[c];
+    y[c] = was + 0.05 * of;
+    trb_rhs(d, NULL, time, y, high);
+    y[c] = was - 0.05 * of;
+    trb_rhs(d, NULL, time, y, low);
+    y[c] = was;
+    for (int i = 0; i < all; i++) {
+      const double per = unit[trb_state_tolerance(d->system, i)];
+      dense[i][c] = (high[i] - low[i]) / 0.1 / per;
+      found[i][c] *= of / per;
+    }
+  }
+  for (int i = 0; i < all; i++) {
+    double largest = 0.0, off = 0.0;
+    for (int c = 0; c < all; c++) largest = fmax(largest, fabs(dense[i][c])), off = fmax(off, fabs(found[i][c] - dense[i][c]));
+    /* rows of rates that nothing changes have rounding alone */
+    worst = fmax(worst, off / (largest + 1e-9));
+  }
+  return worst;
+}

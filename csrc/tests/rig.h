@@ -35,6 +35,10 @@ double rig_random(unsigned long long *seed);
 /* Back towards a state until no roller pushes the cage with more than a force. */
 void rig_draw_back(trb_dynamics *d, double most, const double *to, double *state);
 
+/* How far an arrow's Jacobian at a state lies from differences of the exact right-hand side, in units of the tolerances: the largest
+ * difference of a row over its largest entry. */
+double rig_jacobian_error(trb_dynamics *d, const trb_arrow *a, double time, double *y);
+
 /* The whole Jacobian that an arrow holds: rows of `stride` entries, as many as the arrow has unknowns. */
 void rig_expand(const trb_arrow *a, int stride, double *whole);
 
