@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -78,6 +79,7 @@ class _Model:
 class _Sim:
     def __init__(self) -> None:
         self._core, self._model = _Core(), _Model()
+        self.scene = SimpleNamespace(ring_body=None)
 
 
 def _window(work: float, loss: float, kinetic: float, elastic: float, **options: Any) -> tuple[str | None, list[str]]:

@@ -50,6 +50,10 @@ SMALLEST_STEP: Final = 2e-8
 SMALL_STEPS_WARN: Final = 20_000
 SMALL_STEPS_STOP: Final = 200_000
 """Steps in a row with a mean below `SMALLEST_STEP` after which a run warns, and ends."""
+RING_LOOSE: Final = 0.1
+"""Way of a free ring from its place, over the diameter of a roller, from which on nothing seems to hold it."""
+RING_GONE: Final = 0.5
+"""The same at which it has left its bearing: up to there bounds of contacts are proven."""
 REPEATED_SHARE: Final = 0.5
 """Share of steps that had to be repeated above which a run warns."""
 MOST_WARNINGS: Final = 8
@@ -148,7 +152,7 @@ class Watch:
         final : bool
             Whether the run has reached its end.
         """
-        reason = self._look_at_steps()
+        reason = self._look_at_steps() or self._look_at_ring()
         now, time = self._energies(), self._sim._core.time
         exchanged = sum(0.5 * abs(now[name] - self._last[name]) for name in now)
         for span in (self._window, self._vibrating, self._run, self._account.whole):
@@ -298,6 +302,27 @@ class Watch:
             "or larger tolerances, or when_wrong='go_on' to go on all the same"
         )
         return f"ended at {time:.6g} s: {text}. {advice}"
+
+    def _look_at_ring(self) -> str | None:
+        """A free ring that nothing holds any more leaves its bearing: what follows means nothing."""
+        sim = self._sim
+        if sim.scene.ring_body is None:
+            return None
+        state, diameter = sim.view(sim._core.state()), sim.scene.bearing.roller.diameter
+        moved = max(abs(float(state[f"inner_ring_{name}"])) for name in "xyz")
+        if not moved > RING_LOOSE * diameter:
+            return None
+        text = (
+            f"at {sim._core.time:.6g} s the free inner ring stands {1e3 * moved:.3g} mm from its place, more than a tenth of a "
+            "roller's diameter: nothing holds it there"
+        )
+        if "ring" not in self._noted:
+            self._say(text, "ring")
+        return (
+            None
+            if moved <= RING_GONE * diameter
+            else f"ended: {text}. Look for an axial load that holds it, a support of ring_body, or effects.back_rib"
+        )
 
     def _say(self, text: str, kind: str) -> None:
         """Keep a warning with the result, and show the first of its kind on the screen."""
