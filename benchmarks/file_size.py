@@ -2,7 +2,7 @@
 
     python benchmarks/file_size.py [--quick] [--json FILE]
 
-The file is read again and each of its chunks is packed anew in other ways, with the same checksum and the same 512 records:
+The file is read again and each of its chunks is packed again in other ways, with the same checksum and the same 512 records:
 higher levels of zlib, numbers of one roller beside each other in time instead of all rollers of a record, fewer digits, float32.
 """
 

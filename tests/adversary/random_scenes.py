@@ -226,7 +226,7 @@ def free(rng: np.random.Generator) -> Table:
     if "end_axial_load" in table:
         table["history_s"] = _log(rng, 1e-3, 2e-2)
     if rng.random() < 0.25:
-        table["torque"] = float(rng.uniform(-0.5, 2.0))
+        table |= {"torque": float(rng.uniform(-0.5, 2.0)), "unbalance_share": 0.0}
     return table
 
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
 from trbdyn.base.validation import Model, Number, unit
-from trbdyn.errors import InputError
+from trbdyn.errors import MISSING, InputError
 from trbdyn.model.core_table import parameter
+from trbdyn.model.motion import is_constant, values_of
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
 
 
 class RingBody(Model):
@@ -24,7 +28,8 @@ class RingBody(Model):
     mass_offset : float
         Axial position of the centre of mass from the roller-centre plane, positive towards the large ends (m).
     unbalance : float
-        Mass times radius (kg m). Its force turns with the shaft in the plane of the centre of mass.
+        Mass times radius (kg m). Its force turns with the shaft in the plane of the centre of mass; the drive keeps the speed
+        against it, so it is refused together with a torque.
     unbalance_angle_deg : float
         Angle of the unbalance from +x towards +y where the shaft's angle is zero (deg).
     damping : float
@@ -112,3 +117,55 @@ class RingBody(Model):
             inertia_transverse=mass * (0.25 * squares + length**2 / 12.0),
             mass_offset=mass_offset,
         )
+
+
+def check_free_ring(scene: Scene) -> None:
+    """Refuse what goes together with a free ring alone, or not with it.
+
+    Raises
+    ------
+    InputError
+        If a scene has such a field.
+    """
+    if scene.ring != "free":
+        for name in ("ring_body", "torque"):
+            if (given := getattr(scene, name)) is not None:
+                raise InputError.of(name, given, "must not be given unless ring = 'free'")
+        return
+    if scene.ring_body is None:
+        raise InputError.of("ring_body", MISSING, "must be given where ring = 'free': its mass and moments of inertia")
+    supported = scene.ring_body.support_radial or scene.ring_body.support_axial or scene.ring_body.support_tilt
+    if supported and scene.start.kind == "state" and scene.start.displacement is None:
+        limit = (
+            "must be given with a support of ring_body, which is without force there: Start.state(simulation.state) (m)"
+        )
+        raise InputError.of(("start", "displacement"), None, limit)
+    if scene.displacement is not None:
+        limit = "must not be given where ring = 'free': it begins in the equilibrium of its loads (m)"
+        raise InputError.of("displacement", scene.displacement, limit)
+    if scene.unloaded != "refused":
+        raise InputError.of("unloaded", scene.unloaded, "must be 'refused' where ring = 'free'")
+    for name in ("misalignment_x", "misalignment_y"):
+        if any(values_of(getattr(scene, name))):
+            limit = f"must be 0 where ring = 'free': the ring turns under moment_{name[-1]} (rad)"
+            raise InputError.of(name, getattr(scene, name), limit)
+    if not is_constant(scene.radial_direction_deg):
+        limit = "must be constant where ring = 'free'; use rotating_load for a load that turns (deg)"
+        raise InputError.of("radial_direction_deg", scene.radial_direction_deg, limit)
+    if scene.torque is not None and scene.ring_body.unbalance > 0.0:
+        limit = "must be 0 with torque: what an unbalance takes from the speed of a shaft is not simulated (kg m)"
+        raise InputError.of(("ring_body", "unbalance"), scene.ring_body.unbalance, limit)
+    if scene.torque is not None and not is_constant(scene.speed_rpm):
+        limit = "must be a number with torque: the speed at the start (rpm)"
+        raise InputError.of("speed_rpm", scene.speed_rpm, limit)
+    if scene.rotating_load is not None and any(values_of(scene.rotating_load.load)):
+        by_shaft = scene.rotating_load.frequency_hz is None
+        for path, quantity in (
+            (("rotating_load", "load"), scene.rotating_load.load),
+            (("radial_load",), scene.radial_load),
+        ):
+            if not is_constant(quantity):
+                raise InputError.of(path, quantity, "must be constant with a rotating_load where ring = 'free' (N)")
+        if by_shaft and (scene.torque is not None or not is_constant(scene.speed_rpm)):
+            limit = "must be 0 where the speed changes; use frequency_hz, or ring_body.unbalance without torque (N)"
+            raise InputError.of(("rotating_load", "load"), scene.rotating_load.load, limit)

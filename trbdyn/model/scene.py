@@ -27,7 +27,7 @@ from trbdyn.model.motion import (
     value_at,
     values_of,
 )
-from trbdyn.model.ring_body import RingBody
+from trbdyn.model.ring_body import RingBody, check_free_ring
 from trbdyn.model.rotating_load import RotatingLoad, check_sign
 from trbdyn.model.shaft import angle_turned, turns
 from trbdyn.model.start import Start
@@ -294,7 +294,7 @@ class Scene(Model):
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_motion()
-        self._check_free()
+        check_free_ring(self)
         self._check_load()
         self._check_planar()
         self._check_start()
@@ -343,48 +343,6 @@ class Scene(Model):
                 shift = 0.0 if given is None else max(values_of(given), key=abs)
                 if abs(shift) > limit:
                     raise InputError.of(("displacement", place), shift, f"must be from {-limit:g} to {limit:g} (m)")
-
-    def _check_free(self) -> None:
-        """What goes together with a free ring alone, or not with it."""
-        if self.ring != "free":
-            for name in ("ring_body", "torque"):
-                if (given := getattr(self, name)) is not None:
-                    raise InputError.of(name, given, "must not be given unless ring = 'free'")
-            return
-        if self.ring_body is None:
-            raise InputError.of(
-                "ring_body", MISSING, "must be given where ring = 'free': its mass and moments of inertia"
-            )
-        supported = self.ring_body.support_radial or self.ring_body.support_axial or self.ring_body.support_tilt
-        if supported and self.start.kind == "state" and self.start.displacement is None:
-            limit = "must be given with a support of ring_body, which is without force there: Start.state(simulation.state) (m)"
-            raise InputError.of(("start", "displacement"), None, limit)
-        if self.displacement is not None:
-            limit = "must not be given where ring = 'free': it begins in the equilibrium of its loads (m)"
-            raise InputError.of("displacement", self.displacement, limit)
-        if self.unloaded != "refused":
-            raise InputError.of("unloaded", self.unloaded, "must be 'refused' where ring = 'free'")
-        for name in ("misalignment_x", "misalignment_y"):
-            if any(values_of(getattr(self, name))):
-                limit = f"must be 0 where ring = 'free': the ring turns under moment_{name[-1]} (rad)"
-                raise InputError.of(name, getattr(self, name), limit)
-        if not is_constant(self.radial_direction_deg):
-            limit = "must be constant where ring = 'free'; use rotating_load for a load that turns (deg)"
-            raise InputError.of("radial_direction_deg", self.radial_direction_deg, limit)
-        if self.torque is not None and not is_constant(self.speed_rpm):
-            limit = "must be a number with torque: the speed at the start (rpm)"
-            raise InputError.of("speed_rpm", self.speed_rpm, limit)
-        if self.rotating_load is not None and any(values_of(self.rotating_load.load)):
-            by_shaft = self.rotating_load.frequency_hz is None
-            for path, quantity in (
-                (("rotating_load", "load"), self.rotating_load.load),
-                (("radial_load",), self.radial_load),
-            ):
-                if not is_constant(quantity):
-                    raise InputError.of(path, quantity, "must be constant with a rotating_load where ring = 'free' (N)")
-            if by_shaft and (self.torque is not None or not is_constant(self.speed_rpm)):
-                limit = "must be 0 where the speed of a free ring changes; use ring_body.unbalance, or frequency_hz (N)"
-                raise InputError.of(("rotating_load", "load"), self.rotating_load.load, limit)
 
     def _check_load(self) -> None:
         loads: list[tuple[str, float | History]] = [("axial_load", self.axial_load), ("radial_load", self.radial_load)]
