@@ -52,17 +52,17 @@ def lost(result: Result) -> float:
 
 
 def peaks_of(values: Array, step: float, near: float) -> float:
-    """Frequency (Hz) of the largest part of a spectrum within 5 % of a frequency."""
+    """Frequency (Hz) of the largest part of a spectrum within 2 % of a frequency."""
     spectrum = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size), 16 * values.size))
     frequencies = np.fft.rfftfreq(16 * values.size, step)
-    inside = np.abs(frequencies - near) < 0.05 * near
+    inside = np.abs(frequencies - near) < 0.02 * near
     return float(frequencies[inside][np.argmax(spectrum[inside])])
 
 
 @pytest.mark.parametrize("body", [RING, ROTOR])
 def test_vibrations_have_the_frequencies_of_the_stiffness(body: RingBody) -> None:
-    """sqrt(k/(m + m_r)), with what the rollers add; radial ones come with tilt, and split by gyroscopic moments. Those of the
-    ring alone lie so high that its rollers, 0.3 kg beside 0.7, do not follow it as in an equilibrium: they are 2 to 4 % lower.
+    """sqrt(k/(m + m_r)), with what the rollers add; radial ones come with tilt, and split by gyroscopic moments. The rollers of
+    the ring alone, 0.3 kg beside 0.7, do not quite follow it as in an equilibrium: it vibrates 0.6 to 1.3 % more slowly.
     """
     scene = scene_of(body, effects=FRICTIONLESS)
     modes = trb.stiffness(scene).modes(body)
@@ -75,9 +75,9 @@ def test_vibrations_have_the_frequencies_of_the_stiffness(body: RingBody) -> Non
     result = simulation.run(duration=60.0 / modes.frequencies[0], save_every=step)
     axial = float(modes.frequencies[np.argmax(np.abs(modes.shapes[:, 2]))])
     assert peaks_of(result["ring_position"][:, 2], step, axial) == pytest.approx(axial, rel=1e-2)
-    for place in (0, 1) if body is ROTOR else ():
+    for place in (0, 1):
         found = peaks_of(result["ring_position"][:, 0], step, float(modes.frequencies[place]))
-        assert found == pytest.approx(modes.frequencies[place], rel=2e-2)
+        assert found == pytest.approx(modes.frequencies[place], rel=1.5e-2)
 
 
 def test_a_support_carries_what_moves_the_shaft() -> None:
