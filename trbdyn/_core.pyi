@@ -94,22 +94,20 @@ class Model:
         """(name, offset, shape) of the parts of a state vector."""
 
 class Simulation:
-    """One integration: model, prescribed motion, state, integrator."""
+    """One integration: bearings with what is prescribed for each, state, integrator."""
 
     def __init__(
         self,
-        model: Model,
-        motion: Array,
+        models: tuple[Model, ...],
+        motions: tuple[Array | tuple[Array, float, float, float], ...],
         time: float,
         state: Array,
         settings: dict[str, float | str],
-        period: float = 0.0,
-        angle_time: float = ...,
-        angle: float = 0.0,
     ) -> None:
-        """motion (K, 1 + 18): knot time, then value and slope of each channel; after the last knot the last `period`
-        repeats (0: everything stays). The shaft's angle is `angle` at `angle_time` (by default zero at the first knot).
-        settings: integrator ('bdf', 'erk') and those of setting_table()."""
+        """Bearings that are simulated together, and for each of them a motion (K, C): knot time, then value and slope of each
+        channel. It may come with three numbers: after the last knot the last period repeats (0: everything stays); a time, and the
+        shaft's angle then (without them it is zero at the first knot). settings: integrator ('bdf', 'erk') and those of
+        setting_table()."""
     time: float
     row_length: int
     def run(
@@ -133,15 +131,17 @@ class Simulation:
     def restore_peaks(self, saved: Array) -> None:
         """Go on with peaks that were saved at this time."""
     def whole_peaks(self, time: float) -> Array:
-        """A row of peaks from their beginning to an instant of the last step; empty if none are kept."""
+        """Rows of peaks, bearing by bearing, from their beginning to an instant of the last step; empty if none are kept."""
     def set_state(self, time: float, state: Array) -> None:
         """Restart the integrator at this state."""
     def restart(self) -> None:
         """Restart the integrator where it is (a checkpoint)."""
     def observe(self, time: float, state: Array) -> Array:
-        """A record at any time and state."""
+        """A record of each bearing, one after the other, at any time and state."""
     def derivative(self, time: float, state: Array) -> Array: ...
-    def contacts(self, time: float, state: Array) -> dict[str, Array]:
-        """Every intermediate quantity of every contact."""
+    def contacts(self, time: float, state: Array, bearing: int = 0) -> dict[str, Array]:
+        """Every intermediate quantity of every contact of a bearing."""
+    def layouts(self) -> list[list[tuple[str, int, tuple[int, ...]]]]:
+        """Where the parts of each bearing's state lie in the whole state: name, first entry, shape."""
     def counters(self) -> dict[str, int]: ...
     def statistics(self) -> dict[str, float]: ...

@@ -72,6 +72,8 @@
   X(ring_support_axial,       "N/m",    0,      1e13,   "stiffness of the support along the axis") \
   X(ring_support_tilt,        "N m",    0,      1e12,   "stiffness of the support against tilt, per radian") \
   X(ring_support_position,    "m",      -100,   100,    "axial position of the support from the roller-centre plane") \
+  X(ring_carried,             "choice",      0,      1,      "1: the ring is part of the body of the first bearing's ring: both sit on one shaft") \
+  X(ring_turned,              "choice",      0,      1,      "1: the bearing sits on the shaft the other way round: its axes are the shaft's, turned by half a turn about x") \
   /* lubricant */ \
   X(viscosity,                "Pa s",   1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \
   X(pressure_coefficient,     "1/Pa",   0,      1e-6,   "alpha0: pressure-viscosity coefficient, used by the films") \

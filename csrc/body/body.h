@@ -46,6 +46,9 @@ typedef struct trb_body_kind {
   trb_drive_power (*work)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, const trb_wrench *load);
 } trb_body_kind;
 
+/* Most coordinates of a body that systems share. */
+enum { TRB_MOST_CARRIED = 16 };
+
 /* A body of a system. */
 struct trb_body {
   const trb_body_kind  *kind;
@@ -55,6 +58,7 @@ struct trb_body {
   const trb_coordinate *coordinates; /* of a body whose size is its own */
   int                   loss;        /* where it books what it loses in itself: TRB_BOOK of an entry of bearing/losses.h; 0: nowhere */
   int                   first;       /* where its coordinates begin in the state; -1: it has none */
+  int                   carried;     /* 1: it is part of a body of another system of the assembly, whose coordinates it has */
 };
 
 /* A body at an instant. */

@@ -8,31 +8,52 @@
 /* Whether its drive keeps the prescribed speed with whatever torque that takes. */
 static int keeps_speed(const trb_model *m) { return m->params.ring_free < 2.0; }
 
-static trb_vec3 turn_rate(const trb_drive *drive, const double *y)
+/* Coordinates are those of the shaft, in its axes. A bearing that sits on it the other way round has axes that are turned by half a turn
+ * about x; this is the sign of y and z between both. */
+static double sense_of(const trb_model *m) { return m->params.ring_turned > 0.0 ? -1.0 : 1.0; }
+
+/* A vector from the shaft's axes into the bearing's, or back. */
+static trb_vec3 other_axes(const trb_model *m, trb_vec3 v)
 {
-  return trb_v(y[TRB_FREE_RING_omega_n], y[TRB_FREE_RING_omega_t], drive->shaft_speed + y[TRB_FREE_RING_omega_a]);
+  const double sense = sense_of(m);
+  return trb_v(v.x, sense * v.y, sense * v.z);
 }
 
+/* Angular velocity in the shaft's frame. */
+static trb_vec3 turn_rate(const trb_model *m, const trb_drive *drive, const double *y)
+{
+  return trb_v(y[TRB_FREE_RING_omega_n], y[TRB_FREE_RING_omega_t], sense_of(m) * drive->shaft_speed + y[TRB_FREE_RING_omega_a]);
+}
+
+static trb_vec3 place_of_mass(const double *y) { return trb_v(y[TRB_FREE_RING_x], y[TRB_FREE_RING_y], y[TRB_FREE_RING_z]); }
 static trb_vec3 velocity_of(const double *y) { return trb_v(y[TRB_FREE_RING_v_x], y[TRB_FREE_RING_v_y], y[TRB_FREE_RING_v_z]); }
 
 static trb_frame frame_of(const double *y) { return trb_tilted_frame(y[TRB_FREE_RING_skew], y[TRB_FREE_RING_tilt]); }
 
-static trb_vec3 into_r(const trb_drive *drive, trb_vec3 v) { return trb_turn_z(v, drive->cosine, -drive->sine); }
-static trb_vec3 from_r(const trb_drive *drive, trb_vec3 v) { return trb_turn_z(v, drive->cosine, drive->sine); }
+/* A vector from the shaft's axes into the frame R of the bearing, and back. */
+static trb_vec3 into_r(const trb_model *m, const trb_drive *drive, trb_vec3 v)
+{
+  return trb_turn_z(other_axes(m, v), drive->cosine, -drive->sine);
+}
 
-/* From the centre of mass to the reference point, on which loads act. */
-static trb_vec3 arm_of(const trb_model *m, const trb_frame *f) { return trb_scale(-m->params.ring_offset, f->a); }
+static trb_vec3 from_r(const trb_model *m, const trb_drive *drive, trb_vec3 v)
+{
+  return other_axes(m, trb_turn_z(v, drive->cosine, drive->sine));
+}
+
+/* From the centre of mass to the reference point, on which loads act; the bearing's axis points along the shaft's or against it. */
+static trb_vec3 arm_of(const trb_model *m, const trb_frame *f) { return trb_scale(-m->params.ring_offset * sense_of(m), f->a); }
 
 static void ring_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_ring_pose *ring)
 {
   (void)body;
   const trb_frame f = frame_of(y);
-  const trb_vec3  arm = arm_of(m, &f);
-  ring->axis = f.a;
-  ring->centre = trb_v(y[TRB_FREE_RING_x] + arm.x, y[TRB_FREE_RING_y] + arm.y,
-                       m->geometry.centre_plane + (y[TRB_FREE_RING_z] + (m->params.ring_offset + arm.z)));
-  ring->omega = trb_from_frame(&f, turn_rate(drive, y));
-  ring->velocity = trb_add(velocity_of(y), trb_cross(ring->omega, arm));
+  const trb_vec3  along = arm_of(m, &f), arm = other_axes(m, along), place = other_axes(m, place_of_mass(y));
+  const trb_vec3  omega = trb_from_frame(&f, turn_rate(m, drive, y));
+  ring->axis = other_axes(m, trb_scale(sense_of(m), f.a));
+  ring->centre = trb_v(place.x + arm.x, place.y + arm.y, m->geometry.centre_plane + (place.z + (m->params.ring_offset + arm.z)));
+  ring->omega = other_axes(m, omega);
+  ring->velocity = other_axes(m, trb_add(velocity_of(y), trb_cross(omega, along)));
 }
 
 /* Springs between a point of the axis and the surroundings, without force where the drive places the ring: at the start. */
@@ -63,22 +84,23 @@ static void pose_of(const trb_model *m, const trb_body *body, const trb_drive *d
   (void)body;
   const trb_params *p = &m->params;
   const trb_frame   f = frame_of(y);
-  const double      turn = drive->shaft_angle + y[TRB_FREE_RING_psi], turn_cos = cos(turn), turn_sin = sin(turn);
+  const double      turn = sense_of(m) * drive->shaft_angle + y[TRB_FREE_RING_psi], turn_cos = cos(turn), turn_sin = sin(turn);
   const trb_vec3    v = velocity_of(y), about = trb_v(y[TRB_FREE_RING_omega_n], y[TRB_FREE_RING_omega_t], 0.0);
-  pose->x = into_r(drive, trb_v(y[TRB_FREE_RING_x], y[TRB_FREE_RING_y], m->geometry.centre_plane + p->ring_offset + y[TRB_FREE_RING_z]));
-  pose->frame = (trb_frame){into_r(drive, f.n), into_r(drive, f.t), into_r(drive, f.a)};
+  const trb_vec3    place = other_axes(m, place_of_mass(y));
+  pose->x = trb_turn_z(trb_v(place.x, place.y, m->geometry.centre_plane + p->ring_offset + place.z), drive->cosine, -drive->sine);
+  pose->frame = (trb_frame){into_r(m, drive, f.n), into_r(m, drive, f.t), into_r(m, drive, f.a)};
   pose->body.n = trb_add(trb_scale(turn_cos, pose->frame.n), trb_scale(turn_sin, pose->frame.t));
   pose->body.t = trb_sub(trb_scale(turn_cos, pose->frame.t), trb_scale(turn_sin, pose->frame.n));
   pose->body.a = pose->frame.a;
-  pose->v = into_r(drive, v);
-  pose->omega_frame = turn_rate(drive, y);
+  pose->v = into_r(m, drive, v);
+  pose->omega_frame = turn_rate(m, drive, y);
   pose->omega = trb_from_frame(&pose->frame, pose->omega_frame);
   pose->moving = 0.0;
   pose->stored = support_of(m, drive, y).energy;
   pose->lost = p->ring_damping * trb_dot(v, v) + p->ring_damping_turns * trb_dot(about, about);
 }
 
-/* What acts on the ring, in inertial axes. */
+/* What acts on the ring, in the shaft's axes, which do not move. */
 typedef struct loading {
   trb_vec3 force, moment; /* sum, about the centre of mass */
   trb_vec3 unbalance;     /* force */
@@ -89,8 +111,8 @@ static trb_vec3 unbalance_of(const trb_model *m, const trb_drive *drive, const d
 {
   const trb_params *p = &m->params;
   if (p->ring_unbalance <= 0.0) return trb_v(0, 0, 0);
-  const double phi = drive->shaft_angle + y[TRB_FREE_RING_psi] + p->ring_unbalance_angle, c = cos(phi), s = sin(phi);
-  const double speed = drive->shaft_speed + y[TRB_FREE_RING_omega_a], rate = drive->rolling_rate;
+  const double sense = sense_of(m), phi = sense * drive->shaft_angle + y[TRB_FREE_RING_psi] + p->ring_unbalance_angle, c = cos(phi), s = sin(phi);
+  const double speed = sense * drive->shaft_speed + y[TRB_FREE_RING_omega_a], rate = sense * drive->rolling_rate;
   return trb_scale(p->ring_unbalance, trb_v(speed * speed * c + rate * s, speed * speed * s - rate * c, 0.0));
 }
 
@@ -100,10 +122,10 @@ static loading loading_of(const trb_model *m, const trb_drive *drive, const trb_
   const trb_params *p = &m->params;
   const trb_vec3    across = trb_v(y[TRB_FREE_RING_omega_n], y[TRB_FREE_RING_omega_t], 0.0);
   const support     held = support_of(m, drive, y);
-  const trb_vec3    at_centre = trb_add(trb_add(from_r(drive, load->force), drive->load.force), held.force);
+  const trb_vec3    at_centre = trb_add(trb_add(from_r(m, drive, load->force), drive->load.force), held.force);
   loading           on = {.unbalance = unbalance_of(m, drive, y)};
   on.force = trb_axpy(trb_add(at_centre, on.unbalance), -p->ring_damping, velocity_of(y));
-  on.moment = trb_add(trb_add(from_r(drive, load->moment), drive->load.moment), trb_cross(arm_of(m, f), at_centre));
+  on.moment = trb_add(trb_add(from_r(m, drive, load->moment), drive->load.moment), trb_cross(arm_of(m, f), at_centre));
   on.moment = trb_add(on.moment, held.moment);
   on.moment = trb_axpy(on.moment, -p->ring_damping_turns, trb_from_frame(f, across));
   return on;
@@ -119,7 +141,7 @@ static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *
   const loading        on = loading_of(m, drive, &f, y, load);
   const double         per_mass = 1.0 / p->ring_mass;
   const trb_turn_rates turn =
-      trb_euler(&f, turn_rate(drive, y), 0.0, p->ring_inertia_transverse, p->ring_inertia_axial, trb_to_frame(&f, on.moment));
+      trb_euler(&f, turn_rate(m, drive, y), 0.0, p->ring_inertia_transverse, p->ring_inertia_axial, trb_to_frame(&f, on.moment));
   memset(rates, 0, TRB_FREE_RING_SIZE * sizeof *rates);
   rates[TRB_FREE_RING_x] = y[TRB_FREE_RING_v_x];
   rates[TRB_FREE_RING_y] = y[TRB_FREE_RING_v_y];
@@ -161,7 +183,7 @@ static trb_drive_power work_of(const trb_model *m, const trb_body *body, const t
   const double    torque = keeps_speed(m) ? kept : drive->torque;
   trb_ring_pose   ring;
   ring_of(m, body, drive, y, &ring);
-  return (trb_drive_power){torque * turn_rate(drive, y).z + trb_dot(on.unbalance, velocity_of(y)),
+  return (trb_drive_power){torque * turn_rate(m, drive, y).z + trb_dot(on.unbalance, velocity_of(y)),
                            trb_dot(drive->load.force, ring.velocity) + trb_dot(drive->load.moment, ring.omega)};
 }
 

@@ -132,7 +132,7 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 {
   trb_dynamics_drive(d, time);
   trb_dynamics_pose_hub(d, y);
-  for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(j));
+  for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(d->system, j));
 }
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
@@ -163,7 +163,7 @@ void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
     for (int j = 0; j < m->n_rollers; j++)
-      if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(j), of_body(d, fast, y))) apart[j] |= 1U << fast->row;
+      if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(d->system, j), of_body(d, fast, y))) apart[j] |= 1U << fast->row;
   }
 }
 
@@ -210,7 +210,7 @@ void trb_dynamics_start(trb_dynamics *d, double *rates)
   memset(d->on_body, 0, sizeof d->on_body);
   for (int b = 0; b < d->system->n_bodies && trb_has_gravity(&d->drive); b++) {
     const trb_body *body = &d->system->bodies[b];
-    const double    mass = body->size > 0 ? body->kind->mass(m, body) : 0.0;
+    const double    mass = body->size > 0 && !body->carried ? body->kind->mass(m, body) : 0.0;
     if (mass <= 0.0) continue;
     d->work->counters.gravity_bodies++;
     q[TRB_Q_work_gravity] += mass * trb_dot(trb_gravity_in(&d->drive, 1.0, 0.0), d->bodies[b].pose.v);
@@ -221,7 +221,7 @@ void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, dou
 {
   const int all = trb_n_quadratures(d->system), n = all < TRB_FLOW_N_QUADRATURES ? all : TRB_FLOW_N_QUADRATURES;
   double   *q = rates + d->quadrature;
-  memcpy(rates + trb_state_roller(roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
+  memcpy(rates + trb_state_roller(d->system, roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
   rates[d->spin + roller] = flow[TRB_FLOW_spin];
   for (int k = 0; k < n; k++) q[k] += flow[TRB_FLOW_quadrature + k];
 }
@@ -238,7 +238,7 @@ unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
     if (fast->pair->kind->surfaces(m, roller) == 0) continue;
-    if (trb_clearance_holds(&fast->clearances[roller], fast->arms, y + trb_state_roller(roller), of_body(d, fast, y)))
+    if (trb_clearance_holds(&fast->clearances[roller], fast->arms, y + trb_state_roller(d->system, roller), of_body(d, fast, y)))
       fast->pair->kind->count_clear(m, roller, &d->work->counters);
     else near |= 1U << f;
   }
@@ -250,7 +250,7 @@ trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double 
   const trb_instant at = trb_dynamics_instant(d);
   trb_fast_pair    *pair = &d->fast[fast];
   const trb_gaps    gaps = pair->pair->kind->touch(d->model, pair->pair, &at, roller, &d->work->counters, load, slopes, detail);
-  trb_clearance_set(d->model, &pair->clearances[roller], &gaps, y + trb_state_roller(roller), of_body(d, pair, y));
+  trb_clearance_set(d->model, &pair->clearances[roller], &gaps, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
   return gaps;
 }
 
@@ -271,7 +271,7 @@ void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double 
 void trb_dynamics_book_bodies(const trb_dynamics *d, double *losses)
 {
   for (int b = 0; b < d->system->n_bodies; b++)
-    if (d->system->bodies[b].loss != 0) losses[d->system->bodies[b].loss - 1] += d->bodies[b].pose.lost;
+    if (d->system->bodies[b].loss != 0 && !d->system->bodies[b].carried) losses[d->system->bodies[b].loss - 1] += d->bodies[b].pose.lost;
 }
 
 void trb_dynamics_add_hub(trb_dynamics *d, double *rates)
@@ -289,16 +289,41 @@ void trb_dynamics_add_hub(trb_dynamics *d, double *rates)
   }
 }
 
+static const trb_wrench no_load = {{0, 0, 0}, {0, 0, 0}};
+
+void trb_dynamics_body_rates(const trb_dynamics *d, int body, const double *y, const trb_wrench *load, double *rates)
+{
+  const trb_body       *is = &d->system->bodies[body];
+  const trb_rigid_pose *pose = &d->bodies[body].pose;
+  double                alone[TRB_MOST_CARRIED];
+  is->kind->rates(d->model, is, &d->drive, pose, y + is->first, load, rates);
+  if (!is->carried) return;
+  is->kind->rates(d->model, is, &d->drive, pose, y + is->first, &no_load, alone);
+  for (int i = 0; i < is->size; i++) rates[i] -= alone[i];
+}
+
+/* Books what a body's drive and the loads on it put in; of a carried body, what its contacts change of that. */
+static void add_work_of(const trb_dynamics *d, int b, const double *y, double *quadratures)
+{
+  const trb_body *body = &d->system->bodies[b];
+  trb_drive_power power = body->kind->work(d->model, body, &d->drive, y + body->first, &d->on_body[b]);
+  if (body->carried) {
+    const trb_drive_power alone = body->kind->work(d->model, body, &d->drive, y + body->first, &no_load);
+    power = (trb_drive_power){power.shaft - alone.shaft, power.place - alone.place};
+  }
+  quadratures[TRB_Q_work_shaft] += power.shaft;
+  quadratures[TRB_Q_work_ring] += power.place;
+}
+
 void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
 {
   trb_dynamics_book_bodies(d, rates + d->quadrature + TRB_Q_losses);
   for (int b = 0; b < d->system->n_bodies; b++) {
     const trb_body *body = &d->system->bodies[b];
+    double         *own = rates + body->first, added[TRB_MOST_CARRIED];
     if (body->size == 0) continue;
-    body->kind->rates(d->model, body, &d->drive, &d->bodies[b].pose, y + body->first, &d->on_body[b], rates + body->first);
-    if (body->kind->work == NULL) continue;
-    const trb_drive_power power = body->kind->work(d->model, body, &d->drive, y + body->first, &d->on_body[b]);
-    rates[d->quadrature + TRB_Q_work_shaft] += power.shaft;
-    rates[d->quadrature + TRB_Q_work_ring] += power.place;
+    trb_dynamics_body_rates(d, b, y, &d->on_body[b], body->carried ? added : own);
+    for (int i = 0; i < body->size && body->carried; i++) own[i] += added[i];
+    if (body->kind->work != NULL) add_work_of(d, b, y, rates + d->quadrature);
   }
 }

@@ -102,5 +102,7 @@ void trb_dynamics_add_hub(trb_dynamics *d, double *rates);
 /* Adds what bodies lose in themselves, at the poses kept, to a list of losses. */
 void trb_dynamics_book_bodies(const trb_dynamics *d, double *losses);
 void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates);
+/* Rates of a body at its pose under a load, by coordinate; of a carried body, whose coordinates another system has, what the load adds. */
+void trb_dynamics_body_rates(const trb_dynamics *d, int body, const double *y, const trb_wrench *load, double *rates);
 
 #endif

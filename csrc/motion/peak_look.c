@@ -111,7 +111,7 @@ static double *of(const trb_peak_look *p, int quantity, double *values) { return
 /* Of a roller about the bearing's axis. */
 static double turn_of(const trb_peak_look *p, int j, const double *y)
 {
-  return p->d->drive.frame_angle + trb_nominal_angle(&p->normal, j) + y[trb_state_roller(j) + TRB_ROLLER_psi];
+  return p->d->drive.frame_angle + trb_nominal_angle(&p->normal, j) + y[trb_state_roller(p->d->system, j) + TRB_ROLLER_psi];
 }
 
 /* A roller's contacts of a batch, looked at: values are written, and how far they hold. */
@@ -132,13 +132,13 @@ static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, c
       of(p, contact_peaks[q].quantity, values)[j] = !there ? -(double)INFINITY : contact_peaks[q].sense == TRB_PEAK_LEAST ? -value : value;
     }
   }
-  trb_hold_set(ring, y + trb_state_roller(j), turn_of(p, j, y), way, speed, &p->holds[batch * m->n_rollers + j]);
+  trb_hold_set(ring, y + trb_state_roller(p->d->system, j), turn_of(p, j, y), way, speed, &p->holds[batch * m->n_rollers + j]);
 }
 
 static void pose(trb_peak_look *p, int j, const double *y)
 {
   if (p->posed[j]) return;
-  trb_dynamics_pose_roller(p->d, j, y + trb_state_roller(j));
+  trb_dynamics_pose_roller(p->d, j, y + trb_state_roller(p->d->system, j));
   p->posed[j] = 1;
 }
 
@@ -167,7 +167,7 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
     if (batch->pairs[0]->kind->look == NULL) continue;
     at.n = 0;
     for (int j = 0; j < z; j++) {
-      if (trb_hold_holds(&p->holds[i * z + j], &p->arms[i], &ring, y + trb_state_roller(j), turn_of(p, j, y))) continue;
+      if (trb_hold_holds(&p->holds[i * z + j], &p->arms[i], &ring, y + trb_state_roller(p->d->system, j), turn_of(p, j, y))) continue;
       pose(p, j, y);
       memset(&d->loads[j], 0, sizeof d->loads[j]);
       chosen[at.n++] = j;
@@ -201,7 +201,7 @@ static void look_at_places(const trb_peak_look *p, const double *y, double *valu
 {
   const int z = p->normal.n_rollers;
   for (int j = 0; j < z; j++) {
-    const double *own = y + trb_state_roller(j), *next = y + trb_state_roller((j + 1) % z);
+    const double *own = y + trb_state_roller(p->d->system, j), *next = y + trb_state_roller(p->d->system, (j + 1) % z);
     const double  spacing = trb_nominal_angle(&p->normal, 1) + (next[TRB_ROLLER_psi] - own[TRB_ROLLER_psi]);
     of(p, TRB_PEAK_skew, values)[j] = fabs(own[TRB_ROLLER_skew]);
     of(p, TRB_PEAK_spacing_largest, values)[j] = spacing;

@@ -282,7 +282,7 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
   put_cage(w, y + d->system->bodies[TRB_BODY_CAGE].first);
   put_land(w);
   for (int j = 0; j < m->n_rollers; j++) {
-    put_roller(w, j, y + trb_state_roller(j), y[d->spin + j]);
+    put_roller(w, j, y + trb_state_roller(d->system, j), y[d->spin + j]);
     put_contacts(w, j);
   }
   memcpy(&PUT(pocket_force, 0), it.seen.pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));

@@ -10,7 +10,7 @@ static int place(trb_dynamics *d, const trb_approximation *instead, double time,
   trb_dynamics_pose_hub(d, y);
   if (instead != NULL) instead->begin(instead->self, d, time);
   for (int j = 0; j < m->n_rollers; j++) {
-    const double *own = y + trb_state_roller(j);
+    const double *own = y + trb_state_roller(d->system, j);
     d->near[j] = trb_dynamics_near(d, j, y);
     const int follows = instead != NULL && instead->follow(instead->self, d, j, own, d->flows[j], trb_dynamics_reactions(d, j));
     if (!follows) d->exact[n_exact++] = j;
@@ -33,7 +33,7 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
     trb_wrench *const reactions = trb_dynamics_reactions(d, j);
     trb_dynamics_roller_flow(d, j, &d->loads[j], d->flows[j]);
     trb_dynamics_roller_reactions(d, j, &d->loads[j], reactions);
-    if (instead != NULL) instead->learn(instead->self, d, j, y + trb_state_roller(j), d->flows[j], reactions);
+    if (instead != NULL) instead->learn(instead->self, d, j, y + trb_state_roller(d->system, j), d->flows[j], reactions);
   }
 }
 

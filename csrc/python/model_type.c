@@ -112,6 +112,13 @@ static PyObject *peak_layout(PyObject *self, PyObject *none)
   return list;
 }
 
+/* Adds a row to a list; takes the row. */
+static void append(PyObject **list, PyObject *row)
+{
+  if (*list != NULL && (row == NULL || PyList_Append(*list, row) != 0)) Py_CLEAR(*list);
+  Py_XDECREF(row);
+}
+
 /* A coordinate of a body, without blanks. */
 static PyObject *state_name(const trb_body *body, int coordinate)
 {
@@ -122,40 +129,32 @@ static PyObject *state_name(const trb_body *body, int coordinate)
   return PyUnicode_FromString(name);
 }
 
-static PyObject *state_layout(PyObject *self, PyObject *none)
+/* A row for each part of the state: name, where it begins, shape and strides as (count, stride). A carried ring's coordinates are those of
+ * the shaft. */
+PyObject *trb_python_state_layout(const trb_system *s)
 {
 #define NAME(name, kind, text) #name,
   static const char *const roller[] = {TRB_ROLLER_STATE(NAME)};
 #undef NAME
-  const trb_system *s = ((model_object *)self)->system;
-  PyObject         *list = PyList_New(0);
-  (void)none;
-  const int width = s->hub_width, total = TRB_ROLLER_SIZE + width + 2;
-  for (int i = 0; list != NULL && i < total; i++) {
-    PyObject *row;
-    if (i < TRB_ROLLER_SIZE)
-      row = Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), i, s->model->n_rollers, TRB_ROLLER_SIZE);
-    else if (i < TRB_ROLLER_SIZE + width) {
-      const int       at = trb_state_hub(s) + i - TRB_ROLLER_SIZE;
-      int             coordinate;
-      const trb_body *body = trb_state_body(s, at, &coordinate);
-      row = Py_BuildValue("(Ni())", state_name(body, coordinate), at);
-    } else if (i == total - 2) row = Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(s), s->model->n_rollers);
-    else row = Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(s), trb_n_quadratures(s));
-    if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
-    Py_XDECREF(row);
-  }
+  PyObject *list = PyList_New(0);
+  for (int i = 0; i < TRB_ROLLER_SIZE; i++)
+    append(&list, Py_BuildValue("(Ni(ii))", PyUnicode_FromFormat("roller_%s", roller[i]), trb_state_roller(s, 0) + i, s->model->n_rollers,
+                                TRB_ROLLER_SIZE));
+  for (int b = 0; b < s->n_bodies; b++)
+    for (int c = 0; c < s->bodies[b].size; c++)
+      append(&list, Py_BuildValue("(Ni())", state_name(&s->bodies[b], c), s->bodies[b].first + c));
+  append(&list, Py_BuildValue("(si(i))", "spin_angle", trb_state_spin(s), s->model->n_rollers));
+  append(&list, Py_BuildValue("(si(i))", "quadratures", trb_state_quadrature(s), trb_n_quadratures(s)));
   return list;
 }
 
-static const char *body_of(const trb_system *s, int body) { return body == TRB_ROLLERS ? "rollers" : s->bodies[body].name; }
-
-/* Adds a row to a list; takes the row. */
-static void append(PyObject **list, PyObject *row)
+static PyObject *state_layout(PyObject *self, PyObject *none)
 {
-  if (*list != NULL && (row == NULL || PyList_Append(*list, row) != 0)) Py_CLEAR(*list);
-  Py_XDECREF(row);
+  (void)none;
+  return trb_python_state_layout(((model_object *)self)->system);
 }
+
+static const char *body_of(const trb_system *s, int body) { return body == TRB_ROLLERS ? "rollers" : s->bodies[body].name; }
 
 static PyObject *system_table(PyObject *self, PyObject *none)
 {

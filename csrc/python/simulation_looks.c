@@ -31,8 +31,14 @@ PyObject *trb_python_observe(PyObject *object, PyObject *args)
   double             time;
   PyArrayObject     *array = look(self, args, &time);
   if (array == NULL) return NULL;
-  PyObject *out = trb_vector(NULL, trb_record_offset(s->model, TRB_N_FIELDS));
-  if (out != NULL) trb_record_fill(s->onlooker, NULL, time, PyArray_DATA(array), s->detail, PyArray_DATA((PyArrayObject *)out));
+  int length = 0;
+  for (int k = 0; k < s->assembly.n; k++) length += trb_record_offset(s->assembly.members[k].model, TRB_N_FIELDS);
+  PyObject *out = trb_vector(NULL, length);
+  double   *row = out != NULL ? PyArray_DATA((PyArrayObject *)out) : NULL;
+  for (int k = 0; k < s->assembly.n && row != NULL; k++) {
+    trb_record_fill(s->parts[k].onlooker, NULL, time, PyArray_DATA(array), s->parts[k].detail, row);
+    row += trb_record_offset(s->assembly.members[k].model, TRB_N_FIELDS);
+  }
   trb_python_leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;
@@ -46,7 +52,8 @@ PyObject *trb_python_derivative(PyObject *object, PyObject *args)
   PyArrayObject     *array = look(self, args, &time);
   if (array == NULL) return NULL;
   PyObject *out = trb_vector(NULL, s->integrator.n);
-  if (out != NULL) trb_rhs(s->onlooker, NULL, time, PyArray_DATA(array), PyArray_DATA((PyArrayObject *)out));
+  for (int k = 0; k < s->assembly.n && out != NULL; k++)
+    trb_rhs(s->parts[k].onlooker, NULL, time, PyArray_DATA(array), PyArray_DATA((PyArrayObject *)out));
   trb_python_leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;
@@ -57,27 +64,52 @@ PyObject *trb_python_contacts(PyObject *object, PyObject *args)
   simulation_object *self = (simulation_object *)object;
   trb_simulation    *s = self->simulation;
   double             time;
-  PyArrayObject     *array = look(self, args, &time);
+  PyObject          *values;
+  int                k = 0;
+  if (!PyArg_ParseTuple(args, "dO|i", &time, &values, &k)) return NULL;
+  if (k < 0 || k >= s->assembly.n) return PyErr_Format(PyExc_ValueError, "bearing: must be from 0 to %d, not %d", s->assembly.n - 1, k);
+  PyArrayObject *array = trb_python_state_array(self, values);
+  if (array != NULL && trb_python_enter(self, 0) != 0) Py_CLEAR(array);
   if (array == NULL) return NULL;
-  trb_dynamics_pose(s->onlooker, time, PyArray_DATA(array));
-  trb_detail_clear(s->model, s->detail);
-  trb_dynamics_loads(s->onlooker, s->detail);
+  trb_dynamics *onlooker = s->parts[k].onlooker;
+  trb_dynamics_pose(onlooker, time, PyArray_DATA(array));
+  trb_detail_clear(onlooker->model, s->parts[k].detail);
+  trb_dynamics_loads(onlooker, s->parts[k].detail);
   PyObject *out = PyDict_New();
-  if (out != NULL && trb_put_contacts(s->system, s->detail, s->onlooker->loads, &s->onlooker->hub, out) != 0) Py_CLEAR(out);
+  if (out != NULL && trb_put_contacts(onlooker->system, s->parts[k].detail, onlooker->loads, &onlooker->hub, out) != 0) Py_CLEAR(out);
   trb_python_leave(self, 0);
   Py_DECREF((PyObject *)array);
   return out;
 }
 
+PyObject *trb_python_layouts(PyObject *object, PyObject *none)
+{
+  const trb_simulation *s = ((simulation_object *)object)->simulation;
+  PyObject             *out = PyList_New(0);
+  (void)none;
+  for (int k = 0; k < s->assembly.n && out != NULL; k++) {
+    PyObject *layout = trb_python_state_layout(&s->assembly.members[k]);
+    if (layout == NULL || PyList_Append(out, layout) != 0) Py_CLEAR(out);
+    Py_XDECREF(layout);
+  }
+  return out;
+}
+
 PyObject *trb_python_counters(PyObject *object, PyObject *none)
 {
-  simulation_object  *self = (simulation_object *)object;
-  const trb_counters *c = &self->simulation->dynamics->work->counters;
+  simulation_object *self = (simulation_object *)object;
+  trb_simulation    *s = self->simulation;
+  trb_counters       sum = {0};
   (void)none;
   if (trb_python_enter(self, 0) != 0) return NULL;
   PyObject *out = PyDict_New();
+#define ADD(name, text) sum.name += s->integrator.members[k].dynamics->work->counters.name;
+  for (int k = 0; k < s->assembly.n; k++) {
+    TRB_COUNTERS(ADD)
+  }
+#undef ADD
 #define PUT(name, text) \
-  if (out != NULL && trb_put(out, #name, PyLong_FromLongLong(c->name)) != 0) Py_CLEAR(out);
+  if (out != NULL && trb_put(out, #name, PyLong_FromLongLong(sum.name)) != 0) Py_CLEAR(out);
   TRB_COUNTERS(PUT)
 #undef PUT
   trb_python_leave(self, 0);

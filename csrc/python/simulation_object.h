@@ -7,16 +7,14 @@
 
 typedef struct simulation_object {
   PyObject_HEAD
-  PyObject          *model; /* keeps the model alive */
-  trb_motion        *motion;
+  PyObject          *models;                    /* a tuple that keeps the bearings' models alive */
+  trb_motion        *motions[TRB_MOST_MEMBERS]; /* what is prescribed for each */
   trb_simulation    *simulation;
   PyThread_type_lock inside;   /* held by the one thread that uses it */
   int                stepping; /* that thread is in the integrator, or is about to be */
 } simulation_object;
 
-static inline const trb_system *trb_python_system_of(const simulation_object *self) { return ((model_object *)self->model)->system; }
-
-/* A state of the model's length (new reference); NULL with an error. */
+/* A state of the simulation's length (new reference); NULL with an error. */
 PyArrayObject *trb_python_state_array(const simulation_object *self, PyObject *object);
 
 /* From enter to leave the calling thread is alone in a simulation; -1 with an error if another one steps. stepping: it steps, too. */
@@ -29,6 +27,7 @@ PyObject *trb_python_state_at(PyObject *object, PyObject *value);
 PyObject *trb_python_observe(PyObject *object, PyObject *args);
 PyObject *trb_python_derivative(PyObject *object, PyObject *args);
 PyObject *trb_python_contacts(PyObject *object, PyObject *args);
+PyObject *trb_python_layouts(PyObject *object, PyObject *none);
 PyObject *trb_python_counters(PyObject *object, PyObject *none);
 PyObject *trb_python_statistics(PyObject *object, PyObject *none);
 

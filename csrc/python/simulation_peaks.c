@@ -28,9 +28,8 @@ PyObject *trb_python_save_peaks(PyObject *object, PyObject *none)
   simulation_object *self = (simulation_object *)object;
   (void)none;
   if (trb_python_enter(self, 0) != 0) return NULL;
-  const trb_peaks *peaks = self->simulation->peaks;
-  PyObject        *out = trb_vector(NULL, peaks != NULL ? trb_peaks_length(peaks) : 0);
-  if (out != NULL && peaks != NULL) trb_peaks_save(peaks, PyArray_DATA((PyArrayObject *)out));
+  PyObject *out = trb_vector(NULL, trb_simulation_peaks_length(self->simulation));
+  if (out != NULL) trb_simulation_save_peaks(self->simulation, PyArray_DATA((PyArrayObject *)out));
   trb_python_leave(self, 0);
   return out;
 }
@@ -56,9 +55,8 @@ PyObject *trb_python_whole_peaks(PyObject *object, PyObject *value)
   simulation_object *self = (simulation_object *)object;
   const double       time = PyFloat_AsDouble(value);
   if ((time == -1.0 && PyErr_Occurred()) || trb_python_enter(self, 0) != 0) return NULL;
-  const trb_peaks *peaks = self->simulation->peaks;
-  PyObject        *out = trb_vector(NULL, peaks != NULL ? trb_peak_offset(trb_python_system_of(self)->model, TRB_N_PEAK_FIELDS) : 0);
-  if (out != NULL && peaks != NULL) trb_peaks_whole(peaks, time, PyArray_DATA((PyArrayObject *)out));
+  PyObject *out = trb_vector(NULL, trb_simulation_whole_length(self->simulation));
+  if (out != NULL) trb_simulation_whole_peaks(self->simulation, time, PyArray_DATA((PyArrayObject *)out));
   trb_python_leave(self, 0);
   return out;
 }

@@ -35,55 +35,93 @@ static int read_settings(PyObject *dictionary, trb_settings *settings, const cha
 PyArrayObject *trb_python_state_array(const simulation_object *self, PyObject *object)
 {
   PyArrayObject *state = trb_array(object, 1, "state");
-  if (state != NULL && PyArray_DIM(state, 0) != trb_state_size(trb_python_system_of(self))) {
-    PyErr_Format(PyExc_ValueError, "state: %d values needed, %d given", trb_state_size(trb_python_system_of(self)),
-                 (int)PyArray_DIM(state, 0));
+  const int      n = self->simulation->integrator.n;
+  if (state != NULL && PyArray_DIM(state, 0) != n) {
+    PyErr_Format(PyExc_ValueError, "state: %d values needed, %d given", n, (int)PyArray_DIM(state, 0));
     Py_CLEAR(state);
   }
   return state;
 }
 
+/* What is prescribed for a bearing: a table, or a table with the period of its last part and with a time and the shaft's angle then. */
+static int read_motion(PyObject *object, trb_motion **to)
+{
+  PyObject   *table = object;
+  double      period = 0.0, angle_time = NAN, angle = 0.0;
+  trb_message message = {TRB_OK, ""};
+  trb_status  status = TRB_OK;
+  if (PyTuple_Check(object) && !PyArg_ParseTuple(object, "Oddd", &table, &period, &angle_time, &angle)) return -1;
+  PyArrayObject *motion = trb_array(table, 2, "motion");
+  if (motion == NULL) return -1;
+  if (PyArray_DIM(motion, 1) != TRB_MOTION_COLUMNS)
+    status = trb_fail(&message, TRB_ERR_INPUT, "motion: %d columns needed, %d given", TRB_MOTION_COLUMNS, (int)PyArray_DIM(motion, 1));
+  else status = trb_motion_create(PyArray_DATA(motion), (int)PyArray_DIM(motion, 0), to, &message);
+  if (status == TRB_OK && period != 0.0) status = trb_motion_repeat(*to, period, &message);
+  if (status == TRB_OK && isfinite(angle_time)) trb_motion_set_angle(*to, angle_time, angle);
+  Py_DECREF((PyObject *)motion);
+  if (status == TRB_OK) return 0;
+  (void)trb_raise(status, &message);
+  return -1;
+}
+
+/* Models and motions of the bearings out of two tuples of the same length. */
+static int read_bearings(simulation_object *self, PyObject *motions, const trb_system **systems)
+{
+  const Py_ssize_t n = PyTuple_Size(self->models);
+  if (n < 1 || n > TRB_MOST_MEMBERS || PyTuple_Size(motions) != n) {
+    PyErr_Format(PyExc_ValueError, "models: from 1 to %d, and as many motions; %d and %d given", TRB_MOST_MEMBERS, (int)n,
+                 (int)PyTuple_Size(motions));
+    return -1;
+  }
+  for (Py_ssize_t k = 0; k < n; k++) {
+    PyObject *model = PyTuple_GetItem(self->models, k);
+    if (!PyObject_TypeCheck(model, trb_model_type)) {
+      PyErr_SetString(PyExc_TypeError, "models: a tuple of Model");
+      return -1;
+    }
+    systems[k] = ((model_object *)model)->system;
+    if (read_motion(PyTuple_GetItem(motions, k), &self->motions[k]) != 0) return -1;
+  }
+  return 0;
+}
+
 static PyObject *simulation_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
-  static char *names[] = {"model", "motion", "time", "state", "settings", "period", "angle_time", "angle", NULL};
-  PyObject    *model, *motion_object, *state_object, *settings_object;
-  double       time, period = 0.0, angle_time = NAN, angle = 0.0;
-  trb_settings settings;
-  const char  *kind;
-  trb_message  message = {TRB_OK, ""};
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!OdOO!|ddd", names, trb_model_type, &model, &motion_object, &time, &state_object,
-                                   &PyDict_Type, &settings_object, &period, &angle_time, &angle))
+  static char      *names[] = {"models", "motions", "time", "state", "settings", NULL};
+  PyObject         *models, *motions, *state_object, *settings_object;
+  const trb_system *systems[TRB_MOST_MEMBERS];
+  double            time;
+  trb_settings      settings;
+  const char       *kind;
+  trb_message       message = {TRB_OK, ""};
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "O!O!dOO!", names, &PyTuple_Type, &models, &PyTuple_Type, &motions, &time, &state_object,
+                                   &PyDict_Type, &settings_object))
     return NULL;
   if (read_settings(settings_object, &settings, &kind) != 0) return NULL;
-  PyArrayObject *motion = trb_array(motion_object, 2, "motion");
-  if (motion == NULL) return NULL;
+  PyArrayObject *state = trb_array(state_object, 1, "state");
+  if (state == NULL) return NULL;
   simulation_object *self = (simulation_object *)PyType_GenericAlloc(type, 0);
-  PyArrayObject     *state = NULL;
   if (self != NULL) {
-    Py_INCREF(model);
-    self->model = model;
+    Py_INCREF(models);
+    self->models = models;
     self->inside = PyThread_allocate_lock();
-    state = self->inside != NULL ? trb_python_state_array(self, state_object) : (PyArrayObject *)PyErr_NoMemory();
+    if (self->inside == NULL) {
+      (void)PyErr_NoMemory();
+      Py_CLEAR(self);
+    }
   }
-  if (state != NULL) {
-    trb_status status = TRB_OK;
-    if (PyArray_DIM(motion, 1) != TRB_MOTION_COLUMNS)
-      status = trb_fail(&message, TRB_ERR_INPUT, "motion: %d columns needed, %d given", TRB_MOTION_COLUMNS, (int)PyArray_DIM(motion, 1));
-    else status = trb_motion_create(PyArray_DATA(motion), (int)PyArray_DIM(motion, 0), &self->motion, &message);
-    if (status == TRB_OK && period != 0.0) status = trb_motion_repeat(self->motion, period, &message);
-    if (status == TRB_OK && isfinite(angle_time)) trb_motion_set_angle(self->motion, angle_time, angle);
-    if (status == TRB_OK)
-      status = trb_simulation_create(trb_python_system_of(self), self->motion, kind, ((model_object *)model)->variant, &settings, time,
-                                     PyArray_DATA(state), &self->simulation, &message);
+  if (self != NULL && read_bearings(self, motions, systems) != 0) Py_CLEAR(self);
+  if (self != NULL) {
+    const trb_motion *const *prescribed = (const trb_motion *const *)self->motions;
+    const char              *variant = ((model_object *)PyTuple_GetItem(models, 0))->variant;
+    const trb_status status = trb_simulation_create_all(systems, prescribed, (int)PyTuple_Size(models), kind, variant, &settings, time,
+                                                        PyArray_DATA(state), (int)PyArray_DIM(state, 0), &self->simulation, &message);
     if (status != TRB_OK) {
       (void)trb_raise(status, &message);
       Py_CLEAR(self);
     }
-    Py_DECREF((PyObject *)state);
-  } else {
-    Py_CLEAR(self);
   }
-  Py_DECREF((PyObject *)motion);
+  Py_DECREF((PyObject *)state);
   return (PyObject *)self;
 }
 
@@ -91,9 +129,9 @@ static void simulation_dealloc(PyObject *object)
 {
   simulation_object *self = (simulation_object *)object;
   trb_simulation_free(self->simulation);
-  trb_motion_free(self->motion);
+  for (int k = 0; k < TRB_MOST_MEMBERS; k++) trb_motion_free(self->motions[k]);
   if (self->inside != NULL) PyThread_free_lock(self->inside);
-  Py_XDECREF(self->model);
+  Py_XDECREF(self->models);
   trb_release(object);
 }
 
@@ -218,12 +256,14 @@ static PyMethodDef methods[] = {
     {"save_peaks", trb_python_save_peaks, METH_NOARGS, "All that restore_peaks needs; empty if no peaks are kept."},
     {"restore_peaks", trb_python_restore_peaks, METH_O, "restore_peaks(saved): go on with peaks that were saved at this time."},
     {"whole_peaks", trb_python_whole_peaks, METH_O,
-     "whole_peaks(time): a row of peaks from their beginning to an instant of the last step."},
+     "whole_peaks(time): rows of peaks, bearing by bearing, from their beginning to an instant of the last step."},
     {"set_state", set_state, METH_VARARGS, "set_state(time, state): restart the integrator there."},
     {"restart", restart, METH_NOARGS, "Restart the integrator where it is."},
-    {"observe", trb_python_observe, METH_VARARGS, "observe(time, state): a record."},
+    {"observe", trb_python_observe, METH_VARARGS, "observe(time, state): a record of each bearing, one after the other."},
     {"derivative", trb_python_derivative, METH_VARARGS, "derivative(time, state): rates of the state."},
-    {"contacts", trb_python_contacts, METH_VARARGS, "contacts(time, state): every intermediate quantity of every contact."},
+    {"contacts", trb_python_contacts, METH_VARARGS,
+     "contacts(time, state, bearing=0): every intermediate quantity of every contact of a bearing."},
+    {"layouts", trb_python_layouts, METH_NOARGS, "Where the parts of each bearing's state lie in the whole state."},
     {"counters", trb_python_counters, METH_NOARGS, "What was evaluated, counted."},
     {"statistics", trb_python_statistics, METH_NOARGS, "What the integrator did."},
     {NULL, NULL, 0, NULL},
@@ -237,7 +277,7 @@ static PyGetSetDef properties[] = {
 
 static PyType_Slot slots[] = {
     {Py_tp_dealloc, simulation_dealloc},
-    {Py_tp_doc, "One integration: model, prescribed motion, state, integrator."},
+    {Py_tp_doc, "One integration: bearings with what is prescribed for each, state, integrator."},
     {Py_tp_methods, methods},
     {Py_tp_getset, properties},
     {Py_tp_new, simulation_new},

@@ -110,7 +110,7 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
   }
   for (int f = 0; f < d->n_fast; f++) rise[f] = rise_of(d, d->fast[f].pair);
   for (int j = 0; j < m->n_rollers; j++) {
-    const double *y_roller = y + trb_state_roller(j);
+    const double *y_roller = y + trb_state_roller(d->system, j);
     impacts->factor[j] = 1.0;
     for (int f = 0; f < d->n_fast; f++) {
       const trb_fast_pair *fast = &d->fast[f];

@@ -15,46 +15,100 @@ const int                        trb_n_integrator_kinds = (int)(sizeof trb_integ
 
 /* Share of a velocity's absolute tolerance that holds at a speed of the shaft: no more than a share of the rolling speed, so that slow
  * rotation, whose slip is a small share of a small speed, is followed as exactly as fast rotation. */
-static double speed_share(const trb_integrator *it, double shaft_speed)
+static double speed_share(const trb_integrator *it, const trb_model *m, double shaft_speed)
 {
-  const trb_model *m = it->dynamics->model;
   const double     rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * shaft_speed);
   return trb_min(1.0, it->settings.slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
 }
 
-/* Quadratures and spin angles are integrated beside the motion but do not control the step. */
-void trb_integrator_set_tolerances(trb_integrator *it)
+/* Tolerances of the entries from one on, which are the coordinates of a body of a system. */
+static void set_entries(trb_integrator *it, const trb_system *system, int first, int n, double share)
 {
   const trb_settings *s = &it->settings;
-  trb_drive           drive;
-  trb_motion_at(it->motion, it->dynamics->model, it->time, &drive);
-  const double share = speed_share(it, trb_system_shaft_speed(it->dynamics->system, &drive, it->y));
-  const double scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, share * s->atol_velocity, share * s->atol_spin, 1e30};
-  const double relative[TRB_N_TOLERANCES] = {0.0, 0.0, s->rtol, s->rtol, 0.0};
-  for (int i = 0; i < it->n; i++) {
-    const trb_tolerance kind = trb_state_tolerance(it->dynamics->system, i);
+  const double        scale[TRB_N_TOLERANCES] = {s->atol_position, s->atol_angle, share * s->atol_velocity, share * s->atol_spin, 1e30};
+  const double        relative[TRB_N_TOLERANCES] = {0.0, 0.0, s->rtol, s->rtol, 0.0};
+  for (int i = first; i < first + n; i++) {
+    const trb_tolerance kind = trb_state_tolerance(system, i);
     it->scale[i] = scale[kind];
     it->relative[i] = relative[kind];
   }
 }
 
+/* Quadratures and spin angles are integrated beside the motion but do not control the step. */
+void trb_integrator_set_tolerances(trb_integrator *it)
+{
+  for (int i = it->n_main; i < it->n; i++) it->scale[i] = 1e30, it->relative[i] = 0.0;
+  for (int k = 0; k < it->assembly->n; k++) {
+    const trb_system *system = &it->assembly->members[k];
+    trb_drive         drive;
+    trb_motion_at(it->members[k].motion, system->model, it->time, &drive);
+    const double share = speed_share(it, system->model, trb_system_shaft_speed(system, &drive, it->y));
+    set_entries(it, system, trb_state_roller(system, 0), system->model->n_rollers * TRB_ROLLER_SIZE, share);
+    for (int b = 0; b < system->n_bodies; b++)
+      if (system->bodies[b].size > 0 && !system->bodies[b].carried)
+        set_entries(it, system, system->bodies[b].first, system->bodies[b].size, share);
+  }
+}
+
+int trb_integrator_is_driven(const trb_integrator *it)
+{
+  int driven = 0;
+  for (int k = 0; k < it->assembly->n; k++) driven |= it->members[k].motion->n > 1;
+  return driven;
+}
+
+double trb_integrator_stop(const trb_integrator *it)
+{
+  double stop = INFINITY;
+  for (int k = 0; k < it->assembly->n; k++) stop = fmin(stop, trb_motion_stop(it->members[k].motion, it->time));
+  return fmin(stop, TRB_NEVER);
+}
+
+double trb_integrator_longest_step(const trb_integrator *it)
+{
+  double longest = it->settings.max_step;
+  for (int k = 0; k < it->assembly->n; k++)
+    longest = fmin(longest, trb_motion_longest_step(it->members[k].motion, it->time, it->settings.max_step));
+  return longest;
+}
+
+int trb_integrator_worst(const trb_integrator *it, const double *error)
+{
+  int    worst = -1;
+  double largest = 0.0;
+  for (int i = 0; i < it->n_main; i++) {
+    const double scaled = fabs(error[i]) / (it->relative[i] * fabs(it->y[i]) + it->scale[i]);
+    if (scaled > largest || !isfinite(scaled)) {
+      largest = scaled;
+      worst = i;
+    }
+  }
+  return worst;
+}
+
 int trb_integrator_finite(const trb_integrator *it, const double *rates)
 {
-  return trb_block_kernels_of(it->dynamics->work->variant)->finite(rates, it->n);
+  return trb_block_kernels_of(it->members[0].dynamics->work->variant)->finite(rates, it->n);
 }
 
 int trb_integrator_rates(trb_integrator *it, double time, const double *y, double *rates)
 {
-  trb_rhs(it->dynamics, NULL, time, y, rates);
+  for (int k = 0; k < it->assembly->n; k++) trb_rhs(it->members[k].dynamics, NULL, time, y, rates);
   return trb_integrator_finite(it, rates) ? 0 : 1;
 }
 
 void trb_integrator_weights(const trb_integrator *it, const double *y, double *weights)
 {
-  const int     n_rollers = it->dynamics->model->n_rollers;
-  const double *factor = it->impacts.factor;
-  trb_block_kernels_of(it->dynamics->work->variant)->weigh(it->relative, it->scale, y, it->n, weights);
-  for (int j = 0; j < n_rollers; j++)
-    for (int i = 0; i < TRB_NR && factor[j] < 1.0; i++) weights[trb_state_roller(j) + i] /= factor[j];
-  for (int i = n_rollers * TRB_NR; i < it->n_main && factor[n_rollers] < 1.0; i++) weights[i] /= factor[n_rollers];
+  double of_hub = 1.0;
+  trb_block_kernels_of(it->members[0].dynamics->work->variant)->weigh(it->relative, it->scale, y, it->n, weights);
+  for (int k = 0; k < it->assembly->n; k++) {
+    const trb_system *system = &it->assembly->members[k];
+    const int         n_rollers = system->model->n_rollers;
+    const double     *factor = it->members[k].impacts.factor;
+    double           *own = weights + trb_state_roller(system, 0);
+    for (int j = 0; j < n_rollers; j++)
+      for (int i = 0; i < TRB_NR && factor[j] < 1.0; i++) own[j * TRB_NR + i] /= factor[j];
+    of_hub = trb_min(of_hub, factor[n_rollers]);
+  }
+  for (int i = it->assembly->members[0].layout.hub; i < it->n_main && of_hub < 1.0; i++) weights[i] /= of_hub;
 }

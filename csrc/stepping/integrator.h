@@ -4,6 +4,7 @@
 
 #include "motion/rhs.h"
 #include "stepping/impact.h"
+#include "system/assembly.h"
 
 /* Settings of an integration. X(name, default, lower, upper, text) */
 #define TRB_SETTINGS(X) \
@@ -84,10 +85,17 @@ typedef struct trb_integrator_kind {
   int (*worst)(trb_integrator *it);
 } trb_integrator_kind;
 
+/* A bearing of the assembly that is integrated. */
+typedef struct trb_member {
+  trb_dynamics     *dynamics; /* owned by the simulation */
+  const trb_motion *motion;
+  trb_impacts       impacts; /* of rollers and cage, with the factors of their tolerances */
+} trb_member;
+
 struct trb_integrator {
   const trb_integrator_kind *kind;
-  trb_dynamics              *dynamics; /* owned by the simulation */
-  const trb_motion          *motion;
+  const trb_assembly        *assembly;
+  trb_member                 members[TRB_MOST_MEMBERS];
   const char                *variant; /* kernel variant */
   trb_settings               settings;
   int                        n;        /* length of y */
@@ -96,8 +104,6 @@ struct trb_integrator {
   double                    *y;        /* state there; TRB_VECTOR_ROOM more behind it */
   double                    *scale;    /* absolute tolerance of every entry */
   double                    *relative; /* relative tolerance of every entry */
-  trb_impacts                impacts;  /* of rollers and cage, with the factors of their tolerances */
-  trb_counters              *extra;    /* where evaluations for Jacobians are counted */
   void                      *self;     /* of the kind */
 };
 
@@ -110,6 +116,14 @@ extern const int                        trb_n_integrator_kinds;
 
 /* Tolerances of every entry at the present time. */
 void trb_integrator_set_tolerances(trb_integrator *it);
+
+/* Whether anything is prescribed that changes with time. */
+int trb_integrator_is_driven(const trb_integrator *it);
+/* Where the next step must end at the latest, and how long it may be, for what is prescribed of all bearings (motion/ring_motion.h). */
+double trb_integrator_stop(const trb_integrator *it);
+double trb_integrator_longest_step(const trb_integrator *it);
+/* Index of the entry of an error with the largest share of its tolerance, or -1. */
+int trb_integrator_worst(const trb_integrator *it, const double *error);
 
 /* Right-hand side with a finite check: 0, or 1 if a rate is not finite: BDF then tries a smaller step, the explicit method stops with
  * an error. */

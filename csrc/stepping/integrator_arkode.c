@@ -100,12 +100,11 @@ static trb_status erk_restart(trb_integrator *it, trb_message *message)
 
 static trb_status erk_step(trb_integrator *it, trb_message *message)
 {
-  erk         *self = it->self;
-  sunrealtype  reached = it->time, step = 0.0;
-  const double stop = trb_motion_stop(it->motion, it->time);
-  if (it->motion->n > 1) {
-    CHECK(TRB_ARK(SetStopTime)(self->memory, fmin(stop, TRB_NEVER)));
-    CHECK(TRB_ARK(SetMaxStep)(self->memory, trb_motion_longest_step(it->motion, it->time, it->settings.max_step)));
+  erk        *self = it->self;
+  sunrealtype reached = it->time, step = 0.0;
+  if (trb_integrator_is_driven(it)) {
+    CHECK(TRB_ARK(SetStopTime)(self->memory, trb_integrator_stop(it)));
+    CHECK(TRB_ARK(SetMaxStep)(self->memory, trb_integrator_longest_step(it)));
   }
   const int flag = TRB_ARK(Evolve)(self->memory, it->time + 1.0, self->y, &reached, ARK_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "ARKODE stopped (%d): %s", flag, self->sundials.text);
@@ -128,19 +127,9 @@ static trb_status erk_interpolate(trb_integrator *it, double time, double *y, tr
 
 static int erk_worst(trb_integrator *it)
 {
-  erk   *self = it->self;
-  int    worst = -1;
-  double largest = 0.0;
+  erk *self = it->self;
   if (TRB_ARK(GetEstLocalErrors)(self->memory, self->scratch) != ARK_SUCCESS) return -1;
-  const double *error = N_VGetArrayPointer(self->scratch);
-  for (int i = 0; i < trb_state_main_size(it->dynamics->system); i++) {
-    const double scaled = fabs(error[i]) / (it->relative[i] * fabs(it->y[i]) + it->scale[i]);
-    if (scaled > largest || !isfinite(scaled)) {
-      largest = scaled;
-      worst = i;
-    }
-  }
-  return worst;
+  return trb_integrator_worst(it, N_VGetArrayPointer(self->scratch));
 }
 
 const trb_integrator_kind trb_integrator_erk = {

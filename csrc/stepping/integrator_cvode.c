@@ -19,7 +19,7 @@ typedef struct bdf {
   SUNMatrix          matrix;
   SUNLinearSolver    solver;
   SUNNonlinearSolver newton;
-  trb_jacobian      *jacobian;
+  trb_jacobian      *jacobians[TRB_MOST_MEMBERS];
   trb_statistics     before;    /* totals up to the last restart */
   double             smallest;  /* smallest step, s */
   double             filled_at; /* end of the last step when the Jacobian was last evaluated, s */
@@ -28,13 +28,21 @@ typedef struct bdf {
 
 static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
 {
-  trb_integrator           *it = data;
-  bdf                      *self = it->self;
-  const trb_tangent_measure measure = {
-      it->relative, it->scale, self->solver->content, it->settings.rings_share, it->settings.margin_share, it->settings.slip_share};
-  double *to = N_VGetArrayPointer(out);
-  if (!(measure.share > 0.0) || trb_newton_troubled(self->newton)) return trb_integrator_rates(it, time, N_VGetArrayPointer(y), to);
-  trb_tangents_derivative(self->jacobian->tangents, it->dynamics, &measure, time, N_VGetArrayPointer(y), to);
+  trb_integrator *it = data;
+  bdf            *self = it->self;
+  double         *to = N_VGetArrayPointer(out);
+  if (!(it->settings.rings_share > 0.0) || trb_newton_troubled(self->newton))
+    return trb_integrator_rates(it, time, N_VGetArrayPointer(y), to);
+  for (int k = 0; k < it->assembly->n; k++) {
+    const int                 first = trb_state_roller(&it->assembly->members[k], 0);
+    const trb_tangent_measure measure = {.relative = it->relative + first,
+                                         .scale = it->scale + first,
+                                         .factors = self->solver->content,
+                                         .share = it->settings.rings_share,
+                                         .margin_share = it->settings.margin_share,
+                                         .slip_share = it->settings.slip_share};
+    trb_tangents_derivative(self->jacobians[k]->tangents, it->members[k].dynamics, &measure, time, N_VGetArrayPointer(y), to);
+  }
   return trb_integrator_finite(it, to) ? 0 : 1;
 }
 
@@ -50,14 +58,15 @@ static void fill(const trb_integrator *it, double time, const double *y, trb_arr
   /* the part of the rings is computed again when it is old or was used often, when Newton's method failed with it within this step, and
    * always while speed or ring change or have just done so: an old slope that is too stiff makes corrections so small that they seem to
    * converge */
-  const double made = self->jacobian->tangents->time;
+  const double made = self->jacobians[0]->tangents->time;
   const int    again = (it->time == self->filled_at && made < it->time) || trb_newton_renewing(self->newton);
   const int    old = fabs(time - made) > it->settings.rings_age || self->uses >= it->settings.rings_uses;
-  const int    changing = trb_motion_changes(it->motion, time - it->settings.rings_age, time);
-  const int    fresh = again || old || changing;
+  int          changing = 0;
+  for (int k = 0; k < it->assembly->n; k++) changing |= trb_motion_changes(it->members[k].motion, time - it->settings.rings_age, time);
+  const int fresh = again || old || changing;
   self->filled_at = it->time;
   self->uses = fresh ? 0 : self->uses + 1;
-  trb_jacobian_fill(self->jacobian, time, y, fresh, arrow);
+  for (int k = 0; k < it->assembly->n; k++) trb_jacobian_fill(self->jacobians[k], time, y, fresh, arrow);
 }
 
 /* The matrix holds the Jacobian J; the solver forms I - gamma J when it reads it. usable: the Jacobian need not be computed again. Its
@@ -109,28 +118,29 @@ static trb_status configure(trb_integrator *it, trb_message *message)
 
 static trb_status bdf_create(trb_integrator *it, trb_message *message)
 {
-  const trb_model *m = it->dynamics->model;
-  const int        hub_width = it->dynamics->system->hub_width;
-  bdf             *self = calloc(1, sizeof *self);
+  const trb_layout *layout = &it->assembly->members[0].layout;
+  const int         n_rollers = layout->n_rollers, hub_width = layout->hub_width, variant = it->members[0].dynamics->work->variant;
+  bdf              *self = calloc(1, sizeof *self);
   if (self == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   it->self = self;
   self->smallest = INFINITY;
   self->filled_at = -INFINITY;
   trb_status status = trb_sundials_open(&self->sundials, message);
   if (status != TRB_OK) return status;
-  const trb_body_entries entries = trb_body_entries_of(it->dynamics->system);
-  self->y = trb_vector_over(it->y, it->n, &entries, it->dynamics->work->variant, self->sundials.context);
+  const trb_body_entries entries = trb_body_entries_of(it->assembly);
+  self->y = trb_vector_over(it->y, it->n, &entries, variant, self->sundials.context);
   if (self->y != NULL) self->scratch = N_VClone(self->y);
-  self->matrix = trb_arrow_matrix(m->n_rollers, hub_width, self->sundials.context);
-  self->solver = trb_arrow_linear_solver(m->n_rollers, hub_width, it->dynamics->work->variant, self->sundials.context);
+  self->matrix = trb_arrow_matrix(n_rollers, hub_width, self->sundials.context);
+  self->solver = trb_arrow_linear_solver(n_rollers, hub_width, variant, self->sundials.context);
   if (self->y != NULL)
     self->newton =
-        trb_newton_solver((int)it->settings.newton_iterations, self->y, it->n_main, m->n_rollers, TRB_ROLLER_SIZE, self->sundials.context);
+        trb_newton_solver((int)it->settings.newton_iterations, self->y, it->n_main, n_rollers, TRB_ROLLER_SIZE, self->sundials.context);
   self->memory = CVodeCreate(CV_BDF, self->sundials.context);
   if (!self->y || !self->scratch || !self->matrix || !self->solver || !self->newton || !self->memory)
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the integrator");
   trb_sundials_quiet_cvode(&self->sundials, self->memory);
-  status = trb_jacobian_create(it->dynamics->system, it->motion, it->variant, &self->jacobian, message);
+  for (int k = 0; k < it->assembly->n && status == TRB_OK; k++)
+    status = trb_jacobian_create(&it->assembly->members[k], it->members[k].motion, it->variant, &self->jacobians[k], message);
   return status == TRB_OK ? configure(it, message) : status;
 }
 
@@ -145,7 +155,7 @@ static void bdf_free(trb_integrator *it)
   if (self->scratch != NULL) N_VDestroy(self->scratch);
   if (self->y != NULL) N_VDestroy(self->y);
   trb_sundials_close(&self->sundials);
-  trb_jacobian_free(self->jacobian);
+  for (int k = 0; k < TRB_MOST_MEMBERS; k++) trb_jacobian_free(self->jacobians[k]);
   free(self);
   it->self = NULL;
 }
@@ -184,7 +194,7 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   /* what was learned is forgotten, so that what follows depends on time and state alone */
   self->filled_at = -INFINITY;
   self->uses = 0;
-  trb_tangents_forget(self->jacobian->tangents);
+  for (int k = 0; k < it->assembly->n; k++) trb_tangents_forget(self->jacobians[k]->tangents);
   trb_newton_forget(self->newton);
   ((trb_arrow_factors *)self->solver->content)->gamma = 0.0;
   CHECK(CVodeReInit(self->memory, it->time, self->y));
@@ -196,17 +206,19 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
   bdf        *self = it->self;
   sunrealtype reached = it->time, step = 0.0;
   /* set at every step; far away where the prescribed motion changes no more */
-  const double stop = trb_motion_stop(it->motion, it->time);
-  if (it->motion->n > 1) {
-    CHECK(CVodeSetStopTime(self->memory, fmin(stop, TRB_NEVER)));
-    CHECK(CVodeSetMaxStep(self->memory, trb_motion_longest_step(it->motion, it->time, it->settings.max_step)));
+  if (trb_integrator_is_driven(it)) {
+    CHECK(CVodeSetStopTime(self->memory, trb_integrator_stop(it)));
+    CHECK(CVodeSetMaxStep(self->memory, trb_integrator_longest_step(it)));
   }
   CHECK(CVodeGetCurrentStep(self->memory, &step));
   const trb_impact_measure measure = {.share = it->settings.impact_share,
                                       .least = it->settings.impact_least,
                                       .velocity = it->settings.atol_velocity,
                                       .position = it->settings.atol_position};
-  trb_impacts_look(&it->impacts, it->dynamics, it->motion, it->time, it->y, step, &measure);
+  for (int k = 0; k < it->assembly->n; k++) {
+    trb_member *member = &it->members[k];
+    trb_impacts_look(&member->impacts, member->dynamics, member->motion, it->time, it->y, step, &measure);
+  }
   const int flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "CVODE stopped (%d): %s", flag, self->sundials.text);
   CHECK(CVodeGetLastStep(self->memory, &step));
@@ -228,19 +240,9 @@ static trb_status bdf_interpolate(trb_integrator *it, double time, double *y, tr
 
 static int bdf_worst(trb_integrator *it)
 {
-  bdf   *self = it->self;
-  int    worst = -1;
-  double largest = 0.0;
+  bdf *self = it->self;
   if (CVodeGetEstLocalErrors(self->memory, self->scratch) != CV_SUCCESS) return -1;
-  const double *error = N_VGetArrayPointer(self->scratch);
-  for (int i = 0; i < trb_state_main_size(it->dynamics->system); i++) {
-    const double scaled = fabs(error[i]) / (it->relative[i] * fabs(it->y[i]) + it->scale[i]);
-    if (scaled > largest || !isfinite(scaled)) {
-      largest = scaled;
-      worst = i;
-    }
-  }
-  return worst;
+  return trb_integrator_worst(it, N_VGetArrayPointer(self->scratch));
 }
 
 const trb_integrator_kind trb_integrator_bdf = {"bdf",           "backward differentiation of CVODE with the structured Jacobian",

@@ -14,7 +14,7 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
   if (j == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
   trb_status status = trb_dynamics_create(system, motion, variant, &j->d, message);
   if (status == TRB_OK) {
-    const size_t width = (size_t)system->hub_width;
+    const size_t width = (size_t)system->layout.hub_width;
     j->moved = calloc((size_t)trb_state_size(system), sizeof *j->moved);
     j->rates = trb_zeros(3 * width, sizeof *j->rates);
     j->changes = trb_zeros(width, sizeof *j->changes);
@@ -45,6 +45,9 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   free(jacobian);
 }
 
+/* Number of a roller among those of all systems. */
+static int leaf_of(const trb_dynamics *d, int roller) { return d->system->layout.leaf + roller; }
+
 /* Rates of a roller that a load gives. */
 static void roller_response(const trb_dynamics *d, int roller, const trb_wrench *load, double *rates)
 {
@@ -57,7 +60,7 @@ static void body_rates(const trb_dynamics *d, int body, const double *y, const t
 {
   const trb_body *is = &d->system->bodies[body];
   if (is->size == 0) return;
-  is->kind->rates(d->model, is, &d->drive, &d->bodies[body].pose, y + is->first, load, hub + is->first - trb_state_hub(d->system));
+  trb_dynamics_body_rates(d, body, y, load, hub + is->first - trb_state_hub(d->system));
 }
 
 /* Adds what a fast pair in contact gives to its roller's block, to both borders and to the slopes of the loads of the other body. still:
@@ -66,8 +69,8 @@ static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, int other,
 {
   const trb_dynamics *d = jac->d;
   const trb_body     *body = &d->system->bodies[other];
-  trb_arrow_block    *block = &arrow->rollers[j];
-  trb_arrow_border   *border = &arrow->borders[j];
+  trb_arrow_block    *block = &arrow->rollers[leaf_of(d, j)];
+  trb_arrow_border   *border = &arrow->borders[leaf_of(d, j)];
   const int           size = body->size, first = body->first - trb_state_hub(d->system);
   double             *rates = jac->rates, change[TRB_NR];
   for (int c = 0; c < TRB_NR; c++) {
@@ -102,7 +105,7 @@ static void hub_rates(trb_jacobian *jac, const double *y, int moved, int at, dou
   }
 }
 
-/* The block of the hub, by differences of its rates. */
+/* Adds to the block of the hub, by differences of its rates. Those of bodies that other systems have are zero here. */
 static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
 {
   trb_dynamics *d = jac->d;
@@ -119,7 +122,7 @@ static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
       own[c] = was + h;
       trb_dynamics_pose_body(d, b, own);
       hub_rates(jac, jac->moved, b, at, h, rates);
-      for (int i = 0; i < arrow->width; i++) arrow->hub[at * arrow->room + i] = per * (rates[i] - base[i]);
+      for (int i = 0; i < arrow->width; i++) arrow->hub[at * arrow->room + i] += per * (rates[i] - base[i]);
       own[c] = was;
     }
     trb_dynamics_pose_body(d, b, own);
@@ -180,7 +183,7 @@ static trb_wrench reaction_of(const trb_ring_tangent *tangent, const double (*co
 static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
 {
   trb_dynamics     *d = jac->d;
-  trb_arrow_border *border = &arrow->borders[j];
+  trb_arrow_border *border = &arrow->borders[leaf_of(d, j)];
   for (int k = 0; k < d->system->n_moving; k++) {
     const int               b = d->system->moving[k];
     const trb_body         *body = &d->system->bodies[b];
@@ -192,7 +195,7 @@ static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
     const double            sine = drive->sine * tangent->cosine + drive->cosine * tangent->sine, one = 1.0;
     const trb_wrench        now = trb_ring_wrench(tangent, tangent->value);
     trb_add_wrench(&d->on_body[b], &now);
-    trb_arrow_add_parts(arrow, j, parts_of(d, b));
+    trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, b));
     for (int c = 0; c < TRB_NR; c++) {
       const trb_wrench w = reaction_of(tangent, &slopes->reaction[c], &one, 1);
       const double     of[6] = {w.force.x, w.force.y, w.force.z, w.moment.x, w.moment.y, w.moment.z};
@@ -217,7 +220,7 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
 {
   trb_dynamics     *d = jac->d;
   const trb_instant at = trb_dynamics_instant(d);
-  trb_arrow_border *border = &arrow->borders[j];
+  trb_arrow_border *border = &arrow->borders[leaf_of(d, j)];
   border->parts = 0U;
   for (int f = 0; f < d->n_fast; f++) {
     const trb_pair *pair = d->fast[f].pair;
@@ -225,7 +228,7 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
     trb_load        load;
     const trb_gaps  gaps = pair->kind->touch(d->model, pair, &at, j, &d->work->counters, &load, &k.slopes, NULL);
     if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0)) continue;
-    trb_arrow_add_parts(arrow, j, parts_of(d, pair->b));
+    trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, pair->b));
     trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[pair->b], &d->bodies[pair->b].pose, &load);
     trb_add_wrench(&d->on_body[pair->b], &load.on_b);
     add_fast(jac, j, &k, pair->b, y, still, arrow);
@@ -245,7 +248,8 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
     jac->rings_evaluations++;
   }
   for (int j = 0; j < m->n_rollers; j++)
-    for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[j].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
+    for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[leaf_of(d, j)].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
+  if (d->system->layout.leaf == 0) memset(arrow->hub, 0, (size_t)(arrow->width * arrow->room) * sizeof *arrow->hub);
   memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
   memset(d->on_body, 0, sizeof d->on_body);
   for (int b = 0; b < d->system->n_bodies; b++) body_rates(d, b, y, &none, still);

@@ -28,7 +28,8 @@ typedef struct trb_jacobian {
 trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message);
 void       trb_jacobian_free(trb_jacobian *jacobian);
-/* fresh: compute the part of the rings again, too. */
+/* Fills the rollers' blocks and borders of its system and adds to the hub's block; the first system of an assembly comes first. fresh:
+ * compute the part of the rings again, too. */
 void trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
 
 #endif

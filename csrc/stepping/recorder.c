@@ -20,30 +20,46 @@ typedef struct place {
   double   *row; /* of a record; NULL: the end of a step */
   double    time;
   double   *y;
-  unsigned *apart; /* of a record: see trb_dynamics_apart */
+  unsigned *apart; /* of a record: see trb_dynamics_apart; of all rollers */
 } place;
 
 struct trb_recorder {
-  trb_recorder_parts parts;
-  size_t             n_state;
-  place              queue[PLACES];
-  atomic_ulong       put, taken;    /* states put into the queue, and computed, since the beginning */
-  atomic_int         idle, held_up; /* whether the second thread waits for work, and the stepping for room */
-  int                closing;
-  pthread_mutex_t    lock; /* of waiting, and of closing */
-  pthread_cond_t     has_work, has_room;
-  pthread_t          thread;
+  const trb_record_parts *parts; /* of n bearings */
+  int                     n;
+  size_t                  n_state;
+  place                   queue[PLACES];
+  atomic_ulong            put, taken;    /* states put into the queue, and computed, since the beginning */
+  atomic_int              idle, held_up; /* whether the second thread waits for work, and the stepping for room */
+  int                     closing;
+  pthread_mutex_t         lock; /* of waiting, and of closing */
+  pthread_cond_t          has_work, has_room;
+  pthread_t               thread;
 };
+
+int trb_record_parts_length(const trb_record_parts *parts)
+{
+  const trb_model *m = parts->onlooker->model;
+  return trb_record_offset(m, TRB_N_FIELDS) + (parts->peaks != NULL ? trb_peak_offset(m, TRB_N_PEAK_FIELDS) : 0);
+}
+
+void trb_record_parts_fill(const trb_record_parts *parts, const unsigned *apart, double time, const double *y, double *row)
+{
+  trb_record_fill(parts->onlooker, apart, time, y, parts->detail, row);
+  if (parts->peaks != NULL) trb_peaks_record(parts->peaks, time, row + trb_record_offset(parts->onlooker->model, TRB_N_FIELDS));
+}
 
 static void compute(const trb_recorder *r, const place *at)
 {
-  const trb_recorder_parts *parts = &r->parts;
-  if (at->row == NULL) {
-    trb_peaks_step(parts->peaks, at->time, at->y);
-    return;
+  double *row = at->row;
+  for (int k = 0; k < r->n; k++) {
+    const trb_record_parts *parts = &r->parts[k];
+    if (at->row == NULL) {
+      trb_peaks_step(parts->peaks, at->time, at->y);
+      continue;
+    }
+    trb_record_parts_fill(parts, at->apart + parts->onlooker->system->layout.leaf, at->time, at->y, row);
+    row += trb_record_parts_length(parts);
   }
-  trb_record_fill(parts->onlooker, at->apart, at->time, at->y, parts->detail, at->row);
-  if (parts->peaks != NULL) trb_peaks_record(parts->peaks, at->time, at->row + trb_record_offset(parts->model, TRB_N_FIELDS));
 }
 
 /* How many places are filled. */
@@ -112,13 +128,16 @@ void trb_recorder_step(trb_recorder *r, double time, const double *y)
   hand_over(r);
 }
 
-void trb_recorder_record(trb_recorder *r, const trb_dynamics *stepping, double time, const double *y, double *row)
+void trb_recorder_record(trb_recorder *r, double time, const double *y, double *row)
 {
   place *next = reserve(r);
   next->row = row;
   next->time = time;
   memcpy(next->y, y, r->n_state * sizeof *y);
-  trb_dynamics_apart(stepping, y, next->apart);
+  for (int k = 0; k < r->n; k++) {
+    const trb_dynamics *stepping = r->parts[k].stepping;
+    trb_dynamics_apart(stepping, y, next->apart + stepping->system->layout.leaf);
+  }
   hand_over(r);
 }
 
@@ -142,16 +161,17 @@ static int start_without_signals(trb_recorder *r)
   return failed;
 }
 
-trb_recorder *trb_recorder_open(const trb_recorder_parts *parts, int n_state)
+trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_state)
 {
   trb_recorder *r = calloc(1, sizeof *r);
   if (r == NULL) return NULL;
-  r->parts = *parts;
+  r->parts = parts;
+  r->n = n;
   r->n_state = (size_t)n_state;
   int complete = 1;
   for (int i = 0; i < PLACES; i++) {
     r->queue[i].y = calloc(r->n_state, sizeof(double));
-    r->queue[i].apart = calloc((size_t)parts->model->n_rollers, sizeof(unsigned));
+    r->queue[i].apart = calloc((size_t)parts[0].onlooker->system->layout.n_rollers, sizeof(unsigned));
     complete = complete && r->queue[i].y != NULL && r->queue[i].apart != NULL;
   }
   if (complete && pthread_mutex_init(&r->lock, NULL) == 0) {

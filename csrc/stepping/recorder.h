@@ -13,20 +13,26 @@
 
 typedef struct trb_recorder trb_recorder;
 
-/* What a recorder works with; nothing else may use it until the recorder is closed. */
-typedef struct trb_recorder_parts {
-  const trb_model *model;
-  trb_dynamics    *onlooker;
-  trb_detail      *detail;
-  trb_peaks       *peaks; /* NULL: not asked for */
-} trb_recorder_parts;
+/* What the records of a bearing are made with. */
+typedef struct trb_record_parts {
+  const trb_dynamics *stepping; /* that the steps are taken with */
+  trb_dynamics       *onlooker; /* of records and of what users ask about states, so that the integration is not disturbed */
+  trb_detail         *detail;
+  trb_peaks          *peaks; /* NULL: not asked for */
+} trb_record_parts;
 
-/* Starts the thread. NULL where there is no memory or no thread to be had: the caller then computes by itself. */
-trb_recorder *trb_recorder_open(const trb_recorder_parts *parts, int n_state);
+/* Length of a bearing's part of a row: a record, then peaks if they are kept. */
+int trb_record_parts_length(const trb_record_parts *parts);
+/* Fills it; apart: of trb_dynamics_apart. */
+void trb_record_parts_fill(const trb_record_parts *parts, const unsigned *apart, double time, const double *y, double *row);
+
+/* Starts the thread. parts: of n bearings; nothing else may use what they hold until the recorder is closed, but for the dynamics of the
+ * stepping. NULL where there is no memory or no thread to be had: the caller then computes by itself. */
+trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_state);
 /* The end of a step, for peaks. */
 void trb_recorder_step(trb_recorder *r, double time, const double *y);
-/* A record at a state; stepping: the dynamics that the steps are taken with; row: where it goes, peaks after it. */
-void trb_recorder_record(trb_recorder *r, const trb_dynamics *stepping, double time, const double *y, double *row);
+/* Records at a state; row: where they go, bearing by bearing. */
+void trb_recorder_record(trb_recorder *r, double time, const double *y, double *row);
 /* Waits until everything is computed, and ends the thread. */
 void trb_recorder_close(trb_recorder *r);
 

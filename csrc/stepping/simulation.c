@@ -1,6 +1,7 @@
 #include "stepping/simulation.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,34 +20,33 @@ static trb_status check_settings(const trb_settings *settings, trb_message *mess
 }
 
 /* Name of a state entry, for a person, as the text of a message. */
-static void describe(const trb_system *system, int index, trb_message *out)
+static void describe(const trb_assembly *assembly, int index, trb_message *out)
 {
 #define TRB_STATE_NAME(name, kind, what) #name " (" what ")",
   static const char *const roller[TRB_ROLLER_SIZE] = {TRB_ROLLER_STATE(TRB_STATE_NAME)};
 #undef TRB_STATE_NAME
+  const trb_system *system = trb_assembly_owner(assembly, index);
+  char              of[32] = "";
+  if (assembly->n > 1 && system != NULL) (void)snprintf(of, sizeof of, "bearing %d, ", (int)(system - assembly->members) + 1);
   if (index < 0) (void)trb_fail(out, TRB_OK, "no single quantity");
-  else if (index < trb_state_hub(system))
-    (void)trb_fail(out, TRB_OK, "roller %d, %s", index / TRB_ROLLER_SIZE, roller[index % TRB_ROLLER_SIZE]);
-  else if (index < trb_state_main_size(system)) {
+  else if (system == NULL)
+    (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(&assembly->members[0]));
+  else if (index < trb_state_hub(system)) {
+    const int own = index - trb_state_roller(system, 0);
+    (void)trb_fail(out, TRB_OK, "%sroller %d, %s", of, own / TRB_ROLLER_SIZE, roller[own % TRB_ROLLER_SIZE]);
+  } else {
     int                   coordinate;
     const trb_body       *body = trb_state_body(system, index, &coordinate);
     const trb_coordinate *is = &body->coordinates[coordinate];
-    (void)trb_fail(out, TRB_OK, "%s, %s (%s)", body->name, is->name, is->text);
-  } else (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(system));
+    (void)trb_fail(out, TRB_OK, "%s%s, %s (%s)", of, body->name, is->name, is->text);
+  }
 }
 
-static trb_status check_state(const trb_system *system, double time, const double *state, trb_message *message)
+static trb_status check_bearing(const trb_system *system, const double *state, trb_message *message)
 {
   const trb_model *m = system->model;
-  trb_message      what;
-  if (!isfinite(time)) return trb_fail(message, TRB_ERR_STATE, "time = %g: must be finite", time);
-  for (int i = 0; i < trb_state_size(system); i++)
-    if (!isfinite(state[i])) {
-      describe(system, i, &what);
-      return trb_fail(message, TRB_ERR_STATE, "state[%d] = %g, %.200s: must be finite", i, state[i], what.text);
-    }
   for (int j = 0; j < m->n_rollers; j++) {
-    const double *y = state + trb_state_roller(j);
+    const double *y = state + trb_state_roller(system, j);
     if (!(m->geometry.roller_centre_radius + y[TRB_ROLLER_r] > 0.0) || fabs(y[TRB_ROLLER_skew]) > 1.5)
       return trb_fail(message, TRB_ERR_STATE, "roller %d: r = %g m, skew = %g rad: beyond what the coordinates hold", j, y[TRB_ROLLER_r],
                       y[TRB_ROLLER_skew]);
@@ -60,6 +60,20 @@ static trb_status check_state(const trb_system *system, double time, const doubl
   return TRB_OK;
 }
 
+static trb_status check_state(const trb_assembly *assembly, double time, const double *state, trb_message *message)
+{
+  trb_message what;
+  trb_status  status = TRB_OK;
+  if (!isfinite(time)) return trb_fail(message, TRB_ERR_STATE, "time = %g: must be finite", time);
+  for (int i = 0; i < trb_state_size(&assembly->members[0]); i++)
+    if (!isfinite(state[i])) {
+      describe(assembly, i, &what);
+      return trb_fail(message, TRB_ERR_STATE, "state[%d] = %g, %.200s: must be finite", i, state[i], what.text);
+    }
+  for (int k = 0; k < assembly->n && status == TRB_OK; k++) status = check_bearing(&assembly->members[k], state, message);
+  return status;
+}
+
 static const trb_integrator_kind *find_kind(const char *name)
 {
   for (int i = 0; i < trb_n_integrator_kinds; i++)
@@ -67,88 +81,134 @@ static const trb_integrator_kind *find_kind(const char *name)
   return NULL;
 }
 
-static trb_status open_parts(trb_simulation *s, const char *variant, trb_message *message)
+/* What a bearing of the assembly is integrated and recorded with. */
+static trb_status open_member(trb_simulation *s, int k, const trb_motion *motion, const char *variant, trb_message *message)
 {
-  trb_integrator *it = &s->integrator;
-  trb_status      status;
-  it->n = trb_state_size(s->system);
-  it->n_main = trb_state_main_size(s->system);
+  const trb_system *system = &s->assembly.members[k];
+  trb_member       *member = &s->integrator.members[k];
+  trb_record_parts *parts = &s->parts[k];
+  trb_status        status = trb_dynamics_create(system, motion, variant, &member->dynamics, message);
+  member->motion = motion;
+  parts->stepping = member->dynamics;
+  if (status == TRB_OK) status = trb_dynamics_create(system, motion, variant, &parts->onlooker, message);
+  if (status == TRB_OK) status = trb_detail_create(system->model, system->pairs, system->n_pairs, &parts->detail, message);
+  if (status == TRB_OK) status = trb_impacts_create(system->model, &member->impacts, message);
+  s->apart[k] = calloc((size_t)system->model->n_rollers, sizeof *s->apart[k]);
+  if (status == TRB_OK && s->apart[k] == NULL) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  return status;
+}
+
+static trb_status open_parts(trb_simulation *s, const trb_motion *const *motions, const char *variant, trb_message *message)
+{
+  trb_integrator   *it = &s->integrator;
+  const trb_system *first = &s->assembly.members[0];
+  it->assembly = &s->assembly;
+  it->variant = variant;
+  it->n = trb_state_size(first);
+  it->n_main = trb_state_main_size(first);
   it->y = trb_zeros((size_t)it->n + TRB_VECTOR_ROOM, sizeof(double));
   it->scale = trb_zeros((size_t)it->n, sizeof(double));
   it->relative = trb_zeros((size_t)it->n, sizeof(double));
   s->between = trb_zeros((size_t)it->n, sizeof(double));
-  s->apart = calloc((size_t)s->model->n_rollers, sizeof *s->apart);
-  if (!it->y || !it->scale || !it->relative || !s->between || !s->apart)
-    return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
-  if ((status = trb_dynamics_create(s->system, s->motion, variant, &s->dynamics, message)) != TRB_OK) return status;
-  if ((status = trb_dynamics_create(s->system, s->motion, variant, &s->onlooker, message)) != TRB_OK) return status;
-  if ((status = trb_detail_create(s->model, s->system->pairs, s->system->n_pairs, &s->detail, message)) != TRB_OK) return status;
-  it->dynamics = s->dynamics;
-  it->motion = s->motion;
-  it->variant = variant;
+  if (!it->y || !it->scale || !it->relative || !s->between) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  trb_status status = TRB_OK;
+  for (int k = 0; k < s->assembly.n && status == TRB_OK; k++) status = open_member(s, k, motions[k], variant, message);
+  return status;
+}
+
+static trb_status open_all(trb_simulation *s, const trb_system *const *systems, const trb_motion *const *motions, int n, const char *variant,
+                           double time, const double *state, int n_state, trb_message *message)
+{
+  trb_integrator *it = &s->integrator;
+  trb_status      status = trb_assembly_make(systems, n, &s->assembly, message);
+  if (status == TRB_OK && n_state != trb_state_size(&s->assembly.members[0]))
+    status = trb_fail(message, TRB_ERR_INPUT, "state: %d values needed, %d given", trb_state_size(&s->assembly.members[0]), n_state);
+  if (status == TRB_OK) status = check_state(&s->assembly, time, state, message);
+  if (status == TRB_OK) status = open_parts(s, motions, variant, message);
+  if (status != TRB_OK) return status;
+  memcpy(it->y, state, (size_t)it->n * sizeof *state);
   trb_integrator_set_tolerances(it);
-  return trb_impacts_create(s->model, &it->impacts, message);
+  return it->kind->create(it, message);
+}
+
+trb_status trb_simulation_create_all(const trb_system *const *systems, const trb_motion *const *motions, int n, const char *kind,
+                                     const char *variant, const trb_settings *settings, double time, const double *state, int n_state,
+                                     trb_simulation **simulation, trb_message *message)
+{
+  *simulation = NULL;
+  const trb_status status = check_settings(settings, message);
+  if (status != TRB_OK) return status;
+  const trb_integrator_kind *found = find_kind(kind);
+  if (found == NULL) return trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'bdf' or 'erk'", kind);
+  trb_simulation *s = calloc(1, sizeof *s);
+  if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
+  s->previous = time;
+  s->integrator.settings = *settings;
+  s->integrator.time = time;
+  s->integrator.kind = found;
+  const trb_status opened = open_all(s, systems, motions, n, variant, time, state, n_state, message);
+  if (opened != TRB_OK) {
+    trb_simulation_free(s);
+    return opened;
+  }
+  *simulation = s;
+  return TRB_OK;
 }
 
 trb_status trb_simulation_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
                                  const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
                                  trb_message *message)
 {
-  *simulation = NULL;
-  trb_status status = check_settings(settings, message);
-  if (status != TRB_OK) return status;
-  if ((status = check_state(system, time, state, message)) != TRB_OK) return status;
-  trb_simulation *s = calloc(1, sizeof *s);
-  if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
-  s->system = system;
-  s->model = system->model;
-  s->motion = motion;
-  s->previous = time;
-  s->integrator.settings = *settings;
-  s->integrator.time = time;
-  s->integrator.kind = find_kind(kind);
-  if (s->integrator.kind == NULL) status = trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'bdf' or 'erk'", kind);
-  if (status == TRB_OK) status = open_parts(s, variant, message);
-  if (status == TRB_OK) {
-    memcpy(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
-    status = s->integrator.kind->create(&s->integrator, message);
-  }
-  if (status != TRB_OK) {
-    trb_simulation_free(s);
-    return status;
-  }
-  *simulation = s;
-  return TRB_OK;
+  return trb_simulation_create_all(&system, &motion, 1, kind, variant, settings, time, state, trb_state_size(system), simulation, message);
 }
 
 void trb_simulation_free(trb_simulation *s)
 {
   if (s == NULL) return;
-  if (s->integrator.kind != NULL) s->integrator.kind->free(&s->integrator);
-  free(s->integrator.y);
-  trb_impacts_free(&s->integrator.impacts);
-  free(s->integrator.scale);
-  free(s->integrator.relative);
+  trb_integrator *it = &s->integrator;
+  trb_simulation_end_peaks(s);
+  it->kind->free(it);
+  for (int k = 0; k < TRB_MOST_MEMBERS; k++) {
+    trb_impacts_free(&it->members[k].impacts);
+    trb_dynamics_free(it->members[k].dynamics);
+    trb_dynamics_free(s->parts[k].onlooker);
+    trb_detail_free(s->parts[k].detail);
+    free(s->apart[k]);
+  }
+  free(it->y);
+  free(it->scale);
+  free(it->relative);
   free(s->between);
-  free(s->apart);
-  trb_detail_free(s->detail);
-  trb_dynamics_free(s->dynamics);
-  trb_dynamics_free(s->onlooker);
-  trb_peaks_free(s->peaks);
   free(s);
+}
+
+static void begin_peaks(trb_simulation *s, double time, const double *y)
+{
+  for (int k = 0; k < s->assembly.n; k++) trb_peaks_begin(s->parts[k].peaks, time, y, s->integrator.time, s->integrator.y);
 }
 
 trb_status trb_simulation_set_state(trb_simulation *s, double time, const double *state, trb_message *message)
 {
-  const trb_status status = check_state(s->system, time, state, message);
+  trb_integrator  *it = &s->integrator;
+  const trb_status status = check_state(&s->assembly, time, state, message);
   if (status != TRB_OK) return status;
-  memmove(s->integrator.y, state, (size_t)s->integrator.n * sizeof *state);
-  s->integrator.time = s->previous = time;
-  trb_integrator_set_tolerances(&s->integrator);
-  trb_impacts_forget(s->model, &s->integrator.impacts);
-  trb_dynamics_forget(s->dynamics);
-  if (s->peaks != NULL) trb_peaks_begin(s->peaks, time, s->integrator.y, time, s->integrator.y);
-  return s->integrator.kind->restart(&s->integrator, message);
+  memmove(it->y, state, (size_t)it->n * sizeof *state);
+  it->time = s->previous = time;
+  trb_integrator_set_tolerances(it);
+  for (int k = 0; k < s->assembly.n; k++) {
+    trb_impacts_forget(s->assembly.members[k].model, &it->members[k].impacts);
+    trb_dynamics_forget(it->members[k].dynamics);
+  }
+  if (s->with_peaks) begin_peaks(s, time, it->y);
+  return it->kind->restart(it, message);
+}
+
+/* Whether the speed of rolling, and tolerances with it, change in the course of time. */
+static int changes_speed(const trb_simulation *s)
+{
+  int changes = trb_integrator_is_driven(&s->integrator);
+  for (int k = 0; k < s->assembly.n; k++) changes |= s->assembly.members[k].model->params.ring_free > 1.0;
+  return changes;
 }
 
 trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
@@ -156,16 +216,17 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
   trb_integrator *it = &s->integrator;
   const double    from = it->time;
   memcpy(s->between, it->y, (size_t)it->n * sizeof(double));
-  if (s->motion->n > 1 || s->model->params.ring_free > 1.0) trb_integrator_set_tolerances(it);
+  if (changes_speed(s)) trb_integrator_set_tolerances(it);
   const trb_status status = it->kind->step(it, message);
   if (status == TRB_OK) {
     s->previous = from;
-    if (s->recorder != NULL && s->peaks != NULL) trb_recorder_step(s->recorder, it->time, it->y);
-    else if (s->peaks != NULL) trb_peaks_step(s->peaks, it->time, it->y);
+    if (!s->with_peaks) return TRB_OK;
+    if (s->recorder != NULL) trb_recorder_step(s->recorder, it->time, it->y);
+    for (int k = 0; k < s->assembly.n && s->recorder == NULL; k++) trb_peaks_step(s->parts[k].peaks, it->time, it->y);
     return TRB_OK;
   }
   trb_message what, cause = *message;
-  describe(s->system, it->kind->worst(it), &what);
+  describe(&s->assembly, it->kind->worst(it), &what);
   memcpy(it->y, s->between, (size_t)it->n * sizeof(double));
   it->time = from;
   return trb_fail(message, status, "at t = %.9g s: %.200s; largest error: %.200s", from, cause.text, what.text);
@@ -184,32 +245,74 @@ trb_status trb_simulation_state_at(trb_simulation *s, double time, double *y, tr
 trb_status trb_simulation_begin_peaks(trb_simulation *s, double time, trb_message *message)
 {
   trb_status status = trb_simulation_state_at(s, time, s->between, message);
-  if (status == TRB_OK && s->peaks == NULL) status = trb_peaks_create(s->system, s->motion, s->integrator.variant, &s->peaks, message);
-  if (status == TRB_OK) trb_peaks_begin(s->peaks, time, s->between, s->integrator.time, s->integrator.y);
-  return status;
+  for (int k = 0; k < s->assembly.n && status == TRB_OK; k++)
+    if (s->parts[k].peaks == NULL)
+      status = trb_peaks_create(&s->assembly.members[k], s->integrator.members[k].motion, s->integrator.variant, &s->parts[k].peaks, message);
+  if (status != TRB_OK) return status;
+  s->with_peaks = 1;
+  begin_peaks(s, time, s->between);
+  return TRB_OK;
 }
 
 void trb_simulation_end_peaks(trb_simulation *s)
 {
-  trb_peaks_free(s->peaks);
-  s->peaks = NULL;
+  for (int k = 0; k < TRB_MOST_MEMBERS; k++) {
+    trb_peaks_free(s->parts[k].peaks);
+    s->parts[k].peaks = NULL;
+  }
+  s->with_peaks = 0;
+}
+
+int trb_simulation_peaks_length(const trb_simulation *s)
+{
+  int length = 0;
+  for (int k = 0; k < s->assembly.n && s->with_peaks; k++) length += trb_peaks_length(s->parts[k].peaks);
+  return length;
+}
+
+void trb_simulation_save_peaks(const trb_simulation *s, double *to)
+{
+  for (int k = 0; k < s->assembly.n && s->with_peaks; k++) {
+    trb_peaks_save(s->parts[k].peaks, to);
+    to += trb_peaks_length(s->parts[k].peaks);
+  }
 }
 
 trb_status trb_simulation_restore_peaks(trb_simulation *s, const double *saved, int length, trb_message *message)
 {
   trb_status status = trb_simulation_begin_peaks(s, s->integrator.time, message);
-  if (status == TRB_OK && length != trb_peaks_length(s->peaks))
-    status = trb_fail(message, TRB_ERR_INPUT, "peaks: %d values needed, %d given", trb_peaks_length(s->peaks), length);
+  if (status == TRB_OK && length != trb_simulation_peaks_length(s))
+    status = trb_fail(message, TRB_ERR_INPUT, "peaks: %d values needed, %d given", trb_simulation_peaks_length(s), length);
   if (status == TRB_OK && saved[0] != s->integrator.time)
     status = trb_fail(message, TRB_ERR_INPUT, "peaks: of t = %.9g s, not of %.9g s", saved[0], s->integrator.time);
-  if (status == TRB_OK) trb_peaks_restore(s->peaks, saved);
-  else trb_simulation_end_peaks(s);
+  for (int k = 0; k < s->assembly.n && status == TRB_OK; k++) {
+    trb_peaks_restore(s->parts[k].peaks, saved);
+    saved += trb_peaks_length(s->parts[k].peaks);
+  }
+  if (status != TRB_OK) trb_simulation_end_peaks(s);
   return status;
+}
+
+int trb_simulation_whole_length(const trb_simulation *s)
+{
+  int length = 0;
+  for (int k = 0; k < s->assembly.n && s->with_peaks; k++) length += trb_peak_offset(s->assembly.members[k].model, TRB_N_PEAK_FIELDS);
+  return length;
+}
+
+void trb_simulation_whole_peaks(const trb_simulation *s, double time, double *to)
+{
+  for (int k = 0; k < s->assembly.n && s->with_peaks; k++) {
+    trb_peaks_whole(s->parts[k].peaks, time, to);
+    to += trb_peak_offset(s->assembly.members[k].model, TRB_N_PEAK_FIELDS);
+  }
 }
 
 int trb_simulation_row(const trb_simulation *s)
 {
-  return trb_record_offset(s->model, TRB_N_FIELDS) + (s->peaks != NULL ? trb_peak_offset(s->model, TRB_N_PEAK_FIELDS) : 0);
+  int length = 0;
+  for (int k = 0; k < s->assembly.n; k++) length += trb_record_parts_length(&s->parts[k]);
+  return length;
 }
 
 static trb_status output(trb_simulation *s, double time, double *record, trb_message *message)
@@ -222,12 +325,14 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
     y = s->between;
   }
   if (s->recorder != NULL) {
-    trb_recorder_record(s->recorder, s->dynamics, time, y, record);
+    trb_recorder_record(s->recorder, time, y, record);
     return TRB_OK;
   }
-  trb_dynamics_apart(s->dynamics, y, s->apart);
-  trb_record_fill(s->onlooker, s->apart, time, y, s->detail, record);
-  if (s->peaks != NULL) trb_peaks_record(s->peaks, time, record + trb_record_offset(s->model, TRB_N_FIELDS));
+  for (int k = 0; k < s->assembly.n; k++) {
+    trb_dynamics_apart(it->members[k].dynamics, y, s->apart[k]);
+    trb_record_parts_fill(&s->parts[k], s->apart[k], time, y, record);
+    record += trb_record_parts_length(&s->parts[k]);
+  }
   return TRB_OK;
 }
 
@@ -256,10 +361,9 @@ static trb_status run(trb_simulation *s, const double *times, int n, double stop
 trb_status trb_simulation_run(trb_simulation *s, const double *times, int n, double stop_after, double *records, long max_steps, int beside,
                               int *rows, long *steps, trb_message *message)
 {
-  const trb_recorder_parts parts = {.model = s->model, .onlooker = s->onlooker, .detail = s->detail, .peaks = s->peaks};
   *rows = 0;
   *steps = 0;
-  if (beside) s->recorder = trb_recorder_open(&parts, s->integrator.n);
+  if (beside) s->recorder = trb_recorder_open(s->parts, s->assembly.n, s->integrator.n);
   const trb_status status = run(s, times, n, stop_after, records, max_steps, rows, steps, message);
   trb_recorder_close(s->recorder);
   s->recorder = NULL;

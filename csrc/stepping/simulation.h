@@ -1,4 +1,5 @@
-/* A simulation owns what changes: dynamics, state, integrator, buffers of a record. The system and the motion are shared and const. */
+/* A simulation owns what changes: dynamics, state, integrator, buffers of a record. Models and motions are shared and const. Bearings that
+ * are simulated together are an assembly (system/assembly.h): records, peaks and what users ask about states are made bearing by bearing. */
 #ifndef TRB_STEPPING_SIMULATION_H
 #define TRB_STEPPING_SIMULATION_H
 
@@ -8,24 +9,24 @@
 #include "stepping/recorder.h"
 
 typedef struct trb_simulation {
-  const trb_system *system;
-  const trb_model  *model; /* of the system's bearing */
-  const trb_motion *motion;
-  trb_dynamics     *dynamics; /* of the integration */
-  trb_dynamics     *onlooker; /* of records and of what users ask about states, so that the integration is not disturbed */
-  trb_integrator    integrator;
-  trb_detail       *detail;
-  double           *between;  /* state at an output time */
-  double            previous; /* start of the last step, s */
-  trb_peaks        *peaks;    /* NULL: not asked for */
-  unsigned         *apart;    /* what is known not to touch at an output time */
-  trb_recorder     *recorder; /* within a run that has one; else NULL */
+  trb_assembly     assembly;
+  trb_integrator   integrator;                  /* with the dynamics of the integration */
+  trb_record_parts parts[TRB_MOST_MEMBERS];     /* what records of each bearing are made with */
+  unsigned        *apart[TRB_MOST_MEMBERS];     /* what is known not to touch at an output time */
+  double          *between;                     /* state at an output time */
+  double           previous;                    /* start of the last step, s */
+  int              with_peaks;                  /* whether peaks are kept */
+  trb_recorder    *recorder;                    /* within a run that has one; else NULL */
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */
 trb_status trb_simulation_create(const trb_system *system, const trb_motion *motion, const char *kind, const char *variant,
                                  const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
                                  trb_message *message);
+/* Of n bearings: their systems, which are copied, and what is prescribed for each. n_state: length of the state. */
+trb_status trb_simulation_create_all(const trb_system *const *systems, const trb_motion *const *motions, int n, const char *kind,
+                                     const char *variant, const trb_settings *settings, double time, const double *state, int n_state,
+                                     trb_simulation **simulation, trb_message *message);
 void       trb_simulation_free(trb_simulation *s);
 
 /* Start the integrator again at a state. */
@@ -43,7 +44,14 @@ void       trb_simulation_end_peaks(trb_simulation *s);
 /* Go on with peaks that were saved at this simulation's time: length numbers. */
 trb_status trb_simulation_restore_peaks(trb_simulation *s, const double *saved, int length, trb_message *message);
 
-/* Length of a row of records: a record, and after it a row of peaks if they are kept. */
+/* Length of what peaks are saved in; 0 where none are kept. */
+int  trb_simulation_peaks_length(const trb_simulation *s);
+void trb_simulation_save_peaks(const trb_simulation *s, double *to);
+/* Rows of peaks of all bearings from their beginning to an instant of the last step, one after the other, and their length. */
+int  trb_simulation_whole_length(const trb_simulation *s);
+void trb_simulation_whole_peaks(const trb_simulation *s, double time, double *to);
+
+/* Length of a row of records: of each bearing a record, and after it a row of peaks if they are kept. */
 int trb_simulation_row(const trb_simulation *s);
 
 /* Steps until all of n increasing times are passed, at most max_steps, and no more after the first step that ends at or after

@@ -117,7 +117,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
     memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
-    memcpy(r->origin, y + trb_state_roller(j), TRB_NR * sizeof *y);
+    memcpy(r->origin, y + trb_state_roller(d->system, j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
     trb_rings_begin(t, d, j);
   }
@@ -125,10 +125,10 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   for (int c = 0; c < TRB_NR; c++) {
     const double h = trb_difference[trb_state_tolerance(d->system, c)];
     for (int j = 0; j < m->n_rollers; j++) {
-      double *entry = &moved[trb_state_roller(j) + c];
-      *entry = y[trb_state_roller(j) + c] + h;
-      trb_dynamics_pose_roller(d, j, moved + trb_state_roller(j));
-      *entry = y[trb_state_roller(j) + c];
+      double *entry = &moved[trb_state_roller(d->system, j) + c];
+      *entry = y[trb_state_roller(d->system, j) + c] + h;
+      trb_dynamics_pose_roller(d, j, moved + trb_state_roller(d->system, j));
+      *entry = y[trb_state_roller(d->system, j) + c];
     }
     differentiate(t, d, c, 1.0 / h);
   }

@@ -17,11 +17,14 @@ static use_function *const variants[] = {
 #endif
 };
 
-trb_body_entries trb_body_entries_of(const trb_system *system)
+trb_body_entries trb_body_entries_of(const trb_assembly *assembly)
 {
-  trb_body_entries entries = {.n_rollers = system->model->n_rollers};
-  for (int b = 0; b < system->n_bodies; b++)
-    if (system->bodies[b].size > 0) entries.size[entries.n_bodies++] = system->bodies[b].size;
+  trb_body_entries entries = {.n_rollers = assembly->members[0].layout.n_rollers};
+  for (int k = 0; k < assembly->n; k++)
+    for (int b = 0; b < assembly->members[k].n_bodies; b++) {
+      const trb_body *body = &assembly->members[k].bodies[b];
+      if (body->size > 0 && !body->carried) entries.size[entries.n_bodies++] = body->size;
+    }
   return entries;
 }
 

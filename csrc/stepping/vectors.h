@@ -4,20 +4,20 @@
 #ifndef TRB_STEPPING_VECTORS_H
 #define TRB_STEPPING_VECTORS_H
 
-#include "system/system.h"
+#include "system/assembly.h"
 #include "stepping/sundials_shim.h"
 
 /* Entries of a state that control the step: those of the rollers, then those of each body of the hub. */
 typedef struct trb_body_entries {
   int n_rollers;
-  int n_bodies;              /* of the hub */
-  int size[TRB_MOST_BODIES]; /* of each */
+  int n_bodies;                                 /* of the hub */
+  int size[TRB_MOST_MEMBERS * TRB_MOST_BODIES]; /* of each */
 } trb_body_entries;
 
 /* Length of the memory behind the entries. */
 enum { TRB_VECTOR_ROOM = (sizeof(trb_body_entries) + sizeof(double) - 1) / sizeof(double) };
 
-trb_body_entries trb_body_entries_of(const trb_system *system);
+trb_body_entries trb_body_entries_of(const trb_assembly *assembly);
 
 /* A vector over n values that the caller owns, which have TRB_VECTOR_ROOM more behind them; variant: index into trb_kernel_variants. NULL:
  * out of memory. */

@@ -19,7 +19,8 @@ trb_tolerance trb_state_tolerance(const trb_system *system, int index)
 #undef TRB_STATE_KIND
   int             coordinate;
   const trb_body *body;
-  if (index < trb_state_hub(system)) return roller[index % TRB_ROLLER_SIZE];
+  const int       own = index - trb_state_roller(system, 0);
+  if (own >= 0 && own < system->model->n_rollers * TRB_ROLLER_SIZE) return roller[own % TRB_ROLLER_SIZE];
   body = trb_state_body(system, index, &coordinate);
   return body != NULL ? body->coordinates[coordinate].tolerance : TRB_TOL_QUADRATURE;
 }
@@ -103,13 +104,14 @@ static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_mes
 
 trb_status trb_system_finish(trb_system *s, trb_message *message)
 {
-  int points = 0;
-  s->hub_width = s->n_moving = 0;
+  int points = 0, n_rollers = s->model->n_rollers;
+  s->n_moving = 0;
+  s->layout = (trb_layout){.n_rollers = n_rollers, .hub = n_rollers * TRB_ROLLER_SIZE};
   for (int b = 0; b < s->n_bodies; b++) {
     trb_body *body = &s->bodies[b];
     if (body->size == 0) body->size = body->kind->size, body->coordinates = body->kind->coordinates;
-    body->first = body->size > 0 ? trb_state_hub(s) + s->hub_width : -1;
-    s->hub_width += body->size;
+    body->first = body->size > 0 ? trb_state_main_size(s) : -1;
+    s->layout.hub_width += body->size;
     if (body->size > 0 && body->kind->ring != NULL) {
       if (s->n_moving == TRB_MOST_MOVING_RINGS)
         return trb_fail(message, TRB_ERR_INPUT, "body %s: at most %d rings may have coordinates", body->name, TRB_MOST_MOVING_RINGS);
@@ -128,5 +130,8 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
     pair->point = points;
     points += pair->kind->is_point;
   }
+  s->layout.spin = trb_state_main_size(s);
+  s->layout.quadrature = s->layout.spin + n_rollers;
+  s->layout.size = s->layout.quadrature + trb_n_quadratures(s);
   return TRB_OK;
 }

@@ -21,6 +21,17 @@ typedef struct trb_surface {
 
 enum { TRB_MOST_SURFACES = 16 };
 
+/* Where the entries of a system lie in a state, which may hold those of other systems, too (system/assembly.h). */
+typedef struct trb_layout {
+  int leaf;       /* rollers of the systems before it */
+  int n_rollers;  /* of all systems */
+  int hub;        /* where the coordinates of the bodies begin, those of all systems */
+  int hub_width;  /* how many they are */
+  int spin;       /* where the spin angles of its rollers begin */
+  int quadrature; /* where its quadratures begin */
+  int size;       /* of the whole state */
+} trb_layout;
+
 typedef struct trb_system {
   const trb_model *model; /* of the bearing: its numbers */
   trb_body         bodies[TRB_MOST_BODIES];
@@ -32,10 +43,10 @@ typedef struct trb_system {
   int              driven;                        /* number of the body that its drive places and turns, and that loads act on */
   int              moving[TRB_MOST_MOVING_RINGS]; /* numbers of the rings with coordinates */
   int              n_moving;
-  int              hub_width; /* coordinates of all bodies */
+  trb_layout       layout;
 } trb_system;
 
-/* Lays out the state and checks what the builder has put together: every pair joins surfaces that its kind knows, and every mechanism by
+/* Lays out the state of this system alone and checks what the builder has put together: every pair joins surfaces that its kind knows, and every mechanism by
  * which it loses energy is booked as a loss that the state has. */
 trb_status trb_system_finish(trb_system *system, trb_message *message);
 
@@ -50,16 +61,16 @@ double trb_system_shaft_speed(const trb_system *system, const trb_drive *drive, 
 int trb_system_seats(const trb_system *system);
 
 static inline int trb_n_quadratures(const trb_system *s) { return TRB_Q_losses + s->model->n_losses; }
-static inline int trb_state_roller(int roller) { return roller * TRB_ROLLER_SIZE; }
-static inline int trb_state_hub(const trb_system *s) { return s->model->n_rollers * TRB_ROLLER_SIZE; }
-static inline int trb_state_main_size(const trb_system *s) { return trb_state_hub(s) + s->hub_width; }
-static inline int trb_state_spin(const trb_system *s) { return trb_state_main_size(s); }
-static inline int trb_state_quadrature(const trb_system *s) { return trb_state_spin(s) + s->model->n_rollers; }
-static inline int trb_state_size(const trb_system *s) { return trb_state_quadrature(s) + trb_n_quadratures(s); }
+static inline int trb_state_roller(const trb_system *s, int roller) { return (s->layout.leaf + roller) * TRB_ROLLER_SIZE; }
+static inline int trb_state_hub(const trb_system *s) { return s->layout.hub; }
+static inline int trb_state_main_size(const trb_system *s) { return s->layout.hub + s->layout.hub_width; }
+static inline int trb_state_spin(const trb_system *s) { return s->layout.spin; }
+static inline int trb_state_quadrature(const trb_system *s) { return s->layout.quadrature; }
+static inline int trb_state_size(const trb_system *s) { return s->layout.size; }
 
-/* Tolerance kind of every entry. */
+/* Tolerance kind of an entry; of entries that are none of this system: that of quadratures. */
 trb_tolerance trb_state_tolerance(const trb_system *system, int index);
-/* The body that has an entry of the hub, and the number of that coordinate; NULL: no body has it. */
+/* The body of this system that has an entry of the hub, and the number of that coordinate; NULL: none of its bodies has it. */
 const trb_body *trb_state_body(const trb_system *system, int index, int *coordinate);
 
 #endif

@@ -30,7 +30,8 @@ static void add_bodies(trb_system *s)
   s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = &trb_ring_at_rest, .name = "outer ring"};
   s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_prescribed, .name = "inner ring"};
   if (s->model->params.ring_free > 0.0)
-    s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_free, .name = "inner ring", .loss = TRB_BOOK(TRB_LOSS_support)};
+    s->bodies[TRB_BODY_INNER_RING] = (trb_body){
+        .kind = &trb_ring_free, .name = "inner ring", .loss = TRB_BOOK(TRB_LOSS_support), .carried = s->model->params.ring_carried > 0.0};
   s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = &trb_body_cage, .name = "cage"};
   s->bodies[TRB_BODY_OIL] = (trb_body){.kind = &trb_fluid_at_rest, .name = "oil"};
 }

@@ -125,7 +125,7 @@ static void try(const trb_system *system, const trial *t)
   }
   double *state = calloc((size_t)trb_state_size(system), sizeof *state);
   if (state != NULL && trb_motion_create(t->motion, 2, &motion, &message) == TRB_OK) {
-    for (int j = 0; j < n; j++) state[trb_state_roller(j) + TRB_ROLLER_v_t] = 130.0 * m->geometry.roller_centre_radius;
+    for (int j = 0; j < n; j++) state[trb_state_roller(system, j) + TRB_ROLLER_v_t] = 130.0 * m->geometry.roller_centre_radius;
     for (int i = 0; i < 64; i++)
       if (t->state_scale[i] != 0.0) state[i * 7 % trb_state_size(system)] += t->state_scale[i];
     step_on(system, t, motion, state);

@@ -149,7 +149,7 @@ double rig_state(const trb_system *system, double axial_load, double shaft_speed
   for (int i = 0; i < trb_state_size(system); i++) state[i] = 0.0;
   const double orbit = m->geometry.cage_speed_ratio * shaft_speed, angle = m->geometry.roller_axis_angle;
   for (int j = 0; j < m->n_rollers; j++) {
-    double       *y = state + trb_state_roller(j);
+    double       *y = state + trb_state_roller(system, j);
     const double *at = rollers + (size_t)TRB_ROLLER_FREEDOMS * (size_t)j, tilt = at[2];
     y[TRB_ROLLER_r] = at[0], y[TRB_ROLLER_z] = at[1], y[TRB_ROLLER_tilt] = tilt;
     y[TRB_ROLLER_v_t] = orbit * at[0];
@@ -164,7 +164,7 @@ void rig_disturb(const trb_system *system, unsigned long long *seed, double *sta
   static const double roller[TRB_ROLLER_SIZE] = {5e-7, 2e-4, 1e-6, 2e-4, 2e-5, 1e-3, 2e-2, 1e-3, 2.0, 2.0, 8.0};
   static const double cage[TRB_CAGE_SIZE] = {2e-5, 2e-5, 2e-5, 3e-4, 3e-4, 3e-4, 1e-2, 1e-2, 1e-2, 1.0, 1.0, 1.0};
   for (int j = 0; j < m->n_rollers; j++)
-    for (int i = 0; i < TRB_ROLLER_SIZE; i++) state[trb_state_roller(j) + i] += roller[i] * rig_random(seed);
+    for (int i = 0; i < TRB_ROLLER_SIZE; i++) state[trb_state_roller(system, j) + i] += roller[i] * rig_random(seed);
   for (int i = 0; i < TRB_CAGE_SIZE; i++) state[rig_cage(system) + i] += cage[i] * rig_random(seed);
   /* beyond what rollers at their places allow: 0.108 mm */
   state[rig_cage(system) + TRB_CAGE_x] += 1.2e-4;

@@ -32,16 +32,16 @@ static void walk(const trb_system *system, trb_dynamics *d, const double *start,
   const int only = (int)(11.0 * (0.5 + 0.5 * rig_random(&seed))), alone = rig_random(&seed) > 0.0;
   for (int i = 0; i < TRB_CLEARANCE_BODY; i++) direction[rig_cage(system) + i] = unit[TRB_CLEARANCE_ROLLER + i] * rig_random(&seed);
   for (int j = 0; j < m->n_rollers; j++)
-    for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++) direction[trb_state_roller(j) + i] = unit[i] * rig_random(&seed);
+    for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++) direction[trb_state_roller(system, j) + i] = unit[i] * rig_random(&seed);
   for (int j = 0; j < m->n_rollers; j++) {
     trb_clearance c;
     int           touches;
     memcpy(y, start, sizeof y);
     const trb_gaps gaps = gaps_at(d, j, y, &touches);
     CHECK(!(trb_gaps_clear(&gaps) && touches));
-    trb_clearance_set(m, &c, &gaps, y + trb_state_roller(j), y + rig_cage(system));
+    trb_clearance_set(m, &c, &gaps, y + trb_state_roller(system, j), y + rig_cage(system));
     if (!trb_gaps_clear(&gaps)) {
-      CHECK(!trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + rig_cage(system)));
+      CHECK(!trb_clearance_holds(&c, arms, y + trb_state_roller(system, j), y + rig_cage(system)));
       continue;
     }
     for (double along = 0.0; along < 40.0; along += 0.02) {
@@ -49,8 +49,8 @@ static void walk(const trb_system *system, trb_dynamics *d, const double *start,
         if (!alone || only == TRB_CLEARANCE_ROLLER + i)
           y[rig_cage(system) + i] = start[rig_cage(system) + i] + along * direction[rig_cage(system) + i];
       for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++)
-        if (!alone || only == i) y[trb_state_roller(j) + i] = start[trb_state_roller(j) + i] + along * direction[trb_state_roller(j) + i];
-      const int      holds = trb_clearance_holds(&c, arms, y + trb_state_roller(j), y + rig_cage(system));
+        if (!alone || only == i) y[trb_state_roller(system, j) + i] = start[trb_state_roller(system, j) + i] + along * direction[trb_state_roller(system, j) + i];
+      const int      holds = trb_clearance_holds(&c, arms, y + trb_state_roller(system, j), y + rig_cage(system));
       const trb_gaps now = gaps_at(d, j, y, &touches);
       if (holds) {
         ++*held;

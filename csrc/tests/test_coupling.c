@@ -40,7 +40,7 @@ static int loads_at(trb_dynamics *d, int roller, const double *y, trb_load *load
 
 static int entry_of(const trb_system *system, int roller, int column)
 {
-  return column < TRB_ROLLER_SIZE ? trb_state_roller(roller) + column : rig_cage(system) + column - TRB_ROLLER_SIZE;
+  return column < TRB_ROLLER_SIZE ? trb_state_roller(system, roller) + column : rig_cage(system) + column - TRB_ROLLER_SIZE;
 }
 
 static int is_place(int column) { return column < TRB_ROLLER_SIZE ? column < TRB_ROLLER_v_r : column - TRB_ROLLER_SIZE < TRB_CAGE_v_x; }

@@ -71,12 +71,12 @@ static void test_jacobian(double free)
   trb_jacobian    *jac;
   trb_arrow       *a;
   trb_motion      *motion = motion_of(start_of(system, y), 300.0, 0.0);
-  CHECK(system->n_moving == 1 && system->hub_width == TRB_CAGE_SIZE + TRB_FREE_RING_SIZE);
+  CHECK(system->n_moving == 1 && system->layout.hub_width == TRB_CAGE_SIZE + TRB_FREE_RING_SIZE);
   rig_disturb(system, &seed, y);
   disturb_ring(system, y);
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(system->model->n_rollers, system->hub_width, &a, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(system->model->n_rollers, system->layout.hub_width, &a, NULL) == TRB_OK)) return;
   trb_jacobian_fill(jac, 0.013, y, 1, a);
   CHECK(rig_jacobian_error(d, a, 0.013, y) < 0.02);
   trb_arrow_free(a);
@@ -102,8 +102,8 @@ static void test_order(void)
   disturb_ring(system, y);
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   if (!CHECK(trb_tangents_create(system, &tangents, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_factors_create(n, system->hub_width, d->work->variant, &factors, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(n, system->hub_width, &arrow, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_factors_create(n, system->layout.hub_width, d->work->variant, &factors, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(n, system->layout.hub_width, &arrow, NULL) == TRB_OK)) return;
   arrow->gamma = 1e-5;
   CHECK(trb_arrow_factor(arrow, factors));
   trb_arrow_free(arrow);

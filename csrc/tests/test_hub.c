@@ -121,9 +121,9 @@ static void test_layout(void)
   scene s = open_scene();
   set_present(s.system, 0);
   const int without = trb_state_size(s.system);
-  CHECK(s.system->hub_width == TRB_CAGE_SIZE);
+  CHECK(s.system->layout.hub_width == TRB_CAGE_SIZE);
   set_present(s.system, 1);
-  CHECK(s.system->hub_width == TRB_CAGE_SIZE + WEIGHT_SIZE);
+  CHECK(s.system->layout.hub_width == TRB_CAGE_SIZE + WEIGHT_SIZE);
   CHECK(trb_state_size(s.system) == without + WEIGHT_SIZE);
   CHECK(trb_state_spin(s.system) == weight_at(s.system) + WEIGHT_SIZE);
   for (int i = 0; i < WEIGHT_SIZE; i++)
@@ -185,7 +185,7 @@ static void test_jacobian(void)
   rig_disturb(s.system, &seed, s.y);
   if (!CHECK(trb_dynamics_create(s.system, s.motion, "scalar", &d, NULL) == TRB_OK)) return;
   if (!CHECK(trb_jacobian_create(s.system, s.motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(s.model->n_rollers, s.system->hub_width, &a, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(s.model->n_rollers, s.system->layout.hub_width, &a, NULL) == TRB_OK)) return;
   trb_jacobian_fill(jac, 0.01, s.y, 1, a);
   rig_expand(a, MOST, &found[0][0]);
   for (int c = 0; c < n; c++) {
@@ -253,8 +253,11 @@ static void test_norm(void)
   scene        s = open_scene();
   trb_sundials sundials = {0};
   set_present(s.system, 1);
-  const int              n = trb_state_size(s.system), at = weight_at(s.system);
-  const trb_body_entries entries = trb_body_entries_of(s.system);
+  const int         n = trb_state_size(s.system), at = weight_at(s.system);
+  const trb_system *alone = s.system;
+  trb_assembly      assembly;
+  if (!CHECK(trb_assembly_make(&alone, 1, &assembly, NULL) == TRB_OK)) return;
+  const trb_body_entries entries = trb_body_entries_of(&assembly);
   if (!CHECK(trb_sundials_open(&sundials, NULL) == TRB_OK)) return;
   for (int variant = 0; variant < trb_n_kernel_variants; variant++) {
     if (!trb_kernel_runs(variant)) continue;

@@ -90,7 +90,7 @@ static void check_scene(const trb_params *params, double load, double most, int 
   int              coupled = 0;
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(m->n_rollers, system->hub_width, &arrow, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(m->n_rollers, system->layout.hub_width, &arrow, NULL) == TRB_OK)) return;
   memcpy(start, y, sizeof start);
   rig_disturb(system, &seed, y);
   rig_draw_back(d, most, start, y);

@@ -19,11 +19,11 @@ static void look(trb_dynamics *d, double turn_time, const double *y, trb_loads *
 }
 
 /* A step of a roller's coordinates, of a size between nanometres and tens of micrometres. */
-static void disturb(const trb_model *m, double size, double *y)
+static void disturb(const trb_dynamics *d, double size, double *y)
 {
   static const double unit[TRB_ROLLER_SIZE] = {1.0, 30.0, 1.0, 30.0, 30.0};
-  for (int j = 0; j < m->n_rollers; j++)
-    for (int c = 0; c <= TRB_ROLLER_tilt; c++) y[trb_state_roller(j) + c] += size * unit[c] * rig_random(&seed);
+  for (int j = 0; j < d->model->n_rollers; j++)
+    for (int c = 0; c <= TRB_ROLLER_tilt; c++) y[trb_state_roller(d->system, j) + c] += size * unit[c] * rig_random(&seed);
 }
 
 /* Random states of a misaligned, displaced bearing, half of its rollers unloaded, and random steps from there. */
@@ -46,18 +46,18 @@ static void walk(double aside, double lean, double *held, double *tightest)
   const trb_margin_arms arms = trb_margin_arms_of(system);
   for (int k = 0; k < 3000; k++) {
     memcpy(moved, y, sizeof y);
-    disturb(m, 2e-6, moved);
+    disturb(d, 2e-6, moved);
     look(d, 0.0, moved, before);
     double place[MOST];
     memcpy(place, moved, sizeof place);
-    disturb(m, pow(10.0, -9.0 + 4.0 * fabs(rig_random(&seed))), moved);
+    disturb(d, pow(10.0, -9.0 + 4.0 * fabs(rig_random(&seed))), moved);
     const double turn = 1e-3 * rig_random(&seed);
     look(d, turn / (m->geometry.cage_speed_ratio * speed), moved, after);
     const trb_ring_offset offset = trb_ring_offset_of(system, d->bodies);
     for (int j = 0; j < m->n_rollers; j++) {
       double step[TRB_ROLLER_SIZE];
-      for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(j) + c] - place[trb_state_roller(j) + c];
-      if (!trb_margin_holds(&arms, &offset, before[j].margin, share, place + trb_state_roller(j), step, turn)) continue;
+      for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(d->system, j) + c] - place[trb_state_roller(d->system, j) + c];
+      if (!trb_margin_holds(&arms, &offset, before[j].margin, share, place + trb_state_roller(d->system, j), step, turn)) continue;
       ++*held;
       for (int i = 0; i < TRB_N_PAIRS; i++) {
         const double change = fabs(after[j].margin[i] - before[j].margin[i]);

@@ -108,7 +108,7 @@ static void test_size(int n)
   rig_disturb(rigid, &seed, y);
   put_masses(soft, &s);
   const int at = trb_state_main_size(rigid);
-  CHECK(soft->hub_width == TRB_CAGE_SIZE + 2 * n && trb_state_size(soft) == trb_state_size(rigid) + 2 * n);
+  CHECK(soft->layout.hub_width == TRB_CAGE_SIZE + 2 * n && trb_state_size(soft) == trb_state_size(rigid) + 2 * n);
   memcpy(with, y, (size_t)at * sizeof *y);
   for (int k = 0; k < n; k++) with[at + k] = 1e-5 * (k + 1), with[at + n + k] = y[rig_cage(rigid) + TRB_CAGE_v_z] + 0.1;
   if (!CHECK(trb_dynamics_create(rigid, motion, "scalar", &d[0], NULL) == TRB_OK)) return;
@@ -149,7 +149,7 @@ static void test_jacobian(int n)
   for (int i = trb_state_main_size(system) - 2 * n; i < ROOM; i++) y[i] = 0.0;
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
-  if (!CHECK(trb_arrow_create(system->model->n_rollers, system->hub_width, &a, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(system->model->n_rollers, system->layout.hub_width, &a, NULL) == TRB_OK)) return;
   trb_jacobian_fill(jac, 0.01, y, 1, a);
   CHECK(rig_jacobian_error(d, a, 0.01, y) < 0.1);
   trb_arrow_free(a);

@@ -40,7 +40,7 @@ static trb_motion *make_state(double *y)
   const double     speed = 100.0 * TRB_PI;
   trb_motion      *motion = rig_motion(rig_state(system, 4930.0, speed, y), speed);
   rig_disturb(system, &seed, y);
-  for (int j = 0; j < m->n_rollers; j += 3) y[trb_state_roller(j) + TRB_ROLLER_z] -= 10e-6;
+  for (int j = 0; j < m->n_rollers; j += 3) y[trb_state_roller(system, j) + TRB_ROLLER_z] -= 10e-6;
   rig_free(system);
   return motion;
 }
@@ -67,7 +67,7 @@ static void look(const trb_motion *motion, const double *y, unsigned left_out, s
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_detail_create(m, system->pairs, system->n_pairs, &detail, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) exit(1);
-  if (!CHECK(trb_arrow_create(m->n_rollers, system->hub_width, &s->arrow, NULL) == TRB_OK)) exit(1);
+  if (!CHECK(trb_arrow_create(m->n_rollers, system->layout.hub_width, &s->arrow, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_peak_look_create(system, motion, "scalar", &peaks, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_record_offset(m, TRB_N_FIELDS) <= MOST_FIELDS && trb_peak_look_sizes(m).all <= MOST_FIELDS)) exit(1);
   trb_rhs(d, NULL, 0.01, y, s->rates);

@@ -88,7 +88,7 @@ static void test_against_records(void)
   CHECK(trb_simulation_begin_peaks(s, 0.0, NULL) == TRB_OK);
   for (int step = 0; step <= STEPS; step++) {
     if (step > 0) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
-    trb_record_fill(s->onlooker, NULL, s->integrator.time, s->integrator.y, s->detail, record);
+    trb_record_fill(s->parts[0].onlooker, NULL, s->integrator.time, s->integrator.y, s->parts[0].detail, record);
     const double *force = record + trb_record_offset(m, TRB_FIELD_AT_pocket_force);
     const double  h = s->integrator.time - last;
     for (int i = 0; i < pockets; i++) {
@@ -107,7 +107,7 @@ static void test_against_records(void)
     last = s->integrator.time;
   }
   for (int i = 0; i < pockets; i++) mean[i] /= last;
-  trb_peaks_whole(s->peaks, last, row);
+  trb_peaks_whole(s->parts[0].peaks, last, row);
   CHECK(off(row, TRB_PEAK_AT_pocket_force_peak, pocket, pockets) == 0.0);
   CHECK(off(row, TRB_PEAK_AT_pocket_force_mean, mean, pockets) < 1e-12);
   CHECK(off(row, TRB_PEAK_AT_skew_peak, skew, z) == 0.0);
@@ -134,24 +134,24 @@ static void test_restore(void)
   if (!CHECK(s != NULL && other != NULL && rows != NULL)) return;
   CHECK(trb_simulation_begin_peaks(s, 0.0, NULL) == TRB_OK);
   for (int i = 0; i < STEPS / 2; i++) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
-  const int saved_length = trb_peaks_length(s->peaks);
+  const int saved_length = trb_peaks_length(s->parts[0].peaks);
   double   *saved = calloc((size_t)saved_length, sizeof *saved);
   if (!CHECK(saved != NULL)) return;
-  trb_peaks_save(s->peaks, saved);
+  trb_peaks_save(s->parts[0].peaks, saved);
   memcpy(state, s->integrator.y, sizeof(double) * (size_t)trb_state_size(built));
   const double time = s->integrator.time;
   CHECK(trb_simulation_set_state(other, time, state, NULL) == TRB_OK);
-  CHECK(trb_simulation_restore_peaks(other, saved, saved_length - 1, &message) == TRB_ERR_INPUT && other->peaks == NULL);
+  CHECK(trb_simulation_restore_peaks(other, saved, saved_length - 1, &message) == TRB_ERR_INPUT && !other->with_peaks);
   CHECK_SAYS(message.text, "peaks:");
   saved[0] += 1.0;
-  CHECK(trb_simulation_restore_peaks(other, saved, saved_length, &message) == TRB_ERR_INPUT && other->peaks == NULL);
+  CHECK(trb_simulation_restore_peaks(other, saved, saved_length, &message) == TRB_ERR_INPUT && !other->with_peaks);
   saved[0] = time;
   CHECK(trb_simulation_restore_peaks(other, saved, saved_length, &message) == TRB_OK);
   /* the same restart in the run that goes on */
   CHECK(trb_simulation_set_state(s, time, state, NULL) == TRB_OK && trb_simulation_restore_peaks(s, saved, saved_length, NULL) == TRB_OK);
   for (int i = 0; i < STEPS / 2; i++) CHECK(trb_simulation_step(s, NULL) == TRB_OK && trb_simulation_step(other, NULL) == TRB_OK);
-  trb_peaks_whole(s->peaks, s->integrator.time, rows);
-  trb_peaks_whole(other->peaks, other->integrator.time, rows + length);
+  trb_peaks_whole(s->parts[0].peaks, s->integrator.time, rows);
+  trb_peaks_whole(other->parts[0].peaks, other->integrator.time, rows + length);
   CHECK(memcmp(rows, rows + length, (size_t)length * sizeof *rows) == 0);
   CHECK(trb_simulation_begin_peaks(s, s->previous - 1e-9, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "must lie in the last step");

@@ -53,7 +53,7 @@ static void turn_state(trb_dynamics *d, double *y)
   const trb_vec3        v = trb_cross(turn(), cage->x), omega = trb_to_frame(&cage->frame, turn());
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_roller_pose *r = &d->rollers[j];
-    double                *own = y + trb_state_roller(j);
+    double                *own = y + trb_state_roller(d->system, j);
     const trb_vec3         more = trb_to_frame(&r->frame, turn());
     own[TRB_ROLLER_v_t] += common * r->radius;
     own[TRB_ROLLER_omega_n] += more.x, own[TRB_ROLLER_omega_t] += more.y, own[TRB_ROLLER_omega_a] += more.z;

@@ -51,7 +51,7 @@ static void test_forces(void)
   /* the faces stand together where the inner ring is not displaced */
   trb_motion_free(motion);
   motion = rig_motion(0.0, 100 * TRB_PI);
-  for (int j = 0; j < 12; j++) y[trb_state_roller(j) + TRB_ROLLER_z] += 3e-5;
+  for (int j = 0; j < 12; j++) y[trb_state_roller(system, j) + TRB_ROLLER_z] += 3e-5;
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d[0], NULL) == TRB_OK)) return;
   if (!CHECK(trb_dynamics_create(both, motion, "scalar", &d[1], NULL) == TRB_OK)) return;
   if (!CHECK(trb_detail_create(both->model, both->pairs, both->n_pairs, &detail, NULL) == TRB_OK)) return;

@@ -53,13 +53,13 @@ static void test_bad_input(void)
     refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "must be finite");
   }
   memcpy(state, start, sizeof state);
-  state[trb_state_roller(4) + TRB_ROLLER_v_t] = INFINITY;
+  state[trb_state_roller(built, 4) + TRB_ROLLER_v_t] = INFINITY;
   refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "roller 4, v_t (tangential velocity");
   memcpy(state, start, sizeof state);
   state[rig_cage(built) + TRB_CAGE_z] = NAN;
   refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "cage, z (axial position");
   memcpy(state, start, sizeof state);
-  state[trb_state_roller(2) + TRB_ROLLER_r] = -1.0;
+  state[trb_state_roller(built, 2) + TRB_ROLLER_r] = -1.0;
   refused("bdf", "", &settings, 0.0, state, TRB_ERR_STATE, "roller 2: r = -1 m");
   memcpy(state, start, sizeof state);
   state[rig_cage(built) + TRB_CAGE_skew] = 1.6;
@@ -169,7 +169,7 @@ static void test_failed_step(void)
   settings.smallest_step = 1e-6, settings.max_step = 1e-3, settings.rtol = 1e-12, settings.atol_velocity = 1e-14,
   settings.atol_spin = 1e-12;
   settings.atol_position = 1e-16, settings.atol_angle = 1e-14;
-  state[trb_state_roller(3) + TRB_ROLLER_v_r] = 5.0;
+  state[trb_state_roller(built, 3) + TRB_ROLLER_v_r] = 5.0;
   if (!CHECK(create("bdf", "", &settings, 0.25, state, &s) == TRB_OK)) return;
   memcpy(before, s->integrator.y, sizeof(double) * (size_t)trb_state_size(built));
   CHECK(trb_simulation_step(s, &message) == TRB_ERR_STEP);

@@ -51,9 +51,9 @@ static int open_bench(bench *b, const trb_params *params, double share, double b
   rig_disturb(b->system, &seed, b->y);
   if (!CHECK(trb_dynamics_create(b->system, b->motion, "scalar", &b->d, NULL) == TRB_OK)) return 0;
   if (!CHECK(trb_tangents_create(b->system, &b->tangents, NULL) == TRB_OK)) return 0;
-  if (!CHECK(trb_arrow_factors_create(b->model->n_rollers, b->system->hub_width, b->d->work->variant, &b->factors, NULL) == TRB_OK))
+  if (!CHECK(trb_arrow_factors_create(b->model->n_rollers, b->system->layout.hub_width, b->d->work->variant, &b->factors, NULL) == TRB_OK))
     return 0;
-  if (!CHECK(trb_arrow_create(b->model->n_rollers, b->system->hub_width, &arrow, NULL) == TRB_OK)) return 0;
+  if (!CHECK(trb_arrow_create(b->model->n_rollers, b->system->layout.hub_width, &arrow, NULL) == TRB_OK)) return 0;
   arrow->gamma = 1e-5;
   CHECK(trb_arrow_factor(arrow, b->factors));
   trb_arrow_free(arrow);
@@ -82,7 +82,7 @@ static double distance(const bench *b, const double *one, const double *other)
 static double roller_distance(const bench *b, int roller, const double *one, const double *other)
 {
   double sum = 0.0;
-  for (int i = trb_state_roller(roller); i < trb_state_roller(roller + 1); i++)
+  for (int i = trb_state_roller(b->system, roller); i < trb_state_roller(b->system, roller + 1); i++)
     sum += pow((one[i] - other[i]) * b->factors->gamma / b->scale[i], 2.0) / TRB_ROLLER_SIZE;
   return sqrt(sum);
 }
@@ -228,7 +228,7 @@ static void test_bounds(const trb_params *params)
     const double    margin = fmin(fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]), margins[TRB_PAIR_rib]);
     const double    rolling = 0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI;
     memcpy(y, b.y, sizeof y);
-    y[trb_state_roller(j) + (k == 0 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] += k == 0 ? 0.51 * margin : 1.01e-3 * fabs(rolling);
+    y[trb_state_roller(b.system, j) + (k == 0 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] += k == 0 ? 0.51 * margin : 1.01e-3 * fabs(rolling);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
     CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - 1);
     CHECK(b.tangents->beyond[j]);
@@ -293,13 +293,13 @@ static void test_not_finite(const trb_params *params)
   if (!open_bench(&b, params, 0.05, ANYWHERE)) return;
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
   memcpy(y, b.y, sizeof y);
-  y[trb_state_roller(2) + TRB_ROLLER_v_t] = NAN;
+  y[trb_state_roller(b.system, 2) + TRB_ROLLER_v_t] = NAN;
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
-  CHECK(!isfinite(found[trb_state_roller(2) + TRB_ROLLER_v_t]));
+  CHECK(!isfinite(found[trb_state_roller(b.system, 2) + TRB_ROLLER_v_t]));
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
   trb_rhs(b.d, NULL, 0.0, b.y, exact);
   CHECK(distance(&b, found, exact) < 1e-6);
-  y[trb_state_roller(2) + TRB_ROLLER_v_t] = 1e300;
+  y[trb_state_roller(b.system, 2) + TRB_ROLLER_v_t] = 1e300;
   trb_dynamics_pose(b.d, 0.0, y);
   trb_tangents_differentiate(b.tangents, b.d, y, b.moved);
   CHECK(!b.tangents->has_slopes);

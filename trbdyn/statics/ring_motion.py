@@ -83,6 +83,11 @@ class RingMotion:
         curve = CubicHermiteSpline(times[ends], places[ends], self.table[ends, 2:12:2])
         return np.asarray(curve(time), dtype=np.float64)
 
+    @property
+    def prescribed(self) -> tuple[Array, float, float, float]:
+        """What the core takes: table, period, a time and the shaft's angle then."""
+        return self.table, self.period, self.angle_time, self.shaft_angle
+
     def open(
         self, model: _core.Model, time: float, vector: Array, settings: dict[str, float | str]
     ) -> _core.Simulation:
@@ -94,16 +99,7 @@ class RingMotion:
             If the core cannot use the state, or times so far apart.
         """
         try:
-            return _core.Simulation(
-                model,
-                self.table,
-                time,
-                vector,
-                settings,
-                period=self.period,
-                angle_time=self.angle_time,
-                angle=self.shaft_angle,
-            )
+            return _core.Simulation((model,), (self.prescribed,), time, vector, settings)
         except ValueError as error:
             raise InputError.of("state", "given", str(error)) from None
 

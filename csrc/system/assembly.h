@@ -1,0 +1,26 @@
+/* An assembly: bearings that are simulated together with one integrator, each a system of its own with its rollers, its cage and its oil.
+ *
+ * Their state is one vector: the coordinates of all rollers, bearing after bearing, then those of the bodies of the hub, then spin angles,
+ * then quadratures. Every system knows where its own entries lie (trb_layout), so that what evaluates a system reads and writes the vector
+ * of the whole. Bearings on one shaft share a body. The first system has it: it gives its rates without loads, its energies and its work.
+ * In the others their ring is carried: it has the shaft's coordinates, its place on the shaft, and adds what its own contacts do to the
+ * shaft. One bearing is an assembly of one. */
+#ifndef TRB_SYSTEM_ASSEMBLY_H
+#define TRB_SYSTEM_ASSEMBLY_H
+
+#include "system/system.h"
+
+enum { TRB_MOST_MEMBERS = 4 };
+
+typedef struct trb_assembly {
+  trb_system members[TRB_MOST_MEMBERS];
+  int        n;
+} trb_assembly;
+
+/* Copies systems, which must have been finished, and lays out their common state. */
+trb_status trb_assembly_make(const trb_system *const *systems, int n, trb_assembly *assembly, trb_message *message);
+
+/* The member that has an entry of the state; NULL: an entry of the tail. */
+const trb_system *trb_assembly_owner(const trb_assembly *assembly, int index);
+
+#endif
