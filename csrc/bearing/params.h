@@ -73,6 +73,7 @@
   X(ring_support_tilt,        "N m",    0,      1e12,   "stiffness of the support against tilt, per radian") \
   X(ring_support_position,    "m",      -100,   100,    "axial position of the support from the roller-centre plane") \
   X(ring_carried,             "choice",      0,      1,      "1: the ring is part of the body of the first bearing's ring: both sit on one shaft") \
+  X(ring_shift,               "m",      -1,     1,      "its axial displacement where the shaft of which it is part stands at zero: preload or end play") \
   X(ring_turned,              "choice",      0,      1,      "1: the bearing sits on the shaft the other way round: its axes are the shaft's, turned by half a turn about x") \
   /* lubricant */ \
   X(viscosity,                "Pa s",   1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \

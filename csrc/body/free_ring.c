@@ -19,13 +19,19 @@ static trb_vec3 other_axes(const trb_model *m, trb_vec3 v)
   return trb_v(v.x, sense * v.y, sense * v.z);
 }
 
+/* The centre of mass from its nominal place, in the bearing's axes. */
+static trb_vec3 place_of_mass(const trb_model *m, const double *y)
+{
+  const trb_vec3 place = other_axes(m, trb_v(y[TRB_FREE_RING_x], y[TRB_FREE_RING_y], y[TRB_FREE_RING_z]));
+  return trb_v(place.x, place.y, m->params.ring_shift + place.z);
+}
+
 /* Angular velocity in the shaft's frame. */
 static trb_vec3 turn_rate(const trb_model *m, const trb_drive *drive, const double *y)
 {
   return trb_v(y[TRB_FREE_RING_omega_n], y[TRB_FREE_RING_omega_t], sense_of(m) * drive->shaft_speed + y[TRB_FREE_RING_omega_a]);
 }
 
-static trb_vec3 place_of_mass(const double *y) { return trb_v(y[TRB_FREE_RING_x], y[TRB_FREE_RING_y], y[TRB_FREE_RING_z]); }
 static trb_vec3 velocity_of(const double *y) { return trb_v(y[TRB_FREE_RING_v_x], y[TRB_FREE_RING_v_y], y[TRB_FREE_RING_v_z]); }
 
 static trb_frame frame_of(const double *y) { return trb_tilted_frame(y[TRB_FREE_RING_skew], y[TRB_FREE_RING_tilt]); }
@@ -48,7 +54,7 @@ static void ring_of(const trb_model *m, const trb_body *body, const trb_drive *d
 {
   (void)body;
   const trb_frame f = frame_of(y);
-  const trb_vec3  along = arm_of(m, &f), arm = other_axes(m, along), place = other_axes(m, place_of_mass(y));
+  const trb_vec3  along = arm_of(m, &f), arm = other_axes(m, along), place = place_of_mass(m, y);
   const trb_vec3  omega = trb_from_frame(&f, turn_rate(m, drive, y));
   ring->axis = other_axes(m, trb_scale(sense_of(m), f.a));
   ring->centre = trb_v(place.x + arm.x, place.y + arm.y, m->geometry.centre_plane + (place.z + (m->params.ring_offset + arm.z)));
@@ -86,7 +92,7 @@ static void pose_of(const trb_model *m, const trb_body *body, const trb_drive *d
   const trb_frame   f = frame_of(y);
   const double      turn = sense_of(m) * drive->shaft_angle + y[TRB_FREE_RING_psi], turn_cos = cos(turn), turn_sin = sin(turn);
   const trb_vec3    v = velocity_of(y), about = trb_v(y[TRB_FREE_RING_omega_n], y[TRB_FREE_RING_omega_t], 0.0);
-  const trb_vec3    place = other_axes(m, place_of_mass(y));
+  const trb_vec3    place = place_of_mass(m, y);
   pose->x = trb_turn_z(trb_v(place.x, place.y, m->geometry.centre_plane + p->ring_offset + place.z), drive->cosine, -drive->sine);
   pose->frame = (trb_frame){into_r(m, drive, f.n), into_r(m, drive, f.t), into_r(m, drive, f.a)};
   pose->body.n = trb_add(trb_scale(turn_cos, pose->frame.n), trb_scale(turn_sin, pose->frame.t));

@@ -123,7 +123,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   }
   trb_rings_see(t, d, 0);
   for (int c = 0; c < TRB_NR; c++) {
-    const double h = trb_difference[trb_state_tolerance(d->system, c)];
+    const double h = trb_difference[trb_roller_tolerance(c)];
     for (int j = 0; j < m->n_rollers; j++) {
       double *entry = &moved[trb_state_roller(d->system, j) + c];
       *entry = y[trb_state_roller(d->system, j) + c] + h;

@@ -54,7 +54,7 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d)
     trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
     for (int j = 0; j < n; j++) trb_dynamics_roller_flow(d, j, &d->loads[j], t->partly[j]);
     for (int c = 0; c < TRB_RING_IN; c++) {
-      const double h = trb_difference[trb_state_tolerance(d->system, trb_ring_like(c))], per = 1.0 / h;
+      const double h = trb_difference[trb_roller_tolerance(trb_ring_like(c))], per = 1.0 / h;
       for (int j = 0; j < n; j++) trb_ring_move(&d->bodies[body].in_frame[j], c, h);
       trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
       for (int j = 0; j < n; j++) {

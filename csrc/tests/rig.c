@@ -216,24 +216,39 @@ void rig_expand(const trb_arrow *a, int stride, double *whole)
     for (int i = 0; i < a->width; i++) whole[(size_t)(hub + i) * (size_t)stride + (size_t)(hub + c)] = a->hub[c * a->room + i];
 }
 
-double rig_jacobian_error(trb_dynamics *d, const trb_arrow *a, double time, double *y)
+/* Kind of an entry that one of the systems has. */
+static trb_tolerance kind_of(trb_dynamics *const *d, int n, int entry)
+{
+  for (int k = 0; k < n; k++) {
+    const trb_tolerance kind = trb_state_tolerance(d[k]->system, entry);
+    if (kind != TRB_TOL_QUADRATURE) return kind;
+  }
+  return TRB_TOL_QUADRATURE;
+}
+
+static void rates_of(trb_dynamics *const *d, int n, double time, const double *y, double *rates)
+{
+  for (int k = 0; k < n; k++) trb_rhs(d[k], NULL, time, y, rates);
+}
+
+double rig_jacobian_error(trb_dynamics *const *d, int n, const trb_arrow *a, double time, double *y)
 {
   static const double unit[TRB_N_TOLERANCES] = {1e-9, 1e-7, 1e-5, 1e-3, 1.0};
-  enum { MOST = 200 };
+  enum { MOST = 320 };
   static double found[MOST][MOST], dense[MOST][MOST];
   double        low[2 * MOST], high[2 * MOST], worst = 0.0;
-  const int     all = trb_state_main_size(d->system);
-  if (all > MOST || trb_state_size(d->system) > 2 * MOST) return INFINITY;
+  const int     all = trb_state_main_size(d[0]->system);
+  if (all > MOST || trb_state_size(d[0]->system) > 2 * MOST) return INFINITY;
   rig_expand(a, MOST, &found[0][0]);
   for (int c = 0; c < all; c++) {
-    const double of = unit[trb_state_tolerance(d->system, c)], was = y[c];
+    const double of = unit[kind_of(d, n, c)], was = y[c];
     y[c] = was + 0.05 * of;
-    trb_rhs(d, NULL, time, y, high);
+    rates_of(d, n, time, y, high);
     y[c] = was - 0.05 * of;
-    trb_rhs(d, NULL, time, y, low);
+    rates_of(d, n, time, y, low);
     y[c] = was;
     for (int i = 0; i < all; i++) {
-      const double per = unit[trb_state_tolerance(d->system, i)];
+      const double per = unit[kind_of(d, n, i)];
       dense[i][c] = (high[i] - low[i]) / 0.1 / per;
       found[i][c] *= of / per;
     }

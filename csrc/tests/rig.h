@@ -36,8 +36,8 @@ double rig_random(unsigned long long *seed);
 void rig_draw_back(trb_dynamics *d, double most, const double *to, double *state);
 
 /* How far an arrow's Jacobian at a state lies from differences of the exact right-hand side, in units of the tolerances: the largest
- * difference of a row over its largest entry. */
-double rig_jacobian_error(trb_dynamics *d, const trb_arrow *a, double time, double *y);
+ * difference of a row over its largest entry. d: dynamics of each of n systems that are simulated together. */
+double rig_jacobian_error(trb_dynamics *const *d, int n, const trb_arrow *a, double time, double *y);
 
 /* The whole Jacobian that an arrow holds: rows of `stride` entries, as many as the arrow has unknowns. */
 void rig_expand(const trb_arrow *a, int stride, double *whole);

@@ -78,7 +78,7 @@ static void test_jacobian(double free)
   if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) return;
   if (!CHECK(trb_arrow_create(system->model->n_rollers, system->layout.hub_width, &a, NULL) == TRB_OK)) return;
   trb_jacobian_fill(jac, 0.013, y, 1, a);
-  CHECK(rig_jacobian_error(d, a, 0.013, y) < 0.02);
+  CHECK(rig_jacobian_error(&d, 1, a, 0.013, y) < 0.02);
   trb_arrow_free(a);
   trb_jacobian_free(jac);
   trb_dynamics_free(d);

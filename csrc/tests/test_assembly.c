@@ -1,0 +1,303 @@
+/* Bearings that are simulated together. Apart from each other, two of different size and oil have the rates and the Jacobian that each has
+ * alone, bit for bit. On one shaft, the second one turned round, the shaft's rates follow from the forces on both rings, the Jacobian is
+ * that of differences, and momentum is not made. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "body/free_ring.h"
+#include "check.h"
+#include "rig.h"
+#include "stepping/jacobian.h"
+#include "system/assembly.h"
+
+enum { N = 2, ROOM = 1024 };
+
+static const double        axial_load = 4930.0, speed = 100.0 * TRB_PI;
+static unsigned long long  seed = 77;
+
+typedef struct pair_of {
+  trb_system   *alone[N];
+  trb_assembly  together;
+  trb_motion   *motion[N];
+  trb_dynamics *d[N];          /* in the assembly */
+  double        own[N][ROOM];  /* states of each alone */
+  double        y[ROOM];
+  double        displacement[N];
+} pair_of;
+
+/* A state of a system alone becomes its part of the whole; a carried ring has no part. */
+static void put_state(const trb_system *from, const trb_system *to, const double *own, double *whole)
+{
+  const int z = from->model->n_rollers;
+  memcpy(whole + trb_state_roller(to, 0), own, (size_t)(z * TRB_ROLLER_SIZE) * sizeof *own);
+  for (int b = 0; b < from->n_bodies; b++)
+    if (from->bodies[b].size > 0 && !from->bodies[b].carried)
+      memcpy(whole + to->bodies[b].first, own + from->bodies[b].first, (size_t)from->bodies[b].size * sizeof *own);
+  memcpy(whole + trb_state_spin(to), own + trb_state_spin(from), (size_t)z * sizeof *own);
+}
+
+static trb_motion *motion_of(double displacement, double at_speed)
+{
+  double      row[TRB_MOTION_COLUMNS] = {0};
+  trb_motion *motion;
+  row[1 + 2 * TRB_CHANNEL_displacement_z] = displacement;
+  row[1 + 2 * TRB_CHANNEL_shaft_speed] = at_speed;
+  if (trb_motion_create(row, 1, &motion, NULL) == TRB_OK) return motion;
+  exit(1);
+}
+
+/* params: of each bearing; sense: of its speed. */
+static pair_of *open_pair(const trb_params params[N], const double sense[N])
+{
+  pair_of          *p = calloc(1, sizeof *p);
+  const trb_system *systems[N];
+  if (p == NULL) exit(1);
+  for (int k = 0; k < N; k++) {
+    p->alone[k] = rig_system(&params[k]);
+    systems[k] = p->alone[k];
+    p->displacement[k] = rig_state(p->alone[k], axial_load, sense[k] * speed, p->own[k]);
+    p->motion[k] = motion_of(p->displacement[k], sense[k] * speed);
+  }
+  if (trb_assembly_make(systems, N, &p->together, NULL) != TRB_OK) exit(1);
+  for (int k = 0; k < N; k++) {
+    rig_disturb(p->alone[k], &seed, p->own[k]);
+    put_state(p->alone[k], &p->together.members[k], p->own[k], p->y);
+    if (trb_dynamics_create(&p->together.members[k], p->motion[k], "scalar", &p->d[k], NULL) != TRB_OK) exit(1);
+  }
+  return p;
+}
+
+static void close_pair(pair_of *p)
+{
+  for (int k = 0; k < N; k++) {
+    trb_dynamics_free(p->d[k]);
+    trb_motion_free(p->motion[k]);
+    rig_free(p->alone[k]);
+  }
+  free(p);
+}
+
+static trb_arrow *jacobian_of(const trb_system *const *systems, trb_motion *const *motions, int n, const double *y)
+{
+  trb_arrow *a;
+  if (trb_arrow_create(systems[0]->layout.n_rollers, systems[0]->layout.hub_width, &a, NULL) != TRB_OK) exit(1);
+  for (int k = 0; k < n; k++) {
+    trb_jacobian *jac;
+    if (trb_jacobian_create(systems[k], motions[k], "scalar", &jac, NULL) != TRB_OK) exit(1);
+    trb_jacobian_fill(jac, 0.01, y, 1, a);
+    trb_jacobian_free(jac);
+  }
+  return a;
+}
+
+static void test_apart(void)
+{
+  static double    whole[ROOM][ROOM], one[ROOM][ROOM];
+  const double     sense[N] = {1.0, -0.5};
+  trb_params       params[N] = {rig_params(), rig_params()};
+  params[1].n_rollers = 9, params[1].viscosity *= 3.0, params[1].damping = 1.0, params[1].cage_mass *= 2.0;
+  pair_of          *p = open_pair(params, sense);
+  const trb_system *members[N] = {&p->together.members[0], &p->together.members[1]};
+  double            rates[ROOM], expected[ROOM], own[ROOM];
+  for (int i = 0; i < ROOM; i++) rates[i] = expected[i] = NAN;
+  for (int k = 0; k < N; k++) {
+    trb_dynamics *d;
+    if (!CHECK(trb_dynamics_create(p->alone[k], p->motion[k], "scalar", &d, NULL) == TRB_OK)) return;
+    trb_rhs(d, NULL, 0.01, p->own[k], own);
+    put_state(p->alone[k], members[k], own, expected);
+    memcpy(expected + trb_state_quadrature(members[k]), own + trb_state_quadrature(p->alone[k]),
+           (size_t)trb_n_quadratures(members[k]) * sizeof *own);
+    trb_rhs(p->d[k], NULL, 0.01, p->y, rates);
+    trb_dynamics_free(d);
+  }
+  const int size = trb_state_size(members[0]);
+  CHECK(members[0]->layout.n_rollers == 21 && members[0]->layout.hub_width == 2 * TRB_CAGE_SIZE && size < ROOM);
+  CHECK(memcmp(rates, expected, (size_t)size * sizeof *rates) == 0 && isnan(rates[size]));
+  trb_arrow *a = jacobian_of(members, p->motion, N, p->y);
+  rig_expand(a, ROOM, &whole[0][0]);
+  trb_arrow_free(a);
+  for (int k = 0; k < N; k++) {
+    const trb_system *alone = p->alone[k];
+    const int         z = alone->model->n_rollers * TRB_NR, cage = members[k]->bodies[TRB_BODY_CAGE].first;
+    a = jacobian_of(&alone, &p->motion[k], 1, p->own[k]);
+    rig_expand(a, ROOM, &one[0][0]);
+    trb_arrow_free(a);
+    int same = 1;
+    for (int i = 0; i < z + TRB_CAGE_SIZE; i++)
+      for (int c = 0; c < z + TRB_CAGE_SIZE; c++) {
+        const int at = i < z ? trb_state_roller(members[k], 0) + i : cage + i - z;
+        const int with = c < z ? trb_state_roller(members[k], 0) + c : cage + c - z;
+        same &= whole[at][with] == one[i][c];
+      }
+    CHECK(same);
+  }
+  const int cages[N] = {members[0]->bodies[TRB_BODY_CAGE].first, members[1]->bodies[TRB_BODY_CAGE].first};
+  for (int i = 0; i < TRB_CAGE_SIZE; i++)
+    for (int c = 0; c < TRB_CAGE_SIZE; c++) CHECK(whole[cages[0] + i][cages[1] + c] == 0.0 && whole[cages[1] + i][cages[0] + c] == 0.0);
+  close_pair(p);
+}
+
+static trb_params on_shaft(int k)
+{
+  trb_params p = rig_params();
+  p.ring_free = 1.0;
+  p.ring_mass = 3.0;
+  p.ring_inertia_axial = 2e-3, p.ring_inertia_transverse = 9e-3;
+  p.ring_offset = k == 0 ? -0.045 : -0.03;
+  p.damping = 1.0;
+  if (k > 0) p.ring_carried = p.ring_turned = 1.0;
+  return p;
+}
+
+/* Two bearings on one shaft, preloaded against each other; the shaft is disturbed. */
+static pair_of *open_shaft(void)
+{
+  static const double by[TRB_FREE_RING_SIZE] = {1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 0, 1e-2, 1e-2, 1e-2, 0.2, 0.2, 0};
+  trb_params          params[N] = {on_shaft(0), on_shaft(1)};
+  const double        sense[N] = {1.0, -1.0};
+  pair_of            *first = open_pair(params, sense);
+  params[1].ring_shift = first->displacement[0] + first->displacement[1];
+  close_pair(first);
+  pair_of *p = open_pair(params, sense);
+  double  *shaft = p->y + p->together.members[0].bodies[TRB_BODY_INNER_RING].first;
+  for (int i = 0; i < TRB_FREE_RING_SIZE; i++) shaft[i] = by[i] * rig_random(&seed);
+  shaft[TRB_FREE_RING_z] += p->displacement[0];
+  return p;
+}
+
+/* A vector in a bearing's inertial axes is written in the shaft's. */
+static trb_vec3 in_shaft(int k, trb_vec3 v) { return k == 0 ? v : trb_v(v.x, -v.y, -v.z); }
+
+static void test_shaft(void)
+{
+  pair_of          *p = open_shaft();
+  const trb_system *members[N] = {&p->together.members[0], &p->together.members[1]};
+  const int         at = members[0]->bodies[TRB_BODY_INNER_RING].first;
+  double            rates[ROOM];
+  CHECK(members[1]->bodies[TRB_BODY_INNER_RING].first == at);
+  CHECK(members[0]->layout.hub_width == 2 * TRB_CAGE_SIZE + TRB_FREE_RING_SIZE);
+  for (int k = 0; k < N; k++) trb_rhs(p->d[k], NULL, 0.01, p->y, rates);
+  /* places, velocities and axes of both rings are those of points of one body */
+  const double  *shaft = p->y + at;
+  const trb_vec3 v = trb_v(shaft[TRB_FREE_RING_v_x], shaft[TRB_FREE_RING_v_y], shaft[TRB_FREE_RING_v_z]);
+  const trb_ring_pose *one = &p->d[0]->bodies[TRB_BODY_INNER_RING].ring, *other = &p->d[1]->bodies[TRB_BODY_INNER_RING].ring;
+  const trb_vec3 omega = one->omega, omega_other = in_shaft(1, other->omega);
+  CHECK_NEAR(trb_norm(trb_sub(omega, omega_other)), 0.0, 1e-12 * speed);
+  CHECK_NEAR(trb_norm(trb_add(one->axis, in_shaft(1, other->axis))), 0.0, 1e-15);
+  const trb_vec3 arm[N] = {trb_scale(0.045, one->axis), trb_scale(-0.03, one->axis)};
+  for (int k = 0; k < N; k++) {
+    const trb_vec3 expected = trb_add(v, trb_cross(omega, arm[k]));
+    const trb_vec3 seen = in_shaft(k, p->d[k]->bodies[TRB_BODY_INNER_RING].ring.velocity);
+    CHECK_NEAR(trb_norm(trb_sub(expected, seen)), 0.0, 1e-12);
+  }
+  /* forces on both rings make the shaft's acceleration; what acts on ring, rollers and cage of a bearing is left to its outer ring */
+  trb_vec3 force = trb_v(0, 0, 0), moment = trb_v(0, 0, 0);
+  for (int k = 0; k < N; k++) {
+    trb_vec3 of_ring = trb_v(0, 0, 0), about = trb_v(0, 0, 0);
+    for (int j = 0; j < members[k]->model->n_rollers; j++) {
+      const trb_roller_pose *r = &p->d[k]->rollers[j];
+      const trb_drive       *drive = &p->d[k]->drive;
+      trb_dynamics_loads(p->d[k], NULL);
+      const trb_wrench *on = &p->d[k]->loads[j].on[TRB_BODY_INNER_RING];
+      of_ring = trb_add(of_ring, trb_turn_z(trb_turn_z(on->force, r->cosine, r->sine), drive->cosine, drive->sine));
+      about = trb_add(about, trb_turn_z(trb_turn_z(on->moment, r->cosine, r->sine), drive->cosine, drive->sine));
+    }
+    of_ring = in_shaft(k, of_ring);
+    force = trb_add(force, of_ring);
+    moment = trb_add(trb_add(moment, in_shaft(k, about)), trb_cross(arm[k], of_ring));
+  }
+  CHECK(trb_norm(force) > 10.0);
+  CHECK_NEAR(3.0 * rates[at + TRB_FREE_RING_v_x], force.x, 1e-9 * trb_norm(force) + 1e-7);
+  CHECK_NEAR(3.0 * rates[at + TRB_FREE_RING_v_y], force.y, 1e-9 * trb_norm(force) + 1e-7);
+  CHECK_NEAR(3.0 * rates[at + TRB_FREE_RING_v_z], force.z, 1e-9 * trb_norm(force) + 1e-7);
+  const trb_frame f = trb_tilted_frame(shaft[TRB_FREE_RING_skew], shaft[TRB_FREE_RING_tilt]);
+  const double    spin = speed * 2e-3;
+  CHECK_NEAR(9e-3 * rates[at + TRB_FREE_RING_omega_n] + spin * shaft[TRB_FREE_RING_omega_t], trb_dot(moment, f.n), 0.02 * trb_norm(moment));
+  CHECK_NEAR(9e-3 * rates[at + TRB_FREE_RING_omega_t] - spin * shaft[TRB_FREE_RING_omega_n], trb_dot(moment, f.t), 0.02 * trb_norm(moment));
+  trb_arrow *a = jacobian_of(members, p->motion, N, p->y);
+  CHECK_NEAR(rig_jacobian_error(p->d, N, a, 0.01, p->y), 0.0, 0.05);
+  trb_arrow_free(a);
+  close_pair(p);
+}
+
+/* Steps of both methods come to the same; the energy of all that moves changes by works and losses alone. */
+static void test_steps(void)
+{
+  pair_of                 *p = open_shaft();
+  const trb_system *const  systems[N] = {p->alone[0], p->alone[1]};
+  const trb_motion *const  motions[N] = {p->motion[0], p->motion[1]};
+  const char *const        kinds[N] = {"bdf", "erk"};
+  const int                size = trb_state_size(&p->together.members[0]), main_size = trb_state_main_size(&p->together.members[0]);
+  double                   end[N][ROOM], energy[N];
+  for (int k = 0; k < N; k++) {
+    trb_settings    settings = rig_settings();
+    trb_simulation *s;
+    trb_message     message = {TRB_OK, ""};
+    settings.atol_position *= 1e-2, settings.atol_angle *= 1e-2, settings.atol_velocity *= 1e-2, settings.atol_spin *= 1e-2;
+    settings.rtol *= 1e-2, settings.max_step = 1e-7;
+    CHECK(trb_simulation_create_all(systems, motions, N, kinds[k], "", &settings, 0.0, p->y, size - 1, &s, &message) == TRB_ERR_INPUT);
+    CHECK_SAYS(message.text, "values needed");
+    if (!CHECK(trb_simulation_create_all(systems, motions, N, kinds[k], "", &settings, 0.0, p->y, size, &s, &message) == TRB_OK)) return;
+    const int length = trb_simulation_row(s);
+    double   *row = calloc(2 * (size_t)length, sizeof *row), times[2] = {0.0, 2e-4};
+    int       rows;
+    long      steps;
+    if (!CHECK(row != NULL)) return;
+    CHECK(trb_simulation_run(s, times, 2, INFINITY, row, 1000000, k, &rows, &steps, &message) == TRB_OK && rows == 2);
+    CHECK(trb_simulation_state_at(s, times[1], end[k], NULL) == TRB_OK);
+    double change = 0.0, turned = 0.0;
+    energy[k] = 0.0;
+    for (int i = 0, at = 0; i < N; i++) {
+      const trb_model *m = p->alone[i]->model;
+      const double    *last = row + length + at, *first = row + at;
+      const int        stored[] = {TRB_FIELD_AT_kinetic_energy, TRB_FIELD_AT_elastic_energy};
+      for (int e = 0; e < 2; e++) change += last[trb_record_offset(m, stored[e])] - first[trb_record_offset(m, stored[e])];
+      const double *q = end[k] + trb_state_quadrature(&s->assembly.members[i]);
+      for (int w = 0; w < TRB_Q_losses; w++) energy[k] += q[w];
+      for (int l = 0; l < m->n_losses; l++) turned += q[TRB_Q_losses + l];
+      at += trb_record_parts_length(&s->parts[i]);
+    }
+    CHECK(fabs(change) > 1e-3 && turned > 1e-3);
+    CHECK_NEAR(change - (energy[k] - turned), 0.0, 2e-3 * (fabs(change) + turned));
+    free(row);
+    trb_simulation_free(s);
+  }
+  /* of all places, angles, velocities and angular velocities: the root of the sum of squares */
+  double off[TRB_N_TOLERANCES] = {0}, moved[TRB_N_TOLERANCES] = {0};
+  for (int i = 0; i < main_size; i++) {
+    const trb_system   *owner = trb_assembly_owner(&p->together, i);
+    const trb_tolerance kind = trb_state_tolerance(owner, i);
+    off[kind] += pow(end[0][i] - end[1][i], 2.0), moved[kind] += pow(end[1][i] - p->y[i], 2.0);
+  }
+  for (int kind = 0; kind < TRB_TOL_QUADRATURE; kind++) CHECK_NEAR(sqrt(off[kind] / moved[kind]), 0.0, 5e-3);
+  close_pair(p);
+}
+
+static void test_refused(void)
+{
+  trb_params        p[N] = {on_shaft(1), on_shaft(0)};
+  trb_system       *one = rig_system(&p[0]), *other = rig_system(&p[1]);
+  const trb_params  held = rig_params();
+  trb_system       *without = rig_system(&held);
+  const trb_system *first_carried[N] = {one, other}, *held_first[N] = {without, one};
+  trb_assembly      a;
+  trb_message       message = {TRB_OK, ""};
+  CHECK(trb_assembly_make(first_carried, N, &a, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "only bearings after the first");
+  CHECK(trb_assembly_make(held_first, N, &a, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "no free ring");
+  CHECK(trb_assembly_make(held_first, TRB_MOST_MEMBERS + 1, &a, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "an assembly has from 1 to");
+  rig_free(one);
+  rig_free(other);
+  rig_free(without);
+}
+
+int main(void)
+{
+  test_apart();
+  test_shaft();
+  test_steps();
+  test_refused();
+  return check_report();
+}
