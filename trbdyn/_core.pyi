@@ -52,6 +52,9 @@ def law(name: str, arguments: Array) -> Array:
 def geometry(params: Array) -> Array:
     """Derived geometry, in the order of geometry_table(), of a parameter block."""
 
+def state_layouts(models: tuple[Model, ...]) -> tuple[int, list[list[tuple[str, int, tuple[int, ...]]]]]:
+    """Length of the state of bearings that are simulated together, and the layout of each one's part, as `Model.state_layout`."""
+
 def instruction_sets() -> list[str]:
     """Kernel variants that this machine can run, slowest first: 'scalar', 'base', 'avx2', 'avx512'."""
 
@@ -141,7 +144,5 @@ class Simulation:
     def derivative(self, time: float, state: Array) -> Array: ...
     def contacts(self, time: float, state: Array, bearing: int = 0) -> dict[str, Array]:
         """Every intermediate quantity of every contact of a bearing."""
-    def layouts(self) -> list[list[tuple[str, int, tuple[int, ...]]]]:
-        """Where the parts of each bearing's state lie in the whole state: name, first entry, shape."""
     def counters(self) -> dict[str, int]: ...
     def statistics(self) -> dict[str, float]: ...

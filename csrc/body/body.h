@@ -59,6 +59,7 @@ struct trb_body {
   int                   loss;        /* where it books what it loses in itself: TRB_BOOK of an entry of bearing/losses.h; 0: nowhere */
   int                   first;       /* where its coordinates begin in the state; -1: it has none */
   int                   carried;     /* 1: it is part of a body of another system of the assembly, whose coordinates it has */
+  int                   carrier_quadrature; /* of a carried body: where the quadratures of that system begin in the state */
 };
 
 /* A body at an instant. */

@@ -302,17 +302,23 @@ void trb_dynamics_body_rates(const trb_dynamics *d, int body, const double *y, c
   for (int i = 0; i < is->size; i++) rates[i] -= alone[i];
 }
 
-/* Books what a body's drive and the loads on it put in; of a carried body, what its contacts change of that. */
-static void add_work_of(const trb_dynamics *d, int b, const double *y, double *quadratures)
+/* Books the work that passes between a bearing and the shaft that carries its ring: what the contacts do to the ring is taken from the
+ * bearing and given to the system that has the shaft. What they take from the turning ring the drive puts in again, where it keeps the speed.
+ * So the energies of each bearing add up by themselves. */
+static void add_passed(const trb_dynamics *d, int b, const double *y, double *rates)
 {
-  const trb_body *body = &d->system->bodies[b];
-  trb_drive_power power = body->kind->work(d->model, body, &d->drive, y + body->first, &d->on_body[b]);
-  if (body->carried) {
-    const trb_drive_power alone = body->kind->work(d->model, body, &d->drive, y + body->first, &no_load);
-    power = (trb_drive_power){power.shaft - alone.shaft, power.place - alone.place};
-  }
-  quadratures[TRB_Q_work_shaft] += power.shaft;
-  quadratures[TRB_Q_work_ring] += power.place;
+  const trb_body       *body = &d->system->bodies[b];
+  const trb_ring_pose  *ring = &d->bodies[b].ring;
+  const trb_drive      *drive = &d->drive;
+  const trb_vec3        force = trb_turn_z(d->on_body[b].force, drive->cosine, drive->sine);
+  const trb_vec3        moment = trb_turn_z(d->on_body[b].moment, drive->cosine, drive->sine);
+  const double          all = trb_dot(force, ring->velocity) + trb_dot(moment, ring->omega);
+  const double          turning = trb_dot(moment, ring->axis) * trb_dot(ring->omega, ring->axis);
+  const trb_drive_power with = body->kind->work(d->model, body, drive, y + body->first, &d->on_body[b]);
+  const trb_drive_power without = body->kind->work(d->model, body, drive, y + body->first, &no_load);
+  rates[d->quadrature + TRB_Q_work_shaft] -= turning;
+  rates[d->quadrature + TRB_Q_work_ring] -= all - turning;
+  rates[body->carrier_quadrature + TRB_Q_work_ring] += all + (with.shaft - without.shaft);
 }
 
 void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
@@ -324,6 +330,11 @@ void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
     if (body->size == 0) continue;
     trb_dynamics_body_rates(d, b, y, &d->on_body[b], body->carried ? added : own);
     for (int i = 0; i < body->size && body->carried; i++) own[i] += added[i];
-    if (body->kind->work != NULL) add_work_of(d, b, y, rates + d->quadrature);
+    if (body->carried) add_passed(d, b, y, rates);
+    else if (body->kind->work != NULL) {
+      const trb_drive_power power = body->kind->work(d->model, body, &d->drive, y + body->first, &d->on_body[b]);
+      rates[d->quadrature + TRB_Q_work_shaft] += power.shaft;
+      rates[d->quadrature + TRB_Q_work_ring] += power.place;
+    }
   }
 }

@@ -41,9 +41,9 @@ PyArrayObject *trb_array(PyObject *object, int ndim, const char *name);
 PyObject *trb_vector(const double *values, npy_intp n);
 /* Put a new reference under a key and give it up; -1 on error. */
 int trb_put(PyObject *dictionary, const char *key, PyObject *value);
-/* A list of the parts of a system's state: name, where it begins, its shape. */
-PyObject *trb_python_state_layout(const trb_system *system);
+/* Function of the module: length of the state of bearings that are simulated together, and the layout of each one's part. */
+PyObject *trb_python_state_layouts(PyObject *module, PyObject *models);
 /* Put everything that is known of the contacts at a state into a dictionary, by name; -1 on error. */
-int       trb_put_contacts(const trb_system *system, const trb_detail *detail, const trb_loads *loads, const trb_loads *hub, PyObject *out);
+int trb_put_contacts(const trb_system *system, const trb_detail *detail, const trb_loads *loads, const trb_loads *hub, PyObject *out);
 
 #endif

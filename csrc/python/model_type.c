@@ -7,6 +7,7 @@
 #include "motion/equilibrium.h"
 #include "motion/peaks.h"
 #include "motion/record.h"
+#include "system/assembly.h"
 
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
@@ -131,7 +132,7 @@ static PyObject *state_name(const trb_body *body, int coordinate)
 
 /* A row for each part of the state: name, where it begins, shape and strides as (count, stride). A carried ring's coordinates are those of
  * the shaft. */
-PyObject *trb_python_state_layout(const trb_system *s)
+static PyObject *layout_of(const trb_system *s)
 {
 #define NAME(name, kind, text) #name,
   static const char *const roller[] = {TRB_ROLLER_STATE(NAME)};
@@ -151,7 +152,28 @@ PyObject *trb_python_state_layout(const trb_system *s)
 static PyObject *state_layout(PyObject *self, PyObject *none)
 {
   (void)none;
-  return trb_python_state_layout(((model_object *)self)->system);
+  return layout_of(((model_object *)self)->system);
+}
+
+PyObject *trb_python_state_layouts(PyObject *module, PyObject *models)
+{
+  const trb_system *systems[TRB_MOST_MEMBERS];
+  const Py_ssize_t  n = PyTuple_Check(models) ? PyTuple_Size(models) : 0;
+  trb_message       message = {TRB_OK, ""};
+  (void)module;
+  for (Py_ssize_t k = 0; k < n && k < TRB_MOST_MEMBERS; k++) {
+    PyObject *model = PyTuple_GetItem(models, k);
+    if (!PyObject_TypeCheck(model, trb_model_type)) return PyErr_Format(PyExc_TypeError, "models: a tuple of Model");
+    systems[k] = ((model_object *)model)->system;
+  }
+  trb_assembly *assembly = PyMem_Calloc(1, sizeof *assembly);
+  if (assembly == NULL) return PyErr_NoMemory();
+  const trb_status status = trb_assembly_make(systems, (int)n, assembly, &message);
+  PyObject        *list = status == TRB_OK ? PyList_New(0) : trb_raise(status, &message), *out = NULL;
+  for (int k = 0; k < assembly->n && status == TRB_OK; k++) append(&list, layout_of(&assembly->members[k]));
+  if (list != NULL) out = Py_BuildValue("(iN)", trb_state_size(&assembly->members[0]), list);
+  PyMem_Free(assembly);
+  return out;
 }
 
 static const char *body_of(const trb_system *s, int body) { return body == TRB_ROLLERS ? "rollers" : s->bodies[body].name; }

@@ -210,6 +210,8 @@ static PyMethodDef functions[] = {
     {"setting_table", setting_table, METH_NOARGS, "(name, default, lower, upper, text) of an integration's settings."},
     {"law", law, METH_VARARGS, "law(name, arguments): a law over the columns of a 2-D array."},
     {"geometry", geometry, METH_O, "Derived geometry of a parameter block."},
+    {"state_layouts", trb_python_state_layouts, METH_O,
+     "state_layouts(models): length of the state of bearings that are simulated together, and the layout of each one's part."},
     {"instruction_sets", instruction_sets, METH_NOARGS, "Kernel variants that this machine runs, slowest first."},
     {"sundials_version", sundials_version, METH_NOARGS, "Version of SUNDIALS that this was built with."},
     {"version", version, METH_NOARGS, "Version of this package."},

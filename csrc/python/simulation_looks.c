@@ -82,19 +82,6 @@ PyObject *trb_python_contacts(PyObject *object, PyObject *args)
   return out;
 }
 
-PyObject *trb_python_layouts(PyObject *object, PyObject *none)
-{
-  const trb_simulation *s = ((simulation_object *)object)->simulation;
-  PyObject             *out = PyList_New(0);
-  (void)none;
-  for (int k = 0; k < s->assembly.n && out != NULL; k++) {
-    PyObject *layout = trb_python_state_layout(&s->assembly.members[k]);
-    if (layout == NULL || PyList_Append(out, layout) != 0) Py_CLEAR(out);
-    Py_XDECREF(layout);
-  }
-  return out;
-}
-
 PyObject *trb_python_counters(PyObject *object, PyObject *none)
 {
   simulation_object *self = (simulation_object *)object;

@@ -27,7 +27,6 @@ PyObject *trb_python_state_at(PyObject *object, PyObject *value);
 PyObject *trb_python_observe(PyObject *object, PyObject *args);
 PyObject *trb_python_derivative(PyObject *object, PyObject *args);
 PyObject *trb_python_contacts(PyObject *object, PyObject *args);
-PyObject *trb_python_layouts(PyObject *object, PyObject *none);
 PyObject *trb_python_counters(PyObject *object, PyObject *none);
 PyObject *trb_python_statistics(PyObject *object, PyObject *none);
 

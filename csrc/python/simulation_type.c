@@ -263,7 +263,6 @@ static PyMethodDef methods[] = {
     {"derivative", trb_python_derivative, METH_VARARGS, "derivative(time, state): rates of the state."},
     {"contacts", trb_python_contacts, METH_VARARGS,
      "contacts(time, state, bearing=0): every intermediate quantity of every contact of a bearing."},
-    {"layouts", trb_python_layouts, METH_NOARGS, "Where the parts of each bearing's state lie in the whole state."},
     {"counters", trb_python_counters, METH_NOARGS, "What was evaluated, counted."},
     {"statistics", trb_python_statistics, METH_NOARGS, "What the integrator did."},
     {NULL, NULL, 0, NULL},

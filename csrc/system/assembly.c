@@ -50,6 +50,7 @@ trb_status trb_assembly_make(const trb_system *const *systems, int n, trb_assemb
   }
   for (int k = 0; k < n; k++) {
     trb_layout *own = &a->members[k].layout;
+    for (int b = 0; b < a->members[k].n_bodies; b++) a->members[k].bodies[b].carrier_quadrature = a->members[0].layout.quadrature;
     own->n_rollers = at.n_rollers;
     own->hub = at.hub;
     own->hub_width = at.hub_width;

@@ -399,6 +399,8 @@ OF_FREE_RINGS = {
     f"ring_{name}" for name in ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
 }
 OF_FREE_RINGS |= {"ring_unbalance", "ring_unbalance_angle"}
+# of bearings that share a shaft: tests/physics/test_assembly.py, csrc/tests/test_assembly.c
+OF_FREE_RINGS |= {"ring_carried", "ring_turned", "ring_shift"}
 OF_FREE_RINGS |= {f"ring_support_{name}" for name in ("radial", "axial", "tilt", "position")}
 """Numbers of a free ring: tests/physics/test_free_ring.py."""
 

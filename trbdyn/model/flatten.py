@@ -209,9 +209,11 @@ def scene_entries(scene: Scene) -> Entries:
 def ring_entries(scene: Scene) -> Entries:
     """Numbers of a free ring, by their names in the core's table; zero where there is none. Paths start at the scene."""
     body = scene.ring_body
+    none = {name: Entry(("ring",), 0.0) for name in PARAMETERS if name.startswith("ring_")}
     if body is None:
-        return {name: Entry(("ring",), 0.0) for name in PARAMETERS if name.startswith("ring_")}
+        return none
     return {
+        **none,
         **prefixed("ring_body", named_entries(body)),
         "ring_free": Entry(("ring",), 1.0 if scene.torque is None else 2.0),
         "ring_unbalance_angle": Entry(("ring_body", "unbalance_angle_deg"), math.radians(body.unbalance_angle_deg)),
