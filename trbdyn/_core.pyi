@@ -53,7 +53,9 @@ def geometry(params: Array) -> Array:
     """Derived geometry, in the order of geometry_table(), of a parameter block."""
 
 def state_layouts(models: tuple[Model, ...]) -> tuple[int, list[list[tuple[str, int, tuple[int, ...]]]]]:
-    """Length of the state of bearings that are simulated together, and the layout of each one's part, as `Model.state_layout`."""
+    """Length of the state of bearings that are simulated together, and the layout of each one's part, as
+    `Model.state_layout`.
+    """
 
 def instruction_sets() -> list[str]:
     """Kernel variants that this machine can run, slowest first: 'scalar', 'base', 'avx2', 'avx512'."""
@@ -108,8 +110,8 @@ class Simulation:
         settings: dict[str, float | str],
     ) -> None:
         """Bearings that are simulated together, and for each of them a motion (K, C): knot time, then value and slope of each
-        channel. It may come with three numbers: after the last knot the last period repeats (0: everything stays); a time, and the
-        shaft's angle then (without them it is zero at the first knot). settings: integrator ('bdf', 'erk') and those of
+        channel. It may come with three numbers: after the last knot the last period repeats (0: everything stays); a time, and
+        the shaft's angle then (without them it is zero at the first knot). settings: integrator ('bdf', 'erk') and those of
         setting_table()."""
     time: float
     row_length: int

@@ -298,8 +298,8 @@ static trb_status check_ring(const trb_params *p, trb_message *message)
   if (p->ring_carried > 0.0 && !(p->ring_free > 0.0))
     return trb_fail(message, TRB_ERR_INPUT, "ring_carried = %g: only a free ring can be part of a shaft", p->ring_carried);
   if (p->ring_turned > 0.0 && !(p->ring_carried > 0.0))
-    return trb_fail(message, TRB_ERR_INPUT, "ring_turned = %g: only a ring that is carried can be turned: the first bearing has the shaft's axes",
-                    p->ring_turned);
+    return trb_fail(message, TRB_ERR_INPUT,
+                    "ring_turned = %g: only a ring that is carried can be turned: the first bearing has the shaft's axes", p->ring_turned);
   return TRB_OK;
 }
 

@@ -117,7 +117,8 @@ static trb_vec3 unbalance_of(const trb_model *m, const trb_drive *drive, const d
 {
   const trb_params *p = &m->params;
   if (p->ring_unbalance <= 0.0) return trb_v(0, 0, 0);
-  const double sense = sense_of(m), phi = sense * drive->shaft_angle + y[TRB_FREE_RING_psi] + p->ring_unbalance_angle, c = cos(phi), s = sin(phi);
+  const double sense = sense_of(m), phi = sense * drive->shaft_angle + y[TRB_FREE_RING_psi] + p->ring_unbalance_angle, c = cos(phi),
+               s = sin(phi);
   const double speed = sense * drive->shaft_speed + y[TRB_FREE_RING_omega_a], rate = sense * drive->rolling_rate;
   return trb_scale(p->ring_unbalance, trb_v(speed * speed * c + rate * s, speed * speed * s - rate * c, 0.0));
 }

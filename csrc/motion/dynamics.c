@@ -163,7 +163,8 @@ void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
     for (int j = 0; j < m->n_rollers; j++)
-      if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(d->system, j), of_body(d, fast, y))) apart[j] |= 1U << fast->row;
+      if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(d->system, j), of_body(d, fast, y)))
+        apart[j] |= 1U << fast->row;
   }
 }
 

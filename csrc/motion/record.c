@@ -253,11 +253,12 @@ static void put_energy(writer *w, const double *quadratures)
   for (int k = 0; k < TRB_N_QUADRATURES; k++) w->at[quadrature_fields[k]][0] = k < trb_n_quadratures(d->system) ? quadratures[k] : 0.0;
 }
 
-/* Turn of a free ring beyond what is prescribed. */
+/* Turn of a free ring beyond what is prescribed, about the bearing's own z. */
 static double shaft_offset(const trb_dynamics *d, const double *y, int coordinate)
 {
   const trb_body *ring = &d->system->bodies[d->system->driven];
-  return ring->kind == &trb_ring_free ? y[ring->first + coordinate] : 0.0;
+  const double    sense = d->model->params.ring_turned > 0.0 ? -1.0 : 1.0;
+  return ring->kind == &trb_ring_free ? sense * y[ring->first + coordinate] : 0.0;
 }
 
 void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record)

@@ -17,7 +17,7 @@ const int                        trb_n_integrator_kinds = (int)(sizeof trb_integ
  * rotation, whose slip is a small share of a small speed, is followed as exactly as fast rotation. */
 static double speed_share(const trb_integrator *it, const trb_model *m, double shaft_speed)
 {
-  const double     rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * shaft_speed);
+  const double rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * shaft_speed);
   return trb_min(1.0, it->settings.slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
 }
 

@@ -248,7 +248,8 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
     jac->rings_evaluations++;
   }
   for (int j = 0; j < m->n_rollers; j++)
-    for (int c = 0; c < TRB_NR; c++) memcpy(arrow->rollers[leaf_of(d, j)].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
+    for (int c = 0; c < TRB_NR; c++)
+      memcpy(arrow->rollers[leaf_of(d, j)].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
   if (d->system->layout.leaf == 0) memset(arrow->hub, 0, (size_t)(arrow->width * arrow->room) * sizeof *arrow->hub);
   memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
   memset(d->on_body, 0, sizeof d->on_body);

@@ -29,8 +29,7 @@ static void describe(const trb_assembly *assembly, int index, trb_message *out)
   char              of[32] = "";
   if (assembly->n > 1 && system != NULL) (void)snprintf(of, sizeof of, "bearing %d, ", (int)(system - assembly->members) + 1);
   if (index < 0) (void)trb_fail(out, TRB_OK, "no single quantity");
-  else if (system == NULL)
-    (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(&assembly->members[0]));
+  else if (system == NULL) (void)trb_fail(out, TRB_OK, "spin angle or quadrature %d", index - trb_state_main_size(&assembly->members[0]));
   else if (index < trb_state_hub(system)) {
     const int own = index - trb_state_roller(system, 0);
     (void)trb_fail(out, TRB_OK, "%sroller %d, %s", of, own / TRB_ROLLER_SIZE, roller[own % TRB_ROLLER_SIZE]);
@@ -116,8 +115,8 @@ static trb_status open_parts(trb_simulation *s, const trb_motion *const *motions
   return status;
 }
 
-static trb_status open_all(trb_simulation *s, const trb_system *const *systems, const trb_motion *const *motions, int n, const char *variant,
-                           double time, const double *state, int n_state, trb_message *message)
+static trb_status open_all(trb_simulation *s, const trb_system *const *systems, const trb_motion *const *motions, int n,
+                           const char *variant, double time, const double *state, int n_state, trb_message *message)
 {
   trb_integrator *it = &s->integrator;
   trb_status      status = trb_assembly_make(systems, n, &s->assembly, message);
@@ -247,7 +246,8 @@ trb_status trb_simulation_begin_peaks(trb_simulation *s, double time, trb_messag
   trb_status status = trb_simulation_state_at(s, time, s->between, message);
   for (int k = 0; k < s->assembly.n && status == TRB_OK; k++)
     if (s->parts[k].peaks == NULL)
-      status = trb_peaks_create(&s->assembly.members[k], s->integrator.members[k].motion, s->integrator.variant, &s->parts[k].peaks, message);
+      status =
+          trb_peaks_create(&s->assembly.members[k], s->integrator.members[k].motion, s->integrator.variant, &s->parts[k].peaks, message);
   if (status != TRB_OK) return status;
   s->with_peaks = 1;
   begin_peaks(s, time, s->between);

@@ -10,13 +10,13 @@
 
 typedef struct trb_simulation {
   trb_assembly     assembly;
-  trb_integrator   integrator;                  /* with the dynamics of the integration */
-  trb_record_parts parts[TRB_MOST_MEMBERS];     /* what records of each bearing are made with */
-  unsigned        *apart[TRB_MOST_MEMBERS];     /* what is known not to touch at an output time */
-  double          *between;                     /* state at an output time */
-  double           previous;                    /* start of the last step, s */
-  int              with_peaks;                  /* whether peaks are kept */
-  trb_recorder    *recorder;                    /* within a run that has one; else NULL */
+  trb_integrator   integrator;              /* with the dynamics of the integration */
+  trb_record_parts parts[TRB_MOST_MEMBERS]; /* what records of each bearing are made with */
+  unsigned        *apart[TRB_MOST_MEMBERS]; /* what is known not to touch at an output time */
+  double          *between;                 /* state at an output time */
+  double           previous;                /* start of the last step, s */
+  int              with_peaks;              /* whether peaks are kept */
+  trb_recorder    *recorder;                /* within a run that has one; else NULL */
 } trb_simulation;
 
 /* kind: name of an integrator; variant: name of a kernel variant or "". */

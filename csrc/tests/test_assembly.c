@@ -12,15 +12,15 @@
 
 enum { N = 2, ROOM = 1024 };
 
-static const double        axial_load = 4930.0, speed = 100.0 * TRB_PI;
-static unsigned long long  seed = 77;
+static const double       axial_load = 4930.0, speed = 100.0 * TRB_PI;
+static unsigned long long seed = 77;
 
 typedef struct pair_of {
   trb_system   *alone[N];
   trb_assembly  together;
   trb_motion   *motion[N];
-  trb_dynamics *d[N];          /* in the assembly */
-  double        own[N][ROOM];  /* states of each alone */
+  trb_dynamics *d[N];         /* in the assembly */
+  double        own[N][ROOM]; /* states of each alone */
   double        y[ROOM];
   double        displacement[N];
 } pair_of;
@@ -92,9 +92,9 @@ static trb_arrow *jacobian_of(const trb_system *const *systems, trb_motion *cons
 
 static void test_apart(void)
 {
-  static double    whole[ROOM][ROOM], one[ROOM][ROOM];
-  const double     sense[N] = {1.0, -0.5};
-  trb_params       params[N] = {rig_params(), rig_params()};
+  static double whole[ROOM][ROOM], one[ROOM][ROOM];
+  const double  sense[N] = {1.0, -0.5};
+  trb_params    params[N] = {rig_params(), rig_params()};
   params[1].n_rollers = 9, params[1].viscosity *= 3.0, params[1].damping = 1.0, params[1].cage_mass *= 2.0;
   pair_of          *p = open_pair(params, sense);
   const trb_system *members[N] = {&p->together.members[0], &p->together.members[1]};
@@ -178,10 +178,10 @@ static void test_shaft(void)
   CHECK(members[0]->layout.hub_width == 2 * TRB_CAGE_SIZE + TRB_FREE_RING_SIZE);
   for (int k = 0; k < N; k++) trb_rhs(p->d[k], NULL, 0.01, p->y, rates);
   /* places, velocities and axes of both rings are those of points of one body */
-  const double  *shaft = p->y + at;
-  const trb_vec3 v = trb_v(shaft[TRB_FREE_RING_v_x], shaft[TRB_FREE_RING_v_y], shaft[TRB_FREE_RING_v_z]);
+  const double        *shaft = p->y + at;
+  const trb_vec3       v = trb_v(shaft[TRB_FREE_RING_v_x], shaft[TRB_FREE_RING_v_y], shaft[TRB_FREE_RING_v_z]);
   const trb_ring_pose *one = &p->d[0]->bodies[TRB_BODY_INNER_RING].ring, *other = &p->d[1]->bodies[TRB_BODY_INNER_RING].ring;
-  const trb_vec3 omega = one->omega, omega_other = in_shaft(1, other->omega);
+  const trb_vec3       omega = one->omega, omega_other = in_shaft(1, other->omega);
   CHECK_NEAR(trb_norm(trb_sub(omega, omega_other)), 0.0, 1e-12 * speed);
   CHECK_NEAR(trb_norm(trb_add(one->axis, in_shaft(1, other->axis))), 0.0, 1e-15);
   const trb_vec3 arm[N] = {trb_scale(0.045, one->axis), trb_scale(-0.03, one->axis)};
@@ -223,12 +223,12 @@ static void test_shaft(void)
 /* Steps of both methods come to the same; the energy of each bearing, the first with the shaft, changes by works and losses alone. */
 static void test_steps(void)
 {
-  pair_of                 *p = open_shaft();
-  const trb_system *const  systems[N] = {p->alone[0], p->alone[1]};
-  const trb_motion *const  motions[N] = {p->motion[0], p->motion[1]};
-  const char *const        kinds[N] = {"bdf", "erk"};
-  const int                size = trb_state_size(&p->together.members[0]), main_size = trb_state_main_size(&p->together.members[0]);
-  double                   end[N][ROOM];
+  pair_of                *p = open_shaft();
+  const trb_system *const systems[N] = {p->alone[0], p->alone[1]};
+  const trb_motion *const motions[N] = {p->motion[0], p->motion[1]};
+  const char *const       kinds[N] = {"bdf", "erk"};
+  const int               size = trb_state_size(&p->together.members[0]), main_size = trb_state_main_size(&p->together.members[0]);
+  double                  end[N][ROOM];
   for (int k = 0; k < N; k++) {
     trb_settings    settings = rig_settings();
     trb_simulation *s;

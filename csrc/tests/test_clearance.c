@@ -49,7 +49,8 @@ static void walk(const trb_system *system, trb_dynamics *d, const double *start,
         if (!alone || only == TRB_CLEARANCE_ROLLER + i)
           y[rig_cage(system) + i] = start[rig_cage(system) + i] + along * direction[rig_cage(system) + i];
       for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++)
-        if (!alone || only == i) y[trb_state_roller(system, j) + i] = start[trb_state_roller(system, j) + i] + along * direction[trb_state_roller(system, j) + i];
+        if (!alone || only == i)
+          y[trb_state_roller(system, j) + i] = start[trb_state_roller(system, j) + i] + along * direction[trb_state_roller(system, j) + i];
       const int      holds = trb_clearance_holds(&c, arms, y + trb_state_roller(system, j), y + rig_cage(system));
       const trb_gaps now = gaps_at(d, j, y, &touches);
       if (holds) {

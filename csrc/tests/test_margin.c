@@ -56,7 +56,8 @@ static void walk(double aside, double lean, double *held, double *tightest)
     const trb_ring_offset offset = trb_ring_offset_of(system, d->bodies);
     for (int j = 0; j < m->n_rollers; j++) {
       double step[TRB_ROLLER_SIZE];
-      for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = moved[trb_state_roller(d->system, j) + c] - place[trb_state_roller(d->system, j) + c];
+      for (int c = 0; c < TRB_ROLLER_SIZE; c++)
+        step[c] = moved[trb_state_roller(d->system, j) + c] - place[trb_state_roller(d->system, j) + c];
       if (!trb_margin_holds(&arms, &offset, before[j].margin, share, place + trb_state_roller(d->system, j), step, turn)) continue;
       ++*held;
       for (int i = 0; i < TRB_N_PAIRS; i++) {

@@ -23,7 +23,7 @@ from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
 from trbdyn.model.growth import running_clearance, running_pockets
 from trbdyn.model.lubricants import Dicke, Lubricant
-from trbdyn.model.motion import History, joint_times, knot_table, value_at
+from trbdyn.model.motion import History, common_period, joint_times, knot_table, settled_time, value_at
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing, Material
@@ -320,7 +320,12 @@ def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
     )
 
 
-def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArray | None = None) -> FloatArray:
+def motion_table(
+    scene: Scene,
+    path: Sequence[float | History],
+    joints: FloatArray | None = None,
+    loads: Mapping[str, float | History] | None = None,
+) -> FloatArray:
     """Prescribed motion of the inner ring, as the core takes it.
 
     Parameters
@@ -332,6 +337,8 @@ def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArr
         taken from the scene instead.
     joints : ndarray, shape (J,), optional
         Times at which a part of the path ends (s): where what acts on the ring has a joint.
+    loads : mapping of str to float or History, optional
+        Loads on a free ring by the names of their channels, such as ``"force_x"``, in place of the scene's.
 
     Returns
     -------
@@ -356,6 +363,7 @@ def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArr
         "gravity_y": gravity[1],
         "gravity_z": gravity[2],
         **_loads_on_free_ring(scene),
+        **(loads or {}),
     }
     names = [name for name, _, _ in _core.motion_table()]
     if set(names) != set(channels):
@@ -365,7 +373,24 @@ def motion_table(scene: Scene, path: Sequence[float | History], joints: FloatArr
         own = [*gravity, scene.speed_rpm, *(place for place in given if place is not None)]
         end = scene.settled + (scene.period or 0.0)
         joints = np.append(joints, joint_times(own, scene.start.time, end))
-    return knot_table(quantities, scene.start.time, scene.settled, scene.period, joints)
+    settled = settled_time(list((loads or {}).values()), scene.settled)
+    return knot_table(quantities, scene.start.time, settled, loads_period(scene, loads or {}), joints)
+
+
+def loads_period(scene: Scene, loads: Mapping[str, float | History]) -> float | None:
+    """Common period of a scene and of loads that act besides (s); None if nothing repeats.
+
+    Raises
+    ------
+    InputError
+        If they never repeat together.
+    """
+    periods = {
+        name: load.times[-1] - load.times[0]
+        for name, load in loads.items()
+        if isinstance(load, History) and load.repeats
+    }
+    return common_period(periods if scene.period is None else {"scene": scene.period} | periods)
 
 
 def _loads_on_free_ring(scene: Scene) -> dict[str, float | History]:

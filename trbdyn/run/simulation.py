@@ -166,7 +166,7 @@ class Simulation(Displayed):
 
     def view(self, vector: Array | None = None) -> StateView:
         """Parts of a state vector by name; of a copy of the present one by default."""
-        return StateView(self._model, self.state.vector if vector is None else vector)
+        return StateView(self._model.state_layout(), self.state.vector if vector is None else vector)
 
     @property
     def system(self) -> System:

@@ -124,13 +124,16 @@ class Watch:
         Where it writes what it finds, in sentences.
     going_on : bool
         Whether a run that is found wrong goes on all the same.
+    of : str
+        Name of the bearing, where several are simulated together: what is shown on the screen begins with it.
     """
 
-    def __init__(self, sim: Simulation, end: float, found: list[str], *, going_on: bool = False) -> None:
+    def __init__(self, sim: Simulation, end: float, found: list[str], *, going_on: bool = False, of: str = "") -> None:
         self._sim = sim
         self._found = found
         self._length = max(end - sim._core.time, 0.0) / WINDOWS
         self._going_on = going_on
+        self._of = f"{of}: " if of else ""
         self._suppressed = 0
         self._noted: set[str] = set()
         now, time = self._energies(), sim._core.time
@@ -334,7 +337,7 @@ class Watch:
         self._noted.add(kind)
         if kind not in self._account.said:
             self._account.said.add(kind)
-            warnings.warn(text, RunWarning, stacklevel=2)
+            warnings.warn(self._of + text, RunWarning, stacklevel=2)
 
 
 def _missing(then: dict[str, float], now: dict[str, float]) -> tuple[float, float, float]:

@@ -43,7 +43,7 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
     vector : ndarray, shape (n_state,)
         The state, with the rollers placed; changed.
     """
-    state, start, cage = StateView(model, vector), scene.start, scene.bearing.cage
+    state, start, cage = StateView(model.state_layout(), vector), scene.start, scene.bearing.cage
     orbit = scene.bearing.geometry.cage_speed_ratio * value_at(scene.speed_rpm, start.time) * math.pi / 30.0
     onlooker = motion.open(model, motion.start, vector, {})
     load = _inner_load(onlooker, motion.start, vector)

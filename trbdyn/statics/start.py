@@ -40,7 +40,7 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
             )
         return vector
     vector = np.zeros(model.n_state)
-    state = StateView(model, vector)
+    state = StateView(model.state_layout(), vector)
     geometry = scene.bearing.geometry
     speed = value_at(scene.speed_rpm, scene.start.time) * math.pi / 30.0
     orbit = geometry.cage_speed_ratio * speed

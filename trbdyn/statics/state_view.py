@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
-
-from trbdyn import _core
 
 Array = NDArray[np.float64]
 
@@ -15,15 +15,15 @@ class StateView:
 
     Parameters
     ----------
-    model : _core.Model
-        The model whose layout it follows.
+    layout : sequence of (str, int, tuple)
+        Name, first entry and shape of each part: `_core.Model.state_layout`, or one of `_core.state_layouts`.
     vector : ndarray, shape (n_state,)
         The vector; views write through to it.
     """
 
-    def __init__(self, model: _core.Model, vector: Array) -> None:
+    def __init__(self, layout: Sequence[tuple[str, int, tuple[int, ...]]], vector: Array) -> None:
         self._vector = vector
-        self._layout = {name: (offset, shape) for name, offset, shape in model.state_layout()}
+        self._layout = {name: (offset, shape) for name, offset, shape in layout}
 
     @property
     def names(self) -> tuple[str, ...]:

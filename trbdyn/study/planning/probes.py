@@ -152,8 +152,8 @@ def carried_over(scene: Scene, state: Start, of: Scene) -> Scene:
         If the scene cannot be used.
     """
     old_model, model = build_model(of, ""), build_model(scene.replace(start=Start.equal()), "")
-    old, vector = StateView(old_model, np.array(state.state_vector)), np.zeros(model.n_state)
-    new = StateView(model, vector)
+    old, vector = StateView(old_model.state_layout(), np.array(state.state_vector)), np.zeros(model.n_state)
+    new = StateView(model.state_layout(), vector)
     for name in set(old.names) & set(new.names):
         if old[name].shape == new[name].shape:
             new[name] = old[name]

@@ -1,0 +1,215 @@
+"""Bearings on one shaft: what each does to it, its vibrations, its energy, its momentum, its limits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import trbdyn as trb
+from trbdyn import Effects, InputError, RingBody, RunWarning, Scene, Simulation, Start
+from trbdyn.run.assembly import AssemblyResult, AssemblySimulation
+from trbdyn.statics.seat import Seat
+
+Array = NDArray[np.float64]
+
+SHAFT = RingBody(mass=5.0, inertia_axial=5e-3, inertia_transverse=3e-2)
+PRELOAD = -20e-6
+"""Axial displacement of each ring (m)."""
+STILL = np.array([0.0, 0.0, PRELOAD, 0.0, 0.0])
+ROLLERS = 0.28
+"""Mass that the rollers of one bearing add to that of an axially vibrating shaft (kg), docs/theory/motion.md#stiffness."""
+WEIGHT = (0.0, -9.80665, 0.0)
+FRICTIONLESS = Effects.standard().replace(
+    bodies="rollers",
+    gravity=False,
+    lubrication="full_film",
+    traction="none",
+    rolling_resistance=False,
+    rolling_pressure_force=False,
+)
+
+
+def seat(
+    speed_rpm: float = 3000.0, *, turned: bool = False, offset: float = -0.05, shift: float | None = None, **given: Any
+) -> Seat:
+    """One of two equal bearings; the second one is turned, and so are its speed and its gravity."""
+    sign = -1.0 if turned else 1.0
+    values = {"effects": Effects.standard(), "displacement": (0.0, 0.0, PRELOAD)} | given
+    scene = Scene(trb.cases.rig_30310(), speed_rpm=sign * speed_rpm, gravity=(0.0, sign * WEIGHT[1], 0.0), **values)
+    return Seat(scene, offset, turned, (2.0 * PRELOAD if turned else 0.0) if shift is None else shift)
+
+
+FINE = {"rtol": 1e-5, "atol_position": 1e-11, "atol_angle": 1e-9, "atol_velocity": 1e-6, "atol_spin": 1e-4}
+
+
+def pair(
+    loads: dict[str, Any] | None = None,
+    *,
+    body: RingBody = SHAFT,
+    shaft: Array = STILL,
+    options: dict[str, float] | None = None,
+    **given: Any,
+) -> AssemblySimulation:
+    seats = {"left": seat(**given), "right": seat(turned=True, **given)}
+    return AssemblySimulation(seats, body, shaft, loads or {}, **(options or {}))
+
+
+def closures(result: AssemblyResult) -> list[float]:
+    return [one.energy_closure for one in result.values()]
+
+
+def force_on_shaft(result: AssemblyResult) -> Array:
+    """Sum of the forces of both bearings in the shaft's axes (N), shape (T, 3)."""
+    turned = np.array([1.0, -1.0, -1.0])
+    return result["left"].ring_force + turned * result["right"].ring_force
+
+
+def test_two_bearings_carry_a_load() -> None:
+    """Both reactions balance load and weight in the mean; they share a load that stands nearer to one of them."""
+    load = 2000.0
+    result = pair({"force_x": load}).run(duration=0.04)
+    mean = force_on_shaft(result)[len(result.time) // 2 :].mean(axis=0)
+    assert mean == pytest.approx([-load, 5.0 * 9.80665, 0.0], abs=0.02 * load)
+    left, right = (np.linalg.norm(one.ring_force[-1][:2]) for one in result.values())
+    assert left > 3.0 * right
+    # with the effective centres outside of the bearings, the far one pulls: their distance is larger than that of the rollers
+    assert max(closures(result)) < 1e-4
+    assert result.energy.closure < 1e-4
+    assert result.success
+    assert not result.warnings
+
+
+def test_symmetry() -> None:
+    """Two equal bearings, the second the mirror of the first about the shaft's middle, do the same in their own axes."""
+    effects = Effects.standard().replace(gravity=False)
+    result = pair(effects=effects).run(duration=0.02)
+    left, right = result["left"], result["right"]
+    assert np.abs(result.shaft_position - [0.0, 0.0, PRELOAD]).max() < 2e-9
+    assert np.mean(right.inner_torque) == pytest.approx(np.mean(left.inner_torque), rel=1e-4)
+    assert right.ring_force[-1, 2] == pytest.approx(left.ring_force[-1, 2], rel=1e-4)
+
+
+def stiffness_of_pair() -> tuple[float, float]:
+    """Axial and radial stiffness (N/m) of both bearings, by differences of reactions where the shaft stands still elsewhere."""
+    h, values = 2e-7, []
+    for axis in (2, 0):
+        forces = []
+        for sign in (1.0, -1.0):
+            shaft = STILL.copy()
+            shaft[axis] += sign * h
+            records = pair(effects=FRICTIONLESS, shaft=shaft).record()
+            forces.append(
+                records["left"]["ring_force"][axis]
+                + (-1.0 if axis == 2 else 1.0) * records["right"]["ring_force"][axis]
+            )
+        values.append((forces[1] - forces[0]) / (2.0 * h))
+    return values[0], values[1]
+
+
+def test_axial_vibration() -> None:
+    """A heavy shaft that is released beside its equilibrium vibrates with the stiffness of both bearings."""
+    body = RingBody(mass=60.0, inertia_axial=0.05, inertia_transverse=0.5)
+    stiffness, _ = stiffness_of_pair()
+    shaft = STILL + np.array([0.0, 0.0, 2e-7, 0.0, 0.0])
+    result = pair(effects=FRICTIONLESS, body=body, shaft=shaft, options=FINE).run(duration=0.02, save_every=1e-5)
+    place = result.shaft_position[:, 2] - PRELOAD
+    crossings = result.time[1:][np.diff(np.sign(place)) != 0.0]
+    found = 0.5 * (crossings.size - 1) / (crossings[-1] - crossings[0])
+    expected = np.sqrt(stiffness / (body.mass + 2.0 * ROLLERS)) / (2.0 * np.pi)
+    assert found == pytest.approx(expected, rel=5e-3)
+    assert np.abs(place).max() == pytest.approx(2e-7, rel=0.1)
+
+
+def test_a_heavy_shaft_stands_still() -> None:
+    """Each bearing then does what it does alone with its ring held."""
+    body = RingBody(mass=1e5, inertia_axial=1e3, inertia_transverse=1e4)
+    effects = Effects.standard().replace(gravity=False)
+    seats = {"left": seat(effects=effects, start=Start.whirl(0.9)), "right": seat(turned=True, effects=effects)}
+    together = AssemblySimulation(seats, body, STILL, {}, **FINE).run(duration=4e-3)
+    for name, one in seats.items():
+        alone = Simulation(one.scene, **FINE).run(duration=4e-3)
+        moved = np.abs(alone.cage_position - alone.cage_position[0]).max()
+        assert np.abs(together[name].cage_position - alone.cage_position).max() < 0.01 * moved + 1e-9
+        assert together[name].inner_torque == pytest.approx(alone.inner_torque, rel=2e-3)
+
+
+def test_momentum() -> None:
+    """What the outer rings, the only support, do to rollers and shaft is the change of their momentum."""
+    shaft = STILL + np.array([2e-6, -1e-6, 3e-7, 1e-5, 2e-5])
+    effects = Effects.standard().replace(bodies="rollers", gravity=False)
+    simulation = pair(effects=effects, shaft=shaft)
+    result = simulation.run(duration=2e-3, save_every=2e-6)
+    velocity = np.diff(result.shaft_position, axis=0) / np.diff(result.time)[:, None]
+    change = SHAFT.mass * (velocity[-1] - velocity[0])
+    middle = slice(1, -1)
+    force = force_on_shaft(result)[middle]
+    pushed = np.trapezoid(force, result.time[middle], axis=0)
+    assert change == pytest.approx(pushed, abs=0.01 * float(np.abs(pushed).max()))
+    assert np.abs(pushed).max() > 1e-3
+
+
+def test_one_side_unloaded_and_back() -> None:
+    """An axial load larger than the preload lifts the rollers of one bearing off; a load that turns round loads it again."""
+    history = trb.History.table([0.0, 4e-3, 14e-3, 20e-3, 40e-3], [0.0, 12e3, 12e3, -12e3, -12e3])
+    with pytest.warns(RunWarning, match="rollers vibrate on their raceways"):  # nothing holds those that are lifted off
+        result = pair({"force_z": history}).run(duration=0.03)
+    left, right = (one.outer_load.sum(axis=1) for one in result.values())
+    first = int(np.searchsorted(result.time, 13e-3))
+    assert result.success
+    assert left[first] < 0.05 * left[0]
+    assert right[first] > 3.0 * right[0]
+    assert right[-1] < 0.05 * right[0]
+    assert left[-1] > 3.0 * left[0]
+    assert force_on_shaft(result)[first : first + 10, 2].mean() == pytest.approx(-12e3, rel=0.05)
+    assert max(closures(result)) < 1e-3
+
+
+def test_run_up_under_a_torque() -> None:
+    """The shaft turns faster as a torque beyond friction says; energy adds up in each bearing and in the whole."""
+    torque = 20.0
+    result = pair({"torque": torque}, effects=Effects.standard().replace(gravity=False)).run(duration=0.01)
+    speed = result["left"].shaft_speed
+    friction = np.trapezoid(result["left"].inner_torque + result["right"].inner_torque, result.time)
+    turned = torque * result.time[-1] - friction
+    assert SHAFT.inertia_axial * (speed[-1] - speed[0]) == pytest.approx(turned, rel=0.01)
+    assert speed[-1] > 1.05 * speed[0]
+    assert result["right"].shaft_speed[-1] == pytest.approx(-speed[-1], rel=1e-12)
+    assert max(closures(result)) < 1e-3
+    assert result.energy.closure < 1e-3
+
+
+def test_unbalance() -> None:
+    """At 10 000 rpm an unbalance turns the shaft round its place; its force is that of the circling mass."""
+    body = SHAFT.replace(unbalance=5e-5)
+    result = pair({}, body=body, speed_rpm=10_000.0).run(duration=0.03)
+    half = len(result.time) // 2
+    force = force_on_shaft(result)[half:, 0]
+    wanted = 5e-5 * (10_000.0 * np.pi / 30.0) ** 2
+    assert np.std(force) * np.sqrt(2.0) == pytest.approx(wanted, rel=0.25)
+    assert max(closures(result)) < 1e-3
+
+
+def test_files(tmp_path: Any) -> None:
+    """A run into files gives the numbers of a run in memory, and each file is a result of its own."""
+    kept = pair().run(duration=1e-3)
+    written = pair().run(duration=1e-3, output=tmp_path / "pair")
+    for name, one in kept.items():
+        again = trb.load(tmp_path / "pair" / f"{name}.h5")
+        assert again.cage_position == pytest.approx(one.cage_position, rel=1e-6)
+        assert written[name].outer_load == pytest.approx(one.outer_load, rel=1e-6)
+        assert again.meta["assembly"]["bearing"] == name
+    assert again.peaks["pocket_force_peak"].shape == one.peaks["pocket_force_peak"].shape
+
+
+def test_refused() -> None:
+    with pytest.raises(InputError, match="first bearing has the shaft's axes"):
+        AssemblySimulation({"left": seat(turned=True)}, SHAFT, STILL, {})
+    with pytest.raises(InputError, match="checkpoint_every"):
+        AssemblySimulation({"left": seat()}, SHAFT, STILL, {}, checkpoint_every=0.1)
+    with pytest.raises(InputError, match="must be one of left"):
+        pair().run(duration=1e-4)["middle"]
+    with pytest.raises(InputError, match=r"revolutions"):
+        pair().run()

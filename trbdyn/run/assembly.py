@@ -1,0 +1,465 @@
+"""Simulation of bearings on one shaft by one integrator, with a result of each bearing.
+
+docs/theory/motion.md#bearings-on-one-shaft has the equations.
+"""
+
+from __future__ import annotations
+
+import math
+import time as clock
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.errors import InputError, RunWarning, StepError
+from trbdyn.model.motion import History
+from trbdyn.model.ring_body import RingBody
+from trbdyn.model.shaft import turns
+from trbdyn.results import fields as field_table
+from trbdyn.results import peaks as peak_table
+from trbdyn.results.file_format import RunInfo
+from trbdyn.results.observables.energy import EnergyAudit, energy_audit
+from trbdyn.results.result import Result, load
+from trbdyn.results.result_file import ResultWriter
+from trbdyn.run import keeping
+from trbdyn.run.memory import Kept
+from trbdyn.run.options import RunOptions
+from trbdyn.run.process import has_a_spare_core, interrupts
+from trbdyn.run.running import CHUNK_RECORDS, CHUNK_STEPS, output_times
+from trbdyn.run.watch import RING_GONE, Watch
+from trbdyn.statics.seat import Seat, Seated, seat_all
+
+Array = NDArray[np.float64]
+Layout = list[tuple[str, int, tuple[int, ...]]]
+
+WITHOUT_BIAS: Final = (
+    "The bias of the presets was measured with one bearing whose ring is held, not with bearings on a shaft."
+)
+
+
+class AssemblyResult(Mapping[str, Result], Displayed):
+    """What a run of bearings on one shaft gives: a result of each bearing by its name, each in the bearing's own axes.
+
+    Parameters
+    ----------
+    bearings : mapping of str to Result
+        The results. The first bearing's energies are those of the shaft, too.
+    seats : sequence of Seat
+        How the bearings sit on the shaft, in the same order.
+    """
+
+    def __init__(self, bearings: Mapping[str, Result], seats: Sequence[Seat]) -> None:
+        self._bearings = dict(bearings)
+        self._seats = tuple(seats)
+
+    def __getitem__(self, name: str) -> Result:
+        """The result of a bearing.
+
+        Raises
+        ------
+        InputError
+            If no bearing has this name.
+        """
+        if name not in self._bearings:
+            raise InputError.of("bearing", name, f"must be one of {', '.join(self._bearings)}")
+        return self._bearings[name]
+
+    def __iter__(self) -> Any:
+        return iter(self._bearings)
+
+    def __len__(self) -> int:
+        return len(self._bearings)
+
+    def __repr__(self) -> str:
+        return f"<AssemblyResult: {', '.join(self._bearings)}: {self.message}>"
+
+    def _shown(self) -> Shown:
+        rows: list[tuple[str, ...]] = [("how it ended", self.message), ("energy closure", f"{self.energy.closure:.2g}")]
+        parts = tuple(Shown(name, notes=(repr(result),)) for name, result in self.items())
+        return Shown(f"Result: {'success' if self.success else 'failed'}", tuple(rows), parts=parts)
+
+    @property
+    def _first(self) -> Result:
+        return next(iter(self._bearings.values()))
+
+    @property
+    def success(self) -> bool:
+        """Whether the run reached its end."""
+        return self._first.success
+
+    @property
+    def message(self) -> str:
+        """How it ended, in a sentence."""
+        return self._first.message
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """What the integrator did, for all bearings together."""
+        return self._first.stats
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the watch found, with the bearing's name where it concerns one."""
+        return tuple(dict.fromkeys(f"{name}: {text}" for name, result in self.items() for text in result.warnings))
+
+    @property
+    def time(self) -> Array:
+        """Times of the records (s), shape (T,)."""
+        return self._first.time
+
+    @property
+    def shaft_position(self) -> Array:
+        """Displacement of the shaft's centre of mass along its axes x, y, z (m), shape (T, 3)."""
+        seat, axis = self._seats[0], self.shaft_axis
+        return self._first.ring_position - [0.0, 0.0, seat.shift] + seat.mass_offset * (axis - [0.0, 0.0, 1.0])
+
+    @property
+    def shaft_axis(self) -> Array:
+        """Direction of the shaft's axis (1), shape (T, 3)."""
+        turn = self._first.ring_tilt
+        across = np.column_stack([np.tan(turn[:, 1]), -np.tan(turn[:, 0]), np.ones(len(turn))])
+        return across / np.linalg.norm(across, axis=1)[:, None]
+
+    @property
+    def energy(self) -> EnergyAudit:
+        """The audit of all bearings and the shaft together; what passes between them is left out."""
+        terms: dict[str, Array] = {}
+        for result in self._bearings.values():
+            for field in result.fields:
+                if field.group == "energy" and result[field.name].ndim == 1:
+                    terms[field.name] = terms.get(field.name, 0.0) + result[field.name]
+        return energy_audit(terms)
+
+
+@dataclass
+class _Bearing:
+    """A bearing while it runs."""
+
+    name: str
+    seat: Seat
+    layout: Layout
+    """Places of its fields in its part of a row."""
+    first: int
+    """Where its part of a row begins."""
+    doubts: list[str]
+    kept: Kept | ResultWriter
+
+
+class AssemblySimulation:
+    """Bearings on one shaft, integrated together.
+
+    Parameters
+    ----------
+    seats : mapping of str to Seat
+        The bearings by name; the first one is not turned, and its axes are those of the shaft.
+    body : RingBody
+        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it.
+    shaft : ndarray, shape (5,)
+        Where it stands at the start: displacement of its centre of mass (m), rotation about x and y (rad).
+    loads : mapping of str to float or History
+        What acts on it at the first bearing's roller-centre plane, by the names of the core's channels (N, N m).
+    accuracy : str
+        Preset of the tolerances.
+    instruction_set : str
+        Kernel variant; the fastest by default.
+    **options : Any
+        Other fields of `RunOptions`.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not fit together.
+    """
+
+    def __init__(
+        self,
+        seats: Mapping[str, Seat],
+        body: RingBody,
+        shaft: Array,
+        loads: Mapping[str, float | History],
+        *,
+        accuracy: str = "standard",
+        instruction_set: str = "",
+        **options: Any,
+    ) -> None:
+        self.options = RunOptions(accuracy=accuracy, **options)
+        if self.options.checkpoint_every is not None:
+            raise InputError.of(
+                ("run", "checkpoint_every"), self.options.checkpoint_every, "must not be given for an assembly yet"
+            )
+        self.seats = dict(seats)
+        self._seated: Seated = seat_all(list(seats.values()), body, shaft, loads, instruction_set)
+        self._core = self._seated.open(
+            next(iter(seats.values())).scene.start.time, self._seated.vector, self.options.settings()
+        )
+        self._reached = self._core.time
+        self._seen = [self._look_of(number, seat) for number, seat in enumerate(self.seats.values())]
+
+    def __repr__(self) -> str:
+        return f"<AssemblySimulation: {', '.join(self.seats)}; at {self.time:g} s, accuracy {self.options.accuracy!r}>"
+
+    @property
+    def time(self) -> float:
+        """Time that it has reached (s)."""
+        return self._reached
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        """What the integrator did."""
+        return self._core.statistics()
+
+    def state(self, bearing: str) -> dict[str, Array]:
+        """Parts of a bearing's present state by name; those of ``inner_ring`` are the shaft's."""
+        view = self._seated.view(list(self.seats).index(bearing), self._core.state())
+        return {name: view[name] for name in view.names}
+
+    def record(self) -> dict[str, dict[str, Array]]:
+        """Every recorded quantity of each bearing at the end of the integrator's last step."""
+        row, out, at = self._core.observe(self._core.time, self._core.state()), {}, 0
+        for name, model in zip(self.seats, self._seated.models, strict=True):
+            own = row[at : at + model.record_length]
+            out[name] = {
+                field: own[first : first + math.prod(shape)].reshape(shape)
+                for field, first, shape in model.record_layout()
+            }
+            at += model.record_length
+        return out
+
+    def _look_of(self, number: int, seat: Seat) -> Any:
+        """What the watch asks of a simulation, for one bearing."""
+        before = sum(model.record_length for model in self._seated.models[:number])
+        layout = [(name, at + before, shape) for name, at, shape in self._seated.models[number].record_layout()]
+
+        class Seen(SimpleNamespace):
+            @property
+            def statistics(inner) -> dict[str, float]:
+                return self._core.statistics()
+
+            @property
+            def _core(inner) -> _core.Simulation:
+                return self._core
+
+        def opened(model: Any, time: float, vector: Array, settings: dict[str, float | str]) -> _core.Simulation:
+            return self._seated.open(time, vector, settings)
+
+        return Seen(
+            _account=None,
+            _model=SimpleNamespace(record_layout=lambda: layout),
+            _motion=SimpleNamespace(open=opened),
+            options=self.options,
+            scene=seat.scene,
+        )
+
+    def run(
+        self,
+        *,
+        revolutions: float | None = None,
+        duration: float | None = None,
+        save_every: float | None = None,
+        save_groups: Sequence[str] | None = None,
+        output: str | Path | None = None,
+        overwrite: bool = False,
+    ) -> AssemblyResult:
+        """Step on and keep records of every bearing; output times never change the steps.
+
+        Parameters
+        ----------
+        revolutions, duration : float, optional
+            How far to go: in turns of the shaft, or bearing time (s); one of both must be given.
+        save_every : float, optional
+            Time between records (s); by default as `trbdyn.Simulation.run`.
+        save_groups : sequence of str, optional
+            Groups of quantities to keep; all by default.
+        output : path-like, optional
+            Folder for a result file of each bearing, ``<name>.h5``; without it records stay in memory.
+        overwrite : bool
+            Replace files that are there.
+
+        Returns
+        -------
+        AssemblyResult
+            Ended by Ctrl-C it has ``success`` False and says so in ``message``.
+
+        Raises
+        ------
+        InputError
+            If an argument cannot be used.
+        StepError
+            If a step failed; its ``result`` holds everything up to the last good time.
+        FileError
+            If a file cannot be written, or is there already.
+        """
+        speed = next(iter(self.seats.values())).scene.speed_rpm
+        options = self.options.replace(revolutions=revolutions, duration=duration)
+        end = options.end_time(speed, self._reached)
+        options = options.replace(**keeping.kept_by_default(end - self._reached, speed, save_every, save_groups))  # type: ignore[arg-type]
+        assert options.save_every is not None
+        times = output_times(self._reached, end, options.save_every)
+        bearings = self._open_bearings(options, times, output, overwrite=overwrite)
+        return _Run(self, options, times, bearings).go()
+
+    def _open_bearings(
+        self, options: RunOptions, times: Array, output: str | Path | None, *, overwrite: bool
+    ) -> list[_Bearing]:
+        folder, out, at = None if output is None else Path(output), [], 0
+        with_peaks = peak_table.GROUP in options.save_groups
+        fields = field_table.table() + (peak_table.table() if with_peaks else ())
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+        for (name, seat), model in zip(self.seats.items(), self._seated.models, strict=True):
+            layout, length = list(model.record_layout()), model.record_length
+            if with_peaks:
+                layout += [(field, first + length, shape) for field, first, shape in model.peak_layout()]
+                length += model.peak_length
+            kept: Kept | ResultWriter
+            if folder is None:
+                kept = Kept(layout, field_table.select(fields, options.save_groups))
+            else:
+                kept = ResultWriter(
+                    folder / f"{name}.h5",
+                    scene=seat.at(np.zeros(5)).scene,
+                    layout=layout,
+                    fields=fields,
+                    groups=options.save_groups,
+                    meta=_meta(self, options, name),
+                    geometry=asdict(seat.scene.bearing.geometry),
+                    expected=times.size,
+                    overwrite=overwrite,
+                )
+            out.append(_Bearing(name, seat, layout, at, [], kept))
+            at += length
+        return out
+
+
+def _meta(sim: AssemblySimulation, options: RunOptions, name: str) -> dict[str, Any]:
+    settings = {key: value for key, value in options.to_dict().items() if key != "save_groups"}
+    return {
+        "instruction_set": sim._seated.models[0].instruction_set,
+        "sundials_version": _core.sundials_version(),
+        "core_version": _core.version(),
+        "settings": settings,
+        "kept": keeping.said(options.save_every or 0.0, options.save_groups),
+        "notes": [],
+        "accuracy": WITHOUT_BIAS,
+        "assembly": {"bearing": name, "bearings": list(sim.seats)},
+    }
+
+
+class _Run:
+    """One call of `AssemblySimulation.run`."""
+
+    def __init__(self, sim: AssemblySimulation, options: RunOptions, times: Array, bearings: list[_Bearing]) -> None:
+        self.sim, self.options, self.times, self.bearings = sim, options, times, bearings
+        self.done, self.spent, self.began = 0, 0.0, clock.perf_counter()
+
+    def go(self) -> AssemblyResult:
+        core = self.sim._core
+        if peak_table.GROUP in self.options.save_groups:
+            core.begin_peaks(float(self.times[0]))
+        try:
+            with interrupts() as interrupted:
+                message = self._loop(interrupted)
+        except _core.CoreStepError as error:
+            raise StepError(str(error), time=core.time, result=self._finish(False, str(error))) from None
+        return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
+
+    def _loop(self, interrupted: list[int]) -> str | None:
+        """Step until all records are filled; gives the reason if the run ended before, else None."""
+        sim, core, beside = self.sim, self.sim._core, has_a_spare_core()
+        going_on = self.options.when_wrong == "go_on"
+        watches = [
+            Watch(seen, float(self.times[-1]), bearing.doubts, going_on=going_on, of=bearing.name)
+            for seen, bearing in zip(sim._seen, self.bearings, strict=True)
+        ]
+        while self.done < self.times.size:
+            chunk = self.times[self.done : self.done + CHUNK_RECORDS]
+            records = np.empty((chunk.size, core.row_length))
+            before = clock.perf_counter()
+            try:
+                rows, _ = core.run(chunk, records, CHUNK_STEPS, math.inf, beside)
+            except _core.CoreStepError as error:
+                self._keep(records[: getattr(error, "rows", 0)])
+                raise
+            finally:
+                self.spent += clock.perf_counter() - before
+            self._keep(records[:rows])
+            doubts = [watch.look(final=self.done >= self.times.size) for watch in watches]
+            doubts += [self._gone(bearing, records[:rows]) for bearing in self.bearings]
+            if interrupted:
+                return f"stopped by the user at {core.time:.6g} s"
+            if (doubt := next((text for text in doubts if text is not None), None)) is not None:
+                return doubt
+        return None
+
+    def _gone(self, bearing: _Bearing, rows: Array) -> str | None:
+        """A ring that nothing holds any more leaves its bearing: what follows means nothing."""
+        place = next(at for name, at, _ in bearing.layout if name == "ring_position") + bearing.first
+        moved = float(np.abs(rows[:, place : place + 3]).max(initial=0.0))
+        if not moved > RING_GONE * bearing.seat.scene.bearing.roller.diameter:
+            return None
+        text = f"{bearing.name}: the ring stands {1e3 * moved:.3g} mm from its place: nothing holds the shaft there"
+        bearing.doubts.append(text)
+        warnings.warn(text, RunWarning, stacklevel=5)
+        return f"ended: {text}"
+
+    def _keep(self, records: Array) -> None:
+        if not len(records):
+            return
+        self.done += len(records)
+        self.sim._reached = float(self.times[self.done - 1])
+        for number, bearing in enumerate(self.bearings):
+            following = self.bearings[number + 1 : number + 2]
+            end = following[0].first if following else records.shape[1]
+            bearing.kept.append(np.ascontiguousarray(records[:, bearing.first : end]))
+
+    def _finish(self, success: bool, message: str) -> AssemblyResult:
+        sim, core = self.sim, self.sim._core
+        if not success:
+            sim._reached = core.time
+        whole, at, results = core.whole_peaks(sim._reached), 0, {}
+        core.end_peaks()
+        turned = abs(turns(self.bearings[0].seat.scene.speed_rpm, float(self.times[0]), sim._reached))
+        length = sim._reached - float(self.times[0])
+        stats: dict[str, Any] = {
+            **sim.statistics,
+            "wall_s": clock.perf_counter() - self.began,
+            "stepping_s": self.spent,
+            "bearing_time_s": length,
+            "revolutions": turned,
+            "wall_s_per_revolution": self.spent / turned if turned > 0.0 else math.nan,
+            "real_time_factor": length / self.spent if self.spent > 0.0 else math.nan,
+            "integrator": self.options.integrator,
+            "instruction_set": sim._seated.models[0].instruction_set,
+        }
+        for bearing, model in zip(self.bearings, sim._seated.models, strict=True):
+            peaks = peak_table.from_row(whole[at : at + model.peak_length], model.peak_layout()) if whole.size else {}
+            at += model.peak_length if whole.size else 0
+            how: dict[str, Any] = {
+                "peaks": peaks,
+                "success": success,
+                "message": message,
+                "stats": stats,
+                "counters": core.counters(),
+                "warnings": bearing.doubts,
+                "final_time": sim._reached,
+                "final_state": None,
+            }
+            results[bearing.name] = self._result(bearing, how)
+        return AssemblyResult(results, [bearing.seat for bearing in self.bearings])
+
+    def _result(self, bearing: _Bearing, how: dict[str, Any]) -> Result:
+        if isinstance(bearing.kept, ResultWriter):
+            bearing.kept.finish(**how)
+            return load(bearing.kept.path)
+        scene = bearing.seat.at(np.zeros(5)).scene
+        how |= {"warnings": tuple(bearing.doubts), "geometry": asdict(scene.bearing.geometry)}
+        info = RunInfo(scene=scene.to_dict(), meta=_meta(self.sim, self.options, bearing.name), **how)
+        return Result(bearing.kept.source(), info, scene)

@@ -1,0 +1,217 @@
+"""Bearings that sit on one shaft: where their rings stand, and what the core takes of them.
+
+The shaft has axes of its own (docs/theory/motion.md#bearings-on-one-shaft): z along it, x and y across. A bearing whose rollers'
+large ends point along the shaft's z has the same axes. One that sits the other way round has axes that are turned by half a turn about x: its z, along which its large ends point,
+is against that of the shaft, its speed and its y have the other sign. Each bearing is described by a scene of its own, in its own
+axes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn import _core
+from trbdyn.errors import InputError
+from trbdyn.model.flatten import (
+    Entry,
+    block_of,
+    diameter_deviation,
+    face_rows,
+    loads_period,
+    motion_table,
+    named_entries,
+    scene_entries,
+)
+from trbdyn.model.motion import History
+from trbdyn.model.ring_body import RingBody
+from trbdyn.model.scene import Scene
+from trbdyn.statics.core_model import build_model
+from trbdyn.statics.equilibrium import Equilibrium
+from trbdyn.statics.free_ring import put_axis
+from trbdyn.statics.ring_motion import RingMotion, ring_motion
+from trbdyn.statics.start import start_state
+from trbdyn.statics.state_view import StateView
+
+Array = NDArray[np.float64]
+
+_ALONG = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A bearing on a shaft.
+
+    Attributes
+    ----------
+    scene : Scene
+        The bearing, its oil, effects and start, in its own axes; its ring is held. Its displacement and misalignment are where
+        the ring stands at the start, see `Seat.at`.
+    mass_offset : float
+        Axial position of the shaft's centre of mass from the bearing's roller-centre plane, along the bearing's own z (m).
+    turned : bool
+        Whether the bearing sits on the shaft the other way round.
+    shift : float
+        Axial displacement of the ring, along the bearing's own z, where the shaft stands at zero (m): negative is preload,
+        positive end play.
+    """
+
+    scene: Scene
+    mass_offset: float
+    turned: bool = False
+    shift: float = 0.0
+
+    def axes(self, vector: Array) -> Array:
+        """A vector of the shaft's axes in those of the bearing, or back."""
+        return vector * np.array([1.0, -1.0, -1.0]) if self.turned else vector
+
+    def ring_place(self, shaft: Array) -> Array:
+        """Where the ring stands, in the bearing's axes.
+
+        Parameters
+        ----------
+        shaft : ndarray, shape (5,)
+            Displacement of the shaft's centre of mass (m) and rotation about x and y (rad), in the shaft's axes.
+
+        Returns
+        -------
+        ndarray, shape (5,)
+            The same of the ring at its roller-centre plane.
+        """
+        axis = self.axes(_axis_of(shaft[3:]))
+        if self.turned:
+            axis = -axis
+        place = self.axes(shaft[:3]) + self.shift * _ALONG - self.mass_offset * (axis - _ALONG)
+        return np.concatenate([place, _turn_of(axis)])
+
+    def at(self, shaft: Array) -> Seat:
+        """The seat with its ring where the shaft puts it."""
+        x, y, z, turn_x, turn_y = (float(value) for value in self.ring_place(shaft))
+        values = {"displacement": (x, y, z), "misalignment_x": turn_x, "misalignment_y": turn_y}
+        scene = self.scene.replace(
+            ring="held", ring_body=None, axial_load=0.0, radial_load=0.0, unloaded="refused", **values
+        )
+        return Seat(scene, self.mass_offset, self.turned, self.shift)
+
+
+def _axis_of(turn: Array) -> Array:
+    angle = math.hypot(*turn)
+    sinc = float(np.sinc(angle / math.pi))
+    return np.array([sinc * turn[1], -sinc * turn[0], math.cos(angle)])
+
+
+def _turn_of(axis: Array) -> Array:
+    angle = math.atan2(math.hypot(axis[0], axis[1]), axis[2])
+    sinc = float(np.sinc(angle / math.pi))
+    return np.array([-axis[1] / sinc, axis[0] / sinc])
+
+
+@dataclass(frozen=True)
+class Seated:
+    """What the core takes of bearings on one shaft.
+
+    Attributes
+    ----------
+    models : tuple of _core.Model
+        A model of each bearing; the first has the shaft.
+    motions : tuple of RingMotion
+        What is prescribed for each.
+    equilibria : tuple of Equilibrium
+        Rollers and ring of each at the start.
+    layouts : list
+        Where the parts of each bearing's state lie in the whole, as of `_core.state_layouts`.
+    vector : ndarray
+        The state at the start.
+    """
+
+    models: tuple[_core.Model, ...]
+    motions: tuple[RingMotion, ...]
+    equilibria: tuple[Equilibrium, ...]
+    layouts: list[list[tuple[str, int, tuple[int, ...]]]]
+    vector: Array
+
+    def open(self, time: float, vector: Array, settings: dict[str, float | str]) -> _core.Simulation:
+        """The core's simulation from a time (s) and state on."""
+        return _core.Simulation(
+            self.models, tuple(motion.prescribed for motion in self.motions), time, vector, settings
+        )
+
+    def view(self, bearing: int, vector: Array) -> StateView:
+        """A bearing's part of a state by name."""
+        return StateView(self.layouts[bearing], vector)
+
+
+def seat_all(
+    seats: Sequence[Seat], body: RingBody, shaft: Array, loads: Mapping[str, float | History], instruction_set: str = ""
+) -> Seated:
+    """Put bearings on a shaft that stands still at a place.
+
+    Parameters
+    ----------
+    seats : sequence of Seat
+        The bearings. The first one must not be turned: its axes are those of the shaft.
+    body : RingBody
+        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it. Its `mass_offset`
+        is that of the first seat, whatever is given.
+    shaft : ndarray, shape (5,)
+        Displacement of its centre of mass (m), and rotation about x and y (rad), at the start.
+    loads : mapping of str to float or History
+        What acts on the shaft at the first bearing's roller-centre plane, by the names of the core's channels: ``"force_x"``,
+        ``"moment_y"`` and so on (N, N m); what is not named is zero. With a ``"torque"`` (N m) the shaft turns under it, in place
+        of the prescribed speed.
+    instruction_set : str
+        Kernel variant; the fastest by default.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not fit together.
+    """
+    if seats[0].turned:
+        raise InputError.of(("seats", 0, "turned"), True, "must be False: the first bearing has the shaft's axes")
+    placed = [seat.at(shaft) for seat in seats]
+    held = [build_model(seat.scene, instruction_set) for seat in placed]
+    found = [ring_motion(model, seat.scene) for model, seat in zip(held, placed, strict=True)]
+    motions = [motion for motion, _ in found]
+    motions[0] = _with_loads(motions[0], placed[0].scene, loads)
+    free = 2.0 if "torque" in loads else 1.0
+    models = tuple(_model(seat, body, number, free, instruction_set) for number, seat in enumerate(placed))
+    size, layouts = _core.state_layouts(models)
+    vector = np.zeros(size)
+    for model, seat, (motion, equilibrium), layout in zip(held, placed, found, layouts, strict=True):
+        own = StateView(model.state_layout(), start_state(model, seat.scene, motion, equilibrium))
+        whole = StateView(layout, vector)
+        for name in own.names:
+            if name != "quadratures":
+                whole[name] = own[name]
+    put_axis(StateView(layouts[0], vector), shaft[:3], _axis_of(shaft[3:]), 0.0)
+    return Seated(models, tuple(motions), tuple(equilibrium for _, equilibrium in found), layouts, vector)
+
+
+def _with_loads(motion: RingMotion, scene: Scene, loads: Mapping[str, float | History]) -> RingMotion:
+    table, period = motion_table(scene, [0.0] * 5, loads=loads), loads_period(scene, loads)
+    return RingMotion(
+        table, (period or 0.0) if len(table) > 1 else 0.0, motion.start, motion.angle_time, motion.shaft_angle
+    )
+
+
+def _model(seat: Seat, body: RingBody, number: int, free: float, instruction_set: str) -> _core.Model:
+    """The core's model of a bearing on the shaft."""
+    own = {
+        "ring_free": free,
+        "ring_offset": seat.mass_offset,
+        "ring_unbalance_angle": math.radians(body.unbalance_angle_deg),
+        "ring_carried": float(number > 0),
+        "ring_turned": float(seat.turned),
+        "ring_shift": seat.shift,
+    }
+    entries = (
+        scene_entries(seat.scene)
+        | named_entries(body)
+        | {name: Entry(("shaft",), value) for name, value in own.items()}
+    )
+    return _core.Model(block_of(entries), diameter_deviation(seat.scene), face_rows(seat.scene), instruction_set)
