@@ -1,9 +1,9 @@
 """Bearings that sit on one shaft: where their rings stand, and what the core takes of them.
 
 The shaft has axes of its own (docs/theory/motion.md#bearings-on-one-shaft): z along it, x and y across. A bearing whose rollers'
-large ends point along the shaft's z has the same axes. One that sits the other way round has axes that are turned by half a turn about x: its z, along which its large ends point,
-is against that of the shaft, its speed and its y have the other sign. Each bearing is described by a scene of its own, in its own
-axes.
+large ends point along the shaft's z has the same axes. One that sits the other way round has axes that are turned by half a turn
+about x: its z, along which its large ends point, is against that of the shaft, its speed and its y have the other sign. Each
+bearing is described by a scene of its own, in its own axes.
 """
 
 from __future__ import annotations
