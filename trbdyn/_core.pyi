@@ -83,6 +83,7 @@ class Model:
         rollers: Array | None = None,
         loads: bool = False,
         stiffness: bool = False,
+        outer_speed: float = 0.0,
     ) -> dict[str, Any]:
         """Static equilibrium at speed. load (5,): force (3) and moment about x, y (2) on the ring; fixed (5,): 1 where
         `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers; rollers (4 Z,): with `displacement` a
@@ -104,15 +105,15 @@ class Simulation:
     def __init__(
         self,
         models: tuple[Model, ...],
-        motions: tuple[Array | tuple[Array, float, float, float], ...],
+        motions: tuple[Array | tuple[Array, float, float, float, float], ...],
         time: float,
         state: Array,
         settings: dict[str, float | str],
     ) -> None:
         """Bearings that are simulated together, and for each of them a motion (K, C): knot time, then value and slope of each
-        channel. It may come with three numbers: after the last knot the last period repeats (0: everything stays); a time, and
-        the shaft's angle then (without them it is zero at the first knot). settings: integrator ('bdf', 'erk') and those of
-        setting_table()."""
+        channel. It may come with four numbers: after the last knot the last period repeats (0: everything stays); a time, and
+        the angles of shaft and outer ring then (without them they are zero at the first knot). settings: integrator ('bdf',
+        'erk') and those of setting_table()."""
     time: float
     row_length: int
     def run(

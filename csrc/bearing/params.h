@@ -58,6 +58,7 @@
   X(land_clearance,           "m",      1e-7,   0.1,    "radial clearance between cage and land") \
   X(land_contact_film,        "m",      1e-9,   1e-2,   "film height below which cage and land touch") \
   X(land_fill,                "1",      0,      1,      "share of the guiding surface's width that is filled with oil") \
+  X(outer_turns,              "choice",      0,      1,      "1: the outer ring turns at a prescribed speed") \
   /* inner ring, where it is free to move */ \
   X(ring_free,                "choice",      0,      2,      "inner ring: 0 as prescribed, 1 free at a prescribed speed, 2 free, turned by a torque") \
   X(ring_mass,                "kg",     0,      1e5,    "mass of the inner ring and what turns with it") \
@@ -183,6 +184,7 @@ enum { TRB_N_FACE_COLUMNS = (int)(sizeof(trb_face) / sizeof(double)) };
   X(gravity_x,      "m/s2",  "acceleration of gravity along x") \
   X(gravity_y,      "m/s2",  "acceleration of gravity along y") \
   X(gravity_z,      "m/s2",  "acceleration of gravity along z") \
+  X(outer_speed,    "rad/s", "outer ring, speed of rotation about the bearing's axis") \
   TRB_LOAD_CHANNELS(X)
 
 enum {

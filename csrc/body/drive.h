@@ -19,7 +19,10 @@ typedef struct trb_drive {
   double        time;          /* s */
   double        shaft_angle;   /* rad */
   double        shaft_speed;   /* rad/s */
-  double        rolling_speed; /* of the shaft, to which the rollers' coordinates count as pure rolling, rad/s */
+  double        shaft_rate;    /* rad/s2 */
+  double        outer_speed;   /* of the outer ring, rad/s */
+  double        outer_rate;    /* rad/s2 */
+  double        rolling_speed; /* of the shaft relative to the outer ring: rollers' coordinates count from pure rolling at it, rad/s */
   double        rolling_rate;  /* its rate, rad/s2 */
   double        frame_angle;   /* angle of R: that of the kinematic orbit, rad */
   double        frame_speed;   /* rad/s */

@@ -119,7 +119,7 @@ static trb_vec3 unbalance_of(const trb_model *m, const trb_drive *drive, const d
   if (p->ring_unbalance <= 0.0) return trb_v(0, 0, 0);
   const double sense = sense_of(m), phi = sense * drive->shaft_angle + y[TRB_FREE_RING_psi] + p->ring_unbalance_angle, c = cos(phi),
                s = sin(phi);
-  const double speed = sense * drive->shaft_speed + y[TRB_FREE_RING_omega_a], rate = sense * drive->rolling_rate;
+  const double speed = sense * drive->shaft_speed + y[TRB_FREE_RING_omega_a], rate = sense * drive->shaft_rate;
   return trb_scale(p->ring_unbalance, trb_v(speed * speed * c + rate * s, speed * speed * s - rate * c, 0.0));
 }
 
@@ -156,7 +156,7 @@ static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *
   rates[TRB_FREE_RING_v_y] = per_mass * on.force.y + drive->gravity.y;
   if (!keeps_speed(m)) {
     rates[TRB_FREE_RING_psi] = y[TRB_FREE_RING_omega_a] - turn.frame_a;
-    rates[TRB_FREE_RING_omega_a] = turn.spin.z + drive->torque / p->ring_inertia_axial - drive->rolling_rate;
+    rates[TRB_FREE_RING_omega_a] = turn.spin.z + drive->torque / p->ring_inertia_axial - drive->shaft_rate;
   }
   if (p->planar > 0.0) return;
   rates[TRB_FREE_RING_z] = y[TRB_FREE_RING_v_z];
@@ -186,7 +186,7 @@ static trb_drive_power work_of(const trb_model *m, const trb_body *body, const t
 {
   const trb_frame f = frame_of(y);
   const loading   on = loading_of(m, drive, &f, y, load);
-  const double    kept = m->params.ring_inertia_axial * drive->rolling_rate - trb_dot(on.moment, f.a);
+  const double    kept = m->params.ring_inertia_axial * drive->shaft_rate - trb_dot(on.moment, f.a);
   const double    torque = keeps_speed(m) ? kept : drive->torque;
   trb_ring_pose   ring;
   ring_of(m, body, drive, y, &ring);

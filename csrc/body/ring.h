@@ -5,6 +5,6 @@
 
 #include "body/body.h"
 
-extern const trb_body_kind trb_ring_at_rest, trb_ring_prescribed, trb_fluid_at_rest;
+extern const trb_body_kind trb_ring_at_rest, trb_ring_turning, trb_ring_prescribed, trb_fluid_at_rest;
 
 #endif

@@ -46,10 +46,11 @@ typedef struct trb_rolling {
   double omega_a; /* rad/s */
 } trb_rolling;
 
-static inline trb_rolling trb_pure_rolling(const trb_model *m, double speed)
+/* speed: of the inner ring relative to the outer one; carried: speed of the outer ring, with which all turns, rad/s. */
+static inline trb_rolling trb_pure_rolling(const trb_model *m, double speed, double carried)
 {
   const trb_geometry *g = &m->geometry;
-  const double        orbit = g->cage_speed_ratio * speed;
+  const double        orbit = g->cage_speed_ratio * speed + carried;
   return (trb_rolling){orbit * g->roller_centre_radius, -orbit * m->axis_sine, orbit * m->axis_cosine - g->roller_spin_ratio * speed};
 }
 

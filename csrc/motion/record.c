@@ -226,7 +226,7 @@ static void put_ring(writer *w)
     outer += d->hub.on[TRB_BODY_OUTER_RING].moment.z;
     for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += d->hub.torque[k];
   }
-  const double sign = d->drive.shaft_speed < 0.0 ? -1.0 : 1.0;
+  const double sign = d->drive.rolling_speed < 0.0 ? -1.0 : 1.0;
   put_ring_place(w);
   put3(&PUT(ring_force, 0), force);
   put3(&PUT(ring_moment, 0), moment);

@@ -27,6 +27,15 @@ static void find_joints(trb_motion *m)
   for (int i = m->n - 2; i >= 0; i--) m->next[i] = m->joint[i + 1] == i + 1 ? i + 1 : m->next[i + 1];
 }
 
+/* Channels whose integrals are kept. */
+enum { N_TURNING = 2 };
+static const int turning[N_TURNING] = {TRB_CHANNEL_shaft_speed, TRB_CHANNEL_outer_speed};
+
+static double *angle_at(const trb_motion *motion, int knot) { return motion->angle + (size_t)knot * N_TURNING; }
+
+/* Angle within the part that repeats. */
+static double turn_of_tail(const trb_motion *motion, int k) { return angle_at(motion, motion->n - 1)[k] - angle_at(motion, motion->tail)[k]; }
+
 trb_status trb_motion_create(const double *table, int n, trb_motion **motion, trb_message *message)
 {
   *motion = NULL;
@@ -43,7 +52,7 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
   m->n = n;
   m->tail = n - 1;
   m->table = malloc((size_t)n * TRB_MOTION_COLUMNS * sizeof(double));
-  m->angle = calloc((size_t)n, sizeof(double));
+  m->angle = calloc((size_t)n * N_TURNING, sizeof(double));
   m->joint = calloc((size_t)n, sizeof(int));
   m->next = calloc((size_t)n, sizeof(int));
   if (m->table == NULL || m->angle == NULL || m->joint == NULL || m->next == NULL) {
@@ -53,8 +62,10 @@ trb_status trb_motion_create(const double *table, int n, trb_motion **motion, tr
   memcpy(m->table, table, (size_t)n * TRB_MOTION_COLUMNS * sizeof(double));
   for (int i = 1; i < n; i++) {
     const double *a = m->table + (size_t)(i - 1) * TRB_MOTION_COLUMNS, *b = a + TRB_MOTION_COLUMNS, h = b[0] - a[0];
-    const int     c = 1 + 2 * TRB_CHANNEL_shaft_speed;
-    m->angle[i] = m->angle[i - 1] + h * (0.5 * (a[c] + b[c]) + h * (a[c + 1] - b[c + 1]) / 12.0);
+    for (int k = 0; k < N_TURNING; k++) {
+      const int c = 1 + 2 * turning[k];
+      angle_at(m, i)[k] = angle_at(m, i - 1)[k] + h * (0.5 * (a[c] + b[c]) + h * (a[c + 1] - b[c + 1]) / 12.0);
+    }
   }
   for (int i = 1; i < n; i++)
     for (int c = 1; c < 1 + 2 * TRB_FIRST_LOAD_CHANNEL; c++)
@@ -218,8 +229,8 @@ int trb_motion_changes(const trb_motion *motion, double from, double to)
 
 int trb_motion_under_way(const trb_motion *motion, double time) { return trb_motion_changes(motion, time, time); }
 
-/* Channels at a time, and the angle that the shaft has turned by. */
-static double channels_at(const trb_motion *motion, double time, hermite c[TRB_N_CHANNELS])
+/* Channels at a time, and the angles that shaft and outer ring have turned by. */
+static void channels_at(const trb_motion *motion, double time, hermite c[TRB_N_CHANNELS], double angle[N_TURNING])
 {
   double       turns;
   const int    last = motion->n - 1;
@@ -228,36 +239,46 @@ static double channels_at(const trb_motion *motion, double time, hermite c[TRB_N
     const int     late = inside >= last_time(motion);
     const double *row = row_of(motion, late ? last : 0);
     for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = (hermite){row[1 + 2 * i], inside == row[0] ? row[2 + 2 * i] : 0.0};
-    return motion->angle[late ? last : 0] + row[1 + 2 * TRB_CHANNEL_shaft_speed] * (inside - row[0]) +
-           turns * (motion->angle[last] - motion->angle[motion->tail]);
+    for (int k = 0; k < N_TURNING; k++)
+      angle[k] = angle_at(motion, late ? last : 0)[k] + row[1 + 2 * turning[k]] * (inside - row[0]) + turns * turn_of_tail(motion, k);
+    return;
   }
   const int     low = interval_of(motion, inside);
   const double *a = row_of(motion, low);
   const double  h = a[TRB_MOTION_COLUMNS] - a[0], s = (inside - a[0]) / h;
   for (int i = 0; i < TRB_N_CHANNELS; i++) c[i] = channel_at(a, i, s, h);
-  return motion->angle[low] + channel_integral(a, TRB_CHANNEL_shaft_speed, s, h) +
-         turns * (motion->angle[last] - motion->angle[motion->tail]);
+  for (int k = 0; k < N_TURNING; k++)
+    angle[k] = angle_at(motion, low)[k] + channel_integral(a, turning[k], s, h) + turns * turn_of_tail(motion, k);
 }
 
-void trb_motion_set_angle(trb_motion *motion, double time, double angle)
+void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double outer)
 {
+  const double wanted[N_TURNING] = {shaft, outer};
   hermite      c[TRB_N_CHANNELS];
-  const double shift = angle - channels_at(motion, time, c);
-  for (int i = 0; i < motion->n; i++) motion->angle[i] += shift;
+  double       angle[N_TURNING];
+  channels_at(motion, time, c, angle);
+  for (int i = 0; i < motion->n; i++)
+    for (int k = 0; k < N_TURNING; k++) angle_at(motion, i)[k] += wanted[k] - angle[k];
 }
 
 void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, trb_drive *drive)
 {
   hermite c[TRB_N_CHANNELS];
-  drive->shaft_angle = channels_at(motion, time, c);
-  const double ratio = m->geometry.cage_speed_ratio;
+  double  angle[N_TURNING];
+  channels_at(motion, time, c, angle);
+  const double  ratio = m->geometry.cage_speed_ratio;
+  const hermite outer = c[TRB_CHANNEL_outer_speed];
+  drive->shaft_angle = angle[0];
   drive->time = time;
   drive->shaft_speed = c[TRB_CHANNEL_shaft_speed].value;
-  drive->rolling_speed = c[TRB_CHANNEL_shaft_speed].value;
-  drive->rolling_rate = c[TRB_CHANNEL_shaft_speed].rate;
-  drive->frame_angle = ratio * drive->shaft_angle;
-  drive->frame_speed = ratio * drive->rolling_speed;
-  drive->frame_rate = ratio * drive->rolling_rate;
+  drive->shaft_rate = c[TRB_CHANNEL_shaft_speed].rate;
+  drive->outer_speed = outer.value;
+  drive->outer_rate = outer.rate;
+  drive->rolling_speed = drive->shaft_speed - outer.value;
+  drive->rolling_rate = drive->shaft_rate - outer.rate;
+  drive->frame_angle = ratio * (angle[0] - angle[1]) + angle[1];
+  drive->frame_speed = ratio * drive->rolling_speed + outer.value;
+  drive->frame_rate = ratio * drive->rolling_rate + outer.rate;
   drive->cosine = cos(drive->frame_angle);
   drive->sine = sin(drive->frame_angle);
   drive->load.force = trb_v(c[TRB_CHANNEL_force_x].value, c[TRB_CHANNEL_force_y].value, c[TRB_CHANNEL_force_z].value);

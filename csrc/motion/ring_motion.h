@@ -1,7 +1,8 @@
 /* What is prescribed in time: the inner ring's displacement, misalignment and speed, gravity, and loads on a free ring (docs/theory/motion.md#the-inner-ring).
  * Cubic Hermite between knots, so that velocities are continuous. Steps end at joints: the ends of the parts that a history consists of.
  * A knot that only samples a smooth curve, as those of a ring's path, is none. Before the first knot everything is constant; after the last knot too,
- * or the last part of the table repeats. The shaft's angle is the exact integral of its speed. */
+ * or the last part of the table repeats. The angles of shaft and outer
+ * ring are the exact integrals of their speeds. */
 #ifndef TRB_MOTION_RING_MOTION_H
 #define TRB_MOTION_RING_MOTION_H
 
@@ -13,7 +14,7 @@ enum { TRB_MOTION_COLUMNS = 1 + 2 * TRB_N_CHANNELS + 1, TRB_MOTION_SMOOTH = TRB_
 typedef struct trb_motion {
   int     n;     /* knots */
   double *table; /* n rows: time, then value and slope of each channel, then 1 where the curves go on smoothly at the knot, or 0 */
-  double *angle; /* shaft angle at each knot, rad */
+  double *angle; /* for each knot, the angles of shaft and outer ring, rad */
   int    *joint; /* for each knot, the last knot at or before it at which a history has a part of its own: 0, or one that is not smooth */
   int    *next;  /* and the first one after it; n: none */
   int     tail;  /* knot at which the part that repeats begins; n - 1: nothing repeats */
@@ -28,8 +29,8 @@ void       trb_motion_free(trb_motion *motion);
 /* After the last knot the motion repeats what lies between the knot `period` before the last and the last one; both must have the same
  * values and slopes. */
 trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *message);
-/* Sets where the shaft's angle is counted from: it is `angle` at `time`. Without it the angle is zero at the first knot. */
-void trb_motion_set_angle(trb_motion *motion, double time, double angle);
+/* Sets where angles are counted from: those of shaft and outer ring at a time. Without it they are zero at the first knot. */
+void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double outer);
 
 /* Whether speed, a prescribed ring's place or gravity change at a time: all that forces depend on but the state. */
 int trb_motion_under_way(const trb_motion *motion, double time);

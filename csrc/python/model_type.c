@@ -223,7 +223,7 @@ static PyObject *columns(const double *values, int rows, int width)
 
 static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 {
-  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", "stiffness", NULL};
+  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", "stiffness", "outer_speed", NULL};
   const trb_model *m = ((model_object *)self)->model;
   PyObject        *load, *fixed, *displacement, *angles, *rollers = Py_None;
   trb_equilibrium  e = {0};
@@ -231,8 +231,8 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
   double           held[TRB_RING_FREEDOMS];
   int              with_loads = 0, with_stiffness = 0;
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS] = {0};
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Opp", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
-                                   &with_loads, &with_stiffness))
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Oppd", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
+                                   &with_loads, &with_stiffness, &e.outer_speed))
     return NULL;
   if (read_doubles(load, "load", TRB_RING_FREEDOMS, e.load) != 0 || read_doubles(fixed, "fixed", TRB_RING_FREEDOMS, held) != 0 ||
       read_doubles(displacement, "displacement", TRB_RING_FREEDOMS, e.displacement) != 0)

@@ -43,21 +43,22 @@ PyArrayObject *trb_python_state_array(const simulation_object *self, PyObject *o
   return state;
 }
 
-/* What is prescribed for a bearing: a table, or a table with the period of its last part and with a time and the shaft's angle then. */
+/* What is prescribed for a bearing: a table, or a table with the period of its last part and with a time and the angles of shaft and outer
+ * ring then. */
 static int read_motion(PyObject *object, trb_motion **to)
 {
   PyObject   *table = object;
-  double      period = 0.0, angle_time = NAN, angle = 0.0;
+  double      period = 0.0, angle_time = NAN, shaft = 0.0, outer = 0.0;
   trb_message message = {TRB_OK, ""};
   trb_status  status = TRB_OK;
-  if (PyTuple_Check(object) && !PyArg_ParseTuple(object, "Oddd", &table, &period, &angle_time, &angle)) return -1;
+  if (PyTuple_Check(object) && !PyArg_ParseTuple(object, "Odddd", &table, &period, &angle_time, &shaft, &outer)) return -1;
   PyArrayObject *motion = trb_array(table, 2, "motion");
   if (motion == NULL) return -1;
   if (PyArray_DIM(motion, 1) != TRB_MOTION_COLUMNS)
     status = trb_fail(&message, TRB_ERR_INPUT, "motion: %d columns needed, %d given", TRB_MOTION_COLUMNS, (int)PyArray_DIM(motion, 1));
   else status = trb_motion_create(PyArray_DATA(motion), (int)PyArray_DIM(motion, 0), to, &message);
   if (status == TRB_OK && period != 0.0) status = trb_motion_repeat(*to, period, &message);
-  if (status == TRB_OK && isfinite(angle_time)) trb_motion_set_angle(*to, angle_time, angle);
+  if (status == TRB_OK && isfinite(angle_time)) trb_motion_set_angles(*to, angle_time, shaft, outer);
   Py_DECREF((PyObject *)motion);
   if (status == TRB_OK) return 0;
   (void)trb_raise(status, &message);

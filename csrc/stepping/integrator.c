@@ -13,11 +13,11 @@ const trb_setting_info trb_setting_table[TRB_N_SETTINGS] = {
 const trb_integrator_kind *const trb_integrator_kinds[] = {&trb_integrator_bdf, &trb_integrator_erk};
 const int                        trb_n_integrator_kinds = (int)(sizeof trb_integrator_kinds / sizeof trb_integrator_kinds[0]);
 
-/* Share of a velocity's absolute tolerance that holds at a speed of the shaft: no more than a share of the rolling speed, so that slow
+/* Share of a velocity's absolute tolerance that holds at a speed of the shaft relative to the outer ring: no more than a share of the rolling speed, so that slow
  * rotation, whose slip is a small share of a small speed, is followed as exactly as fast rotation. */
-static double speed_share(const trb_integrator *it, const trb_model *m, double shaft_speed)
+static double speed_share(const trb_integrator *it, const trb_model *m, double speed)
 {
-  const double rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * shaft_speed);
+  const double rolling = 0.5 * m->params.roller_diameter * fabs(m->geometry.roller_spin_ratio * speed);
   return trb_min(1.0, it->settings.slow_share * it->settings.rtol * trb_max(rolling, m->params.speed_floor) / it->settings.atol_velocity);
 }
 
@@ -42,7 +42,7 @@ void trb_integrator_set_tolerances(trb_integrator *it)
     const trb_system *system = &it->assembly->members[k];
     trb_drive         drive;
     trb_motion_at(it->members[k].motion, system->model, it->time, &drive);
-    const double share = speed_share(it, system->model, trb_system_shaft_speed(system, &drive, it->y));
+    const double share = speed_share(it, system->model, trb_system_shaft_speed(system, &drive, it->y) - drive.outer_speed);
     set_entries(it, system, trb_state_roller(system, 0), system->model->n_rollers * TRB_ROLLER_SIZE, share);
     for (int b = 0; b < system->n_bodies; b++)
       if (system->bodies[b].size > 0 && !system->bodies[b].carried)

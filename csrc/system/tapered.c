@@ -27,7 +27,8 @@ static void add_bodies(trb_system *s)
 {
   s->n_bodies = TRB_N_BODIES;
   s->driven = TRB_BODY_INNER_RING;
-  s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = &trb_ring_at_rest, .name = "outer ring"};
+  const trb_body_kind *outer = s->model->params.outer_turns > 0.0 ? &trb_ring_turning : &trb_ring_at_rest;
+  s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = outer, .name = "outer ring"};
   s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_prescribed, .name = "inner ring"};
   if (s->model->params.ring_free > 0.0)
     s->bodies[TRB_BODY_INNER_RING] = (trb_body){

@@ -61,12 +61,15 @@ static void test_curves(const trb_model *m, const trb_motion *motion)
     }
     trb_motion_at(motion, m, t - h, &before);
     trb_motion_at(motion, m, t + h, &after);
-    CHECK_NEAR(d.rolling_rate, (after.shaft_speed - before.shaft_speed) / (2 * h), 1e-3);
+    CHECK_NEAR(d.shaft_rate, (after.shaft_speed - before.shaft_speed) / (2 * h), 1e-3);
+    CHECK_NEAR(d.outer_rate, (after.outer_speed - before.outer_speed) / (2 * h), 1e-3);
+    CHECK_NEAR(d.rolling_speed, d.shaft_speed - d.outer_speed, 0.0);
+    CHECK_NEAR(d.rolling_rate, d.shaft_rate - d.outer_rate, 0.0);
     CHECK_NEAR(d.shaft_speed, (after.shaft_angle - before.shaft_angle) / (2 * h), 1e-5);
     CHECK_NEAR(d.ring.velocity.y, (after.displacement.y - before.displacement.y) / (2 * h), 1e-9);
-    CHECK_NEAR(d.frame_angle, m->geometry.cage_speed_ratio * d.shaft_angle, 1e-14 * 300);
-    CHECK_NEAR(d.frame_speed, m->geometry.cage_speed_ratio * d.shaft_speed, 1e-12);
-    CHECK_NEAR(d.frame_rate, m->geometry.cage_speed_ratio * d.rolling_rate, 1e-9);
+    CHECK_NEAR(d.frame_speed, (after.frame_angle - before.frame_angle) / (2 * h), 1e-5);
+    CHECK_NEAR(d.frame_speed, m->geometry.cage_speed_ratio * d.rolling_speed + d.outer_speed, 1e-12);
+    CHECK_NEAR(d.frame_rate, m->geometry.cage_speed_ratio * d.rolling_rate + d.outer_rate, 1e-9);
     CHECK_NEAR(d.cosine * cos(d.frame_angle) + d.sine * sin(d.frame_angle), 1.0, 1e-15);
   }
 }
@@ -237,7 +240,7 @@ static void test_repetition(const trb_model *m)
   for (int c = 1; c < TRB_MOTION_COLUMNS; c++) keep[c] = table[KNOTS - 1][c], table[KNOTS - 1][c] = table[1][c];
   if (!CHECK(trb_motion_create(&table[0][0], KNOTS, &motion, NULL) == TRB_OK)) return;
   CHECK(trb_motion_repeat(motion, period, &message) == TRB_OK);
-  trb_motion_set_angle(motion, 0.3, 7.0);
+  trb_motion_set_angles(motion, 0.3, 7.0, 0.0);
   trb_motion_at(motion, m, 0.3, &d);
   CHECK_NEAR(d.shaft_angle, 7.0, 1e-14);
   trb_motion_at(motion, m, begin, &start);

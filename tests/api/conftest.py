@@ -166,6 +166,8 @@ class StubScene:
     lubricant = SimpleNamespace(pressure_coefficient=1.973e-8)
     axial_load, radial_load = 4930.0, 0.0
     rotating_load = None
+    speed_rpm = turning_rpm = 3000.0
+    outer_speed_rpm, outer_turns = 0.0, False
     growth = None
     misalignment_x = misalignment_y = 0.0
 

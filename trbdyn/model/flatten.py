@@ -202,6 +202,7 @@ def scene_entries(scene: Scene) -> Entries:
         "land_clearance": land,
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
+        "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **ring_entries(scene),
     }
 
@@ -281,7 +282,7 @@ class RingLoad:
         1 where `displacement` is prescribed, 0 where it is to be found.
     displacement : ndarray, shape (5,)
         Displacement along x, y, z (m) and rotation about x, y (rad).
-    shaft_speed : float
+    shaft_speed, outer_speed : float
         Speed of the shaft (rad/s).
     gravity : ndarray, shape (3,)
         Acceleration of gravity (m/s2).
@@ -292,6 +293,7 @@ class RingLoad:
     fixed: FloatArray
     displacement: FloatArray
     shaft_speed: float
+    outer_speed: float
     gravity: FloatArray
 
 
@@ -316,6 +318,7 @@ def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
         fixed=np.array([float(held) for held in scene.ring_is_placed]),
         displacement=np.array([*(0.0 if place is None else value_at(place, time) for place in places), *turns]),
         shaft_speed=value_at(scene.speed_rpm, time) * math.pi / 30.0,
+        outer_speed=value_at(scene.outer_speed_rpm, time) * math.pi / 30.0,
         gravity=gravity,
     )
 
@@ -359,6 +362,7 @@ def motion_table(
         "rotation_x": ring[3],
         "rotation_y": ring[4],
         "shaft_speed": _scaled(scene.speed_rpm, math.pi / 30.0),
+        "outer_speed": _scaled(scene.outer_speed_rpm, math.pi / 30.0),
         "gravity_x": gravity[0],
         "gravity_y": gravity[1],
         "gravity_z": gravity[2],

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from trbdyn.base.validation import Flag, Model, Number, unit
 from trbdyn.errors import InputError
 from trbdyn.model.cage_body import Wall, cage_mass
-from trbdyn.model.motion import is_constant, value_at
+from trbdyn.model.motion import is_constant
 from trbdyn.model.pocket import Face, Pocket
 
 if TYPE_CHECKING:
@@ -140,8 +140,8 @@ def _rotation(scene: Scene) -> float:
     where rims and bars are known the rims, which carry, bear the bars' mass too.
     """
     bearing, speed = scene.bearing, scene.speed_rpm
-    if not is_constant(speed):
-        raise InputError.of(("growth", "centrifugal"), True, "must be false where speed_rpm changes in time")
+    if not is_constant(speed) or not is_constant(scene.outer_speed_rpm):
+        raise InputError.of(("growth", "centrifugal"), True, "must be false where the speed of a ring changes in time")
     path, material = _material(bearing, "cage")
     if material.density is None:
         raise InputError.of((*path, "density"), None, "must be given: the cage grows by its rotation (kg/m3)")
@@ -152,7 +152,7 @@ def _rotation(scene: Scene) -> float:
         weighed, height = cage_mass(wall, material.density), wall.height
         carried = weighed.mass / weighed.rims
     radius = 0.5 * bearing.pitch_diameter + height * math.cos(geometry.roller_axis_angle)
-    rim_speed = geometry.cage_speed_ratio * value_at(speed, scene.start.time) * math.pi / 30.0 * radius
+    rim_speed = scene.orbit_speed(scene.start.time) * radius
     return carried * material.density * rim_speed**2 / material.youngs_modulus
 
 

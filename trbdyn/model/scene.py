@@ -51,6 +51,8 @@ class Scene(Model):
         The bearing.
     speed_rpm : float or History
         Speed of the inner ring (rpm).
+    outer_speed_rpm : float or History
+        Speed of the outer ring about the bearing's axis (rpm), as in a wheel hub: 0 by default, at rest.
     axial_load : float or History
         Axial load Fa (N), presses the inner ring towards -z; must be > 0 unless `displacement` gives the axial
         position.
@@ -104,6 +106,7 @@ class Scene(Model):
 
     bearing: Bearing
     speed_rpm: Annotated[Quantity, unit("rpm")]
+    outer_speed_rpm: Annotated[Quantity, unit("rpm")] = 0.0
     axial_load: Annotated[Quantity, unit("N")] = 0.0
     radial_load: Annotated[Quantity, unit("N")] = 0.0
     radial_direction_deg: Annotated[Quantity, unit("deg")] = 90.0
@@ -212,6 +215,8 @@ class Scene(Model):
             **{f"displacement[{axis}]": place for axis, place in enumerate(self.displacement or ())},
             "speed_rpm": self.speed_rpm,
         }
+        if self.outer_turns:
+            found["outer_speed_rpm"] = self.outer_speed_rpm
         if self.rotating_load is not None:
             found["rotating_load.load"] = self.rotating_load.load
         if self.torque is not None:
@@ -231,6 +236,21 @@ class Scene(Model):
         if rotating.frequency_hz is not None:
             return first + 2.0 * math.pi * rotating.frequency_hz * time
         return first + rotating.turns * (self.start_shaft_angle + self.shaft_turn(time))
+
+    @property
+    def outer_turns(self) -> bool:
+        """Whether the outer ring turns at any time."""
+        return any(values_of(self.outer_speed_rpm))
+
+    @property
+    def turning_rpm(self) -> float | History:
+        """The speed by which turns are counted (rpm): that of the shaft, or of the outer ring where the shaft rests."""
+        return self.speed_rpm if any(values_of(self.speed_rpm)) else self.outer_speed_rpm
+
+    def orbit_speed(self, time: float) -> float:
+        """Speed at which rollers and cage go round the axis in pure rolling (rad/s)."""
+        inner, outer = (value_at(speed, time) * math.pi / 30.0 for speed in (self.speed_rpm, self.outer_speed_rpm))
+        return self.bearing.geometry.cage_speed_ratio * (inner - outer) + outer
 
     def shaft_turn(self, time: float) -> float:
         """Angle that the shaft has turned by since the start (rad)."""
@@ -314,9 +334,12 @@ class Scene(Model):
         return self
 
     def _check_motion(self) -> None:
-        speed = max(values_of(self.speed_rpm), key=abs)
-        if abs(speed) > MAX_SPEED_RPM:
-            raise InputError.of("speed_rpm", speed, f"must be from {-MAX_SPEED_RPM:g} to {MAX_SPEED_RPM:g} (rpm)")
+        for name, quantity in (("speed_rpm", self.speed_rpm), ("outer_speed_rpm", self.outer_speed_rpm)):
+            speed = max(values_of(quantity), key=abs)
+            if abs(speed) > MAX_SPEED_RPM:
+                raise InputError.of(name, speed, f"must be from {-MAX_SPEED_RPM:g} to {MAX_SPEED_RPM:g} (rpm)")
+        if self.outer_turns:
+            self._check_outer()
         for place, quantity in enumerate(self.gravity):
             pull = max(values_of(quantity), key=abs)
             if abs(pull) > MAX_GRAVITY:
@@ -343,6 +366,15 @@ class Scene(Model):
                 shift = 0.0 if given is None else max(values_of(given), key=abs)
                 if abs(shift) > limit:
                     raise InputError.of(("displacement", place), shift, f"must be from {-limit:g} to {limit:g} (m)")
+
+    def _check_outer(self) -> None:
+        """What is not known yet of a bearing whose outer ring turns."""
+        if self.start.kind == "state" and not is_constant(self.outer_speed_rpm):
+            limit = "must be constant in a run from a state: the angle of the outer ring is counted from t = 0 (rpm)"
+            raise InputError.of("outer_speed_rpm", self.outer_speed_rpm, limit)
+        if self.effects.oil_fill > 0.0:
+            limit = "must be 0 with a turning outer ring: the oil is at rest in the law of drag"
+            raise InputError.of(("effects", "oil_fill"), self.effects.oil_fill, limit)
 
     def _check_load(self) -> None:
         loads: list[tuple[str, float | History]] = [("axial_load", self.axial_load), ("radial_load", self.radial_load)]

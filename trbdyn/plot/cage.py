@@ -27,8 +27,8 @@ LEAST_SPAN: Final = 0.1
 
 
 def revolutions(result: Result) -> np.ndarray:
-    """Turns of the shaft since the start, shape (T,)."""
-    return np.abs(result["shaft_angle"]) / (2.0 * np.pi)
+    """Turns of the shaft, or of the outer ring where the shaft rests, shape (T,)."""
+    return np.abs(result.turned) / (2.0 * np.pi)
 
 
 def need_cage(result: Result) -> None:

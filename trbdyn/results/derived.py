@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
+from trbdyn.model.motion import History
+from trbdyn.model.shaft import angle_turned
 from trbdyn.results import observables
 from trbdyn.results.fields import Field
 from trbdyn.results.peaks import Peaks
@@ -228,7 +230,28 @@ class Derived(ABC):
     @property
     def cage_speed_ratio(self) -> float:
         """Turn of the cage over the turn of the shaft."""
-        return observables.cage_speed_ratio(self._of_cage("cage_angle"), self["shaft_angle"])
+        return observables.cage_speed_ratio(self._of_cage("cage_angle"), self.turned)
+
+    @property
+    def turned(self) -> Array:
+        """Angle of the shaft, or of the outer ring where the shaft rests (rad), shape (T,)."""
+        scene = self.scene
+        if scene.turning_rpm is scene.speed_rpm:
+            return self["shaft_angle"]
+        return np.array([angle_turned(scene.outer_speed_rpm, 0.0, float(time)) for time in self["time"]])
+
+    @property
+    def outer_speed(self) -> Array:
+        """Speed of the outer ring (rad/s), shape (T,)."""
+        speed, time = self.scene.outer_speed_rpm, self["time"]
+        rpm = speed.value(time) if isinstance(speed, History) else np.full(time.shape, speed)
+        return np.asarray(rpm, dtype=np.float64) * np.pi / 30.0
+
+    @property
+    def rolling_orbit(self) -> Array:
+        """Speed of the rollers' orbit in pure rolling (rad/s), shape (T,)."""
+        outer = self.outer_speed
+        return self.geometry["cage_speed_ratio"] * (self["shaft_speed"] - outer) + outer
 
     @property
     def cage_motion(self) -> observables.CageMotion:
@@ -252,8 +275,7 @@ class Derived(ABC):
     @property
     def roller_slip(self) -> Array:
         """Slip of each roller's orbit against pure rolling, shape (T, Z); positive when slower."""
-        ratio = self.geometry["cage_speed_ratio"]
-        return observables.kinematic_slip(self["roller_orbit_speed"], self["shaft_speed"], ratio)
+        return observables.kinematic_slip(self["roller_orbit_speed"], self.rolling_orbit, 1.0)
 
     @property
     def cage_slip(self) -> Array:
@@ -264,7 +286,9 @@ class Derived(ABC):
     def spin_slip(self) -> Array:
         """Slip of each roller's spin against pure rolling, shape (T, Z); positive when slower."""
         ratio = self.geometry["roller_spin_ratio"]
-        return observables.kinematic_slip(np.abs(self["roller_spin_speed"]), np.abs(self["shaft_speed"]), ratio)
+        return observables.kinematic_slip(
+            np.abs(self["roller_spin_speed"]), np.abs(self["shaft_speed"] - self.outer_speed), ratio
+        )
 
     def pocket_statistics(self, threshold: float = 0.0) -> observables.PocketStatistics:
         """Peak, 95th percentile, mean and duty of the force on each face of each pocket (forces above `threshold`, N).

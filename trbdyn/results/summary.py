@@ -266,9 +266,18 @@ def _cage(window: Result) -> dict[str, Any]:
     }
 
 
+def _kinematic_ratio(window: Result) -> float | None:
+    """Speed of the cage over that of the shaft, or of the outer ring where the shaft rests, in pure rolling."""
+    ratio: float | None = window.geometry.get("cage_speed_ratio")
+    if ratio is None or not window.scene.outer_turns:
+        return ratio
+    shaft = float(window["shaft_speed"].mean())
+    return float(window.rolling_orbit.mean()) / (shaft if shaft else float(window.outer_speed.mean()))
+
+
 def _rollers(window: Result) -> dict[str, Any]:
     return {
-        "cage_speed_ratio_kinematic": window.geometry.get("cage_speed_ratio"),
+        "cage_speed_ratio_kinematic": _kinematic_ratio(window),
         "cage_slip": window.cage_slip.mean() if "cage_speed_ratio" in window.geometry else None,
         "spacing_std_deg": window.spacing_std.mean(),
         "skew_rms": np.sqrt(np.mean(window["roller_skew"] ** 2)),

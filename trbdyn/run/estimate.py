@@ -220,8 +220,8 @@ def estimate(
     changes = {"revolutions": revolutions, "duration": duration}
     options = sim.options.replace(**changes if save_every is None else {**changes, "save_every": save_every})
     start = sim.time
-    length = options.end_time(sim.scene.speed_rpm, start) - start
-    save_every = interval(length, sim.scene.speed_rpm) if save_every is None else save_every
+    length = options.end_time(sim.scene.turning_rpm, start) - start
+    save_every = interval(length, sim.scene.turning_rpm) if save_every is None else save_every
     rates = _probe(sim, length, save_every, probe)
     records = max(math.ceil(length / save_every - 1e-9), 1) + 1
     found = _errors(sim)
@@ -253,7 +253,7 @@ def _probe(sim: Simulation, length: float, save_every: float, given: float | Non
     """Wall time, steps and evaluations per second of bearing time, with records and peaks as a run has them."""
     other = sim.copy()
     span = length if given is None else min(given, length)
-    turn = 60.0 / max(_largest(sim.scene.speed_rpm), 60.0 / span)
+    turn = 60.0 / max(_largest(sim.scene.turning_rpm), 60.0 / span)
     part = span / LEAST_PARTS if given is not None else min(PART * turn, span / 2)
     parts: list[_Part] = []
     try:
@@ -338,7 +338,7 @@ def most_like(scene: Scene, axial: float, colliding: bool, scenes: Mapping[str, 
     else:
         like = [name for name, one in scenes.items() if one["radial_load"] == 0.0 and one["diameter_range"] == 0.0]
     like = like or list(scenes)
-    speed, load = max(_largest(scene.speed_rpm), 1e-3), max(axial, 1.0)
+    speed, load = max(_largest(scene.turning_rpm), 1e-3), max(axial, 1.0)
     distance = {
         name: math.hypot(math.log(speed / scenes[name]["speed_rpm"]), math.log(load / scenes[name]["axial_load"]))
         for name in like

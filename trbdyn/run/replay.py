@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
+from trbdyn.model.shaft import angle_turned
 from trbdyn.run.simulation import Simulation
 from trbdyn.statics.free_ring import put_axis
 from trbdyn.statics.state_view import StateView
@@ -74,7 +75,9 @@ class Replay:
         vector = np.zeros(self._simulation.state.vector.size)
         view = self._simulation.view(vector)
         shaft_angle, shaft_speed = self._prescribed(index)
-        frame, orbit = geometry.cage_speed_ratio * shaft_angle, geometry.cage_speed_ratio * shaft_speed
+        outer_angle, outer_speed = self._outer(index)
+        frame = geometry.cage_speed_ratio * (shaft_angle - outer_angle) + outer_angle
+        orbit = geometry.cage_speed_ratio * (shaft_speed - outer_speed) + outer_speed
         nominal = geometry.roller_axis_angle
 
         angle, skew, tilt = (result[f"roller_{name}"][index] for name in ("orbit_angle", "skew", "tilt"))
@@ -89,7 +92,9 @@ class Replay:
         spin = _in_frame(_in_orbit(result["roller_angular_velocity"][index], angle), skew, nominal + tilt)
         view["roller_omega_n"] = spin[:, 0] + orbit * np.sin(nominal)
         view["roller_omega_t"] = spin[:, 1]
-        view["roller_omega_a"] = spin[:, 2] - (orbit * np.cos(nominal) - geometry.roller_spin_ratio * shaft_speed)
+        view["roller_omega_a"] = spin[:, 2] - (
+            orbit * np.cos(nominal) - geometry.roller_spin_ratio * (shaft_speed - outer_speed)
+        )
         if result.has_cage:
             self._put_cage(view, index, frame, orbit)
         if result.scene.ring_body is not None:
@@ -142,6 +147,14 @@ class Replay:
             return float(result["shaft_angle"][index]), float(result["shaft_speed"][index])
         time = float(result["time"][index])
         return scene.start_shaft_angle + scene.shaft_turn(time), value_at(scene.speed_rpm, time) * np.pi / 30.0
+
+    def _outer(self, index: int) -> tuple[float, float]:
+        """Angle (rad) and speed (rad/s) of the outer ring."""
+        scene, time = self.result.scene, float(self.result["time"][index])
+        if not scene.outer_turns:
+            return 0.0, 0.0
+        turned = angle_turned(scene.outer_speed_rpm, 0.0, time)
+        return turned, value_at(scene.outer_speed_rpm, time) * np.pi / 30.0
 
     def contacts(self, index: int) -> dict[str, Array]:
         """Every quantity of every contact at a record; names, shapes and units as in `Simulation.contacts`.

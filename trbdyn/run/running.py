@@ -330,7 +330,7 @@ class Run:
     def _stats(self) -> dict[str, Any]:
         """Solver statistics of the whole simulation, and the wall time of this run."""
         sim = self.sim
-        turned = abs(turns(sim.scene.speed_rpm, float(self.times[0]), sim._reached))
+        turned = abs(turns(sim.scene.turning_rpm, float(self.times[0]), sim._reached))
         bearing = sim._reached - float(self.times[0])
         stats: dict[str, Any] = {
             name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value

@@ -377,8 +377,8 @@ class Simulation(Displayed):
         changes |= {} if until is None else {"until": dict(until)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
-        end = options.end_time(self.scene.speed_rpm, self._reached)
-        kept = kept_by_default(end - self._reached, self.scene.speed_rpm, save_every, save_groups)
+        end = options.end_time(self.scene.turning_rpm, self._reached)
+        kept = kept_by_default(end - self._reached, self.scene.turning_rpm, save_every, save_groups)
         options = options.replace(**kept)
         times = output_times(self._reached, end, kept["save_every"])
         run = Run(self, options, times, callback)

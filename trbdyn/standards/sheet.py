@@ -302,6 +302,9 @@ def sheet(
     reliability: float = 90.0,
 ) -> Rating:
     """The sheet of a scene under a loading; see `trbdyn.rating`."""
+    if scene.outer_turns:
+        allowed = "must be 0: the ratings are those of a bearing whose inner ring turns alone (rpm)"
+        raise InputError.of("outer_speed_rpm", scene.outer_speed_rpm, allowed)
     notes: dict[str, str] = {}
     said: list[str] = []
     bearing = scene.bearing

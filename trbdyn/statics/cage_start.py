@@ -44,7 +44,7 @@ def place_cage(model: _core.Model, scene: Scene, motion: RingMotion, vector: Arr
         The state, with the rollers placed; changed.
     """
     state, start, cage = StateView(model.state_layout(), vector), scene.start, scene.bearing.cage
-    orbit = scene.bearing.geometry.cage_speed_ratio * value_at(scene.speed_rpm, start.time) * math.pi / 30.0
+    orbit = scene.orbit_speed(start.time)
     onlooker = motion.open(model, motion.start, vector, {})
     load = _inner_load(onlooker, motion.start, vector)
     # the heaviest loads push rollers along the axis by more than the play of their pockets: the cage goes with those that

@@ -164,8 +164,7 @@ def creep(scene: Scene, *, contact_oil: Lubricant | None = None) -> Creep:
     drift = 0.25 * np.sum(1.0 / slope, axis=0)
     loaded = load > 0.0
     gravity = math.hypot(*(value_at(part, scene.start.time) for part in scene.gravity[:2]))
-    shaft = abs(value_at(scene.speed_rpm, scene.start.time)) * math.pi / 30.0
-    orbit = bearing.geometry.cage_speed_ratio * shaft
+    orbit = abs(scene.orbit_speed(scene.start.time))
     cage, period = bearing.cage, 2.0 * math.pi / orbit
     return Creep(
         slope=slope,

@@ -81,7 +81,7 @@ class EquilibriumSolver:
 
     def __init__(self, model: _core.Model, scene: Scene, angles: Array) -> None:
         self.model, self.scene, self.angles = model, scene, angles
-        self._rests: dict[float, float] = {}
+        self._rests: dict[tuple[float, float], float] = {}
 
     def solve(
         self,
@@ -131,13 +131,14 @@ class EquilibriumSolver:
 
     def _resting(self, load: RingLoad, time: float) -> float:
         """Axial place (m) at which rollers and rings just touch at a speed: rollers that orbit press into the cup."""
-        if load.shaft_speed not in self._rests:
+        speeds = load.shaft_speed, load.outer_speed
+        if speeds not in self._rests:
             axial = JUST_CARRIES * least_axial_load(self.scene, time)
             alone = replace(load, force=np.array([0.0, 0.0, -axial]), fixed=np.array([0.0, 0.0, 0.0, 1.0, 1.0]))
             alone = replace(alone, displacement=np.zeros(5))
             place = 0.0 if axial == 0.0 else float(self._solve(alone, time, None, 0.0, None).displacement[2])
-            self._rests[load.shaft_speed] = place
-        return self._rests[load.shaft_speed]
+            self._rests[speeds] = place
+        return self._rests[speeds]
 
     def _solve(
         self,
@@ -159,7 +160,7 @@ class EquilibriumSolver:
             self._check_reach(load, time)
         found = None
         try:
-            found = self.model.equilibrium(force, fixed, place, load.shaft_speed, self.angles, rollers)
+            found = self._balanced(load, force, fixed, place, rollers)
         except _core.CoreLoadError as error:
             # starts that were not tried yet: without the guess, and where the axial position is given with play
             trials: list[tuple[Array, Array | None]] = [(load.displacement, None)] if guess is not None else []
@@ -167,7 +168,7 @@ class EquilibriumSolver:
                 trials.append((self._pushed(load), self._along_cup(float(load.displacement[2]))))
             for trial, guessed in trials if displacement is None else []:
                 with contextlib.suppress(_core.CoreLoadError):
-                    found = self.model.equilibrium(force, fixed, trial, load.shaft_speed, self.angles, guessed)
+                    found = self._balanced(load, force, fixed, trial, guessed)
                     break
             largest = 0.0
             if found is None and displacement is None:
@@ -184,6 +185,15 @@ class EquilibriumSolver:
             rib_load=rib,
             residual=found["residual"],
             iterations=found["iterations"],
+        )
+
+    def _balanced(
+        self, load: RingLoad, force: Array, fixed: Array, place: Array, rollers: Array | None, with_loads: bool = False
+    ) -> dict[str, Any]:
+        """The core's equilibrium at the speeds of a load."""
+        speeds = load.shaft_speed, load.outer_speed
+        return self.model.equilibrium(
+            force, fixed, place, speeds[0], self.angles, rollers, with_loads, outer_speed=speeds[1]
         )
 
     def _check_reach(self, load: RingLoad, time: float) -> None:
@@ -216,9 +226,7 @@ class EquilibriumSolver:
                 place, rollers = place + ahead * (place - before[1]), rollers + ahead * (rollers - before[2])
                 rollers = rollers.ravel()
             try:
-                found = self.model.equilibrium(
-                    acting, load.fixed, place, load.shaft_speed, self.angles, rollers, wanted == 1.0
-                )
+                found = self._balanced(load, acting, load.fixed, place, rollers, wanted == 1.0)
             except _core.CoreLoadError:
                 if not known:
                     return None, 0.0
@@ -254,7 +262,7 @@ def least_axial_load(scene: Scene, time: float = 0.0) -> float:
     if not scene.effects.back_rib:
         return 0.0
     geometry = scene.bearing.geometry
-    orbit = geometry.cage_speed_ratio * value_at(scene.speed_rpm, time) * math.pi / 30.0
+    orbit = scene.orbit_speed(time)
     centrifugal = geometry.roller_mass * orbit**2 * geometry.roller_centre_radius
     slope = math.tan(math.radians(scene.bearing.cup_half_angle_deg))
     return scene.bearing.n_rollers * centrifugal * slope / (1.0 + math.tan(geometry.rib_normal_angle) * slope)

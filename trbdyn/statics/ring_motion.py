@@ -14,6 +14,7 @@ from trbdyn import _core
 from trbdyn.errors import InputError, LoadError
 from trbdyn.model.flatten import motion_table, ring_load
 from trbdyn.model.motion import History, is_constant
+from trbdyn.model.shaft import angle_turned
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import Equilibrium, EquilibriumSolver, nominal_angles
 from trbdyn.statics.ring_path import find_path
@@ -57,8 +58,8 @@ class RingMotion:
         After the last knot the last part of the table, this long, repeats (s); 0: everything stays.
     start : float
         Time of the start (s).
-    angle_time, shaft_angle : float
-        A time (s), and the angle of the shaft then (rad).
+    angle_time, shaft_angle, outer_angle : float
+        A time (s), and the angles of shaft and outer ring then (rad).
     """
 
     table: Array
@@ -66,6 +67,7 @@ class RingMotion:
     start: float
     angle_time: float
     shaft_angle: float
+    outer_angle: float
 
     def displacement(self, time: float) -> Array:
         """Where the ring stands at a time (s): translation (m), rotation (rad), shape (5,)."""
@@ -84,9 +86,9 @@ class RingMotion:
         return np.asarray(curve(time), dtype=np.float64)
 
     @property
-    def prescribed(self) -> tuple[Array, float, float, float]:
-        """What the core takes: table, period, a time and the shaft's angle then."""
-        return self.table, self.period, self.angle_time, self.shaft_angle
+    def prescribed(self) -> tuple[Array, float, float, float, float]:
+        """What the core takes: table, period, a time and the angles of shaft and outer ring then."""
+        return self.table, self.period, self.angle_time, self.shaft_angle, self.outer_angle
 
     def open(
         self, model: _core.Model, time: float, vector: Array, settings: dict[str, float | str]
@@ -172,6 +174,7 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
         start=time,
         angle_time=0.0 if from_zero else time,
         shaft_angle=0.0 if from_zero else scene.start_shaft_angle,
+        outer_angle=0.0 if from_zero or not scene.outer_turns else angle_turned(scene.outer_speed_rpm, 0.0, time),
     )
     if not np.array_equal(angles, even):
         at_start = EquilibriumSolver(model, scene, angles).solve(time, displacement=at_start.displacement)

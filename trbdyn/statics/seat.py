@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -194,9 +194,7 @@ def seat_all(
 
 def _with_loads(motion: RingMotion, scene: Scene, loads: Mapping[str, float | History]) -> RingMotion:
     table, period = motion_table(scene, [0.0] * 5, loads=loads), loads_period(scene, loads)
-    return RingMotion(
-        table, (period or 0.0) if len(table) > 1 else 0.0, motion.start, motion.angle_time, motion.shaft_angle
-    )
+    return replace(motion, table=table, period=(period or 0.0) if len(table) > 1 else 0.0)
 
 
 def _model(seat: Seat, body: RingBody, number: int, free: float, instruction_set: str) -> _core.Model:

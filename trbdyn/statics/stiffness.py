@@ -201,7 +201,14 @@ def stiffness(scene: Scene, *, time: float | None = None) -> Stiffness:
     force = np.concatenate([load.force, load.moment])
     try:
         fine = model.equilibrium(
-            force, load.fixed, found.displacement, load.shaft_speed, angles, found.rollers.ravel(), stiffness=True
+            force,
+            load.fixed,
+            found.displacement,
+            load.shaft_speed,
+            angles,
+            found.rollers.ravel(),
+            stiffness=True,
+            outer_speed=load.outer_speed,
         )
     except _core.CoreLoadError as error:
         raise LoadError(str(error)) from None
