@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from trbdyn.model.land import Land
     from trbdyn.model.lubricants import Lubricant, Oil
     from trbdyn.model.motion import History
+    from trbdyn.model.planet import planet
     from trbdyn.model.pocket import Face, OtherPocket, Pocket
     from trbdyn.model.ring_body import RingBody
     from trbdyn.model.scene import RotatingLoad, Scene, Start
@@ -80,6 +81,7 @@ _NAMES = {
     "Result": "trbdyn.results.result",
     "Ribs": "trbdyn.model.bearing",
     "RingBody": "trbdyn.model.ring_body",
+    "planet": "trbdyn.model.planet",
     "Roller": "trbdyn.model.bearing",
     "RotatingLoad": "trbdyn.model.scene",
     "Roughness": "trbdyn.model.bearing",
@@ -149,6 +151,7 @@ __all__ = [
     "lubricants",
     "observables",
     "plan",
+    "planet",
     "plot",
     "pocket_shapes",
     "rating",

@@ -113,6 +113,49 @@ def test_runs_go_on(tmp_path: Path) -> None:
         assert now[name] == pytest.approx(then[name], rel=1e-4, abs=1e-5), name
 
 
+@pytest.mark.parametrize(("carrier", "wheel"), [(300.0, -1200.0), (-300.0, 1200.0)])
+def test_planet(carrier: float, wheel: float) -> None:
+    """Rings hold the rollers on the circle of the pin; the load turns with the carrier, and the loaded zone with it."""
+    arm, load = 0.12, 8000.0
+    effects = Effects.standard().replace(bodies="rollers")
+    given = {"displacement": (None, None, -25e-6), "effects": effects}
+    planet = trb.planet(
+        trb.cases.rig_30310(), carrier_speed_rpm=carrier, planet_speed_rpm=wheel, arm=arm, load=load, **given
+    )
+    simulation = Simulation(planet)
+    result = simulation.run(duration=0.1)
+    assert result.success
+    assert result.energy_closure < 1e-3
+    turned = carrier * np.pi / 30.0 * simulation.time
+    outward, along = (
+        np.array([np.cos(turned), np.sin(turned)]),
+        np.sign(carrier) * np.array([-np.sin(turned), np.cos(turned)]),
+    )
+    found, angle = simulation.contacts()["force"], result.roller_orbit_angle[-1]
+    cosine, sine = np.cos(angle), np.sin(angle)
+    held = np.array(
+        [(found[:, 0] * cosine - found[:, 1] * sine).sum(), (found[:, 0] * sine + found[:, 1] * cosine).sum()]
+    )
+    pull = 12 * planet.bearing.geometry.roller_mass * (carrier * np.pi / 30.0) ** 2 * arm
+    assert held @ outward == pytest.approx(-pull, rel=0.05)
+    phase = carrier * np.pi / 30.0 * result.time
+    tangential = np.sign(carrier) * np.column_stack([-np.sin(phase), np.cos(phase)])
+    # the ring stands where evenly spaced rollers that start at fixed angles would balance the load: those that pass by differ
+    assert (result.ring_force[:, :2] * tangential).sum(axis=1).mean() == pytest.approx(-load, rel=0.05)
+    heaviest = angle[np.argmax(result.inner_load[-1])]
+    assert np.cos(heaviest) * along[0] + np.sin(heaviest) * along[1] > np.cos(np.pi / 12.0) - 0.02
+
+
+def test_planet_refuses() -> None:
+    given = {"planet_speed_rpm": 0.0, "arm": 0.1, "load": 100.0, "displacement": (None, None, -25e-6)}
+    with pytest.raises(InputError, match=r"carrier_speed_rpm.*must not be 0"):
+        trb.planet(trb.cases.rig_30310(), carrier_speed_rpm=0.0, **given)
+    with pytest.raises(InputError, match=r"arm.*must be > 0"):
+        trb.planet(trb.cases.rig_30310(), carrier_speed_rpm=10.0, **(given | {"arm": 0.0}))
+    with pytest.raises(InputError, match=r"speed_rpm.*must not be given"):
+        trb.planet(trb.cases.rig_30310(), carrier_speed_rpm=10.0, **given, speed_rpm=3.0)
+
+
 def test_refused() -> None:
     with pytest.raises(InputError, match=r"outer_speed_rpm.*must be from"):
         scene(0.0, 2e6)
