@@ -27,8 +27,8 @@ def planet(
     """The scene of a planet bearing, in axes that go round with the pin but do not turn.
 
     The pin circles about the carrier's axis, so that rollers and cage feel the acceleration arm x speed squared away from that
-    axis; in these axes it is a field of gravity that turns with the carrier. The inner ring turns with the carrier, the outer ring with
-    the planet, and the load of the gears, which keeps its direction on the carrier, turns with the carrier, too.
+    axis; in these axes it is a field of gravity that turns with the carrier. The inner ring turns with the carrier, the outer
+    ring with the planet, and the load of the gears, which keeps its direction on the carrier, turns with the carrier, too.
 
     Parameters
     ----------
