@@ -63,6 +63,7 @@ ORDINARY: Table = {
     "land_clearance": 1.0,
     "land_film": 1.0,
     "land_fill": 1.0,
+    "outer_speed_rpm": 0.0,
     "ring_mass": None,
     "ring_length": 1.0,
     "ring_offset": 0.0,
@@ -230,7 +231,18 @@ def free(rng: np.random.Generator) -> Table:
     return table
 
 
+def outer(rng: np.random.Generator) -> Table:
+    """An outer ring that turns, with the inner ring, against it, or alone."""
+    table = _one_of(rng, usual, light, guided, free)(rng)
+    table |= {"outer_speed_rpm": _log(rng, 10.0, 1e4) * _one_of(rng, -1.0, 1.0), "oil_fill": 0.0}
+    if rng.random() < 0.3:
+        table |= {"speed_rpm": 0.0, "rotating_share": 0.0}
+        table.pop("end_speed_rpm", None)
+    return table
+
+
 KINDS = {
+    "outer": outer,
     "free": free,
     "usual": usual,
     "wide": wide,
@@ -267,6 +279,7 @@ def make(table: Table) -> trb.Scene:
         "lubricant": vg100(t["temperature_c"]) if t["oil"] is None else iso_vg(t["oil"], t["temperature_c"]),
         "effects": _effects(t),
         "speed_rpm": _quantity(t, "speed", t["speed_rpm"], t["end_speed_rpm"]),
+        "outer_speed_rpm": t["outer_speed_rpm"] * (0.08 / bearing.pitch_diameter if t["bearing"] in CATALOGUE else 1.0),
         "misalignment_x": t["misalignment_x"],
         "misalignment_y": t["misalignment_y"],
     }

@@ -245,7 +245,8 @@ class Scene(Model):
     @property
     def turning_rpm(self) -> float | History:
         """The speed by which turns are counted (rpm): that of the shaft, or of the outer ring where the shaft rests."""
-        return self.speed_rpm if any(values_of(self.speed_rpm)) else self.outer_speed_rpm
+        rests = not any(values_of(self.speed_rpm))
+        return self.outer_speed_rpm if rests and self.outer_turns else self.speed_rpm
 
     def orbit_speed(self, time: float) -> float:
         """Speed at which rollers and cage go round the axis in pure rolling (rad/s)."""

@@ -31,6 +31,12 @@ def revolutions(result: Result) -> np.ndarray:
     return np.abs(result.turned) / (2.0 * np.pi)
 
 
+def turns_label(result: Result) -> str:
+    """What an axis over `revolutions` says."""
+    scene = result.scene
+    return "shaft revolutions" if scene.turning_rpm is scene.speed_rpm else "revolutions of the outer ring"
+
+
 def need_cage(result: Result) -> None:
     """An error if the run has no cage."""
     if not result.has_cage:
@@ -97,7 +103,7 @@ def cage_locus(
             )
             ax.add_collection(segments)
             bar = ax.figure.colorbar(segments, ax=ax, shrink=0.8, pad=0.02)
-            bar.set_label("shaft revolutions")
+            bar.set_label(turns_label(result))
         else:
             ax.plot(path[:, 0], path[:, 1], color=COLOURS[0], linewidth=0.9)
         for index, (label, radius) in enumerate(circles.items()):
@@ -166,7 +172,7 @@ def orbit_radius(result: Result, ax: Axes | None = None) -> Axes:
             label=f"orbit radius, rms after the transient: {rms:.3f} ({known})",
         )
         ax.axvline(turned[settling.index], color=GREY, linewidth=0.8, linestyle=":")
-        ax.set(xlabel="shaft revolutions", ylabel="distance / $C_{pr}$", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), ylabel="distance / $C_{pr}$", xlim=(turned[0], turned[-1]))
         ax.set_ylim(0, 1.08 * max(1.0, float(distance.max()), float(orbit.max())))
         legend(ax, ncols=1)
     return ax
@@ -191,7 +197,7 @@ def axial_motion(result: Result, ax: Axes | None = None) -> Axes:
         turned = revolutions(result)
         line(ax, turned, 100.0 * result.axial_motion, linewidth=0.8)
         ax.axhline(0, color=GREY, linewidth=0.8)
-        ax.set(xlabel="shaft revolutions", ylabel="axial position (% of play)", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), ylabel="axial position (% of play)", xlim=(turned[0], turned[-1]))
     return ax
 
 
@@ -225,7 +231,7 @@ def tilt(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> A
                 linestyle=("-", "--")[index],
             )
         ax.axhline(0, color=GREY, linewidth=0.8)
-        ax.set(xlabel="shaft revolutions", ylabel="cage tilt (mrad)", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), ylabel="cage tilt (mrad)", xlim=(turned[0], turned[-1]))
         legend(ax)
     return ax
 

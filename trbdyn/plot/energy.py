@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
-from trbdyn.plot.cage import revolutions
+from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.style import COLOURS, LINES, canvas, envelope, legend
 
 if TYPE_CHECKING:
@@ -129,6 +129,6 @@ def energy_audit(result: Result, ax: Axes | None = None) -> Axes:
             dashes = LINES[1] if index == 1 else "-"
             ax.plot(x[size > 0], size[size > 0], label=name, color=colour, linewidth=width, linestyle=dashes)
         ax.set_yscale("log")
-        ax.set(xlabel="shaft revolutions", ylabel="size since the start (J)", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), ylabel="size since the start (J)", xlim=(turned[0], turned[-1]))
         legend(ax, ncols=2)
     return ax

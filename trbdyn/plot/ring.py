@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trbdyn.errors import InputError
-from trbdyn.plot.cage import last_turns, revolutions
+from trbdyn.plot.cage import last_turns, revolutions, turns_label
 from trbdyn.plot.style import COLOURS, GREY, canvas, legend, line, sequence, styled
 from trbdyn.results import observables
 
@@ -51,7 +51,7 @@ def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0
             aspect="equal",
         )
         ax.locator_params(nbins=5)
-        ax.figure.colorbar(points, ax=ax, label="shaft revolutions")
+        ax.figure.colorbar(points, ax=ax, label=turns_label(result))
     return ax
 
 
@@ -80,7 +80,7 @@ def ring_motion(result: Result, last: float | None = None) -> Figure:
         line(axes[1], turned, place[:, 2], 0)
         axes[0].set_ylabel("radial (µm)")
         axes[1].set_ylabel("axial, z (µm)")
-        axes[2].set(ylabel="tilt (mrad)", xlabel="shaft revolutions", xlim=(turned[0], turned[-1]))
+        axes[2].set(ylabel="tilt (mrad)", xlabel=turns_label(result), xlim=(turned[0], turned[-1]))
         for ax in (axes[0], axes[2]):
             ax.legend(fontsize=8, loc="best", frameon=True, framealpha=0.85, edgecolor="none")
     return figure

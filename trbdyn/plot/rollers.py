@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatter
 
 from trbdyn.errors import InputError
-from trbdyn.plot.cage import last_turns, need_cage, revolutions
+from trbdyn.plot.cage import last_turns, need_cage, revolutions, turns_label
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, canvas, legend, line, sequence, styled
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def spacing_angles(result: Result, ax: Axes | None = None, n: int = 1, rollers: 
             label = f"{roller + 1}–{(roller + n) % count + 1}"
             line(ax, turned, angles[:, roller], index, label, zorder=3)
         ax.axhline(360.0 * n / count, color=GREY, linewidth=0.9, zorder=2)
-        ax.set(xlabel="shaft revolutions", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), xlim=(turned[0], turned[-1]))
         ax.set_ylabel("angle between neighbours (deg)" if n == 1 else f"angle over {n} gaps (deg)")
         legend(
             ax, ncols=6, title=f"rollers; even spacing is {360.0 * n / count:g} deg", title_fontsize=9, alignment="left"
@@ -125,7 +125,7 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
             ax.set_yticks(rows, [str(chosen[row] + 1) for row in rows])
             ax.set_ylabel("pocket")
             ax.grid(visible=False)
-        axes[-1, 0].set(xlabel="shaft revolutions", xlim=(turned[0], turned[-1]))
+        axes[-1, 0].set(xlabel=turns_label(result), xlim=(turned[0], turned[-1]))
         if mesh is None:
             axes[0, 0].text(0.5, 0.5, "no pocket was touched", transform=axes[0, 0].transAxes, ha="center")
         else:

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
-from trbdyn.plot.cage import revolutions
+from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, legend, line, sequence, thin
 from trbdyn.results import observables
 
@@ -192,6 +192,6 @@ def torque_sources(result: Result, ax: Axes | None = None) -> Axes:
                 look = {"color": COLOURS[(0, 1, 3, 4, 5, 6)[index % 6]], "linestyle": LINES[index % len(LINES)]}
                 line(ax, turned, values, 0, f"{name} ({values.mean():.3g} N m)", linewidth=0.9, **look)
         ax.axhline(0, color=GREY, linewidth=0.8)
-        ax.set(xlabel="shaft revolutions", ylabel="friction torque (N m)", xlim=(turned[0], turned[-1]))
+        ax.set(xlabel=turns_label(result), ylabel="friction torque (N m)", xlim=(turned[0], turned[-1]))
         legend(ax, ncols=2)
     return ax
