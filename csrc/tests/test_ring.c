@@ -8,6 +8,7 @@
 #include "check.h"
 #include "contact/kernels.h"
 #include "rig.h"
+#include "stepping/ring_tangent.h"
 
 enum { ROOM = 600 };
 
@@ -171,9 +172,29 @@ static void test_kinds(void)
   rig_free(system);
 }
 
+/* What rollers do to a ring in the frames of their tangents: a wrench comes back, and has its components along the frame's axes. */
+static void test_reactions(void)
+{
+  const trb_wrench wrench = {{1, -2, 3}, {-4, 5, 6}};
+  for (int i = 0; i < 8; i++) {
+    const trb_ring_tangent t = {.cosine = cos(i), .sine = sin(i)};
+    double                 reaction[TRB_RING_OUT];
+    trb_ring_reaction(&t, &wrench, reaction);
+    const trb_wrench back = trb_ring_wrench(&t, reaction);
+    CHECK_NEAR(trb_norm(trb_sub(back.force, wrench.force)), 0.0, 1e-14);
+    CHECK_NEAR(trb_norm(trb_sub(back.moment, wrench.moment)), 0.0, 1e-14);
+    const trb_vec3 first = trb_v(t.cosine, t.sine, 0.0), second = trb_v(-t.sine, t.cosine, 0.0);
+    CHECK_NEAR(reaction[0], trb_dot(wrench.force, first), 1e-14);
+    CHECK_NEAR(reaction[1], trb_dot(wrench.force, second), 1e-14);
+    CHECK_NEAR(reaction[3], trb_dot(wrench.moment, first), 1e-14);
+    CHECK_NEAR(reaction[4], trb_dot(wrench.moment, second), 1e-14);
+  }
+}
+
 int main(void)
 {
   test_kinds();
+  test_reactions();
   test_common_turn(TRB_GUIDANCE_ROLLERS);
   test_common_turn(TRB_GUIDANCE_INNER_LAND);
   test_common_turn(TRB_GUIDANCE_OUTER_LAND);

@@ -217,6 +217,27 @@ static void test_set_state(const char *kind, double share)
   trb_simulation_free(s);
 }
 
+/* A factor makes the tolerances of one body smaller, those of a roller or those of all bodies behind the rollers, and of no other entry. */
+static void test_weights(void)
+{
+  const trb_settings settings = rig_settings();
+  trb_simulation    *s;
+  double             usual[512], now[512];
+  const int          rollers = m->n_rollers;
+  if (!CHECK(create("bdf", "scalar", &settings, 0.0, start, &s) == TRB_OK)) return;
+  trb_integrator *it = &s->integrator;
+  for (int i = 0; i <= rollers; i++) it->impacts.factor[i] = 1.0;
+  trb_integrator_weights(it, start, usual);
+  for (int body = 0; body <= rollers; body++) {
+    const int from = trb_state_roller(body), to = body < rollers ? trb_state_roller(body + 1) : it->n_main;
+    it->impacts.factor[body] = 0.25;
+    trb_integrator_weights(it, start, now);
+    for (int i = 0; i < it->n; i++) CHECK(now[i] == (i >= from && i < to ? 4.0 : 1.0) * usual[i]);
+    it->impacts.factor[body] = 1.0;
+  }
+  trb_simulation_free(s);
+}
+
 int main(void)
 {
   const trb_params p = rig_params();
@@ -229,6 +250,7 @@ int main(void)
   test_outputs("bdf", bdf);
   test_outputs("erk", erk);
   test_newton_share();
+  test_weights();
   test_beside();
   test_failed_step();
   for (int i = 0; i < 6; i++) test_set_state("bdf", pow(10.0, -i));

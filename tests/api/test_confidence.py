@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from scipy.signal import lfilter
 import trbdyn as trb
 from trbdyn import observables
 from trbdyn.model.cases import paper_30310
-from trbdyn.results.confidence import AVERAGES, confidence
+from trbdyn.results.confidence import AVERAGES, _as_means, confidence
 from trbdyn.results.summary import LABELS, averages, table
 from trbdyn.run.until import Until
 from trbdyn.run.watch import Watch
@@ -128,6 +129,50 @@ def test_the_summary_says_which_averages_drift() -> None:
     assert set(widths) == {"power_loss"}
     assert "none for what drifts in the window: torque;" in words
     assert confidence(made, MadeUp.averages, "it creeps")[0] is None  # type: ignore[arg-type]
+
+
+def lingering_whirls(rng: np.random.Generator, cages: int, turns: int, records: int = 40) -> Array:
+    """Places over Cpr of cages that whirl about the axis and linger at the bottom, now longer and now shorter: (T, cages, 2)."""
+    angle, slow = 2.0 * math.pi * rng.random(cages), np.zeros(cages)
+    memory = math.exp(-0.5 / records)
+    places = np.empty(((turns + 10) * records, cages, 2))
+    for now in places:
+        slow = memory * slow + math.sqrt(1.0 - memory**2) * rng.normal(size=cages)
+        angle += 2.0 * math.pi / records * (1.0 + np.clip(0.5 + 0.25 * slow, 0.0, 0.95) * np.sin(angle))
+        radius = 1.0 + 0.02 * rng.normal(size=cages)
+        now[:, 0], now[:, 1] = radius * np.cos(angle), radius * np.sin(angle)
+    return places[10 * records :]
+
+
+class Locus:
+    """The place of a cage, as `_as_means` reads it."""
+
+    groups = ("cage",)
+    has_cage = True
+    clearances = SimpleNamespace(radial=1.0)
+
+    def __init__(self, place: Array) -> None:
+        self.place = place
+        self.orbit_radius_over_cpr = np.hypot(*(place - place.mean(axis=0)).T)
+        self.axis_distance_over_cpr = np.hypot(*place.T)
+
+    def __getitem__(self, name: str) -> Array:
+        return {"cage_position": self.place}[name]
+
+
+def test_percentiles_of_the_orbit_follow_its_mean_place() -> None:
+    """Lingering moves the mean place, from which the orbit is measured, and hardly the cage's distances: without that part
+    intervals of the orbit's percentiles held the value of many cages in 16 of 100 cases.
+    """
+    cages = [Locus(place) for place in lingering_whirls(np.random.default_rng(3), 100, 80).transpose(1, 0, 2)]
+    for name, most in (("orbit_radius_over_cpr", 0.99), ("axis_distance_over_cpr", 1.0)):
+        for share, end in ((0.05, "p05"), (0.95, "p95")):
+            found = np.array([np.quantile(getattr(cage, name), share) for cage in cages])
+            series = [_as_means(cage)[f"{name}_{end}"].reshape(40, -1) for cage in cages]  # type: ignore[arg-type]
+            widths = np.array([observables.half_width(batches.mean(axis=1)) for batches in series])
+            assert np.isfinite(widths).mean() > 0.9
+            assert 0.90 <= np.mean(np.abs(found - found.mean()) <= widths) <= most, (name, end)
+            assert np.nanmedian(widths) < 4.0 * found.std()  # twice as wide as with a known scatter at most
 
 
 class MadeUp:

@@ -6,6 +6,7 @@ import copy
 import errno
 import itertools
 import json
+import math
 import os
 import pickle
 import re
@@ -711,6 +712,8 @@ def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
     assert "0.9" in text
     with pytest.raises(FileError, match="cannot be written"):
         summary.write_json(values, tmp_path / "missing" / "summary.json")
+    with pytest.raises(ValueError, match="JSON compliant"):  # JSON has no nan: a reader would refuse the file
+        summary.write_json({"torque": math.nan}, tmp_path / "nan.json")
 
 
 def test_summary_leaves_out_what_was_not_recorded(whirling: Result) -> None:

@@ -61,6 +61,16 @@ def test_wall_time_of_less_than_a_turn_and_of_none() -> None:
     assert math.isnan(still.stats["wall_s_per_revolution"])
 
 
+def test_statistics_are_those_of_the_solver() -> None:
+    """Counts are whole numbers, times and sizes keep their fractions."""
+    sim = trb.Simulation(paper_30310())
+    stats = sim.run(duration=1e-3).stats
+    for name, value in sim.statistics.items():
+        assert stats[name] == value, name
+    assert isinstance(stats["steps"], int)
+    assert 0.0 < stats["last_step"] < 1e-3
+
+
 def test_a_start_that_fails_leaves_a_simulation_without_looks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first checkpoint cannot be written: the simulation then makes rows of records alone, and runs as before."""
     sim = trb.Simulation(paper_30310())

@@ -122,6 +122,7 @@ NEAR: list[tuple[str, list[str]]] = [
         ],
     ),
     ("trbdyn/statics", ["physics/test_ring_path.py", "geometry/test_equilibrium.py", "physics/test_start.py"]),
+    ("trbdyn/results/observables/growth", ["paper/test_growth.py", "api/test_settling.py"]),
     ("trbdyn/plot", ["api/test_drawn.py", "api/test_drawn_around.py", "api/test_plotting.py", "api/test_pictures.py"]),
     ("trbdyn/run/checkpoint", ["restart/test_checkpoints.py", "fuzz/test_files.py"]),
     (
@@ -219,7 +220,7 @@ THEN: dict[str, list[str]] = {
 
 QUICK_C_TESTS = {
     "contacts": ("test_tangent", "test_kernels"),
-    "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent", "test_simulation", "test_jacobian"),
+    "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent", "test_simulation", "test_jacobian", "test_coupling", "test_ring"),
     "records": ("test_peaks", "test_motion"),
     "motion": ("test_motion",),
     "laws": ("test_laws",),

@@ -105,6 +105,13 @@ def test_a_history_with_slopes_at_its_ends_is_constant_outside() -> None:
     assert sim.run(duration=0.03, save_every=1e-3).success
 
 
+@pytest.mark.parametrize(("times", "named"), [((0.0, 2e6), 1), ((-2e6, 0.0), 0), ((-3e6, 0.0, 2e6), 0)])
+def test_times_beyond_the_longest_run_are_refused(times: tuple[float, ...], named: int) -> None:
+    """The error names the time that lies farthest."""
+    with pytest.raises(trb.InputError, match=rf"times\[{named}\].* must be from -1e\+06 to 1e\+06 \(s\)"):
+        History.table(times, [1.0] * len(times))
+
+
 class TestSteps:
     def test_a_step_takes_a_stated_time(self) -> None:
         drop = History.step((0.1, 0.12), (3000.0, 300.0, 3000.0))

@@ -146,8 +146,25 @@ def _as_means(window: Result) -> dict[str, Array]:
     orbit, distance = window.orbit_radius_over_cpr, window.axis_distance_over_cpr
     size = math.sqrt(float(np.mean(orbit**2)))
     found["orbit_radius_over_cpr"] = 0.5 * (orbit**2 / size + size) if size > 0.0 else orbit
-    for name, values in (("orbit_radius_over_cpr", orbit), ("axis_distance_over_cpr", distance)):
+    place = window["cage_position"][:, :2] / window.clearances.radial
+    for name, values, away in (
+        ("orbit_radius_over_cpr", orbit, place - place.mean(axis=0)),
+        ("axis_distance_over_cpr", distance, None),
+    ):
         for share, end in ((0.05, "p05"), (0.95, "p95")):
-            place, *sides = np.quantile(values, (share, share - SLOPE, share + SLOPE))
-            found[f"{name}_{end}"] = place + (sides[1] - sides[0]) / (2.0 * SLOPE) * (share - (values <= place))
+            found[f"{name}_{end}"] = _percentile_as_mean(values, share, away)
     return found
+
+
+def _percentile_as_mean(values: Array, share: float, away: Array | None) -> Array:
+    """A series over the records whose mean changes as a percentile, to first order.
+
+    Where the values are distances from the mean place (`away`, shape (T, 2)), the percentile also changes with that place: it
+    falls by what the place moves towards the records near the percentile.
+    """
+    at, low, high = np.quantile(values, (share, share - SLOPE, share + SLOPE))
+    series = at + (high - low) / (2.0 * SLOPE) * (share - (values <= at))
+    if away is None:
+        return series
+    near = (low <= values) & (values <= high) & (values > 0.0)
+    return series - away @ (away[near] / values[near, np.newaxis]).mean(axis=0) if near.any() else series
