@@ -104,6 +104,8 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
       contacts[c] = (contact){at->chosen[(first + c) / batch->n], batch->index[side], batch->pairs[side]};
       inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].pair);
     }
+    /* who looks at lanes sees zeros where a law was not asked, and not what another contact has left there */
+    if (detail != NULL && detail->lanes != NULL) memset(work->lanes, 0, sizeof *work->lanes);
     trb_kernel_variants[work->variant].raceway(m, inputs, n, work->lanes, &work->counters, outputs);
     for (int c = 0; c < n; c++) add_output(&outputs[c], contacts[c].pair, contacts[c].row, &loads[contacts[c].roller]);
     if (detail != NULL) fill_detail(m, contacts, work->lanes, outputs, n, detail);

@@ -65,6 +65,9 @@ def test_a_short_record_has_no_class() -> None:
     assert obs.classify(place, velocity, 1.0, cage_angle=angle).kind == "circling"
     assert obs.classify(place, velocity, 1.0, cage_angle=0.5 * angle).kind == "unknown"
     assert obs.classify(place, velocity, 1.0, cage_angle=-angle).kind == "circling"
+    for begun in (-50.0, -10.0, 100.0):  # where the cage stands at the beginning does not count
+        assert obs.classify(place, velocity, 1.0, cage_angle=begun + angle).kind == "circling"
+        assert obs.classify(place, velocity, 1.0, cage_angle=begun + 0.5 * angle).kind == "unknown"
 
 
 def test_how_long_it_takes_to_tell() -> None:

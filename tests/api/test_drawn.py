@@ -198,6 +198,19 @@ def test_bars_of_the_splits(uneven: Result) -> None:
         assert f"{whole:.4g} {unit} in all" in ax.get_xlabel()
 
 
+@pytest.mark.parametrize("sizes", [(1.0, 2.0, 3.0), (-1.0, 2.0, 3.0), (1.0, 2.0, -3.0), (-1.0, -2.0, -3.0)])
+def test_all_bars_lie_within_the_axes(
+    uneven: Result, monkeypatch: pytest.MonkeyPatch, sizes: tuple[float, float, float]
+) -> None:
+    """Those that point to the left, too; the axis begins at zero only where there are none."""
+    split = dict(zip(("raceways", "ribs", "pockets"), sizes, strict=True))
+    monkeypatch.setattr(Result, "power_split", property(lambda _: split))
+    ax = plot.power_split(uneven)
+    low, high = ax.get_xlim()
+    assert all(low <= bar.get_width() <= high for bar in ax.patches)
+    assert (low == 0.0) == (min(sizes) > 0.0)
+
+
 def test_energy_audit(uneven: Result) -> None:
     ax, balance = plot.energy_audit(uneven), uneven.energy_balance
     parts = {

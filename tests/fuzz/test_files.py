@@ -428,7 +428,7 @@ RESUME = "import sys, trbdyn as trb\nprint('ready', flush=True)\nsys.stdin.readl
 def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
     """The other one is told at once, and what the one gives is whole from the checkpoint on."""
     path = tmp_path / "run.h5"
-    cut_run(path, 2e-3, duration=0.1)
+    cut_run(path, 2e-3, duration=0.05)
     path.unlink()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     words = [sys.executable, "-P", "-c", RESUME, str(path)]
@@ -458,7 +458,7 @@ def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
     result = trb.load(path)
     assert result.success
     assert "records of it are missing" in result.message
-    assert 0.0 < result.time[0] < result.time[-1] == pytest.approx(0.1)
+    assert 0.0 < result.time[0] < result.time[-1] == pytest.approx(0.05)
     assert names(tmp_path) == ["run.h5"]
 
 

@@ -26,7 +26,11 @@ def test_rate_of_a_noisy_exponential(rate: float, seed: int) -> None:
 def test_a_whirl_that_stands_does_not_grow() -> None:
     noise = 0.05 * np.random.default_rng(0).normal(size=TURNS.size)
     assert not whirl_growth(TURNS, 0.5 * np.exp(noise)).growing
-    assert np.isnan(whirl_growth(TURNS[:10], np.full(10, 0.5)).rate)
+    short = whirl_growth(TURNS[:10], np.full(10, 0.5))
+    assert np.isnan(short.rate)
+    assert (short.amplitude, short.fitted, short.growing) == (pytest.approx(0.5), 0.0, False)
+    assert np.isnan(short.time_to_full)
+    assert whirl_growth(TURNS, 0.5 * np.exp(noise)).fitted == pytest.approx(TURNS[-1] - TURNS[200])
 
 
 def test_amplitude_counts_only_what_turns_with_the_cage() -> None:

@@ -59,7 +59,7 @@ def same(result: Any, reference: Any) -> None:
     assert result.counters == reference.counters
 
 
-@pytest.mark.parametrize("seed", [*range(2), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 10))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 10))])
 def test_random_kills_change_no_bit(tmp_path: Path, uninterrupted: trb.Result, seed: int) -> None:
     """At least two kills a seed, twenty in all, wherever they come: at the start, in a write, in a resumed run."""
     draw = random.Random(seed)
