@@ -140,7 +140,7 @@ def test_what_was_measured_is_written_when_it_ends_early(tmp_path: Path) -> None
     code = (
         "import sys; import work_precision as w\n"
         "def fail(*a): raise RuntimeError('power cut')\n"
-        "w.slices = fail\n"
+        "w.statistics = fail\n"
         f"w.main(['--smoke', '--no-picture', '--json', {str(path)!r}])"
     )
     done = subprocess.run(
