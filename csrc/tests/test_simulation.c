@@ -238,6 +238,43 @@ static void test_weights(void)
   trb_simulation_free(s);
 }
 
+/* Interference that an impact of a roller makes, over its speed: that of both masses on one spring, whatever the spring is. */
+static double rise_with(double cage_mass)
+{
+  const trb_impact_measure measure = {.share = 1.0, .least = 0.0, .velocity = 1e-30, .position = 1.0};
+  trb_params               p = rig_params();
+  trb_message              unused;
+  double                   y[512], speed, factor;
+  p.cage_mass = cage_mass;
+  trb_system   *system = rig_system(&p);
+  trb_motion   *turning = rig_motion(rig_state(system, 4930.0, 100.0, y), 100.0);
+  trb_dynamics *d;
+  trb_impacts   impacts;
+  y[rig_cage(system) + TRB_CAGE_v_x] += 0.3;
+  if (!CHECK(trb_dynamics_create(system, turning, "scalar", &d, &unused) == TRB_OK)) return NAN;
+  trb_dynamics_pose(d, 0.0, y);
+  CHECK(trb_impacts_create(system->model, &impacts, &unused) == TRB_OK);
+  trb_impacts_look(&impacts, d, turning, 0.0, y, 1.0, &measure);
+  speed = impacts.speed[0], factor = impacts.factor[0];
+  CHECK(speed > 0.1 && factor > 0.0 && factor < 1.0);
+  trb_impacts_free(&impacts);
+  trb_dynamics_free(d);
+  trb_motion_free(turning);
+  rig_free(system);
+  return factor / speed;
+}
+
+static void test_impacts(void)
+{
+  const double roller = m->geometry.roller_mass, heavy = rise_with(10.0);
+  const double masses[] = {1e-3, 0.03, 0.2, 2.0};
+  for (int i = 0; i < 4; i++) {
+    const double reduced = roller * masses[i] / (roller + masses[i]), of_heavy = roller * 10.0 / (roller + 10.0);
+    CHECK_NEAR(rise_with(masses[i]) / heavy, sqrt(reduced / of_heavy), 1e-9);
+  }
+  CHECK(heavy > 1e-6 && heavy < 1e-3); /* some 10 us to the largest interference */
+}
+
 int main(void)
 {
   const trb_params p = rig_params();
@@ -251,6 +288,7 @@ int main(void)
   test_outputs("erk", erk);
   test_newton_share();
   test_weights();
+  test_impacts();
   test_beside();
   test_failed_step();
   for (int i = 0; i < 6; i++) test_set_state("bdf", pow(10.0, -i));

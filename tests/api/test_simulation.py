@@ -32,6 +32,19 @@ def short() -> Result:
     return simulate().run(duration=2e-3, save_every=1e-4)
 
 
+@pytest.mark.parametrize("begun", [None, 7.0])
+def test_a_state_has_the_angle_of_the_shaft(begun: float | None) -> None:
+    """That of the record of its instant: the angle at the start, and the turn since."""
+    scene = paper_30310(3000.0, 4930.0)
+    vector = Simulation(scene).state.vector
+    sim = Simulation(scene.replace(start=trb.Start.state(vector, time=0.02, shaft_angle=begun)))
+    first = sim.state.shaft_angle
+    assert first == pytest.approx(begun or 100.0 * np.pi * 0.02)
+    sim.run(duration=1e-4)
+    assert sim.state.shaft_angle == pytest.approx(first + 100.0 * np.pi * 1e-4)
+    assert sim.state.shaft_angle == pytest.approx(float(sim.record()["shaft_angle"]), rel=1e-12)
+
+
 def assert_same_fields(one: Result, other: Result) -> None:
     assert [field.name for field in one.fields] == [field.name for field in other.fields]
     for field in one.fields:

@@ -119,6 +119,7 @@ NEAR: list[tuple[str, list[str]]] = [
             "api/test_catalogue.py",
             "api/test_toml.py",
             "physics/test_ring_path.py",
+            "physics/test_histories.py",
         ],
     ),
     ("trbdyn/statics", ["physics/test_ring_path.py", "geometry/test_equilibrium.py", "physics/test_start.py"]),
