@@ -226,14 +226,14 @@ static void test_weights(void)
   const int          rollers = m->n_rollers;
   if (!CHECK(create("bdf", "scalar", &settings, 0.0, start, &s) == TRB_OK)) return;
   trb_integrator *it = &s->integrator;
-  for (int i = 0; i <= rollers; i++) it->impacts.factor[i] = 1.0;
+  for (int i = 0; i <= rollers; i++) it->members[0].impacts.factor[i] = 1.0;
   trb_integrator_weights(it, start, usual);
   for (int body = 0; body <= rollers; body++) {
-    const int from = trb_state_roller(body), to = body < rollers ? trb_state_roller(body + 1) : it->n_main;
-    it->impacts.factor[body] = 0.25;
+    const int from = trb_state_roller(built, body), to = body < rollers ? trb_state_roller(built, body + 1) : it->n_main;
+    it->members[0].impacts.factor[body] = 0.25;
     trb_integrator_weights(it, start, now);
     for (int i = 0; i < it->n; i++) CHECK(now[i] == (i >= from && i < to ? 4.0 : 1.0) * usual[i]);
-    it->impacts.factor[body] = 1.0;
+    it->members[0].impacts.factor[body] = 1.0;
   }
   trb_simulation_free(s);
 }
