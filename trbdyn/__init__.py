@@ -64,6 +64,7 @@ _NAMES = {
     "Cage": "trbdyn.model.bearing",
     "CageBody": "trbdyn.model.bearing",
     "Effects": "trbdyn.model.effects",
+    "ElasticCage": "trbdyn.model.elastic_cage",
     "Face": "trbdyn.model.pocket",
     "FileError": "trbdyn.errors",
     "Growth": "trbdyn.model.growth",

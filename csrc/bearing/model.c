@@ -122,8 +122,9 @@ static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_me
   if (f->part[0] != 0.0 && f->part[0] != 1.0 && f->part[0] != 2.0)
     return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: part = %g: must be 0 (flank), 1 (large end) or 2 (small end)", index,
                     f->part[0]);
-  if (f->slot[0] != floor(f->slot[0]) || f->slot[0] < 0 || f->slot[0] > 63)
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: slot = %g: must be a whole number from 0 to 63", index, f->slot[0]);
+  if (f->slot[0] != floor(f->slot[0]) || f->slot[0] < 0 || f->slot[0] >= TRB_MOST_SLOTS)
+    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: slot = %g: must be a whole number from 0 to %d", index, f->slot[0],
+                    TRB_MOST_SLOTS - 1);
   if (!(f->stiffness_factor[0] > 0.0) || !(f->friction_factor[0] >= 0.0))
     return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: stiffness_factor = %g must be > 0, friction_factor = %g must be >= 0", index,
                     f->stiffness_factor[0], f->friction_factor[0]);
@@ -189,6 +190,9 @@ static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, t
       to->part = (int)f->part[0];
       to->slot = (int)f->slot[0];
     }
+    if (count - m->first_face[pocket] > TRB_MOST_SLOTS)
+      return trb_fail(message, TRB_ERR_INPUT, "pocket %d has %d faces: must have at most %d", pocket, count - m->first_face[pocket],
+                      TRB_MOST_SLOTS);
   }
   m->first_face[m->n_rollers] = count;
   return TRB_OK;
@@ -303,10 +307,21 @@ static trb_status check_ring(const trb_params *p, trb_message *message)
   return TRB_OK;
 }
 
+/* What goes together with an elastic cage. */
+static trb_status check_elastic(const trb_params *p, trb_message *message)
+{
+  if (p->cage_modes <= 0.0) return TRB_OK;
+  if (p->with_cage <= 0.0 || p->planar > 0.0 || p->guidance != TRB_GUIDANCE_ROLLERS)
+    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: must be 0 without a cage, in planar motion, and where a land guides the cage",
+                    p->cage_modes);
+  return TRB_OK;
+}
+
 static trb_status fill(trb_model *m, const double *deviation, const trb_face *faces, int n_faces, trb_message *message)
 {
   trb_status status = trb_geometry_derive(&m->params, &m->geometry, message);
   if (status == TRB_OK) status = check_ring(&m->params, message);
+  if (status == TRB_OK) status = check_elastic(&m->params, message);
   if (status != TRB_OK) return status;
   trb_surfaces_build(&m->params, &m->geometry, &m->surfaces);
   if ((status = check_front_rib(m, message)) != TRB_OK) return status;
@@ -366,6 +381,7 @@ void trb_model_free(trb_model *model)
   free(model->pocket_origin);
   free(model->faces);
   free(model->first_face);
+  trb_modes_free(&model->modes);
   free(model);
 }
 

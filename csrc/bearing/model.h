@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "base/vec3.h"
 #include "bearing/geometry.h"
+#include "bearing/modes.h"
 #include "bearing/params.h"
 #include "bearing/surfaces.h"
 #include "surface/polygon.h"
@@ -15,6 +16,9 @@ enum { TRB_LUBRICATION_DRY = 0, TRB_LUBRICATION_BOUNDARY = 1, TRB_LUBRICATION_MI
 enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMURA = 2 };
 
 enum { TRB_GUIDANCE_ROLLERS = 0, TRB_GUIDANCE_INNER_LAND = 1, TRB_GUIDANCE_OUTER_LAND = 2 };
+
+/* Most faces of a pocket, and one more than the last slot. */
+enum { TRB_MOST_SLOTS = 64 };
 
 /* Strips along the width of the cage's guiding surface. */
 enum { TRB_LAND_STRIPS = 6 };
@@ -99,6 +103,7 @@ typedef struct trb_model {
   int        friction;                      /* any friction at raceways and ribs at all */
   int        pocket_friction;               /* any friction in the pockets */
   int        film;                          /* films are needed */
+  trb_modes  modes;                         /* of an elastic cage */
   int        n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
 } trb_model;
 
@@ -108,6 +113,9 @@ double trb_chain_length(const trb_model *model);
 /* A checked, immutable copy of everything given. deviation: a roller's diameter over nominal, n_rollers values; faces: n_faces rows. */
 trb_status trb_model_create(const trb_params *params, const double *deviation, int n_deviations, const trb_face *faces, int n_faces,
                             trb_model **model, trb_message *message);
+/* Gives a new model, whose params.cage_modes says how many, the modes of its cage: as many rows of TRB_MODE_shapes + 6 n_rollers n_slots
+ * numbers. */
+trb_status trb_model_set_modes(trb_model *model, const double *rows, int n_modes, int n_columns, trb_message *message);
 void       trb_model_free(trb_model *model);
 
 #endif

@@ -20,6 +20,14 @@ typedef struct trb_coordinate {
 
 typedef struct trb_body trb_body;
 
+/* How a body is deformed, of which contacts read the amplitudes and their rates, and to which they add generalised forces. */
+typedef struct trb_deformed {
+  const trb_modes *modes;
+  double          *amplitude; /* of each mode, m */
+  double          *rate;      /* m/s */
+  double          *force;     /* power over rate, N */
+} trb_deformed;
+
 typedef struct trb_body_kind {
   const char *name;
   /* of bodies without coordinates: a ring that the drive places; NULL: nothing asks where it is. A ring with coordinates stands there where
@@ -42,6 +50,11 @@ typedef struct trb_body_kind {
   trb_rigid (*motion)(const trb_rigid_pose *pose, int coordinate); /* what a coordinate does to its place, or to its velocity, in R */
   double (*mass)(const trb_model *m, const trb_body *body);        /* on which gravity acts, kg */
   double (*kinetic)(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose); /* energy, J */
+  /* of bodies that deform: amplitudes and their rates out of the coordinates; what forces on the modes add to the rates of the coordinates; the
+   * coordinate that goes with the amplitude of a mode (that of its rate is the next one), and amplitude and rate for a unit of both */
+  void (*deform)(const trb_body *body, const double *y, trb_deformed *deformed);
+  void (*pushed)(const trb_body *body, const double *force, double *rates);
+  int (*amplitude)(const trb_body *body, int mode, double per[2]);
   /* what its drive and the loads on it put in while bodies act on it by a wrench; NULL: nothing */
   trb_drive_power (*work)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, const trb_wrench *load);
 } trb_body_kind;
@@ -56,6 +69,7 @@ struct trb_body {
   const void           *own;         /* parameters, as its kind says */
   int                   size;        /* coordinates; 0: as its kind says */
   const trb_coordinate *coordinates; /* of a body whose size is its own */
+  const trb_modes      *modes;       /* by which it deforms; NULL: it is rigid */
   int                   loss;        /* where it books what it loses in itself: TRB_BOOK of an entry of bearing/losses.h; 0: nowhere */
   int                   first;       /* where its coordinates begin in the state; -1: it has none */
   int                   carried;     /* 1: it is part of a body of another system of the assembly, whose coordinates it has */
@@ -67,6 +81,7 @@ typedef struct trb_body_at {
   trb_rigid_pose pose;     /* of a body with coordinates, in R */
   trb_ring_pose  ring;     /* of a ring, in inertial coordinates */
   trb_ring_pose *in_frame; /* n_rollers: the same in the cylindrical frame of each roller; NULL where nobody asks for them */
+  trb_deformed  *deformed; /* NULL: it is rigid, or nobody asks how it is deformed */
   int            rests;    /* as its kind says */
 } trb_body_at;
 
@@ -82,6 +97,7 @@ static inline trb_ring_pose trb_body_in(const trb_body_at *body, double cosine, 
 static inline void trb_body_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_body_at *at)
 {
   body->kind->pose(m, body, drive, y, &at->pose);
+  if (at->deformed != NULL) body->kind->deform(body, y, at->deformed);
   if (body->kind->ring != NULL) body->kind->ring(m, body, drive, y, &at->ring);
 }
 

@@ -151,10 +151,20 @@ typedef struct trb_detail {
  * along each axis, then one for a turn about each axis, with the other body at rest. That the normal turns at an edge is left out: this
  * term is load over radius, which is small beside the stiffness. */
 typedef struct trb_slopes {
-  trb_frame  axes;        /* in the roller's cylindrical frame, for motions and wrenches */
-  trb_wrench place[6];    /* per m and rad */
-  trb_wrench velocity[6]; /* per m/s and rad/s */
+  struct trb_modal_slopes *modal;       /* of a body that deforms; NULL: nobody asks */
+  trb_frame                axes;        /* in the roller's cylindrical frame, for motions and wrenches */
+  trb_wrench               place[6];    /* per m and rad */
+  trb_wrench               velocity[6]; /* per m/s and rad/s */
 } trb_slopes;
+
+/* The same for the modes of the other body. The face seen by a roller moves with each mode as a rigid one, so they follow from the slopes of
+ * the faces. */
+typedef struct trb_modal_slopes {
+  trb_wrench *place, *rate; /* of the wrench on the roller with each amplitude and each rate */
+  double (*pull_place)[6];  /* of the force on each mode with the roller's motion, in the columns of trb_slopes */
+  double (*pull_rate)[6];
+  double *own_place, *own_rate; /* [mode][mode of the force]: of the force on a mode with each amplitude and each rate */
+} trb_modal_slopes;
 
 /* Lower bounds of the gaps between a roller and another body, m: of its flank, and of its ends. Not above 0: it may touch. */
 enum { TRB_GAP_FLANK, TRB_GAP_ENDS, TRB_N_GAPS };

@@ -115,7 +115,8 @@ typedef struct trb_pair_kind {
   int (*surfaces)(const trb_model *m, int roller);                       /* that it tests for a roller; 0: they never touch */
   void (*count_clear)(const trb_model *m, int roller, trb_counters *to); /* counts a roller that is proven clear */
   void (*clearance)(const trb_model *m, trb_clearance_arms *arms);       /* TRB_N_GAPS of them */
-  double (*stiffness)(const trb_model *m, double depth);                 /* load over interference at an interference, N/m */
+  void (*ways)(const trb_model *m, int roller, double *ways); /* [mode][gap]: longest way of what may touch, for a unit of amplitude, m/m */
+  double (*stiffness)(const trb_model *m, double depth);      /* load over interference at an interference, N/m */
   /* of pairs without a roller, which have nothing of the others */
   trb_pair_between *between;
   trb_approach (*approach)(const trb_model *m, const trb_pair *pair, const trb_instant *at); /* NULL: they do not touch */

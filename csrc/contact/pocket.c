@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/deformed.h"
 #include "contact/friction.h"
 #include "contact/pair.h"
 #include "laws/line_contact.h"
@@ -23,6 +24,36 @@ typedef struct pocket_view {
 
   trb_slopes *slopes; /* or NULL */
 } pocket_view;
+
+/* Places seen from a face that has moved; then motions, too. Forces are sums over all faces. */
+static void see_places(const pocket_view *p, const trb_face_shift *s, pocket_view *seen)
+{
+  seen->x = trb_point_from(s, p->x);
+  seen->a = trb_seen_from(s, p->a);
+}
+
+/* The velocity of the face's points is that of a rigid body: the cage's and its own. */
+static void see_motions(const pocket_view *p, const trb_face_shift *s, pocket_view *seen)
+{
+  const trb_vec3 arm = trb_sub(trb_sub(p->cage, s->middle), s->shift);
+  seen->cage = trb_point_from(s, p->cage);
+  seen->v = trb_seen_from(s, p->v);
+  seen->omega = trb_seen_from(s, p->omega);
+  seen->cage_omega = trb_seen_from(s, trb_add(p->cage_omega, s->turn_rate));
+  seen->cage_v = trb_seen_from(s, trb_add(trb_add(p->cage_v, s->shift_rate), trb_cross(s->turn_rate, arm)));
+  seen->force = seen->moment = seen->cage_force = seen->cage_moment = trb_v(0, 0, 0);
+}
+
+/* Adds the loads that were found from the face to those of the pocket, and to those of the modes. */
+static void add_seen(const pocket_view *seen, const trb_face_shift *s, const trb_deformed *deformed, pocket_view *p)
+{
+  const trb_wrench on_face = {trb_seen_back(s, seen->cage_force), trb_seen_back(s, seen->cage_moment)};
+  p->force = trb_add(p->force, trb_seen_back(s, seen->force));
+  p->moment = trb_add(p->moment, trb_seen_back(s, seen->moment));
+  p->cage_force = trb_add(p->cage_force, on_face.force);
+  p->cage_moment = trb_add(p->cage_moment, on_face.moment);
+  trb_push_modes(deformed, s, p->cage, &on_face);
+}
 
 /* What a face carries. */
 typedef struct pocket_sums {
@@ -253,37 +284,78 @@ static void note_gap(trb_gaps *gaps, const trb_pocket_face *f, double gap)
   *of = trb_min(*of, gap);
 }
 
+/* Lower bound of the gap of a face, deformed or not. Where it is deformed, its place is kept in a shift. */
+static double gap_of(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, const trb_deformed *deformed, int roller,
+                     trb_face_shift *shift)
+{
+  pocket_view seen;
+  if (deformed == NULL) return face_gap(m, f, p, roller);
+  trb_face_place(deformed, (int)(f - m->faces), shift);
+  see_places(p, shift, &seen);
+  return face_gap(m, f, &seen, roller);
+}
+
+/* The same of its loads. */
+static pocket_sums forces_of(const trb_model *m, const trb_pocket_face *f, pocket_view *p, const trb_deformed *deformed, int roller,
+                             int exact, trb_counters *counters, trb_load *load, trb_face_shift *shift)
+{
+  if (deformed == NULL) return face_forces(m, f, p, roller, exact, counters, load);
+  trb_slopes  slopes;
+  pocket_view seen;
+  seen.slopes = p->slopes != NULL ? &slopes : NULL;
+  if (seen.slopes != NULL) slopes = (trb_slopes){.axes = p->axes};
+  trb_face_motion(deformed, shift);
+  see_places(p, shift, &seen);
+  see_motions(p, shift, &seen);
+  const pocket_sums sums = face_forces(m, f, &seen, roller, exact, counters, load);
+  if (!(sums.force > 0.0)) return sums;
+  add_seen(&seen, shift, deformed, p);
+  if (p->slopes == NULL) return sums;
+  for (int k = 0; k < 6; k++) {
+    trb_add_wrench(&p->slopes->place[k], &slopes.place[k]);
+    trb_add_wrench(&p->slopes->velocity[k], &slopes.velocity[k]);
+  }
+  if (p->slopes->modal != NULL) trb_slopes_of_modes(deformed, shift, &slopes, p->x, p->slopes->modal);
+  return sums;
+}
+
 trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_pair *pair, const trb_instant *at, int roller, trb_counters *counters,
                                trb_load *load, trb_slopes *slopes, trb_detail *detail)
 {
   const trb_roller_pose *r = &at->rollers[roller];
   const trb_rigid_pose  *cage = &at->bodies[pair->b].pose;
+  const trb_deformed    *deformed = at->bodies[pair->b].deformed;
   const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
   const trb_gaps         far = {{INFINITY, INFINITY}};
   const int              exact = detail != NULL && detail->pocket_interference != NULL;
+  double                 least[TRB_MOST_SLOTS];
+  trb_face_shift         shifts[TRB_MOST_SLOTS];
   pocket_view            p;
   trb_gaps               gaps = far;
   view_places(m, r, cage, roller, &p);
   counters->pocket_tests += end - first;
-  for (const trb_pocket_face *f = first; f < end; f++) note_gap(&gaps, f, face_gap(m, f, &p, roller));
+  for (const trb_pocket_face *f = first; f < end; f++) {
+    least[f - first] = gap_of(m, f, &p, deformed, roller, &shifts[f - first]);
+    note_gap(&gaps, f, least[f - first]);
+  }
   if (trb_gaps_clear(&gaps) && !exact) {
     counters->pocket_culled += end - first;
     return gaps;
   }
   view_motions(r, cage, &m->pocket_origin[roller], &p);
   memset(load, 0, sizeof *load);
-  if (slopes != NULL) *slopes = (trb_slopes){.axes = p.axes};
+  if (slopes != NULL) *slopes = (trb_slopes){.modal = slopes->modal, .axes = p.axes};
   p.slopes = slopes;
   gaps = far;
   for (const trb_pocket_face *f = first; f < end; f++) {
-    const double least = face_gap(m, f, &p, roller);
-    if (least > 0.0 && !exact) {
+    const double gap = least[f - first];
+    if (gap > 0.0 && !exact) {
       counters->pocket_culled++;
-      note_gap(&gaps, f, least);
+      note_gap(&gaps, f, gap);
       continue;
     }
-    const pocket_sums sums = face_forces(m, f, &p, roller, exact, counters, load);
-    note_gap(&gaps, f, f->part == TRB_PART_FLANK ? least : -sums.deepest);
+    const pocket_sums sums = forces_of(m, f, &p, deformed, roller, exact, counters, load, &shifts[f - first]);
+    note_gap(&gaps, f, f->part == TRB_PART_FLANK ? gap : -sums.deepest);
     if (detail != NULL) add_detail(m, roller, f, &sums, detail);
   }
   load->on_a.force = trb_from_frame(&p.axes, p.force);

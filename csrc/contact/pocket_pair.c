@@ -42,6 +42,29 @@ static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
   arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));
 }
 
+/* A gap between points of a roller and a face that moves by u and turns by r about its middle changes by no more than |u| + |r| times the
+ * largest distance from the middle of any point of the face, or of the roller along the face. Where the roller's point is the distant centre of
+ * a sphere, its distance from the face enters times |r| only, so a twentieth of it is enough for turns below a tenth. A tenth more of all for
+ * turns that are not small. */
+static void ways_of(const trb_model *m, int roller, double *ways)
+{
+  const trb_modes *modes = &m->modes;
+  const double     extent[TRB_N_GAPS] = {trb_chain_length(m), 0.05 * fabs(m->surfaces.large_end.place)};
+  for (int i = 0; i < TRB_N_GAPS * modes->n; i++) ways[i] = 0.0;
+  for (int f = m->first_face[roller]; f < m->first_face[roller + 1]; f++) {
+    const trb_polygon *p = &m->faces[f].surface;
+    const trb_vec3     middle = modes->middle[f], aside = trb_axpy(middle, -trb_dot(middle, p->normal), p->normal);
+    const int          gap = m->faces[f].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
+    const double      *shape = trb_shapes_of(modes, f);
+    double             reach = extent[gap] + trb_clearance_play(m) + trb_norm(aside);
+    for (int k = 0; k < p->n; k++) reach = fmax(reach, trb_norm(trb_sub(trb_polygon_vertex(p, k), middle)));
+    for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE) {
+      const double way = trb_norm(trb_v(shape[0], shape[1], shape[2])) + reach * trb_norm(trb_v(shape[3], shape[4], shape[5]));
+      ways[i * TRB_N_GAPS + gap] = fmax(ways[i * TRB_N_GAPS + gap], 1.1 * way);
+    }
+  }
+}
+
 static int faces_of(const trb_model *m, int roller) { return m->first_face[roller + 1] - m->first_face[roller]; }
 
 static void count_clear(const trb_model *m, int roller, trb_counters *to)
@@ -65,4 +88,5 @@ const trb_pair_kind trb_pair_pocket = {.name = "roller in a pocket",
                                        .surfaces = faces_of,
                                        .count_clear = count_clear,
                                        .clearance = clearance_of,
+                                       .ways = ways_of,
                                        .stiffness = stiffness_of};

@@ -18,9 +18,12 @@ typedef struct trb_clearance {
 } trb_clearance;
 
 void trb_clearance_set(const trb_model *m, trb_clearance *c, const trb_gaps *gaps, const double *y_roller, const double *y_body);
-/* Whether the roller is proven not to touch the body. */
-int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_body);
+/* Whether the roller is proven not to touch the body. deformed: ways by which the body's surfaces have moved by its deformation since then, of
+ * each gap, m; NULL: it is rigid. */
+int trb_clearance_holds(const trb_clearance *c, const trb_clearance_arms *arms, const double *deformed, const double *y_roller,
+                        const double *y_body);
 /* Lower bound of the gap that is left, m; not above 0: the roller may touch. */
-double trb_clearance_left(const trb_clearance *c, const trb_clearance_arms *arms, const double *y_roller, const double *y_body);
+double trb_clearance_left(const trb_clearance *c, const trb_clearance_arms *arms, const double *deformed, const double *y_roller,
+                          const double *y_body);
 
 #endif

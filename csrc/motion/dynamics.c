@@ -1,9 +1,29 @@
 #include "motion/dynamics.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+
+/* What a fast pair with a body that deforms keeps of its modes. */
+static int add_modes(const trb_dynamics *d, trb_fast_pair *fast)
+{
+  const trb_body *body = &d->system->bodies[fast->pair->b];
+  const size_t    n = (size_t)body->modes->n, rollers = (size_t)d->model->n_rollers;
+  fast->places = calloc(n, sizeof *fast->places);
+  fast->ways = trb_zeros(rollers * n * TRB_N_GAPS, sizeof *fast->ways);
+  fast->modal = trb_zeros(rollers * n, sizeof *fast->modal);
+  if (fast->places == NULL || fast->ways == NULL || fast->modal == NULL) return 0;
+  for (size_t j = 0; j < rollers; j++) fast->pair->kind->ways(d->model, (int)j, fast->ways + j * TRB_N_GAPS * n);
+  for (size_t i = 0; i < n; i++) {
+    double per[2];
+    fast->places[i] = body->first + body->kind->amplitude(body, (int)i, per);
+    for (size_t j = 0; j < rollers; j++)
+      for (int g = 0; g < TRB_N_GAPS; g++) fast->ways[(j * n + i) * TRB_N_GAPS + (size_t)g] *= per[0];
+  }
+  return 1;
+}
 
 /* The fast pairs of the workspace. */
 static int choose_fast(trb_dynamics *d)
@@ -19,6 +39,7 @@ static int choose_fast(trb_dynamics *d)
       if (fast->clearances == NULL) return 0;
       d->n_fast++;
       pair->kind->clearance(d->model, fast->arms);
+      if (d->system->bodies[pair->b].modes != NULL && !add_modes(d, fast)) return 0;
     }
   return 1;
 }
@@ -31,13 +52,46 @@ void trb_dynamics_place(trb_dynamics *d)
   }
 }
 
+static trb_deformed *deformed_of(const trb_modes *modes)
+{
+  const size_t  n = (size_t)modes->n;
+  trb_deformed *to = calloc(1, sizeof *to);
+  if (to == NULL) return NULL;
+  to->modes = modes;
+  to->amplitude = trb_zeros(3 * n, sizeof *to->amplitude);
+  if (to->amplitude == NULL) {
+    free(to);
+    return NULL;
+  }
+  to->rate = to->amplitude + n;
+  to->force = to->rate + n;
+  return to;
+}
+
+static void free_deformed(trb_deformed *deformed)
+{
+  if (deformed != NULL) free(deformed->amplitude);
+  free(deformed);
+}
+
+/* Generalised forces on bodies that deform are summed from zero. */
+static void clear_forces(const trb_dynamics *d)
+{
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    const trb_deformed *to = d->bodies[b].deformed;
+    if (to != NULL) memset(to->force, 0, (size_t)to->modes->n * sizeof *to->force);
+  }
+}
+
 /* Bodies that rest have the same pose in the frames of all rollers, for good. */
 static int make_bodies(trb_dynamics *d)
 {
   for (int b = 0; b < d->system->n_bodies; b++) d->bodies[b].rests = d->system->bodies[b].kind->rests;
   trb_dynamics_place(d);
   for (int b = 0; b < d->system->n_bodies; b++) {
-    trb_body_at *body = &d->bodies[b];
+    trb_body_at     *body = &d->bodies[b];
+    const trb_modes *modes = d->system->bodies[b].modes;
+    if (modes != NULL && (body->deformed = deformed_of(modes)) == NULL) return 0;
     if (!trb_is_ring(d->system->bodies[b].kind)) continue;
     body->in_frame = calloc((size_t)d->model->n_rollers, sizeof *body->in_frame);
     if (body->in_frame == NULL) return 0;
@@ -88,10 +142,18 @@ void trb_dynamics_free(trb_dynamics *d)
   if (d == NULL) return;
   trb_workspace_free(d->work);
   free(d->rollers);
-  for (int b = 0; b < d->system->n_bodies; b++) free(d->bodies[b].in_frame);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    free(d->bodies[b].in_frame);
+    free_deformed(d->bodies[b].deformed);
+  }
   free(d->loads);
   free(d->everyone);
-  for (int f = 0; f < d->n_fast; f++) free(d->fast[f].clearances);
+  for (int f = 0; f < d->n_fast; f++) {
+    free(d->fast[f].clearances);
+    free(d->fast[f].places);
+    free(d->fast[f].ways);
+    free(d->fast[f].modal);
+  }
   free(d->flows);
   free(d->reactions);
   free(d->exact);
@@ -146,6 +208,7 @@ void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *d
 {
   trb_instant at = trb_dynamics_instant(d);
   at.apart = apart;
+  clear_forces(d);
   trb_contact_all(d->model, &at, d->work, d->loads, detail);
   trb_contact_hub(d->model, &at, d->work, &d->hub, detail);
 }
@@ -156,6 +219,40 @@ static const double *of_body(const trb_dynamics *d, const trb_fast_pair *fast, c
   return y + d->system->bodies[fast->pair->b].first;
 }
 
+/* Ways by which a body's deformation has moved what a roller may touch since its gaps were found; NULL: the body is rigid. */
+static const double *deformed_by(const trb_dynamics *d, const trb_fast_pair *fast, int roller, const double *y, double ways[TRB_N_GAPS])
+{
+  const trb_body *body = &d->system->bodies[fast->pair->b];
+  if (body->modes == NULL) return NULL;
+  const int     n = body->modes->n;
+  const double *way = fast->ways + (size_t)roller * TRB_N_GAPS * (size_t)n, *from = fast->modal + (size_t)roller * (size_t)n;
+  double        sum[2][TRB_N_GAPS] = {{0}}; /* side by side: one sum alone would wait for each of its additions */
+  int           i = 0;
+  for (; i + 2 <= n; i += 2, way += 2 * TRB_N_GAPS) {
+    const double moved = fabs(y[fast->places[i]] - from[i]), next = fabs(y[fast->places[i + 1]] - from[i + 1]);
+    for (int g = 0; g < TRB_N_GAPS; g++) sum[0][g] += way[g] * moved;
+    for (int g = 0; g < TRB_N_GAPS; g++) sum[1][g] += way[TRB_N_GAPS + g] * next;
+  }
+  for (int g = 0; i < n && g < TRB_N_GAPS; g++) sum[0][g] += way[g] * fabs(y[fast->places[i]] - from[i]);
+  for (int g = 0; g < TRB_N_GAPS; g++) ways[g] = sum[0][g] + sum[1][g];
+  return ways;
+}
+
+static int is_clear(const trb_dynamics *d, const trb_fast_pair *fast, int roller, const double *y)
+{
+  double        ways[TRB_N_GAPS];
+  const double *deformed = deformed_by(d, fast, roller, y, ways);
+  return trb_clearance_holds(&fast->clearances[roller], fast->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, fast, y));
+}
+
+double trb_dynamics_gap_left(const trb_dynamics *d, int fast, int roller, const double *y)
+{
+  const trb_fast_pair *pair = &d->fast[fast];
+  double               ways[TRB_N_GAPS];
+  const double        *deformed = deformed_by(d, pair, roller, y, ways);
+  return trb_clearance_left(&pair->clearances[roller], pair->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
+}
+
 void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
 {
   const trb_model *m = d->model;
@@ -163,8 +260,7 @@ void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart)
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
     for (int j = 0; j < m->n_rollers; j++)
-      if (trb_clearance_holds(&fast->clearances[j], fast->arms, y + trb_state_roller(d->system, j), of_body(d, fast, y)))
-        apart[j] |= 1U << fast->row;
+      if (is_clear(d, fast, j, y)) apart[j] |= 1U << fast->row;
   }
 }
 
@@ -209,6 +305,7 @@ void trb_dynamics_start(trb_dynamics *d, double *rates)
   double          *q = rates + d->quadrature;
   memset(q, 0, (size_t)trb_n_quadratures(d->system) * sizeof *q);
   memset(d->on_body, 0, sizeof d->on_body);
+  clear_forces(d);
   for (int b = 0; b < d->system->n_bodies && trb_has_gravity(&d->drive); b++) {
     const trb_body *body = &d->system->bodies[b];
     const double    mass = body->size > 0 && !body->carried ? body->kind->mass(m, body) : 0.0;
@@ -239,8 +336,7 @@ unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y)
   for (int f = 0; f < d->n_fast; f++) {
     const trb_fast_pair *fast = &d->fast[f];
     if (fast->pair->kind->surfaces(m, roller) == 0) continue;
-    if (trb_clearance_holds(&fast->clearances[roller], fast->arms, y + trb_state_roller(d->system, roller), of_body(d, fast, y)))
-      fast->pair->kind->count_clear(m, roller, &d->work->counters);
+    if (is_clear(d, fast, roller, y)) fast->pair->kind->count_clear(m, roller, &d->work->counters);
     else near |= 1U << f;
   }
   return near;
@@ -252,6 +348,8 @@ trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double 
   trb_fast_pair    *pair = &d->fast[fast];
   const trb_gaps    gaps = pair->pair->kind->touch(d->model, pair->pair, &at, roller, &d->work->counters, load, slopes, detail);
   trb_clearance_set(d->model, &pair->clearances[roller], &gaps, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
+  const trb_modes *modes = d->system->bodies[pair->pair->b].modes;
+  for (int i = 0; modes != NULL && i < modes->n; i++) pair->modal[roller * modes->n + i] = y[pair->places[i]];
   return gaps;
 }
 
@@ -331,6 +429,7 @@ void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
     if (body->size == 0) continue;
     trb_dynamics_body_rates(d, b, y, &d->on_body[b], body->carried ? added : own);
     for (int i = 0; i < body->size && body->carried; i++) own[i] += added[i];
+    if (d->bodies[b].deformed != NULL) body->kind->pushed(body, d->bodies[b].deformed->force, own);
     if (body->carried) add_passed(d, b, y, rates);
     else if (body->kind->work != NULL) {
       const trb_drive_power power = body->kind->work(d->model, body, &d->drive, y + body->first, &d->on_body[b]);

@@ -24,6 +24,10 @@ typedef struct trb_fast_pair {
   int                row;        /* its number in the system */
   trb_clearance     *clearances; /* n_rollers */
   trb_clearance_arms arms[TRB_N_GAPS];
+  /* where the other body deforms; NULL where it does not */
+  int    *places; /* [mode]: of its amplitude in the state */
+  double *ways;   /* [roller][mode][gap]: as its kind gives them, for a unit of that coordinate */
+  double *modal;  /* [roller][mode]: those coordinates where the gaps were found */
 } trb_fast_pair;
 
 typedef struct trb_dynamics {
@@ -93,6 +97,8 @@ void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, dou
 void trb_dynamics_forget(trb_dynamics *d);
 /* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
 unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
+/* Lower bound of the gap of a roller that is left in a fast pair at a state, m; not above 0: it may touch. */
+double trb_dynamics_gap_left(const trb_dynamics *d, int fast, int roller, const double *y);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
 trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
 /* Adds the loads of the fast pairs in which a roller is near to its flow and to the loads of the hub's bodies. */

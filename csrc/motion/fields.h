@@ -17,7 +17,8 @@ typedef enum trb_field_kind {
   TRB_FIELD_ROLLER,      /* (Z,)      */
   TRB_FIELD_ROLLER_VEC3, /* (Z, 3)    */
   TRB_FIELD_ROLLER_QUAT, /* (Z, 4)    */
-  TRB_FIELD_POCKET_FACE  /* (Z, slots) */
+  TRB_FIELD_POCKET_FACE, /* (Z, slots) */
+  TRB_FIELD_MODE         /* (modes,)  */
 } trb_field_kind;
 
 /* Quantities of the rollers' contacts with the rings: F(X, pair, quantity, unit, text). Field <pair>_<quantity> is `quantity` of the view
@@ -69,6 +70,8 @@ typedef enum trb_field_kind {
   X(cage_tilt,                   cage,     VEC2,        "rad",   "tilt of the cage's axis: rotations theta_x, theta_y") \
   X(cage_force,                  cage,     VEC3,        "N",     "sum of the forces of pockets and land on the cage") \
   X(cage_moment,                 cage,     VEC3,        "N m",   "moment of these forces about the cage's centre of mass") \
+  X(cage_mode,                   cage,     MODE,        "m",     "amplitude of each natural mode of the cage") \
+  X(cage_mode_rate,              cage,     MODE,        "m/s",   "rate of the amplitude of each natural mode of the cage") \
   TRB_LAND_FIELDS(TRB_FIELD_OF_LAND, X) \
   X(roller_position,             rollers,  ROLLER_VEC3, "m",     "centre of mass of each roller, from the apex") \
   X(roller_orientation,          rollers,  ROLLER_QUAT, "1",     "orientation of each roller (w, x, y, z), body z axis along the roller") \
@@ -94,7 +97,7 @@ typedef enum trb_field_kind {
   X(power_loss,                  power,    SCALAR,      "W",     "sum of all losses") \
   TRB_LOSSES(TRB_FIELD_OF_POWER, X) \
   X(kinetic_energy,              energy,   SCALAR,      "J",     "kinetic energy of rollers, cage and a free inner ring") \
-  X(elastic_energy,              energy,   SCALAR,      "J",     "elastic energy of all contacts") \
+  X(elastic_energy,              energy,   SCALAR,      "J",     "elastic energy of all contacts, and of a cage that deforms") \
   TRB_WORKS(TRB_FIELD_OF_WORK, X) \
   TRB_LOSSES(TRB_FIELD_OF_LOSS, X)
 

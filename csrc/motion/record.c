@@ -17,7 +17,8 @@ const trb_field_info trb_field_table[TRB_N_FIELDS] = {
 
 const char *trb_field_kind_name(trb_field_kind kind)
 {
-  static const char *const names[] = {"scalar", "vec2", "vec3", "quaternion", "roller", "roller_vec3", "roller_quat", "pocket_face"};
+  static const char *const names[] = {"scalar",      "vec2",        "vec3",        "quaternion", "roller",
+                                      "roller_vec3", "roller_quat", "pocket_face", "mode"};
   return names[kind];
 }
 
@@ -42,6 +43,7 @@ int trb_field_shape(const trb_model *m, trb_field_kind kind, int shape[2])
     shape[0] = m->n_rollers;
     shape[1] = m->n_slots;
     return 2;
+  case TRB_FIELD_MODE: shape[0] = m->modes.n; return 1;
   }
   return 0;
 }
@@ -126,6 +128,15 @@ static void put_cage(writer *w, const double *y)
   PUT(cage_tilt, 1) = atan2(axis.x, axis.z);
   put3(&PUT(cage_force, 0), from_r(drive, force));
   put3(&PUT(cage_moment, 0), from_r(drive, moment));
+}
+
+static void put_modes(writer *w)
+{
+  const trb_deformed *deformed = w->d->bodies[TRB_BODY_CAGE].deformed;
+  if (deformed == NULL) return;
+  const size_t size = (size_t)deformed->modes->n * sizeof(double);
+  memcpy(&PUT(cage_mode, 0), deformed->amplitude, size);
+  memcpy(&PUT(cage_mode_rate, 0), deformed->rate, size);
 }
 
 static void put_roller(writer *w, int j, const double *y, double spin_offset)
@@ -281,6 +292,7 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
   PUT(shaft_angle, 0) = d->drive.shaft_angle + shaft_offset(d, y, TRB_FREE_RING_psi);
   PUT(shaft_speed, 0) = d->drive.shaft_speed + shaft_offset(d, y, TRB_FREE_RING_omega_a);
   put_cage(w, y + d->system->bodies[TRB_BODY_CAGE].first);
+  put_modes(w);
   put_land(w);
   for (int j = 0; j < m->n_rollers; j++) {
     put_roller(w, j, y + trb_state_roller(d->system, j), y[d->spin + j]);

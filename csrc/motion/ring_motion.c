@@ -34,7 +34,10 @@ static const int turning[N_TURNING] = {TRB_CHANNEL_shaft_speed, TRB_CHANNEL_oute
 static double *angle_at(const trb_motion *motion, int knot) { return motion->angle + (size_t)knot * N_TURNING; }
 
 /* Angle within the part that repeats. */
-static double turn_of_tail(const trb_motion *motion, int k) { return angle_at(motion, motion->n - 1)[k] - angle_at(motion, motion->tail)[k]; }
+static double turn_of_tail(const trb_motion *motion, int k)
+{
+  return angle_at(motion, motion->n - 1)[k] - angle_at(motion, motion->tail)[k];
+}
 
 trb_status trb_motion_create(const double *table, int n, trb_motion **motion, trb_message *message)
 {

@@ -11,11 +11,13 @@
 
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
-  static char *names[] = {"params", "diameter_deviation", "faces", "instruction_set", NULL};
-  PyObject    *params_object, *deviation_object, *faces_object;
+  static char *names[] = {"params", "diameter_deviation", "faces", "instruction_set", "modes", NULL};
+  PyObject    *params_object, *deviation_object, *faces_object, *modes_object = NULL;
   const char  *variant = "";
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|s", names, &params_object, &deviation_object, &faces_object, &variant)) return NULL;
-  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL;
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|sO", names, &params_object, &deviation_object, &faces_object, &variant,
+                                   &modes_object))
+    return NULL;
+  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL, *modes = NULL;
   model_object  *self = NULL;
   trb_model     *model = NULL;
   trb_system    *system = NULL;
@@ -24,6 +26,7 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
   trb_status     status = TRB_OK;
   if (params != NULL) deviation = trb_array(deviation_object, 1, "diameter_deviation");
   if (deviation != NULL) faces = trb_array(faces_object, 2, "faces");
+  if (faces != NULL && modes_object != NULL && (modes = trb_array(modes_object, 2, "modes")) == NULL) Py_CLEAR(faces);
   if (faces != NULL) {
     if (PyArray_DIM(params, 0) != TRB_N_PARAMS)
       status = trb_fail(&message, TRB_ERR_INPUT, "params: %d values needed, %d given", TRB_N_PARAMS, (int)PyArray_DIM(params, 0));
@@ -32,6 +35,8 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
     else
       status = trb_model_create(PyArray_DATA(params), PyArray_DATA(deviation), (int)PyArray_DIM(deviation, 0), PyArray_DATA(faces),
                                 (int)PyArray_DIM(faces, 0), &model, &message);
+    if (status == TRB_OK && modes != NULL)
+      status = trb_model_set_modes(model, PyArray_DATA(modes), (int)PyArray_DIM(modes, 0), (int)PyArray_DIM(modes, 1), &message);
     /* a workspace tells whether the variant runs, and which one "" stands for */
     if (status == TRB_OK) status = trb_system_tapered(model, &system, &message);
     if (status == TRB_OK) status = trb_workspace_create(system->pairs, system->n_pairs, variant, &work, &message);
@@ -50,6 +55,7 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
   Py_XDECREF((PyObject *)params);
   Py_XDECREF((PyObject *)deviation);
   Py_XDECREF((PyObject *)faces);
+  Py_XDECREF((PyObject *)modes);
   return (PyObject *)self;
 }
 
@@ -91,6 +97,7 @@ static PyObject *record_layout(PyObject *self, PyObject *none)
   for (int i = 0; list != NULL && i < TRB_N_FIELDS; i++) {
     int       shape[2];
     const int n = trb_field_shape(m, trb_field_table[i].kind, shape);
+    if (shape[0] * shape[1] == 0) continue; /* of modes that a rigid cage has not */
     PyObject *row = Py_BuildValue("(siN)", trb_field_table[i].name, trb_record_offset(m, i), shape_tuple(n, shape));
     if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
     Py_XDECREF(row);
@@ -223,7 +230,7 @@ static PyObject *columns(const double *values, int rows, int width)
 
 static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 {
-  static char     *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", "stiffness", "outer_speed", NULL};
+  static char *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", "stiffness", "outer_speed", NULL};
   const trb_model *m = ((model_object *)self)->model;
   PyObject        *load, *fixed, *displacement, *angles, *rollers = Py_None;
   trb_equilibrium  e = {0};

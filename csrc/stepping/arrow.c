@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "stepping/followers.h"
 
 enum { LINE = 8 }; /* entries of a cache line */
 
@@ -91,9 +92,19 @@ trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, t
   return TRB_OK;
 }
 
+trb_status trb_arrow_factors_follow(trb_arrow_factors *f, int n, const int (*entries)[2], trb_message *message)
+{
+  const trb_status status = trb_followers_create(f->n, f->hub.width, n, entries, &f->followers, message);
+  if (status != TRB_OK) return status;
+  f->hub.width = f->followers->kept;
+  f->hub.room = f->followers->room;
+  return TRB_OK;
+}
+
 void trb_arrow_factors_free(trb_arrow_factors *factors)
 {
   if (factors == NULL) return;
+  trb_followers_free(factors->followers);
   free(factors->rollers);
   free(factors->borders);
   free(factors->memory);
@@ -108,17 +119,26 @@ int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *f)
 {
   const trb_hub_factor *hub = &f->hub;
   f->gamma = 0.0;
-  for (int c = 0; c < hub->width; c++)
-    for (int i = 0; i < hub->room; i++) hub->schur[c * hub->room + i] = (double)(i == c) - arrow->gamma * arrow->hub[c * hub->room + i];
+  if (f->followers != NULL) trb_followers_hub(f->followers, arrow, hub);
+  else
+    for (int c = 0; c < hub->width; c++)
+      for (int i = 0; i < hub->room; i++) hub->schur[c * hub->room + i] = (double)(i == c) - arrow->gamma * arrow->hub[c * hub->room + i];
   for (int j = 0; j < arrow->n; j++)
     if (!f->kernels->factor(&arrow->rollers[j], arrow->gamma, &f->rollers[j])) return 0;
   for (int j = 0; j < arrow->n; j++) {
     f->borders[j].parts = arrow->borders[j].parts;
-    if (arrow->borders[j].parts != 0U) f->kernels->border(&arrow->borders[j], arrow->gamma, &f->rollers[j], &f->borders[j], hub);
+    if (arrow->borders[j].parts == 0U) continue;
+    const trb_arrow_border *border = f->followers == NULL ? &arrow->borders[j] : trb_followers_border(f->followers, arrow, j);
+    f->kernels->border(border, arrow->gamma, &f->rollers[j], &f->borders[j], hub);
   }
   if (!f->kernels->invert_hub(hub)) return 0;
   f->gamma = arrow->gamma;
   return 1;
 }
 
-void trb_arrow_solve(const trb_arrow_factors *f, double *x) { f->kernels->solve(f->rollers, f->borders, f->n, &f->hub, x); }
+void trb_arrow_solve(const trb_arrow_factors *f, double *x)
+{
+  if (f->followers != NULL) trb_followers_before(f->followers, f->borders, f->n, x);
+  f->kernels->solve(f->rollers, f->borders, f->n, &f->hub, x);
+  if (f->followers != NULL) trb_followers_after(f->followers, f->n, x);
+}

@@ -24,6 +24,8 @@ typedef struct trb_arrow {
   double           *memory;      /* of the borders */
 } trb_arrow;
 
+struct trb_followers;
+
 typedef struct trb_arrow_factors {
   const trb_block_kernels *kernels;
   int                      n;
@@ -31,7 +33,8 @@ typedef struct trb_arrow_factors {
   trb_arrow_factor_block  *rollers;
   trb_arrow_factor_border *borders;
   trb_hub_factor           hub;
-  double                  *memory; /* of the borders */
+  double                  *memory;    /* of the borders */
+  struct trb_followers    *followers; /* entries of the hub that are eliminated first; NULL: none */
 } trb_arrow_factors;
 
 /* hub_width: entries of the hub, from 0. */
@@ -42,6 +45,8 @@ void trb_arrow_add_parts(trb_arrow *arrow, int roller, unsigned parts);
 
 /* variant: index of the kernels' instruction set. */
 trb_status trb_arrow_factors_create(int n_rollers, int hub_width, int variant, trb_arrow_factors **factors, trb_message *message);
+/* Entries of the hub whose rate is another one times a constant (stepping/followers.h): two for each, its own and that of the other one. */
+trb_status trb_arrow_factors_follow(trb_arrow_factors *factors, int n, const int (*entries)[2], trb_message *message);
 void       trb_arrow_factors_free(trb_arrow_factors *factors);
 /* 1 if I - gamma J is regular. */
 int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *factors);

@@ -79,12 +79,33 @@ static int solver_free(SUNLinearSolver solver)
   return 0;
 }
 
-SUNLinearSolver trb_arrow_linear_solver(int n_rollers, int hub_width, int variant, SUNContext context)
+/* Amplitudes follow their rates. */
+static trb_status follow(const trb_assembly *assembly, trb_arrow_factors *factors)
 {
+  int entries[TRB_MOST_MEMBERS * TRB_MOST_BODIES * TRB_MOST_MODES][2], n = 0;
+  for (int k = 0; k < assembly->n; k++) {
+    const trb_system *system = &assembly->members[k];
+    for (int b = 0; b < system->n_bodies; b++) {
+      const trb_body *body = &system->bodies[b];
+      for (int i = 0; body->modes != NULL && i < body->modes->n; i++, n++) {
+        double per[2];
+        entries[n][0] = body->first - trb_state_hub(system) + body->kind->amplitude(body, i, per);
+        entries[n][1] = entries[n][0] + 1;
+      }
+    }
+  }
+  return n > 0 ? trb_arrow_factors_follow(factors, n, (const int (*)[2])entries, NULL) : TRB_OK;
+}
+
+SUNLinearSolver trb_arrow_linear_solver(const trb_assembly *assembly, int variant, SUNContext context)
+{
+  const trb_layout  *layout = &assembly->members[0].layout;
   SUNLinearSolver    solver = trb_sundials_has_room(1) ? SUNLinSolNewEmpty(context) : NULL;
   trb_arrow_factors *factors = NULL;
   if (solver == NULL) return NULL;
-  if (trb_arrow_factors_create(n_rollers, hub_width, variant, &factors, NULL) != TRB_OK) {
+  if (trb_arrow_factors_create(layout->n_rollers, layout->hub_width, variant, &factors, NULL) != TRB_OK ||
+      follow(assembly, factors) != TRB_OK) {
+    trb_arrow_factors_free(factors);
     SUNLinSolFreeEmpty(solver);
     return NULL;
   }

@@ -7,14 +7,28 @@ static const trb_vec3 none = {0, 0, 0}, third = {0, 0, 1};
 static trb_vec3 to_roller(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, -k->roller->sine); }
 static trb_vec3 to_body(const trb_coupling *k, trb_vec3 v) { return trb_turn_z(v, k->roller->cosine, k->roller->sine); }
 
+static void along_axes(const trb_coupling *k, trb_rigid motion, double along[6])
+{
+  const trb_vec3 shift = trb_to_frame(&k->slopes.axes, motion.shift), turn = trb_to_frame(&k->slopes.axes, motion.turn);
+  const double   found[6] = {shift.x, shift.y, shift.z, turn.x, turn.y, turn.z};
+  memcpy(along, found, sizeof found);
+}
+
+/* When the other body moves, the roller moves the other way relative to it. */
+static trb_rigid other_way(const trb_coupling *k, trb_rigid motion)
+{
+  const trb_vec3 shift = trb_scale(-1.0, to_roller(k, motion.shift)), turn = trb_scale(-1.0, to_roller(k, motion.turn));
+  return (trb_rigid){trb_add(shift, trb_cross(turn, k->arm)), turn};
+}
+
 /* Change of the wrench on the roller with a motion relative to the other body. */
 static trb_wrench wrench_of(const trb_coupling *k, trb_rigid motion, int is_place)
 {
   const trb_wrench *columns = is_place ? k->slopes.place : k->slopes.velocity;
   const trb_frame  *axes = &k->slopes.axes;
-  const trb_vec3    shift = trb_to_frame(axes, motion.shift), turn = trb_to_frame(axes, motion.turn);
-  const double      along[6] = {shift.x, shift.y, shift.z, turn.x, turn.y, turn.z};
+  double            along[6];
   trb_wrench        sum = {none, none};
+  along_axes(k, motion, along);
   for (int c = 0; c < 6; c++) {
     sum.force = trb_axpy(sum.force, along[c], columns[c].force);
     sum.moment = trb_axpy(sum.moment, along[c], columns[c].moment);
@@ -63,10 +77,23 @@ trb_load trb_coupling_of_body(const trb_coupling *k, int coordinate)
   const int       is_place = trb_is_place(&k->other->coordinates[coordinate]);
   const trb_rigid motion = k->other->kind->motion(k->body, coordinate);
   const trb_vec3  shift = trb_scale(-1.0, to_roller(k, motion.shift)), turn = trb_scale(-1.0, to_roller(k, motion.turn));
-  trb_wrench      change = wrench_of(k, (trb_rigid){trb_add(shift, trb_cross(turn, k->arm)), turn}, is_place);
+  trb_wrench      change = wrench_of(k, other_way(k, motion), is_place);
   if (!is_place) return loads_of(k, change, none);
-  /* when the body moves, the roller moves the other way relative to it, and the forces turn with the body */
+  /* the forces turn with the body */
   change.force = trb_sub(change.force, trb_cross(turn, k->force));
   change.moment = trb_sub(change.moment, trb_cross(turn, k->moment));
   return loads_of(k, change, shift);
+}
+
+trb_load trb_coupling_of_mode(const trb_coupling *k, int mode, int is_place, double by)
+{
+  const trb_wrench *change = is_place ? &k->slopes.modal->place[mode] : &k->slopes.modal->rate[mode];
+  const trb_frame  *axes = &k->slopes.axes;
+  const trb_wrench  all = {trb_scale(by, trb_from_frame(axes, change->force)), trb_scale(by, trb_from_frame(axes, change->moment))};
+  return loads_of(k, all, none);
+}
+
+void trb_coupling_along(const trb_coupling *k, int of_body, int coordinate, double along[6])
+{
+  along_axes(k, of_body ? other_way(k, k->other->kind->motion(k->body, coordinate)) : trb_roller_motion(k->roller, coordinate), along);
 }

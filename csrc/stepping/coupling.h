@@ -22,5 +22,10 @@ void trb_coupling_place(trb_coupling *k, const trb_roller_pose *roller, const tr
 /* Slope of the loads of both with a coordinate of the roller, and of the other body. */
 trb_load trb_coupling_of_roller(const trb_coupling *k, int coordinate);
 trb_load trb_coupling_of_body(const trb_coupling *k, int coordinate);
+/* The same with the amplitude of a mode of the other body, or with its rate, that changes by so much. */
+trb_load trb_coupling_of_mode(const trb_coupling *k, int mode, int is_place, double by);
+/* Motion of the roller relative to the other body with a coordinate of the roller, or of the other body, along the axes of the slopes:
+ * displacement, then turn. */
+void trb_coupling_along(const trb_coupling *k, int of_body, int coordinate, double along[6]);
 
 #endif

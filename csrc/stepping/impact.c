@@ -117,7 +117,7 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
       trb_roller_pose      r;
       if (fast->pair->kind->surfaces(m, j) == 0) continue;
       trb_roller_pose_unpack_centre(m, &drive, j, y_roller, &r);
-      const double       left = trb_clearance_left(&fast->clearances[j], fast->arms, y_roller, y + d->system->bodies[fast->pair->b].first);
+      const double       left = trb_dynamics_gap_left(d, f, j, y);
       const trb_approach now = {.left = left, .speed = closing_speed(&r, &impacts->bodies[fast->pair->b].pose), .rise = rise[f]};
       impacts->factor[j] = trb_min(impacts->factor[j], factor_of(&now, step, measure, &impacts->speed[j]));
     }

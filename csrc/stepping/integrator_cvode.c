@@ -131,7 +131,7 @@ static trb_status bdf_create(trb_integrator *it, trb_message *message)
   self->y = trb_vector_over(it->y, it->n, &entries, variant, self->sundials.context);
   if (self->y != NULL) self->scratch = N_VClone(self->y);
   self->matrix = trb_arrow_matrix(n_rollers, hub_width, self->sundials.context);
-  self->solver = trb_arrow_linear_solver(n_rollers, hub_width, variant, self->sundials.context);
+  self->solver = trb_arrow_linear_solver(it->assembly, variant, self->sundials.context);
   if (self->y != NULL)
     self->newton =
         trb_newton_solver((int)it->settings.newton_iterations, self->y, it->n_main, n_rollers, TRB_ROLLER_SIZE, self->sundials.context);

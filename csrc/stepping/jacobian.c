@@ -23,6 +23,9 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
     if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL)
       status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
     else status = trb_tangents_create(system, &j->tangents, message);
+    for (int b = 0; b < system->n_bodies && status == TRB_OK; b++)
+      if (system->bodies[b].modes != NULL && (j->modal[b] = trb_modal_create(&system->bodies[b], system->layout.hub_width)) == NULL)
+        status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
   }
   if (status != TRB_OK) {
     trb_jacobian_free(j);
@@ -42,6 +45,7 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   free(jacobian->changes);
   free(jacobian->response);
   free(jacobian->with);
+  for (int b = 0; b < TRB_MOST_BODIES; b++) trb_modal_free(jacobian->modal[b]);
   free(jacobian);
 }
 
@@ -71,7 +75,7 @@ static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, int other,
   const trb_body     *body = &d->system->bodies[other];
   trb_arrow_block    *block = &arrow->rollers[leaf_of(d, j)];
   trb_arrow_border   *border = &arrow->borders[leaf_of(d, j)];
-  const int           size = body->size, first = body->first - trb_state_hub(d->system);
+  const int           size = trb_rigid_coordinates(body), first = body->first - trb_state_hub(d->system);
   double             *rates = jac->rates, change[TRB_NR];
   for (int c = 0; c < TRB_NR; c++) {
     const trb_load load = trb_coupling_of_roller(k, c);
@@ -88,6 +92,7 @@ static void add_fast(trb_jacobian *jac, int j, const trb_coupling *k, int other,
     for (int i = 0; i < TRB_NR; i++) to[i] += change[i];
     trb_add_wrench(&jac->changes[first + c], &load.on_b);
   }
+  if (k->slopes.modal != NULL) trb_modal_add(jac->modal[other], d, j, k, first, arrow, jac->changes);
 }
 
 /* Rates of the whole hub at the poses kept. Loads of the fast pairs are those of the bodies; that of body `moved` changes with its
@@ -224,9 +229,12 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
   border->parts = 0U;
   for (int f = 0; f < d->n_fast; f++) {
     const trb_pair *pair = d->fast[f].pair;
+    trb_modal      *modal = jac->modal[pair->b];
     trb_coupling    k;
     trb_load        load;
-    const trb_gaps  gaps = pair->kind->touch(d->model, pair, &at, j, &d->work->counters, &load, &k.slopes, NULL);
+    k.slopes.modal = modal != NULL ? &modal->slopes : NULL;
+    if (modal != NULL) trb_modal_clear(modal);
+    const trb_gaps gaps = pair->kind->touch(d->model, pair, &at, j, &d->work->counters, &load, &k.slopes, NULL);
     if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0)) continue;
     trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, pair->b));
     trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[pair->b], &d->bodies[pair->b].pose, &load);
@@ -253,11 +261,17 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   if (d->system->layout.leaf == 0) memset(arrow->hub, 0, (size_t)(arrow->width * arrow->room) * sizeof *arrow->hub);
   memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
   memset(d->on_body, 0, sizeof d->on_body);
-  for (int b = 0; b < d->system->n_bodies; b++) body_rates(d, b, y, &none, still);
+  for (int b = 0; b < d->system->n_bodies; b++) {
+    body_rates(d, b, y, &none, still);
+    if (jac->modal[b] != NULL) trb_modal_start(jac->modal[b]);
+  }
   prepare_rings(jac, y, still);
   for (int j = 0; j < m->n_rollers; j++) {
     fill_fast(jac, j, y, still, arrow);
     fill_rings(jac, j, arrow);
   }
   hub_block(jac, y, arrow);
+  for (int b = 0; b < d->system->n_bodies; b++)
+    if (jac->modal[b] != NULL)
+      trb_modal_finish(jac->modal[b], &d->system->bodies[b], d->system->bodies[b].first - trb_state_hub(d->system), arrow);
 }

@@ -10,6 +10,7 @@
 #define TRB_STEPPING_JACOBIAN_H
 
 #include "motion/dynamics.h"
+#include "stepping/modal.h"
 #include "stepping/tangent.h"
 
 typedef struct trb_jacobian {
@@ -22,6 +23,7 @@ typedef struct trb_jacobian {
    * coordinate, in inertial axes */
   double (*response)[6];
   trb_ring_pose *with;
+  trb_modal     *modal[TRB_MOST_BODIES]; /* of bodies that deform */
   long           rings_evaluations;
 } trb_jacobian;
 

@@ -39,6 +39,9 @@ trb_status trb_assembly_make(const trb_system *const *systems, int n, trb_assemb
       body->first = at.hub + at.hub_width;
       at.hub_width += body->size;
     }
+  if (at.hub_width > TRB_MOST_HUB)
+    return trb_fail(message, TRB_ERR_INPUT, "%d coordinates of rings and cages: at most %d; take fewer modes of elastic cages",
+                    at.hub_width, TRB_MOST_HUB);
   at.size = at.hub + at.hub_width;
   for (int k = 0; k < n; k++) {
     a->members[k].layout.spin = at.size;

@@ -11,7 +11,8 @@
 
 #include "system/system.h"
 
-enum { TRB_MOST_MEMBERS = 4 };
+/* Most bearings, and most coordinates of their bodies that are no rollers: the parts of a hub are bits of a word (stepping/blocks.h). */
+enum { TRB_MOST_MEMBERS = 4, TRB_MOST_HUB = 31 * 12 };
 
 typedef struct trb_assembly {
   trb_system members[TRB_MOST_MEMBERS];

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "body/cage.h"
+#include "body/elastic_cage.h"
 #include "body/free_ring.h"
 #include "body/ring.h"
 
@@ -34,6 +35,10 @@ static void add_bodies(trb_system *s)
     s->bodies[TRB_BODY_INNER_RING] = (trb_body){
         .kind = &trb_ring_free, .name = "inner ring", .loss = TRB_BOOK(TRB_LOSS_support), .carried = s->model->params.ring_carried > 0.0};
   s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = &trb_body_cage, .name = "cage"};
+  if (s->model->modes.n > 0) {
+    s->bodies[TRB_BODY_CAGE] = trb_elastic_cage_of(&s->model->modes, "cage");
+    s->bodies[TRB_BODY_CAGE].loss = TRB_BOOK(TRB_LOSS_vibration);
+  }
   s->bodies[TRB_BODY_OIL] = (trb_body){.kind = &trb_fluid_at_rest, .name = "oil"};
 }
 
@@ -139,6 +144,10 @@ trb_status trb_system_tapered(const trb_model *model, trb_system **system, trb_m
   *system = NULL;
   if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a system");
   s->model = model;
+  if (model->modes.n != (int)model->params.cage_modes) {
+    trb_system_free(s);
+    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", model->params.cage_modes, model->modes.n);
+  }
   add_bodies(s);
   add_surfaces(s);
   add_pairs(s);

@@ -92,11 +92,44 @@ trb_model *rig_model(const trb_params *params)
   exit(1);
 }
 
+double *rig_modes(const trb_model *m, int *columns)
+{
+  const int          n = (int)m->params.cage_modes;
+  unsigned long long seed = 5;
+  const int          shapes_end = TRB_MODE_shapes + TRB_SHAPE * m->n_rollers * m->n_slots;
+  *columns = shapes_end + n;
+  double *rows = calloc((size_t)(n * *columns) + 1, sizeof *rows);
+  if (rows == NULL) exit(1);
+  for (int i = 0; i < n; i++) {
+    double      *row = rows + i * *columns, *shape = row + TRB_MODE_shapes;
+    const double waves = 2.0 + floor(0.5 * i);
+    row[TRB_MODE_frequency] = 2.0 * TRB_PI * 1200.0 * (1.0 + 0.5 * i), row[TRB_MODE_damping] = 0.02, row[TRB_MODE_mass] = 0.1;
+    for (int j = 0; j < m->n_rollers; j++)
+      for (int slot = 0; slot < m->n_slots; slot++, shape += TRB_SHAPE) {
+        const double phase = waves * 2.0 * TRB_PI * j / m->n_rollers - 0.5 * TRB_PI * (i % 2);
+        shape[0] = cos(phase), shape[1] = -sin(phase) / waves, shape[2] = 0.3 * cos(phase);
+        for (int k = 0; k < TRB_SHAPE; k++) shape[k] += (k < 3 ? 0.2 : 30.0) * rig_random(&seed);
+      }
+    for (int k = 0; k < i; k++) {
+      row[shapes_end + k] = 0.1 * rig_random(&seed);
+      rows[k * *columns + shapes_end + i] = -row[shapes_end + k];
+    }
+  }
+  return rows;
+}
+
 trb_system *rig_system(const trb_params *params)
 {
   trb_model  *model = rig_model(params);
   trb_system *system;
   trb_message message = {TRB_OK, ""};
+  int         columns;
+  double     *rows = rig_modes(model, &columns);
+  if (trb_model_set_modes(model, rows, (int)params->cage_modes, columns, &message) != TRB_OK) {
+    printf("%s\n", message.text);
+    exit(1);
+  }
+  free(rows);
   if (trb_system_tapered(model, &system, &message) == TRB_OK) return system;
   printf("%s\n", message.text);
   exit(1);

@@ -154,6 +154,35 @@ static void check_solution(int variant, int n_rollers, int width, double gamma)
   trb_arrow_factors_free(f);
 }
 
+/* The rate of an entry is another one times a number: rows of the Jacobian with one entry. */
+static void make_follow(trb_arrow *a, const int entries[2])
+{
+  for (int c = 0; c < a->width; c++) a->hub[c * a->room + entries[0]] = c == entries[1] ? 3.0 * rig_random(&seed) : 0.0;
+  for (int j = 0; j < a->n; j++)
+    for (int c = 0; c < TRB_NR; c++) a->borders[j].from[c * a->room + entries[0]] = 0.0;
+}
+
+/* Entries that follow others are eliminated first, and the solution is the same. */
+static void test_followers(int variant, int n_rollers, double gamma)
+{
+  static const int entries[][2] = {{12, 13}, {14, 15}, {17, 16}, {23, 24}, {35, 11}};
+  enum { FOLLOWERS = sizeof entries / sizeof *entries };
+  trb_arrow         *a;
+  trb_arrow_factors *f;
+  if (!CHECK(trb_arrow_create(n_rollers, WIDEST, &a, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_factors_create(n_rollers, WIDEST, variant, &f, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_factors_follow(f, FOLLOWERS, entries, NULL) == TRB_OK)) return;
+  CHECK(f->hub.width == WIDEST - FOLLOWERS);
+  a->gamma = gamma;
+  for (int kind = 0; kind < N_KINDS; kind++) {
+    randomise(a, kind);
+    for (int k = 0; k < FOLLOWERS; k++) make_follow(a, entries[k]);
+    check_trial(a, f);
+  }
+  trb_arrow_free(a);
+  trb_arrow_factors_free(f);
+}
+
 /* The inverses are read as whole columns: what pads them must be zero, exchanges or not. */
 static void test_padding(int variant, int width)
 {
@@ -284,6 +313,7 @@ int main(void)
   const int counts[] = {1, 3, MOST};
   for (int variant = 0; variant < trb_n_kernel_variants; variant++) {
     if (!trb_kernel_runs(variant)) continue;
+    for (int i = 0; i < 3; i++) test_followers(variant, counts[i], i == 1 ? 0.7 : 1.0);
     for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
       for (int i = 0; i < 3; i++) check_solution(variant, counts[i], widths[w], i == 1 ? 0.7 : 1.0);
       test_padding(variant, widths[w]);

@@ -41,7 +41,7 @@ static void walk(const trb_system *system, trb_dynamics *d, const double *start,
     CHECK(!(trb_gaps_clear(&gaps) && touches));
     trb_clearance_set(m, &c, &gaps, y + trb_state_roller(system, j), y + rig_cage(system));
     if (!trb_gaps_clear(&gaps)) {
-      CHECK(!trb_clearance_holds(&c, arms, y + trb_state_roller(system, j), y + rig_cage(system)));
+      CHECK(!trb_clearance_holds(&c, arms, NULL, y + trb_state_roller(system, j), y + rig_cage(system)));
       continue;
     }
     for (double along = 0.0; along < 40.0; along += 0.02) {
@@ -51,7 +51,7 @@ static void walk(const trb_system *system, trb_dynamics *d, const double *start,
       for (int i = 0; i < TRB_CLEARANCE_ROLLER; i++)
         if (!alone || only == i)
           y[trb_state_roller(system, j) + i] = start[trb_state_roller(system, j) + i] + along * direction[trb_state_roller(system, j) + i];
-      const int      holds = trb_clearance_holds(&c, arms, y + trb_state_roller(system, j), y + rig_cage(system));
+      const int      holds = trb_clearance_holds(&c, arms, NULL, y + trb_state_roller(system, j), y + rig_cage(system));
       const trb_gaps now = gaps_at(d, j, y, &touches);
       if (holds) {
         ++*held;
@@ -101,15 +101,15 @@ static void test_limits(void)
   trb_clearance      c;
   trb_pair_pocket.clearance(m, arms);
   trb_clearance_set(m, &c, &near, roller, cage);
-  CHECK(trb_clearance_holds(&c, arms, roller, cage));
+  CHECK(trb_clearance_holds(&c, arms, NULL, roller, cage));
   trb_clearance_set(m, &c, &unknown, roller, cage);
-  CHECK(!trb_clearance_holds(&c, arms, roller, cage));
+  CHECK(!trb_clearance_holds(&c, arms, NULL, roller, cage));
   trb_clearance_set(m, &c, &near, roller, cage);
   cage[TRB_CAGE_psi] = NAN;
-  CHECK(!trb_clearance_holds(&c, arms, roller, cage));
+  CHECK(!trb_clearance_holds(&c, arms, NULL, roller, cage));
   cage[TRB_CAGE_psi] = 0.0, cage[TRB_CAGE_x] = 1.0;
   trb_clearance_set(m, &c, &near, roller, cage);
-  CHECK(!trb_clearance_holds(&c, arms, roller, cage));
+  CHECK(!trb_clearance_holds(&c, arms, NULL, roller, cage));
   rig_free(system);
 }
 

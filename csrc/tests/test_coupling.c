@@ -108,6 +108,7 @@ static void check_scene(const trb_params *params, double most, double shift, con
     for (int j = 0; j < m->n_rollers; j++) {
       trb_load     load;
       trb_coupling k;
+      k.slopes.modal = NULL;
       if (!differentiate(d, j, y, exact) || !loads_at(d, j, y, &load, &k.slopes)) continue;
       trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[TRB_BODY_CAGE], &d->bodies[TRB_BODY_CAGE].pose, &load);
       for (int c = 0; c < COLUMNS; c++) {

@@ -35,6 +35,8 @@ void trb_test_free(void *block)
 static trb_params  params;
 static trb_system *built;
 static trb_face    faces[RIG_FACES];
+static double     *modes;
+static int         mode_columns;
 static double      state[512];
 static double      table[TRB_MOTION_COLUMNS];
 
@@ -43,10 +45,11 @@ typedef trb_status attempt(trb_message *message);
 
 static trb_status make_model(trb_message *message)
 {
-  const double     deviation[12] = {0};
-  trb_model       *made = NULL;
-  const trb_status status = trb_model_create(&params, deviation, 12, faces, RIG_FACES, &made, message);
+  const double deviation[12] = {0};
+  trb_model   *made = NULL;
+  trb_status   status = trb_model_create(&params, deviation, 12, faces, RIG_FACES, &made, message);
   CHECK((made == NULL) == (status != TRB_OK));
+  if (status == TRB_OK) status = trb_model_set_modes(made, modes, (int)params.cage_modes, mode_columns, message);
   trb_model_free(made);
   return status;
 }
@@ -181,8 +184,10 @@ int main(void)
 {
   countdown = -1;
   params = rig_params();
+  params.cage_modes = 2;
   rig_faces(&params, faces);
   built = rig_system(&params);
+  modes = rig_modes(built->model, &mode_columns);
   table[1 + 2 * TRB_CHANNEL_displacement_z] = rig_state(built, 4930.0, 314.0, state);
   table[1 + 2 * TRB_CHANNEL_shaft_speed] = 314.0;
   fail_each("model", make_model);
@@ -195,6 +200,7 @@ int main(void)
   fail_each("bdf", make_bdf);
   fail_each("erk", make_erk);
   fail_in_steps();
+  free(modes);
   rig_free(built);
   return check_report();
 }

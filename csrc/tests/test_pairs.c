@@ -335,16 +335,16 @@ static void test_guidance(void)
   trb_motion_free(motion);
 }
 
-/* Each loss and each share of the torque is booked by some pair, or by a body, as a free ring is. */
+/* Each loss and each share of the torque is booked by some pair, or by a body, as a free ring or an elastic cage. */
 static void test_bookings(void)
 {
   int        losses[TRB_N_LOSSES] = {0}, torques[TRB_N_TORQUES] = {0};
   trb_params p = rig_params();
-  p.ring_free = p.ring_mass = p.ring_inertia_axial = p.ring_inertia_transverse = 1.0;
-  trb_system *with_free_ring = rig_system(&p);
-  for (int b = 0; b < with_free_ring->n_bodies; b++)
-    if (with_free_ring->bodies[b].loss > 0) losses[with_free_ring->bodies[b].loss - 1]++;
-  rig_free(with_free_ring);
+  p.ring_free = p.ring_mass = p.ring_inertia_axial = p.ring_inertia_transverse = p.cage_modes = 1.0;
+  trb_system *with_losses = rig_system(&p);
+  for (int b = 0; b < with_losses->n_bodies; b++)
+    if (with_losses->bodies[b].loss > 0) losses[with_losses->bodies[b].loss - 1]++;
+  rig_free(with_losses);
   for (int row = 0; row < TRB_N_PAIRS; row++)
     for (int by = 0; by < TRB_N_MECHANISMS; by++) {
       const int loss = pair_of(row)->books.loss[by], torque = pair_of(row)->books.torque[by];

@@ -21,7 +21,7 @@ from trbdyn import _core
 from trbdyn.base.validation import Model
 from trbdyn.cli import case
 from trbdyn.model.core_table import PARAMETERS, SETTINGS
-from trbdyn.model.flatten import bearing_entries, effects_entries, lubricant_entries, ring_entries
+from trbdyn.model.flatten import bearing_entries, effects_entries, elastic_entries, lubricant_entries, ring_entries
 from trbdyn.run.options import ACCURACY, RunOptions, Tolerances
 from trbdyn.run.simulation import Simulation
 
@@ -90,7 +90,7 @@ def test_help_comes_without_numpy_and_pydantic() -> None:
 def test_every_parameter_of_the_core_has_an_input() -> None:
     given = {**bearing_entries(trb.cases.rig_30310()), **lubricant_entries(trb.lubricants.vg100())}
     given |= effects_entries(trb.Effects())
-    given |= ring_entries(trb.cases.paper_30310())
+    given |= ring_entries(trb.cases.paper_30310()) | elastic_entries(trb.cases.paper_30310())
     named = {
         extra["parameter"]
         for model in kinds_of(Model)

@@ -59,7 +59,9 @@ def test_run_returns_everything(short: Result) -> None:
     assert short.final_state is not None
     assert short.final_state.shape == (12 * 11 + 12 + 12 + 11,)
     assert [field.name for field in short.fields] == [
-        field.name for field in (*field_table.table(), *peak_table.table())
+        field.name
+        for field in (*field_table.table(), *peak_table.table())
+        if field.kind != "mode"  # the cage is rigid
     ]
     for name in ("steps", "rhs_evaluations", "jacobian_evaluations", "wall_s", "wall_s_per_revolution"):
         assert short.stats[name] > 0, name

@@ -48,7 +48,9 @@ def test_a_run_that_is_wrong_ends_and_says_so(tmp_path):
 def test_it_can_go_on_on_purpose():
     scene = paper_30310(500.0, 4930.0, 20_000.0)
     with pytest.warns(trb.RunWarning):
-        result = trb.Simulation(scene, when_wrong="go_on", **LOOSE).run(duration=0.012)  # the other run ended at 0.011 s
+        result = trb.Simulation(scene, when_wrong="go_on", **LOOSE).run(
+            duration=0.012
+        )  # the other run ended at 0.011 s
     assert result.success
     assert any("the energy does not add up" in text for text in result.warnings)
     assert result.warnings

@@ -78,7 +78,9 @@ def test_groups_files_and_callbacks_do_not_change_steps(
     def look(now: Simulation) -> None:
         looks.append((now.record()["time"], now.contacts()["force"], now.derivative(), now.counters, now.state))
 
-    sim.run(duration=SPANS[integrator], save_every=1e-5, save_groups=["cage"], output=tmp_path / "run.h5", callback=look)
+    sim.run(
+        duration=SPANS[integrator], save_every=1e-5, save_groups=["cage"], output=tmp_path / "run.h5", callback=look
+    )
     assert looks
     assert same(sim, wanted)
 

@@ -221,7 +221,16 @@ THEN: dict[str, list[str]] = {
 
 QUICK_C_TESTS = {
     "contacts": ("test_tangent", "test_kernels"),
-    "stepping": ("test_arrow", "test_newton", "test_kernels", "test_tangent", "test_simulation", "test_jacobian", "test_coupling", "test_ring"),
+    "stepping": (
+        "test_arrow",
+        "test_newton",
+        "test_kernels",
+        "test_tangent",
+        "test_simulation",
+        "test_jacobian",
+        "test_coupling",
+        "test_ring",
+    ),
     "records": ("test_peaks", "test_motion"),
     "motion": ("test_motion",),
     "laws": ("test_laws",),

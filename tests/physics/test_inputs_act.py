@@ -390,7 +390,7 @@ def test_nothing_is_forgotten() -> None:
         "pocket_ends",
         "pocket_edges",
     }
-    switches |= {"profile", "viscosity_law", "n_rollers", "n_slices", "ring_free", "outer_turns"}
+    switches |= {"profile", "viscosity_law", "n_rollers", "n_slices", "ring_free", "outer_turns", "cage_modes"}
     here |= OF_FREE_RINGS
     assert here | switches | set(TRACTION) | set(RIBS) | set(PROFILES) >= set(scene_entries(trb.cases.paper_30310()))
 

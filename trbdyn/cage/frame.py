@@ -79,6 +79,17 @@ class CageFrame:
                         )
         return np.stack(found)
 
+    def coriolis(self, shapes: FloatArray) -> FloatArray:
+        """Coriolis forces between motions of the frame, shape (M, M): on the first one, over the rate of the second one and the
+        angular velocity of the cage about its axis (kg). They are ``-2 u1 . (z x u2)`` summed over the mass; rotary inertia is
+        left out.
+        """
+        moves = shapes.reshape(-1, 6, shapes.shape[1])
+        carried = np.zeros_like(moves)
+        carried[:, 0], carried[:, 1] = -moves[:, 1], moves[:, 0]
+        product = shapes.T @ self.frame.mass @ carried.reshape(shapes.shape)
+        return product.T - product
+
     def loads_of_faces(self) -> FloatArray:
         """Loads at the nodes for each part of a wrench (N, N m) on each face, in the axes of its pocket, shape (6 N, 6 F)."""
         return self.at_faces.reshape(-1, self.at_faces.shape[2]).T.copy()

@@ -31,10 +31,14 @@ UNITS: Final = {
     "shape": "1, 1/m",
     "point_place": "m",
     "stress": "Pa/m",
+    "coriolis": "kg",
     "face_pocket": "1",
     "face_name": "",
     "point_name": "",
 }
+
+OPTIONAL: Final = ("coriolis",)
+"""Datasets that a file may lack."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +66,9 @@ class CageModes:
         Normal stress along the bar for a unit of amplitude (Pa/m).
     source : str
         Where the modes come from.
+    coriolis : ndarray, shape (M, M)
+        Coriolis force on the first mode, over the rate of the second one's amplitude and the angular velocity of the cage about
+        its axis (kg); row i at j is minus row j at i. Zero where it is not known.
     """
 
     frequency: FloatArray
@@ -74,9 +81,12 @@ class CageModes:
     point_place: FloatArray
     stress: FloatArray
     source: str = ""
+    coriolis: FloatArray | None = None
 
     def __post_init__(self) -> None:
         modes, faces, points = len(self.frequency), len(self.face_name), len(self.point_name)
+        if self.coriolis is None:
+            object.__setattr__(self, "coriolis", np.zeros((modes, modes)))
         for name, shape in (
             ("frequency", (modes,)),
             ("damping_ratio", (modes,)),
@@ -85,6 +95,7 @@ class CageModes:
             ("shape", (modes, faces, 6)),
             ("point_place", (points, 3)),
             ("stress", (modes, points)),
+            ("coriolis", (modes, modes)),
         ):
             values = np.asarray(getattr(self, name))
             if values.shape != shape:
@@ -94,6 +105,8 @@ class CageModes:
         if modes == 0 or not np.all(np.diff(self.frequency) >= 0.0) or not self.frequency[0] > 0.0:
             limit = "must be > 0 and rising: without the motions of a rigid body (Hz)"
             raise InputError.of("frequency", np.array2string(self.frequency, precision=4, threshold=8), limit)
+        if not np.array_equal(np.asarray(self.coriolis), -np.asarray(self.coriolis).T):
+            raise InputError.of("coriolis", "an array", "must be antisymmetric: Coriolis forces do no work (kg)")
         if not np.all(self.modal_mass > 0.0):
             raise InputError.of("modal_mass", float(np.min(self.modal_mass)), "must be > 0 (kg)")
         if not np.all((self.damping_ratio >= 0.0) & (self.damping_ratio < 1.0)):
@@ -153,6 +166,7 @@ class CageModes:
             point_name=built.corners,
             point_place=built.corner_places,
             stress=(built.stress(shapes) / largest).T,
+            coriolis=built.coriolis(shapes / largest),
             source=source,
         )
 
@@ -198,9 +212,9 @@ class CageModes:
                     raise FileError(f"{path}: is no file of cage modes: its attribute format is not '{FORMAT}'")
                 if file.attrs.get("version") != VERSION:
                     raise FileError(f"{path}: has version {file.attrs.get('version')} of the format; {VERSION} is read")
-                if missing := [name for name in UNITS if name not in file]:
+                if missing := [name for name in UNITS if name not in file and name not in OPTIONAL]:
                     raise FileError(f"{path}: lacks {', '.join(missing)}")
-                numbers = {name: file[name][()] for name in UNITS if not name.endswith("_name")}
+                numbers = {name: file[name][()] for name in UNITS if not name.endswith("_name") and name in file}
                 texts = {name: tuple(file[name].asstr()[()]) for name in UNITS if name.endswith("_name")}
                 source = str(file.attrs.get("source", ""))
         except FileError:

@@ -204,6 +204,7 @@ def scene_entries(scene: Scene) -> Entries:
         **prefixed("effects", effects_entries(scene.effects)),
         "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **ring_entries(scene),
+        **elastic_entries(scene),
     }
 
 
@@ -219,6 +220,12 @@ def ring_entries(scene: Scene) -> Entries:
         "ring_free": Entry(("ring",), 1.0 if scene.torque is None else 2.0),
         "ring_unbalance_angle": Entry(("ring_body", "unbalance_angle_deg"), math.radians(body.unbalance_angle_deg)),
     }
+
+
+def elastic_entries(scene: Scene) -> Entries:
+    """The number of an elastic cage's modes, by its name in the core's table; zero for a rigid one."""
+    modes = 0 if scene.elastic_cage is None else scene.elastic_cage.n_modes
+    return {"cage_modes": Entry(("elastic_cage", "n_modes"), modes)}
 
 
 def parameter_block(scene: Scene) -> FloatArray:

@@ -14,6 +14,7 @@ from trbdyn.base.validation import Model, unit
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.effects import Effects
+from trbdyn.model.elastic_cage import ElasticCage, check_elastic_cage
 from trbdyn.model.flatten import parameter_block
 from trbdyn.model.growth import Growth, grown_pocket, plays, running_pockets, strains
 from trbdyn.model.lubricants import OILS, Lubricant, vg100
@@ -93,6 +94,8 @@ class Scene(Model):
     growth : Growth, optional
         Temperatures of the bearing's parts, and growth of the cage by its rotation, for the plays of the pockets; without it
         all dimensions are as given.
+    elastic_cage : ElasticCage, optional
+        Natural modes by which the cage deforms; without it the cage is rigid.
     gravity : tuple of float or History, shape (3,)
         Acceleration of gravity (m/s2), each part from -1e7 to 1e7; acts if `effects.gravity`.
 
@@ -124,6 +127,7 @@ class Scene(Model):
     ring_body: RingBody | None = None
     torque: Annotated[Quantity | None, unit("N m")] = None
     growth: Growth | None = None
+    elastic_cage: ElasticCage | None = None
     gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
 
     def __init__(self, bearing: Any = MISSING, **fields: Any) -> None:
@@ -316,6 +320,7 @@ class Scene(Model):
     def _check(self) -> Self:
         self._check_motion()
         check_free_ring(self)
+        check_elastic_cage(self)
         self._check_load()
         self._check_planar()
         self._check_start()

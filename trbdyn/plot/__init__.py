@@ -21,6 +21,7 @@ from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
 from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
+from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
 from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
@@ -38,6 +39,8 @@ __all__ = [
     "axial_motion",
     "bearing_drawing",
     "cage_locus",
+    "cage_shape",
+    "cage_stress",
     "conditions",
     "contact_loads",
     "contact_map",

@@ -37,6 +37,7 @@ MEANINGS: Final[dict[str, str]] = {
     "whirl_coherence": "1: the centre goes round steadily in one sense; 0: it does not.",
     "speed_deviation_ratio": "Spread of the centre's speed over its mean: 0 for a steady circle, 0.52 for random motion.",
     "running_play_radial": "Cpr with the growth of the parts by temperature and rotation; Cpr itself stays that of the drawing.",
+    "cage_deflection": "How far the modes of an elastic cage move the middle of a pocket's face, at the records.",
     "running_play_circumferential": "Cpc with the growth of the parts by temperature and rotation.",
     "axial_over_clearance": "Mean axial place of the cage in its play; 0: against the large ends.",
     "tilt_rms": "How far the cage's axis leans.",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.cage.stress import CageStress, cage_stress
 from trbdyn.errors import InputError
 from trbdyn.model.motion import History
 from trbdyn.model.shaft import angle_turned
@@ -299,6 +300,28 @@ class Derived(ABC):
         if not any(field.group == "peaks" for field in self.fields):
             return found
         return replace(found, peak=self.peaks["pocket_force_peak"], mean=self.peaks["pocket_force_mean"])
+
+    def cage_stress(self, *, notch_factor: float = 1.0) -> CageStress:
+        """Stress at the roots of the bars of an elastic cage at every record, with cycles and damage; records must be close
+        enough to follow its vibrations.
+
+        Parameters
+        ----------
+        notch_factor : float
+            Factor of the nominal stress (1).
+
+        Raises
+        ------
+        InputError
+            If the cage is rigid, or the groups 'cage' and 'pocket' were not saved.
+        """
+        self._needs("pocket", "cage_stress")
+        if self.scene.elastic_cage is not None:
+            self._needs("cage", "cage_stress")
+            amplitude = self["cage_mode"]
+        else:
+            amplitude = np.zeros((0, 0))
+        return cage_stress(self.scene, self["time"], amplitude, self["pocket_force"], notch_factor=notch_factor)
 
     def _starting(self, prefix: str) -> dict[str, Array]:
         return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}

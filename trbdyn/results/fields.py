@@ -25,6 +25,7 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "roller_vec3": ("roller", "xyz"),
     "roller_quat": ("roller", "wxyz"),
     "pocket_face": ("roller", "slot"),
+    "mode": ("mode",),
 }
 """Names of the dimensions of each kind of field, without time."""
 
@@ -64,7 +65,7 @@ class Field:
         """Names of the dimensions of one record of this field; time comes before them."""
         return DIMENSIONS[self.kind]
 
-    def shape(self, n_rollers: int, n_slots: int) -> tuple[int, ...]:
+    def shape(self, n_rollers: int, n_slots: int, n_modes: int = 0) -> tuple[int, ...]:
         """Shape of one record of this field.
 
         Parameters
@@ -73,13 +74,15 @@ class Field:
             Number of rollers, Z.
         n_slots : int
             Number of faces of a pocket.
+        n_modes : int
+            Number of modes of an elastic cage.
 
         Returns
         -------
         tuple of int
             ``()`` for a scalar, ``(Z, 3)`` for a vector a roller, and so on.
         """
-        sizes = _FIXED_SIZES | {"roller": n_rollers, "slot": n_slots}
+        sizes = _FIXED_SIZES | {"roller": n_rollers, "slot": n_slots, "mode": n_modes}
         return tuple(sizes[dim] for dim in self.dims)
 
 

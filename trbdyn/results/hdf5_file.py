@@ -23,7 +23,7 @@ from trbdyn.results.chunks import LEVEL, packed
 from trbdyn.results.fields import DIMENSIONS, Field
 from trbdyn.results.file_format import LIBVER, SCHEMA, SCHEMA_VERSION, json_text, stored_type
 
-_LABELS = {dim for dims in DIMENSIONS.values() for dim in dims} - {"roller", "slot"}
+_LABELS = {dim for dims in DIMENSIONS.values() for dim in dims} - {"roller", "slot", "mode"}
 """Dimensions whose entries have the letters of the name as labels."""
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.base.shown import Displayed, Shown
+from trbdyn.cage.simulated import cage_modes
 from trbdyn.errors import FileError, TrbError
 from trbdyn.model.motion import is_constant
 from trbdyn.results import observables, peak_band
@@ -61,6 +62,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "axial_over_clearance": ("axial position / axial play", ""),
     "running_play_radial": ("radial play of the warm, turning cage", "m"),
     "running_play_circumferential": ("circumferential play of the warm, turning cage", "m"),
+    "cage_deflection": ("displacement of a pocket's face by the cage's deformation, largest", "m"),
     "tilt_rms": ("cage tilt, rms", "rad"),
     "lean_mean": ("tilt to the side of the cage's displacement, mean", "rad"),
     "spacing_std_deg": ("roller spacing, deviation", "deg"),
@@ -136,6 +138,8 @@ RATINGS: Final = (
 UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "whirl_radius_over_cpr", "confidence")
 """Entries that the table leaves out, as another one tells them."""
 
+RECORDS_AT_ONCE: Final = 4096
+"""Records whose deformed cages are in memory together."""
 RINGS_DIFFER: Final = 0.01
 """Share by which the torques of the two rings may differ without a word."""
 
@@ -169,7 +173,7 @@ def summary(result: Result) -> Summary:
     out |= {"revolutions": result.revolutions, "duration": result.duration}
     if len(result) > 1:
         out |= _motion(result)
-    out |= _running_plays(result.scene)
+    out |= _running_plays(result.scene) | _deflection(result)
     out |= _ratings(result.scene)
     out |= _cost(result)
     out["accuracy_note"] = result.meta.get("accuracy") or None
@@ -182,6 +186,17 @@ def _running_plays(scene: Scene) -> dict[str, Any]:
         return {}
     radial, circumferential = scene.running_plays
     return {"running_play_radial": radial, "running_play_circumferential": circumferential}
+
+
+def _deflection(result: Result) -> dict[str, Any]:
+    """Largest displacement of the middle of a face by an elastic cage's modes, at any record."""
+    if result.scene.elastic_cage is None or "cage" not in result.groups:
+        return {}
+    shape, largest = cage_modes(result.scene).shape[:, :, :3], 0.0
+    for first in range(0, len(result), RECORDS_AT_ONCE):
+        amplitude = result["cage_mode"][first : first + RECORDS_AT_ONCE]
+        largest = max(largest, float(np.linalg.norm(np.tensordot(amplitude, shape, 1), axis=2).max()))
+    return {"cage_deflection": largest}
 
 
 def _ratings(scene: Scene) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.cage.simulated import cage_modes
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
 from trbdyn.model.shaft import angle_turned
@@ -123,6 +124,11 @@ class Replay:
         }
         for name, value in values.items():
             view[f"cage_{name}"] = value  # type: ignore[index]
+        if result.scene.elastic_cage is not None:
+            speeds = 2.0 * np.pi * cage_modes(result.scene).frequency
+            rates = speeds.max() / speeds * result["cage_mode_rate"][index]
+            for mode, (amplitude, rate) in enumerate(zip(result["cage_mode"][index], rates, strict=True)):
+                view[f"cage_q{mode}"], view[f"cage_p{mode}"] = speeds.max() * amplitude, rate  # type: ignore[index]
 
     def _put_ring(self, view: StateView, index: int) -> None:
         result, body = self.result, self.result.scene.ring_body

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trbdyn import _core
+from trbdyn.cage.simulated import mode_rows
 from trbdyn.model.flatten import (
     block_of,
     diameter_deviation,
@@ -28,7 +29,9 @@ def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
         If the scene's numbers do not fit together.
     """
     try:
-        return _core.Model(parameter_block(scene), diameter_deviation(scene), face_rows(scene), instruction_set)
+        return _core.Model(
+            parameter_block(scene), diameter_deviation(scene), face_rows(scene), instruction_set, mode_rows(scene)
+        )
     except _core.CoreInputError as error:
         raise input_error_of_core(error, scene_entries(scene)) from None
 
@@ -37,5 +40,6 @@ def normal_contacts(scene: Scene) -> _core.Model:
     """The scene's model without friction and films, which act on nothing at rest and take most of the time."""
     quiet = {"lubrication": "full_film", "traction": "none", "thermal": False}
     quiet |= {"rolling_resistance": False, "rolling_pressure_force": False}
-    entries = {**scene_entries(scene), **effects_entries(scene.effects.replace(**quiet))}
+    rigid = scene.replace(elastic_cage=None)
+    entries = {**scene_entries(rigid), **effects_entries(scene.effects.replace(**quiet))}
     return _core.Model(block_of(entries), diameter_deviation(scene), face_rows(scene))

@@ -27,7 +27,18 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SOURCES: Final = ("rolling", "rib", "traction", "pocket", "drag", "land", "front_rib", "damping", "support")
+SOURCES: Final = (
+    "rolling",
+    "rib",
+    "traction",
+    "pocket",
+    "drag",
+    "land",
+    "front_rib",
+    "damping",
+    "support",
+    "vibration",
+)
 """Names of the shares of a torque. What a run calls rolling_pressure belongs to rolling, both raceways make traction, film and
 contact of a land are one."""
 FILMS: Final = ("film_parameter_inner", "film_parameter_rib")

@@ -1,0 +1,75 @@
+"""Variants of a scene beside each other in one run: time, steps, and error of the cage's centre."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from trbdyn import Scene, Simulation, Start
+from trbdyn.run.options import Tolerances
+
+SHOWN = ("ms_per_turn", "steps_per_turn", "evaluations_per_turn", "error", "time_ratio")
+COLUMNS = {
+    "ms_per_turn": "ms: processor time of the steps of a turn of the shaft, mean of the pieces",
+    "steps_per_turn": "1: steps a turn",
+    "evaluations_per_turn": "1: evaluations of the equations of motion a turn",
+    "error": "1: largest error of the cage's centre within a window, over Cpr, mean of the windows",
+    "time_ratio": "1: time over that of the first variant",
+}
+WINDOWS = 16
+"""States of each run from which its error is measured."""
+WINDOW = 3e-3
+"""Bearing time of the comparison with tight tolerances (s)."""
+TIGHTER = 50.0
+"""Factor of the tight tolerances."""
+
+
+def advance(simulation: Simulation, duration: float) -> float:
+    """Step on for some bearing time (s); gives the processor time (s)."""
+    end, begin = simulation.time + duration, time.process_time()
+    while simulation.time < end:
+        simulation.step()
+    return time.process_time() - begin
+
+
+def error_of(scene: Scene, simulation: Simulation) -> float:
+    """Largest error of the cage's centre over Cpr within the window from the simulation's state on."""
+    start = scene.replace(start=Start.state(simulation.state))
+    usual = simulation.options.tolerances.to_dict()
+    paths = []
+    for factor in (1.0, 1.0 / TIGHTER):
+        finer = Simulation(start, **{name: factor * usual[name] for name in Tolerances.model_fields})
+        paths.append(finer.run(duration=WINDOW, save_every=WINDOW / 30)["cage_position"])
+    return float(np.max(np.abs(paths[1] - paths[0])) / scene.bearing.cage.play_radial)
+
+
+def rows_of(variants: Mapping[str, Scene], pieces: int) -> dict[str, dict[str, Any]]:
+    """Every variant of a scene, pieces of a quarter of a turn in turns; the first one is what the others are compared with."""
+    first = next(iter(variants))
+    quarter = 15.0 / float(variants[first].speed_rpm)
+    sims = {name: Simulation(scene) for name, scene in variants.items()}
+    for sim in sims.values():
+        advance(sim, 8 * quarter)
+    before = {name: sim.statistics for name, sim in sims.items()}
+    taken: dict[str, list[float]] = {name: [] for name in sims}
+    errors: dict[str, list[float]] = {name: [] for name in sims}
+    every = max(pieces // WINDOWS, 1)
+    for piece in range(pieces):
+        for name, sim in sims.items():
+            taken[name].append(advance(sim, quarter))
+            if piece % every == every - 1:
+                errors[name].append(error_of(sim.scene, sim))
+    out = {}
+    for name, sim in sims.items():
+        now, turns = sim.statistics, pieces / 4
+        out[name] = {
+            "ms_per_turn": 4e3 * float(np.mean(taken[name])),
+            "steps_per_turn": (now["steps"] - before[name]["steps"]) / turns,
+            "evaluations_per_turn": (now["rhs_evaluations"] - before[name]["rhs_evaluations"]) / turns,
+            "error": float(np.mean(errors[name])),
+            "time_ratio": float(np.sum(taken[name]) / np.sum(taken[first])),
+        }
+    return out

@@ -1,0 +1,66 @@
+"""What an elastic cage costs: time, steps and error of the cage beside those of a rigid one, in one run, in turns.
+
+    python benchmarks/elastic_cage.py [--quick] [--json FILE]
+
+Scenes of the 30310 with a cage of steel and of PA66-GF25, rigid and with some numbers of modes. Time is processor time of the
+steps alone, of pieces of bearing time that all of them take in turns. The error is that of the cage's centre after a few
+milliseconds from a state in the middle of the run, against a fiftieth of the tolerances; it is measured for each cage beside
+itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import beside
+import common
+
+from trbdyn import Cage, ElasticCage, Material, Scene, Start, cases
+
+SHOWN = ("scene", "modes", *beside.SHOWN)
+COLUMNS = {
+    "scene": "text: what turns",
+    "modes": "1: natural modes of the cage; 0: it is rigid",
+    **beside.COLUMNS,
+    "ratio_20": "1: time_ratio of the colliding cage of steel with 20 modes",
+}
+MODES = (0, 6, 20, 40)
+
+
+def scenes() -> dict[str, Scene]:
+    """What is run, with rigid cages."""
+    rig, body = cases.rig_30310(), cases.cage_body_30310()
+    plays = {"play_radial": rig.cage.play_radial, "play_circumferential": rig.cage.play_circumferential}
+    steel, plastic = (
+        rig.replace(cage=Cage(**plays, body=body, material=material))
+        for material in (Material.steel(), Material.polyamide())
+    )
+    return {
+        "colliding cage": Scene(steel, speed_rpm=3000.0, axial_load=4930.0, start=Start.whirl(0.9)),
+        "combined load": Scene(steel, speed_rpm=3000.0, axial_load=4930.0, radial_load=5530.0),
+        "colliding cage, PA66": Scene(plastic, speed_rpm=3000.0, axial_load=4930.0, start=Start.whirl(0.9)),
+    }
+
+
+def main(arguments: Sequence[str] | None = None) -> common.Report:
+    """Run it."""
+    parser = common.parser(__doc__)
+    parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
+    options = parser.parse_args(arguments)
+    report = common.Report("elastic_cage", options, COLUMNS)
+    for name, scene in scenes().items():
+        variants = {
+            str(count): scene.replace(elastic_cage=ElasticCage(n_modes=count) if count else None) for count in MODES
+        }
+        for count, row in beside.rows_of(variants, 1 if options.smoke else 16 if options.quick else 160).items():
+            report.add(scene=name, modes=int(count), **row)
+    rows = {(row["scene"], row["modes"]): row for row in report.results}
+    report.summary["ratio_20"] = rows["colliding cage", 20]["time_ratio"]
+    report.readme = common.table(report.results, SHOWN)
+    print(report.readme)
+    report.finish()
+    return report
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,105 @@
+#include "bearing/modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "bearing/model.h"
+
+static double *doubles(size_t count) { return trb_zeros(count, sizeof(double)); }
+
+static int allocate(trb_modes *to, size_t n_faces)
+{
+  const size_t n = (size_t)to->n;
+  to->frequency = doubles(n);
+  to->damping = doubles(n);
+  to->mass = doubles(n);
+  to->share = doubles(n);
+  to->yield = doubles(n);
+  to->coriolis = doubles(n * n);
+  to->shapes = doubles(n_faces * n * TRB_SHAPE + 1);
+  to->middle = trb_zeros(n_faces + 1, sizeof *to->middle);
+  return to->frequency != NULL && to->damping != NULL && to->mass != NULL && to->share != NULL && to->yield != NULL &&
+         to->coriolis != NULL && to->shapes != NULL && to->middle != NULL;
+}
+
+/* Mean of the vertices. */
+static trb_vec3 middle_of(const trb_polygon *p)
+{
+  trb_vec3 sum = {0, 0, 0};
+  for (int i = 0; i < p->n; i++) sum = trb_add(sum, trb_polygon_vertex(p, i));
+  return trb_scale(1.0 / p->n, sum);
+}
+
+static trb_status check_row(const double *row, int mode, int n_columns, trb_message *message)
+{
+  for (int i = 0; i < n_columns; i++)
+    if (!isfinite(row[i])) return trb_fail(message, TRB_ERR_INPUT, "mode %d of the cage: column %d is not finite", mode, i);
+  if (!(row[TRB_MODE_frequency] > 0.0) || !(row[TRB_MODE_mass] > 0.0))
+    return trb_fail(message, TRB_ERR_INPUT, "mode %d of the cage: frequency = %g rad/s and modal mass = %g kg must be > 0", mode,
+                    row[TRB_MODE_frequency], row[TRB_MODE_mass]);
+  if (!(row[TRB_MODE_damping] >= 0.0 && row[TRB_MODE_damping] < 1.0))
+    return trb_fail(message, TRB_ERR_INPUT, "mode %d of the cage: damping = %g: must be >= 0 and < 1", mode, row[TRB_MODE_damping]);
+  return TRB_OK;
+}
+
+trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, int n_columns, trb_message *message)
+{
+  trb_modes *to = &m->modes;
+  const int  shapes_end = TRB_MODE_shapes + TRB_SHAPE * m->n_rollers * m->n_slots, columns = shapes_end + n_modes;
+  const int  n_faces = m->first_face[m->n_rollers];
+  if (n_modes != (int)m->params.cage_modes)
+    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", m->params.cage_modes, n_modes);
+  if (n_modes == 0) return TRB_OK;
+  if (n_columns != columns) return trb_fail(message, TRB_ERR_INPUT, "modes: %d columns needed, %d given", columns, n_columns);
+  for (int i = 0; i < n_modes; i++) {
+    const trb_status status = check_row(rows + (size_t)i * (size_t)n_columns, i, n_columns, message);
+    if (status != TRB_OK) return status;
+  }
+  for (int i = 0; i < n_modes; i++)
+    for (int k = 0; k <= i; k++) {
+      const double one = rows[(size_t)i * (size_t)n_columns + (size_t)(shapes_end + k)];
+      const double other = rows[(size_t)k * (size_t)n_columns + (size_t)(shapes_end + i)];
+      if (one + other != 0.0)
+        return trb_fail(message, TRB_ERR_INPUT, "modes %d and %d of the cage: Coriolis forces = %g and %g kg: must be opposite", i, k, one,
+                        other);
+    }
+  trb_modes_free(to);
+  to->n = n_modes;
+  if (!allocate(to, (size_t)n_faces)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d modes of the cage", n_modes);
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
+      const int at = TRB_MODE_shapes + TRB_SHAPE * (j * m->n_slots + m->faces[f].slot);
+      double   *shapes = to->shapes + (size_t)f * (size_t)n_modes * TRB_SHAPE;
+      to->middle[f] = middle_of(&m->faces[f].surface);
+      for (int i = 0; i < n_modes; i++)
+        memcpy(shapes + (size_t)i * TRB_SHAPE, rows + (size_t)i * (size_t)n_columns + at, TRB_SHAPE * sizeof *shapes);
+    }
+  for (int i = 0; i < n_modes; i++) {
+    const double *row = rows + (size_t)i * (size_t)n_columns, w = row[TRB_MODE_frequency];
+    to->frequency[i] = w;
+    to->damping[i] = 2.0 * row[TRB_MODE_damping] * w;
+    to->mass[i] = row[TRB_MODE_mass];
+    to->fastest = fmax(to->fastest, w);
+    for (int k = 0; k < n_modes; k++) to->coriolis[k * n_modes + i] = row[shapes_end + k];
+  }
+  for (int i = 0; i < n_modes; i++) {
+    to->share[i] = to->frequency[i] / to->fastest;
+    to->yield[i] = 1.0 / (to->share[i] * to->mass[i]);
+  }
+  return TRB_OK;
+}
+
+void trb_modes_free(trb_modes *modes)
+{
+  free(modes->frequency);
+  free(modes->damping);
+  free(modes->mass);
+  free(modes->share);
+  free(modes->yield);
+  free(modes->coriolis);
+  free(modes->shapes);
+  free(modes->middle);
+  *modes = (trb_modes){0};
+}

@@ -1,0 +1,110 @@
+#include "body/elastic_cage.h"
+
+#include <string.h>
+
+static int place_of(int mode) { return TRB_CAGE_SIZE + 2 * mode; }
+
+static int amplitude_of(const trb_body *body, int mode, double per[2])
+{
+  per[0] = 1.0 / body->modes->fastest;
+  per[1] = body->modes->share[mode];
+  return place_of(mode);
+}
+
+static void pose_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
+{
+  const trb_modes *modes = body->modes;
+  trb_body_cage.pose(m, body, drive, y, pose);
+  pose->moving = pose->stored = pose->lost = 0.0;
+  for (int i = 0; i < modes->n; i++) {
+    const double per = modes->share[i], stretch = per * y[place_of(i)], rate = per * y[place_of(i) + 1];
+    pose->moving += 0.5 * modes->mass[i] * rate * rate;
+    pose->stored += 0.5 * modes->mass[i] * stretch * stretch;
+    pose->lost += modes->mass[i] * modes->damping[i] * rate * rate;
+  }
+}
+
+static void pushed(const trb_body *body, const double *force, double *rates)
+{
+  const trb_modes *modes = body->modes;
+  for (int i = 0; i < modes->n; i++) rates[place_of(i) + 1] += force[i] * modes->yield[i];
+}
+
+/* Of each mode, over the angular velocity. */
+static void coriolis(const trb_modes *modes, const double *y, double *force)
+{
+  const double *column = modes->coriolis;
+  memset(force, 0, (size_t)modes->n * sizeof *force);
+  for (int k = 0; k < modes->n; k++, column += modes->n) {
+    const double rate = modes->share[k] * y[place_of(k) + 1];
+    for (int i = 0; i < modes->n; i++) force[i] += column[i] * rate;
+  }
+}
+
+static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *c, const double *y,
+                     const trb_wrench *load, double *rates)
+{
+  const trb_modes *modes = body->modes;
+  trb_body_cage.rates(m, body, drive, c, y, load, rates);
+  double force[TRB_MOST_MODES];
+  coriolis(modes, y, force);
+  for (int i = 0; i < modes->n; i++) {
+    const int at = place_of(i);
+    rates[at] = modes->frequency[i] * y[at + 1];
+    rates[at + 1] = -modes->frequency[i] * y[at] - modes->damping[i] * y[at + 1];
+    force[i] *= c->omega_frame.z;
+  }
+  pushed(body, force, rates);
+}
+
+static void deform(const trb_body *body, const double *y, trb_deformed *deformed)
+{
+  const double per = 1.0 / body->modes->fastest;
+  for (int i = 0; i < body->modes->n; i++) {
+    deformed->amplitude[i] = per * y[place_of(i)];
+    deformed->rate[i] = body->modes->share[i] * y[place_of(i) + 1];
+  }
+}
+
+/* Of the mean axes. */
+static trb_rigid motion_of(const trb_rigid_pose *pose, int coordinate)
+{
+  if (coordinate < TRB_CAGE_SIZE) return trb_body_cage.motion(pose, coordinate);
+  return (trb_rigid){{0, 0, 0}, {0, 0, 0}};
+}
+
+static double mass_of(const trb_model *m, const trb_body *body) { return trb_body_cage.mass(m, body); }
+
+static double kinetic_of(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose)
+{
+  return trb_body_cage.kinetic(m, body, pose);
+}
+
+#define RIGID(name, kind, text) {#name, TRB_TOL_##kind, text},
+#define MODE(number) \
+  {"q" #number, TRB_TOL_VELOCITY, "amplitude of mode " #number " times the largest angular frequency, m/s"}, \
+      {"p" #number, TRB_TOL_VELOCITY, "rate of its amplitude times that over its own angular frequency, m/s"},
+#define TEN(t) MODE(t##0) MODE(t##1) MODE(t##2) MODE(t##3) MODE(t##4) MODE(t##5) MODE(t##6) MODE(t##7) MODE(t##8) MODE(t##9)
+static const trb_coordinate coordinates[TRB_CAGE_SIZE + 2 * TRB_MOST_MODES] = {TRB_CAGE_STATE(RIGID) TEN() TEN(1) TEN(2) TEN(3) TEN(4)
+                                                                                   TEN(5) TEN(6) TEN(7) TEN(8) TEN(9)};
+#undef RIGID
+#undef MODE
+#undef TEN
+
+const trb_body_kind trb_body_elastic_cage = {.name = "elastic cage",
+                                             .skew = TRB_CAGE_skew,
+                                             .loses = 1,
+                                             .pose = pose_of,
+                                             .rates = rates_of,
+                                             .motion = motion_of,
+                                             .mass = mass_of,
+                                             .kinetic = kinetic_of,
+                                             .deform = deform,
+                                             .pushed = pushed,
+                                             .amplitude = amplitude_of};
+
+trb_body trb_elastic_cage_of(const trb_modes *modes, const char *name)
+{
+  return (trb_body){
+      .kind = &trb_body_elastic_cage, .name = name, .size = TRB_CAGE_SIZE + 2 * modes->n, .coordinates = coordinates, .modes = modes};
+}

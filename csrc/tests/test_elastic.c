@@ -1,0 +1,260 @@
+/* The elastic cage: contacts, energies, clearances and the Jacobian know how it is deformed. */
+#include <stdlib.h>
+
+#include "body/elastic_cage.h"
+#include "check.h"
+#include "motion/audit.h"
+#include "rig.h"
+#include "stepping/jacobian.h"
+
+enum { ROOM = 600 };
+
+static unsigned long long seed = 77;
+
+static trb_params params_of(int n)
+{
+  trb_params p = rig_params();
+  p.cage_modes = n;
+  return p;
+}
+
+static int mode_at(const trb_system *system, int mode) { return rig_cage(system) + TRB_CAGE_SIZE + 2 * mode; }
+
+/* Amplitudes of micrometres and their rates, on top of a disturbed state in which pockets touch. */
+static void disturb(const trb_system *system, double amplitude, double *y)
+{
+  rig_disturb(system, &seed, y);
+  for (int i = 0; i < system->model->modes.n; i++) {
+    y[mode_at(system, i)] += 1e4 * amplitude * rig_random(&seed);
+    y[mode_at(system, i) + 1] += 1e4 * amplitude * rig_random(&seed);
+  }
+}
+
+typedef struct bench {
+  trb_system   *system;
+  trb_motion   *motion;
+  trb_dynamics *d;
+  double        start[ROOM];
+} bench;
+
+static bench set_up(const trb_params *p)
+{
+  bench b = {.system = rig_system(p)};
+  b.motion = rig_motion(rig_state(b.system, 4930.0, 100 * TRB_PI, b.start), 100 * TRB_PI);
+  if (trb_state_size(b.system) > ROOM || trb_dynamics_create(b.system, b.motion, "scalar", &b.d, NULL) != TRB_OK) exit(1);
+  return b;
+}
+
+static void take_down(bench *b)
+{
+  trb_dynamics_free(b->d);
+  trb_motion_free(b->motion);
+  rig_free(b->system);
+}
+
+static void test_refused(void)
+{
+  trb_params  p = params_of(2);
+  trb_model  *m = rig_model(&p);
+  trb_system *system;
+  trb_message message = {TRB_OK, ""};
+  trb_face    faces[RIG_FACES];
+  double      deviation[12] = {0};
+  int         columns;
+  double     *rows = rig_modes(m, &columns);
+  CHECK(trb_system_tapered(m, &system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "cage_modes = 2: 0 modes are given");
+  CHECK(trb_model_set_modes(m, rows, 1, columns, &message) == TRB_ERR_INPUT);
+  CHECK(trb_model_set_modes(m, rows, 2, columns - 1, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "columns needed");
+  for (int at = 0; at <= TRB_MODE_shapes; at++) {
+    const double was = rows[columns + at];
+    rows[columns + at] = at < TRB_MODE_shapes ? -1.0 : (double)NAN;
+    CHECK(trb_model_set_modes(m, rows, 2, columns, &message) == TRB_ERR_INPUT);
+    CHECK_SAYS(message.text, "mode 1 of the cage");
+    rows[columns + at] = was;
+  }
+  rows[columns - 1] = 0.1; /* a force of a mode on itself */
+  CHECK(trb_model_set_modes(m, rows, 2, columns, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "must be opposite");
+  rows[2 * columns - 1] = rows[columns - 1] = 0.0;
+  rows[columns - 1] = -rows[2 * columns - 2];
+  CHECK(trb_model_set_modes(m, rows, 2, columns, &message) == TRB_OK);
+  free(rows);
+  trb_model_free(m);
+  rig_faces(&p, faces);
+  p.planar = 1;
+  CHECK(trb_model_create(&p, deviation, 12, faces, RIG_FACES, &m, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "planar");
+}
+
+/* Where the amplitudes are zero and at rest, rollers and the rigid motion have the rates that they have beside a rigid cage. */
+static void test_undeformed(void)
+{
+  trb_params p = params_of(0);
+  bench      rigid = set_up(&p);
+  p.cage_modes = 3;
+  bench  soft = set_up(&p);
+  double y[ROOM] = {0}, rates[2][ROOM];
+  int    pushed = 0;
+  memcpy(y, rigid.start, sizeof y);
+  rig_disturb(rigid.system, &seed, y);
+  trb_rhs(rigid.d, NULL, 0.01, y, rates[0]);
+  const int n = trb_state_main_size(rigid.system);
+  memset(y + n, 0, (ROOM - (size_t)n) * sizeof *y);
+  trb_rhs(soft.d, NULL, 0.01, y, rates[1]);
+  for (int i = 0; i < n; i++) CHECK_NEAR(rates[1][i], rates[0][i], 1e-12 * fabs(rates[0][i]) + 1e-9);
+  for (int i = 0; i < 3; i++) pushed += fabs(rates[1][mode_at(soft.system, i) + 1]) > 1.0;
+  CHECK(pushed == 3);
+  take_down(&rigid);
+  take_down(&soft);
+}
+
+static double energy_at(trb_dynamics *d, const double *y)
+{
+  trb_dynamics_pose(d, 0.01, y);
+  trb_dynamics_loads(d, NULL);
+  return trb_audit_kinetic(d) + trb_audit_elastic(d);
+}
+
+/* What forces on rollers, on the rigid cage and on its modes do is what energies and losses say, at any state: action is reaction. */
+static void test_power(int n, double amplitude, double lubrication, double damping)
+{
+  trb_params p = params_of(n);
+  p.lubrication = lubrication, p.damping = damping;
+  bench b = set_up(&p);
+  for (int trial = 0; trial < 20; trial++) {
+    double       y[ROOM] = {0}, rates[ROOM], near[2][ROOM] = {{0}}, power = 0.0, size = 1.0;
+    const double h = 1e-9;
+    memcpy(y, b.start, sizeof y);
+    disturb(b.system, amplitude, y);
+    trb_rhs(b.d, NULL, 0.01, y, rates);
+    for (int side = 0; side < 2; side++)
+      for (int i = 0; i < trb_state_main_size(b.system); i++) near[side][i] = y[i] + (side == 0 ? -h : h) * rates[i];
+    const double change = (energy_at(b.d, near[1]) - energy_at(b.d, near[0])) / (2.0 * h), *q = rates + trb_state_quadrature(b.system);
+    power = q[TRB_Q_work_shaft] + q[TRB_Q_work_ring] + q[TRB_Q_work_gravity];
+    for (int k = 0; k < b.system->model->n_losses; k++) power -= q[TRB_Q_losses + k], size += fabs(q[TRB_Q_losses + k]);
+    CHECK(q[TRB_Q_loss_vibration] > 0.0);
+    /* what acts on the modes is of the size of what it does to the bodies */
+    for (int i = 0; i < n; i++) {
+      const int    at = mode_at(b.system, i) + 1;
+      const double share = b.system->model->modes.share[i];
+      size += fabs(b.system->model->modes.mass[i] * share * share * rates[at] * y[at]);
+    }
+    CHECK_NEAR(change, power, 1e-6 * size);
+  }
+  take_down(&b);
+}
+
+static void test_jacobian(int n, double amplitude, double most, double tolerance)
+{
+  const trb_params p = params_of(n);
+  bench            b = set_up(&p);
+  trb_jacobian    *jac;
+  trb_arrow       *a;
+  if (!CHECK(trb_jacobian_create(b.system, b.motion, "scalar", &jac, NULL) == TRB_OK)) return;
+  if (!CHECK(trb_arrow_create(b.system->model->n_rollers, b.system->layout.hub_width, &a, NULL) == TRB_OK)) return;
+  for (int trial = 0; trial < 5; trial++) {
+    double y[ROOM] = {0};
+    memcpy(y, b.start, sizeof y);
+    disturb(b.system, amplitude, y);
+    rig_draw_back(b.d, most, b.start, y);
+    trb_jacobian_fill(jac, 0.01, y, 1, a);
+    CHECK_NEAR(rig_jacobian_error(&b.d, 1, a, 0.01, y), 0.0, tolerance);
+  }
+  trb_arrow_free(a);
+  trb_jacobian_free(jac);
+  take_down(&b);
+}
+
+/* A proof that a roller touches nothing holds wherever the modes move the faces. */
+static void test_clearance(void)
+{
+  const trb_params p = params_of(4);
+  bench            b = set_up(&p);
+  const trb_model *m = b.system->model;
+  int              held = 0, touched = 0, free_of = 0;
+  for (int trial = 0; trial < 40; trial++) {
+    double y[ROOM], direction[4], first[ROOM];
+    memcpy(first, b.start, sizeof first);
+    first[rig_cage(b.system) + TRB_CAGE_z] = 2e-4; /* between the ends of the rollers */
+    for (int i = 0; i < 4; i++) {
+      direction[i] = rig_random(&seed);
+      first[mode_at(b.system, i)] = 0.2 * rig_random(&seed);
+    }
+    trb_dynamics_forget(b.d);
+    for (int j = 0; j < m->n_rollers; j++) {
+      trb_load load = {0};
+      trb_dynamics_pose(b.d, 0.0, first);
+      const trb_gaps gaps = trb_dynamics_touch(b.d, 0, j, first, &load, NULL, NULL);
+      free_of += trb_gaps_clear(&gaps);
+      memcpy(y, first, sizeof y);
+      for (int step = 0; step < 200; step++) {
+        trb_counters counters = {0};
+        for (int i = 0; i < 4; i++) y[mode_at(b.system, i)] = first[mode_at(b.system, i)] + 0.02 * step * direction[i];
+        const int clear = trb_dynamics_near(b.d, j, y) == 0;
+        trb_dynamics_pose(b.d, 0.0, y);
+        const trb_instant at = trb_dynamics_instant(b.d);
+        trb_load          now = {0};
+        (void)trb_contact_pocket_of(m, &b.system->pairs[TRB_PAIR_pocket], &at, j, &counters, &now, NULL, NULL);
+        const int touches = counters.pocket_nodes > 0;
+        held += clear;
+        touched += touches;
+        CHECK(!(clear && touches));
+        CHECK(clear == (trb_dynamics_gap_left(b.d, 0, j, y) > 0.0));
+      }
+    }
+  }
+  CHECK(free_of > 100 && held > 1000 && touched > 100);
+  take_down(&b);
+}
+
+static double balance(const bench *b, double time, const double *y)
+{
+  const double *q = y + trb_state_quadrature(b->system);
+  trb_dynamics_pose(b->d, time, y);
+  trb_dynamics_loads(b->d, NULL);
+  double sum = trb_audit_kinetic(b->d) + trb_audit_elastic(b->d) - q[TRB_Q_work_shaft] - q[TRB_Q_work_ring] - q[TRB_Q_work_gravity];
+  for (int k = 0; k < b->system->model->n_losses; k++) sum += q[TRB_Q_losses + k];
+  return sum;
+}
+
+/* A cage that rings and knocks against its rollers: the audit closes. */
+static void test_steps(const char *method)
+{
+  trb_params p = params_of(4);
+  p.damping = 1;
+  bench           b = set_up(&p);
+  trb_settings    settings = rig_settings();
+  trb_message     message = {TRB_OK, ""};
+  trb_simulation *sim;
+  settings.rtol = 1e-7, settings.atol_position = 1e-13, settings.atol_velocity = 1e-8, settings.atol_angle = 1e-11,
+  settings.atol_spin = 1e-6;
+  for (int i = 0; i < 4; i++) b.start[mode_at(b.system, i)] = 0.8;
+  if (!CHECK(trb_simulation_create(b.system, b.motion, method, "", &settings, 0.0, b.start, &sim, &message) == TRB_OK)) return;
+  const double before = balance(&b, 0.0, sim->integrator.y);
+  while (sim->integrator.time < 1e-3)
+    if (!CHECK(trb_simulation_step(sim, &message) == TRB_OK)) break;
+  const double *end = sim->integrator.y, lost = end[trb_state_quadrature(b.system) + TRB_Q_loss_vibration];
+  CHECK(lost > 0.02);
+  CHECK(end[trb_state_quadrature(b.system) + TRB_Q_loss_pocket] > 0.0);
+  CHECK_NEAR(balance(&b, sim->integrator.time, end), before, 1e-3 * lost);
+  trb_simulation_free(sim);
+  take_down(&b);
+}
+
+int main(void)
+{
+  test_refused();
+  test_undeformed();
+  test_power(4, 2e-5, 2, 1);
+  test_power(4, 2e-5, 0, 0);
+  test_power(2, 1e-4, 2, 0);
+  test_jacobian(1, 1e-5, 20.0, 0.02);
+  test_jacobian(4, 1e-5, 20.0, 0.05);
+  test_jacobian(4, 1e-5, INFINITY, 0.1);
+  test_clearance();
+  test_steps("bdf");
+  test_steps("erk");
+  return check_report();
+}

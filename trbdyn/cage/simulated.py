@@ -1,0 +1,121 @@
+"""The modes that a scene's elastic cage deforms by, as the core takes them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.cage.frame import CageFrame, cage_frame
+from trbdyn.cage.modes import CageModes
+from trbdyn.errors import InputError
+from trbdyn.model.elastic_cage import ElasticCage, digest_of
+
+if TYPE_CHECKING:
+    from trbdyn.model.bearing import Bearing
+    from trbdyn.model.scene import Scene
+
+FloatArray = NDArray[np.float64]
+
+
+def cage_modes(scene: Scene) -> CageModes:
+    """The modes by which the cage of a scene deforms.
+
+    Raises
+    ------
+    InputError
+        If the scene's cage is rigid, or has fewer modes than are asked for.
+    FileError
+        If a file of modes cannot be read, or is another one than when the scene was made.
+    """
+    if scene.elastic_cage is None:
+        raise InputError.of("elastic_cage", None, "must be given: the cage of this scene is rigid")
+    return _modes(scene.bearing, scene.elastic_cage)
+
+
+@lru_cache(maxsize=8)
+def _modes(bearing: Bearing, elastic: ElasticCage) -> CageModes:
+    if elastic.file is not None:
+        found = CageModes.load(elastic.file)
+        if digest_of(elastic.file) != elastic.file_sha256:
+            path = ("elastic_cage", "file_sha256")
+            raise InputError.of(path, elastic.file_sha256, f"must be that of {elastic.file}, which has changed since")
+        ratio = found.damping_ratio
+    else:
+        built, frequency, shapes = _natural(bearing, elastic)
+        given = bearing.cage_material.damping_ratio if elastic.damping_ratio is None else elastic.damping_ratio
+        assert given is not None  # the scene has checked it
+        source = f"frame of beams, cage of {bearing.name}"
+        found = CageModes.of_shapes(built, frequency, shapes, given, source)
+        ratio = found.damping_ratio
+    if elastic.n_modes > len(found.frequency):
+        limit = f"must be <= {len(found.frequency)}: {elastic.file} has no more modes"
+        raise InputError.of(("elastic_cage", "n_modes"), elastic.n_modes, limit)
+    if elastic.damping_ratio is not None:
+        ratio = np.full(len(found.frequency), elastic.damping_ratio)
+    count = elastic.n_modes
+    return replace(
+        found,
+        frequency=found.frequency[:count],
+        damping_ratio=ratio[:count],
+        modal_mass=found.modal_mass[:count],
+        shape=found.shape[:count],
+        stress=found.stress[:count],
+        coriolis=None if found.coriolis is None else found.coriolis[:count, :count],
+    )
+
+
+@lru_cache(maxsize=8)
+def _natural(bearing: Bearing, elastic: ElasticCage) -> tuple[CageFrame, FloatArray, FloatArray]:
+    built = cage_frame(bearing, rim_elements=elastic.rim_elements, bar_elements=elastic.bar_elements)
+    return built, *built.frame.natural(elastic.n_modes)
+
+
+def frame_displacements(scene: Scene, amplitude: FloatArray) -> tuple[CageFrame, FloatArray]:
+    """The frame of beams of a scene's cage, and the displacements of its nodes (m), shape (N, 3), at amplitudes of its modes (m).
+
+    Raises
+    ------
+    InputError
+        If the scene's cage is rigid, or its modes come from a file.
+    """
+    modes = cage_modes(scene)
+    elastic = scene.elastic_cage
+    assert elastic is not None  # cage_modes has looked
+    if elastic.file is not None:
+        raise InputError.of(
+            ("elastic_cage", "file"), elastic.file, "must not be given: its modes have no frame of beams"
+        )
+    built, _, shapes = _natural(scene.bearing, elastic)
+    scaled = shapes * np.sqrt(modes.modal_mass)  # of unit modal mass before
+    return built, (scaled @ amplitude).reshape(-1, 6)[:, :3]
+
+
+def mode_rows(scene: Scene) -> FloatArray:
+    """Modes as the core takes them, shape (M, C): frequency (rad/s), damping ratio, modal mass (kg), then the shapes at each slot
+    of each pocket and the Coriolis forces; no rows for a rigid cage.
+
+    Raises
+    ------
+    InputError
+        If the modes do not know a face of a pocket.
+    """
+    if scene.elastic_cage is None:
+        return np.zeros((0, 1))
+    modes, bearing = cage_modes(scene), scene.bearing
+    places = {key: place for place, key in enumerate(zip(modes.face_pocket, modes.face_name, strict=True))}
+    faces = [(pocket, face) for pocket in range(bearing.n_rollers) for face in bearing.pocket_of(pocket).faces]
+    slots = 1 + max(face.slot for _, face in faces)
+    shapes = np.zeros((len(modes.frequency), bearing.n_rollers, slots, 6))
+    for pocket, face in faces:
+        place = places.get((pocket, face.name))
+        if place is None:
+            limit = f"must have shapes at face '{face.name}' of pocket {pocket}, as the bearing has it"
+            raise InputError.of(("elastic_cage", "file"), modes.source, limit)
+        shapes[:, pocket, face.slot] = modes.shape[:, place]
+    assert modes.coriolis is not None  # zeros where it is not known
+    head = np.stack([2.0 * np.pi * modes.frequency, modes.damping_ratio, modes.modal_mass], axis=1)
+    return np.ascontiguousarray(np.hstack([head, shapes.reshape(len(head), -1), modes.coriolis]))

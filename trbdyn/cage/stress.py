@@ -1,0 +1,184 @@
+"""Stress at the roots of a cage's bars over time, its cycles and their damage
+(docs/theory/cage.md#stress-at-the-roots-of-the-bars).
+
+Modes that are left out of a simulation hardly move the cage, but they carry most of the stress near a force: for a force on a
+bar, the lowest 20 give half of it. They follow the force without delay, so their part is static: what the frame of beams carries
+under the recorded forces of the pockets, less what the modes that move would carry at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.cage.modes import CageModes
+from trbdyn.cage.simulated import cage_modes, frame_displacements
+from trbdyn.errors import InputError
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class CageStress:
+    """Normal stress along the bars at their roots.
+
+    Attributes
+    ----------
+    time : ndarray, shape (T,)
+        Times (s).
+    stress : ndarray, shape (T, P)
+        Nominal stress times the notch factor (Pa).
+    point_name : tuple of str, length P
+        Names of the points.
+    point_place : ndarray, shape (P, 3)
+        Where they are in the cage's frame (m).
+    is_complete : bool
+        Whether the static part of the modes that are left out is in it; it is not where the modes come from a file.
+    """
+
+    time: FloatArray
+    stress: FloatArray
+    point_name: tuple[str, ...]
+    point_place: FloatArray
+    is_complete: bool
+
+    @property
+    def worst(self) -> tuple[str, float, float]:
+        """Name of the point with the largest stress by magnitude, its time (s), and the stress (Pa)."""
+        at, point = np.unravel_index(int(np.argmax(np.abs(self.stress))), self.stress.shape)
+        return self.point_name[point], float(self.time[at]), float(self.stress[at, point])
+
+    def damage(self, *, reference_range: float, reference_cycles: float, slope: float) -> FloatArray:
+        """Damage by Miner's sum at every point, shape (P,), from rainflow cycles and the S-N line N = Nr (S/Sr)^-k; 1: broken.
+
+        Parameters
+        ----------
+        reference_range : float
+            Sr, a range of stress (Pa), twice the amplitude.
+        reference_cycles : float
+            Nr, the cycles that it can be borne.
+        slope : float
+            k.
+
+        Raises
+        ------
+        InputError
+            If a number is not above 0.
+        """
+        for name, value in (
+            ("reference_range", reference_range),
+            ("reference_cycles", reference_cycles),
+            ("slope", slope),
+        ):
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError.of(name, value, "must be > 0")
+        found = np.zeros(self.stress.shape[1])
+        for point in range(found.size):
+            ranges, counts = rainflow(self.stress[:, point])
+            found[point] = np.sum(counts * (ranges / reference_range) ** slope) / reference_cycles
+        return found
+
+
+def rainflow(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ranges of the cycles of a series, and how often each occurs, 1 or 0.5 (ASTM E1049-85, section 5.4.4).
+
+    Parameters
+    ----------
+    values : ndarray, shape (T,)
+        The series.
+
+    Returns
+    -------
+    tuple of ndarray, shape (C,)
+        Ranges, in the unit of the series, and counts.
+
+    Examples
+    --------
+    >>> from trbdyn.cage.stress import rainflow
+    >>> import numpy as np
+    >>> ranges, counts = rainflow(np.array([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]))
+    >>> sorted(zip(ranges.tolist(), counts.tolist()))
+    [(3.0, 0.5), (4.0, 0.5), (4.0, 1.0), (6.0, 0.5), (8.0, 0.5), (8.0, 0.5), (9.0, 0.5)]
+    """
+    moves = np.diff(values)
+    turns = np.flatnonzero(moves[:-1] * moves[1:] < 0.0) + 1
+    series = values[np.concatenate([[0], turns, [len(values) - 1]])] if len(values) > 1 else values
+    ranges: list[float] = []
+    counts: list[float] = []
+    open_ones: list[float] = []
+    for value in series:
+        open_ones.append(float(value))
+        while len(open_ones) >= 3:
+            last, before = abs(open_ones[-1] - open_ones[-2]), abs(open_ones[-2] - open_ones[-3])
+            if last < before:
+                break
+            ranges.append(before)
+            if len(open_ones) == 3:
+                counts.append(0.5)
+                del open_ones[0]
+            else:
+                counts.append(1.0)
+                del open_ones[-3:-1]
+    for first, second in pairwise(open_ones):
+        ranges.append(abs(second - first))
+        counts.append(0.5)
+    return np.array(ranges), np.array(counts)
+
+
+def cage_stress(
+    scene: Scene, time: FloatArray, amplitude: FloatArray, force: FloatArray, *, notch_factor: float = 1.0
+) -> CageStress:
+    """Stress from recorded amplitudes of the modes and forces of the pockets.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with an elastic cage.
+    time : ndarray, shape (T,)
+        Times (s).
+    amplitude : ndarray, shape (T, M)
+        Amplitudes of the modes (m): the field cage_mode.
+    force : ndarray, shape (T, Z, S)
+        Normal forces on the faces of the pockets (N): the field pocket_force. They are taken to act at the faces' middles.
+    notch_factor : float
+        Factor of the nominal stress.
+
+    Raises
+    ------
+    InputError
+        If the scene's cage is rigid, or the factor not above 0.
+    """
+    if not (math.isfinite(notch_factor) and notch_factor > 0.0):
+        raise InputError.of("notch_factor", notch_factor, "must be > 0 (1)")
+    modes = cage_modes(scene)
+    stress = amplitude @ modes.stress
+    elastic = scene.elastic_cage
+    assert elastic is not None  # cage_modes has looked
+    is_complete = elastic.file is None
+    if is_complete:
+        stress += force.reshape(len(force), -1) @ _left_out(scene, modes, force.shape[2])
+    return CageStress(time, notch_factor * stress, modes.point_name, modes.point_place, is_complete)
+
+
+def _left_out(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
+    """Static stress that the modes which are left out carry for a unit force on each face of each pocket, shape (Z S, P)."""
+    bearing = scene.bearing
+    built, _ = frame_displacements(scene, np.zeros(len(modes.frequency)))
+    loads = built.loads_of_faces()
+    push = np.stack([-face.normal for _, face in built.faces])  # the roller pushes against the face
+    forces = np.stack([loads[:, 6 * at : 6 * at + 3] @ push[at] for at in range(len(push))], axis=1)
+    whole = built.stress(built.frame.static(forces))
+    pull = np.einsum("mfi,fi->mf", modes.shape[:, :, :3], push)
+    at_rest = pull / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)[:, None]
+    found = np.zeros((bearing.n_rollers, slots, len(modes.point_name)))
+    for at, (pocket, face) in enumerate(built.faces):
+        found[pocket, face.slot] = whole[:, at] - at_rest[:, at] @ modes.stress
+    return found.reshape(-1, len(modes.point_name))

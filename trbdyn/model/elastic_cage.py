@@ -1,0 +1,111 @@
+"""A cage that deforms by its natural modes."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
+
+from pydantic import Field, model_validator
+
+from trbdyn.base.validation import Model, Number, Whole, unit
+from trbdyn.errors import FileError, InputError
+from trbdyn.model.core_table import parameter
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
+
+
+class ElasticCage(Model):
+    """How the cage of a scene deforms: by the lowest natural modes of a frame of beams, or of a file
+    (docs/theory/cage.md#an-elastic-cage).
+
+    Parameters
+    ----------
+    n_modes : int
+        Number of modes, from the lowest on.
+    damping_ratio : float, optional
+        Damping of every mode over the critical one (1); by default that of the cage's material, or of the file.
+    rim_elements, bar_elements : int
+        Beams of a rim along a window, and of a bar: even numbers. They have no meaning for modes of a file.
+    file : str, optional
+        File of modes that `trbdyn.cage.modes.CageModes.save`, or a finite-element program's script, has written. Without it the
+        modes are those of a frame of beams, made from ``bearing.cage.body`` and the cage's material.
+    file_sha256 : str, optional
+        SHA-256 of that file, by which another file of the same name is found out; by default it is taken from the file.
+
+    Raises
+    ------
+    InputError
+        If a number is not allowed, or the file cannot be read.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> bearing = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
+    >>> scene = trb.Scene(bearing, speed_rpm=3000, axial_load=4930.0, elastic_cage=trb.ElasticCage(n_modes=6))
+    >>> trb.Simulation(scene).record()["cage_mode"].shape
+    (6,)
+    """
+
+    _root: ClassVar[str | None] = "elastic_cage"
+
+    n_modes: Annotated[Whole, parameter("cage_modes", ge=1)] = 20
+    damping_ratio: Annotated[Number | None, unit("1", ge=0.0, lt=1.0)] = None
+    rim_elements: Annotated[Whole, unit("1", ge=2, le=20)] = 4
+    bar_elements: Annotated[Whole, unit("1", ge=2, le=20)] = 6
+    file: Annotated[str | None, Field(min_length=1)] = None
+    file_sha256: Annotated[str | None, Field(min_length=64, max_length=64)] = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name in ("rim_elements", "bar_elements"):
+            if getattr(self, name) % 2:
+                raise InputError.of(name, getattr(self, name), "must be even")
+        if self.file is None and self.file_sha256 is not None:
+            raise InputError.of("file_sha256", self.file_sha256, "must not be given without a file")
+        if self.file is not None and self.file_sha256 is None:
+            try:
+                object.__setattr__(self, "file_sha256", digest_of(self.file))
+            except FileError as error:
+                raise InputError.of("file", self.file, f"must be a file of modes: {error}") from None
+        return self
+
+
+def digest_of(path: str) -> str:
+    """SHA-256 of a file, as 64 hexadecimal digits.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    except OSError as error:
+        raise FileError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+def check_elastic_cage(scene: Scene) -> None:
+    """Refuse what does not go together with an elastic cage.
+
+    Raises
+    ------
+    InputError
+        If a scene has it.
+    """
+    elastic, cage = scene.elastic_cage, scene.bearing.cage
+    if elastic is None:
+        return
+    for name, allowed in (("bodies", "rollers_and_cage"), ("planar", False), ("guidance", "rollers")):
+        if (given := getattr(scene.effects, name)) != allowed:
+            raise InputError.of(("effects", name), given, f"must be {allowed!r} with an elastic_cage")
+    if elastic.file is not None:
+        return
+    if cage.body is None:
+        limit = "must be given where elastic_cage has no file: beams need rims and bars (trb.CageBody)"
+        raise InputError.of(("bearing", "cage", "body"), None, limit)
+    for name, needed in (("density", True), ("damping_ratio", elastic.damping_ratio is None)):
+        if needed and getattr(scene.bearing.cage_material, name) is None:
+            limit = "must be given: natural modes of the cage need it"
+            raise InputError.of(("bearing", "cage", "material", name), None, limit)

@@ -1,0 +1,104 @@
+"""Pictures of a cage that deforms: its shape, and the stress at the roots of its bars."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from trbdyn.cage.simulated import cage_modes, frame_displacements
+from trbdyn.errors import InputError
+from trbdyn.plot.style import COLOURS, GREY, canvas, sequence, styled
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
+
+__all__ = ["cage_shape", "cage_stress"]
+
+SIZE = 0.12
+"""Largest displacement in the picture of a deformed cage, over the radius of the cage."""
+
+
+def cage_shape(result: Result, record: int | None = None, factor: float | None = None) -> Figure:
+    """The deformed cage at a record, exaggerated, over the undeformed one: seen from the large ends, and from the side.
+
+    Parameters
+    ----------
+    result : Result
+        Of a scene whose elastic cage is a frame of beams; needs the group cage.
+    record : int, optional
+        Number of the record; by default the one at which a face moves most.
+    factor : float, optional
+        By how much displacements are drawn larger; by default so that the largest is an eighth of the radius.
+
+    Raises
+    ------
+    InputError
+        If the cage is rigid, or its modes come from a file.
+    """
+    shape = cage_modes(result.scene).shape[:, :, :3]
+    if record is None:
+        size = np.array([np.linalg.norm(np.tensordot(one, shape, 1), axis=1).max() for one in result["cage_mode"]])
+        record = int(np.argmax(size))
+    built, moved = frame_displacements(result.scene, result["cage_mode"][record])
+    nodes, length = built.frame.nodes, np.linalg.norm(moved, axis=1)
+    if factor is None:
+        factor = SIZE * float(np.hypot(*nodes[:, :2].T).max()) / max(float(length.max()), 1e-30)
+    to = nodes + factor * moved
+    ends = np.array([(beam.start, beam.end) for beam in built.frame.beams])
+    with styled():
+        figure, axes = plt.subplots(1, 2, figsize=(8.0, 4.4), width_ratios=(1.0, 0.5))
+        for ax, (across, up), front in ((axes[0], (0, 1), None), (axes[1], (2, 1), nodes[:, 0] > 0.0)):
+            for start, end in ends if front is None else ends[front[ends].all(axis=1)]:
+                ax.plot(*(1e3 * nodes[[start, end]][:, [across, up]].T), color=GREY, linewidth=0.8)
+                shade = sequence()(0.5 * (length[start] + length[end]) / max(length.max(), 1e-30))
+                ax.plot(*(1e3 * to[[start, end]][:, [across, up]].T), color=shade, linewidth=2.0)
+            ax.set(aspect="equal", xlabel=f"{'xyz'[across]} of the cage (mm)", ylabel="y of the cage (mm)")
+        axes[1].set_title("half of it, from the side")
+        scale = ScalarMappable(Normalize(0.0, 1e6 * float(length.max())), sequence())
+        figure.colorbar(scale, ax=axes, label="displacement (µm)")
+        when = f"{1e3 * float(result['time'][record]):.4g} ms"
+        figure.suptitle(f"Deformed cage at {when}, displacements {factor:.3g} times as large")
+    return figure
+
+
+def cage_stress(result: Result, ax: Axes | None = None, *, points: int = 3, notch_factor: float = 1.0) -> Axes:
+    """Stress at the roots of the bars with the largest stress, over time.
+
+    Parameters
+    ----------
+    result : Result
+        Of a scene with an elastic cage; needs the groups cage and pocket.
+    ax : Axes, optional
+        Axes to draw into.
+    points : int
+        How many points are drawn.
+    notch_factor : float
+        Factor of the nominal stress (1).
+
+    Raises
+    ------
+    InputError
+        If the cage is rigid, or `points` is not from 1 to 6.
+    """
+    if not 1 <= points <= 6:
+        raise InputError.of("points", points, "must be from 1 to 6")
+    found = result.cage_stress(notch_factor=notch_factor)
+    worst = np.argsort(-np.abs(found.stress).max(axis=0))[:points]
+    with canvas(ax, (7.0, 3.4), "Stress at the roots of the cage's bars") as ax:
+        for point, colour in zip(worst, COLOURS, strict=False):
+            ax.plot(
+                1e3 * found.time,
+                1e-6 * found.stress[:, point],
+                color=colour,
+                linewidth=0.8,
+                label=found.point_name[point],
+            )
+        ax.set(xlabel="time (ms)", ylabel="stress along the bar (MPa)")
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=1, frameon=False)
+    return ax
