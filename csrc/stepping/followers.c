@@ -8,8 +8,7 @@
 /* Numbers of followers and of entries that are kept. */
 static void sort(trb_followers *f, const int (*entries)[2])
 {
-  int *place = f->kept_entry + f->kept; /* scratch: of every entry among those that are kept */
-  for (int i = 0; i < f->width; i++) place[i] = 0;
+  int *const place = f->place;
   for (int k = 0; k < f->n; k++) place[entries[k][0]] = -1;
   for (int i = 0, at = 0; i < f->width; i++)
     if (place[i] == 0) place[i] = at, f->kept_entry[at++] = i;
@@ -26,9 +25,10 @@ trb_status trb_followers_create(int n_rollers, int hub_width, int n, const int (
   *followers = NULL;
   if (f != NULL) {
     f->memory = trb_zeros((size_t)n + of_hub + of_rollers + (size_t)hub_width + of_border, sizeof *f->memory);
-    f->numbers = calloc((size_t)(2 * n + kept + hub_width), sizeof *f->numbers);
+    f->numbers = calloc(2 * (size_t)n + (size_t)kept, sizeof *f->numbers);
+    f->place = calloc((size_t)hub_width, sizeof *f->place);
   }
-  if (f == NULL || f->memory == NULL || f->numbers == NULL) {
+  if (f == NULL || f->memory == NULL || f->numbers == NULL || f->place == NULL) {
     trb_followers_free(f);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the factors of %d rollers", n_rollers);
   }
@@ -52,6 +52,7 @@ void trb_followers_free(trb_followers *followers)
   if (followers == NULL) return;
   free(followers->memory);
   free(followers->numbers);
+  free(followers->place);
   free(followers);
 }
 

@@ -18,6 +18,7 @@ typedef struct trb_followers {
   trb_arrow_border folded;         /* of a roller, scratch */
   double          *memory;
   int             *numbers;
+  int             *place; /* [width]: of every entry among those that are kept */
 } trb_followers;
 
 /* entries: two a follower: its own and that of the one that it follows. */
