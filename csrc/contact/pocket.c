@@ -319,12 +319,10 @@ static pocket_sums forces_of(const trb_model *m, const trb_pocket_face *f, pocke
   return sums;
 }
 
-trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_pair *pair, const trb_instant *at, int roller, trb_counters *counters,
-                               trb_load *load, trb_slopes *slopes, trb_detail *detail)
+/* Compiled for a rigid cage and for one that deforms. */
+static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const trb_rigid_pose *cage, const trb_deformed *deformed,
+                             int roller, trb_counters *counters, trb_load *load, trb_slopes *slopes, trb_detail *detail)
 {
-  const trb_roller_pose *r = &at->rollers[roller];
-  const trb_rigid_pose  *cage = &at->bodies[pair->b].pose;
-  const trb_deformed    *deformed = at->bodies[pair->b].deformed;
   const trb_pocket_face *first = &m->faces[m->first_face[roller]], *end = &m->faces[m->first_face[roller + 1]];
   const trb_gaps         far = {{INFINITY, INFINITY}};
   const int              exact = detail != NULL && detail->pocket_interference != NULL;
@@ -363,6 +361,15 @@ trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_pair *pair, const t
   load->on_b.force = trb_turn_z(trb_from_frame(&p.axes, p.cage_force), r->cosine, r->sine);
   load->on_b.moment = trb_turn_z(trb_from_frame(&p.axes, p.cage_moment), r->cosine, r->sine);
   return gaps;
+}
+
+trb_gaps trb_contact_pocket_of(const trb_model *m, const trb_pair *pair, const trb_instant *at, int roller, trb_counters *counters,
+                               trb_load *load, trb_slopes *slopes, trb_detail *detail)
+{
+  const trb_body_at     *cage = &at->bodies[pair->b];
+  const trb_roller_pose *r = &at->rollers[roller];
+  if (cage->deformed == NULL) return touch(m, r, &cage->pose, NULL, roller, counters, load, slopes, detail);
+  return touch(m, r, &cage->pose, cage->deformed, roller, counters, load, slopes, detail);
 }
 
 void trb_contact_pocket(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
