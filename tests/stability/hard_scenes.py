@@ -231,6 +231,19 @@ def free_ring(
     )
 
 
+def elastic_cage(material: trb.Material, speed_rpm: float) -> trb.Scene:
+    """A cage with 20 modes, damped by a hundredth of the critical damping, that begins near its rollers."""
+    plays = {"play_radial": 0.25e-3, "play_circumferential": 0.12e-3}
+    made = trb.Cage(**plays, body=trb.cases.cage_body_30310(), material=material)
+    return trb.Scene(
+        rig_30310().replace(cage=made),
+        speed_rpm=speed_rpm,
+        axial_load=4930.0,
+        start=trb.Start.whirl(0.9),
+        elastic_cage=trb.ElasticCage(n_modes=20, damping_ratio=0.01),
+    )
+
+
 HARD: tuple[Hard, ...] = (
     Hard(
         "no_load",
@@ -771,6 +784,16 @@ HARD: tuple[Hard, ...] = (
         "free_ring_on_a_rotor",
         "a rotor of 300 kg, whose centre of mass lies 20 mm from the rollers' plane, tilts them under its weight",
         lambda: free_ring(300.0, mass_offset=0.02, axial_load=20000.0),
+    ),
+    Hard(
+        "elastic_cage_of_plastic",
+        "a whirling cage of PA66 at 30 000 rpm, hardly damped: Coriolis forces part its lowest frequencies by a third",
+        lambda: elastic_cage(trb.Material.polyamide(), 30000.0),
+    ),
+    Hard(
+        "elastic_cage_of_steel",
+        "a cage that collides with its rollers rings at 20 frequencies up to 11 kHz, hardly damped",
+        lambda: elastic_cage(trb.Material.steel(), 3000.0),
     ),
 )
 """Every hard scene."""
