@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -213,3 +214,18 @@ def test_refused() -> None:
         pair().run(duration=1e-4)["middle"]
     with pytest.raises(InputError, match=r"revolutions"):
         pair().run()
+
+
+def test_elastic_cages_on_one_shaft() -> None:
+    """Cages with modes of their own, in a bearing that is turned, too: the energy of each bearing adds up."""
+    seats = {}
+    for name, count, turned in (("left", 8, False), ("right", 5, True)):
+        changes = {"bearing.cage.body": trb.cases.cage_body_30310(), "elastic_cage": trb.ElasticCage(n_modes=count)}
+        one = seat(turned=turned)
+        seats[name] = replace(one, scene=one.scene.replace(changes | {"start": trb.Start.whirl(0.9)}))
+    result = AssemblySimulation(seats, SHAFT, STILL, {}).run(duration=5e-3)
+    assert [result[name]["cage_mode"].shape[1] for name in seats] == [8, 5]
+    for one in result.values():
+        assert np.abs(one["cage_mode"]).max() > 1e-8
+        assert one["loss_vibration"][-1] > 0.0
+        assert one.energy_closure < 1e-3

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.cage.simulated import mode_rows
 from trbdyn.errors import InputError
 from trbdyn.model.flatten import (
     Entry,
@@ -212,4 +213,6 @@ def _model(seat: Seat, body: RingBody, number: int, free: float, instruction_set
         | named_entries(body)
         | {name: Entry(("shaft",), value) for name, value in own.items()}
     )
-    return _core.Model(block_of(entries), diameter_deviation(seat.scene), face_rows(seat.scene), instruction_set)
+    return _core.Model(
+        block_of(entries), diameter_deviation(seat.scene), face_rows(seat.scene), instruction_set, mode_rows(seat.scene)
+    )
