@@ -14,6 +14,8 @@ static const double turn_unit = 1e-3, turn_difference = 1e-5;
 /* A tangent is used if its origins were good for this many evaluations in the mean, or the present one for that many; weight of the last
  * origin in the mean. */
 static const double enough = 3.0, enough_now = 9.0, newest = 0.2;
+/* Decay of the usual boundary friction with the slide-roll ratio. */
+static const double usual_decay = 181.46;
 /* Error that a tangent may have in its powers, as a share of all power. */
 static const double power_share = 0.03;
 /* Reach: smallest, first and largest value; largest growth and decline in one change; factor of caution; distance beyond which the
@@ -244,7 +246,19 @@ static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_
   r->known = 1;
 }
 
-/* Whether a roller has slipped away from its origin by no more than a share of the mean rolling speed; rings: by what the rings did. */
+/* The share of the mean rolling speed that a roller may slip away is meant for the usual boundary friction, which turns from its slope
+ * to its limit over one part in `usual_decay` of that speed. Where the scene's law turns over less, this gives the rolling speed at which
+ * the usual one would turn over as little: the range in which friction is linear is the law's own, however fast the bearing runs. */
+static double speed_of_range(const trb_model *m, double speed)
+{
+  const trb_params *p = &m->params;
+  const int         dry = p->lubrication == TRB_LUBRICATION_DRY, boundary = p->lubrication == TRB_LUBRICATION_BOUNDARY;
+  if (!m->friction) return speed;
+  if (boundary || p->lubrication == TRB_LUBRICATION_MIXED) speed *= trb_min(usual_decay / p->boundary_decay, 1.0);
+  return dry || (!boundary && p->traction == TRB_TRACTION_COULOMB) ? trb_min(speed, usual_decay * p->coulomb_speed) : speed;
+}
+
+/* Whether a roller has slipped away from its origin by so little that friction is linear; rings: by what the rings did. */
 static int slips_little(const trb_dynamics *d, double share, const double *step, double rings)
 {
   const trb_params  *p = &d->model->params;
@@ -255,7 +269,7 @@ static int slips_little(const trb_dynamics *d, double share, const double *step,
   const double       slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
                             radius * fabs(step[TRB_ROLLER_omega_a]) +
                             p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
-  return slid + rings <= share * trb_max(speed, p->speed_floor);
+  return slid + rings <= share * speed_of_range(d->model, trb_max(speed, p->speed_floor));
 }
 
 /* No tangent holds while the prescribed motion is under way. */

@@ -213,27 +213,45 @@ static void test_reach(const trb_params *params)
   close_bench(&b);
 }
 
-/* Whatever was learned: a tangent is not followed where a contact could begin or end, nor where a roller slips much. */
-static void test_bounds(const trb_params *params)
+/* Whatever was learned: a tangent is not followed where a contact could begin or end, nor where a roller slips by 1e-3 of the rolling
+ * speed, or of the speed at which the usual boundary friction turns over as little as the scene's. */
+static void test_bounds(const trb_params *params, double of_rolling, double speed_of_range)
 {
   bench  b;
   double y[MOST], found[MOST];
   if (!open_bench(&b, params, 1.0, 1.0)) return;
+  const double rolling = fabs(0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
+  const double slip = 1e-3 * fmin(of_rolling * rolling, speed_of_range);
   trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < 3; k++) {
     for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = b.tangents->rollers[i].usual = 1e9;
     const long long before = b.d->work->counters.tangent_rollers;
-    const int       j = 3 + k;
+    const int       j = 3 + k, beyond = k > 0;
     const double   *margins = b.tangents->rollers[j].margin;
     const double    margin = fmin(fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]), margins[TRB_PAIR_rib]);
-    const double    rolling = 0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI;
     memcpy(y, b.y, sizeof y);
-    y[trb_state_roller(b.system, j) + (k == 0 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] += k == 0 ? 0.51 * margin : 1.01e-3 * fabs(rolling);
+    y[trb_state_roller(b.system, j) + (k == 1 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] +=
+        k == 1 ? 0.51 * margin : (k == 2 ? 1.01 : 0.99) * slip;
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
-    CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - 1);
-    CHECK(b.tangents->beyond[j]);
+    CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - beyond);
+    CHECK(b.tangents->beyond[j] == beyond);
   }
   close_bench(&b);
+}
+
+/* Coulomb's friction turns over a speed of its own, and boundary friction over one part in its decay: 181.46 is the usual one. */
+static void test_range_of_friction(void)
+{
+  trb_params p = rig_params();
+  test_bounds(&p, 1.0, INFINITY);
+  p.lubrication = TRB_LUBRICATION_DRY;
+  test_bounds(&p, 1.0, 181.46 * p.coulomb_speed);
+  p.dry_friction = 0.0;
+  test_bounds(&p, 1.0, INFINITY);
+  p = rig_params(), p.boundary_decay = 5.0 * 181.46;
+  test_bounds(&p, 0.2, INFINITY);
+  p = rig_params(), p.traction = TRB_TRACTION_COULOMB;
+  test_bounds(&p, 1.0, 181.46 * p.coulomb_speed);
 }
 
 /* Between two knots of the motion everything is exact, to the bit; after them new tangents are made. */
@@ -313,7 +331,7 @@ int main(void)
   test_order(&p);
   test_learning(&p);
   test_reach(&p);
-  test_bounds(&p);
+  test_range_of_friction();
   test_under_way(&p);
   test_seldom(&p);
   test_not_finite(&p);
