@@ -1,4 +1,5 @@
-"""The benchmarks of accuracy and scaling run, and write what they promise; the table of estimates is whole. No timings."""
+"""The benchmarks of accuracy and scaling run, and write what they promise; the table of estimates is whole. Timings in a slow test
+alone."""
 
 from __future__ import annotations
 
@@ -7,13 +8,14 @@ import itertools
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from trbdyn import InputError, Simulation, Start, cases
+from trbdyn import InputError, Scene, Simulation, Start, cases
 from trbdyn.model.bearing import Scatter
 from trbdyn.model.effects import Effects
 from trbdyn.run.estimate import _Part, _steady, case_like, estimate, table
@@ -239,6 +241,35 @@ class TestEstimate:
         module = importlib.import_module("trbdyn.run.estimate")
         monkeypatch.setattr(module.clock, "perf_counter", lambda: float(next(ticks)))
         assert estimate(Simulation(scene), revolutions=8.0).steps == found.steps
+
+    @pytest.mark.parametrize(
+        ("make", "speed", "axial", "radial", "start"),
+        [
+            (cases.scene_30310, 3000.0, 4930.0, 5530.0, Start.unequal(3)),
+            (cases.scene_30310, 6000.0, 6500.0, 12000.0, Start.equal()),
+            (cases.scene_32216, 1000.0, 4930.0, 5530.0, Start.unequal(3)),
+            (cases.scene_32216, 3000.0, 4930.0, 5530.0, Start.equal()),
+        ],
+    )
+    def test_combined_loads_cost_what_was_estimated(
+        self, make: Callable[..., Scene], speed: float, axial: float, radial: float, start: Start
+    ) -> None:
+        """Steps and evaluations, which a busy machine does not change, lie within 1.6 times in either direction."""
+        scene = make(speed, axial, radial, start=start)
+        found = estimate(Simulation(scene), revolutions=12.0)
+        taken = Simulation(scene).run(revolutions=12.0).stats
+        assert 1 / 1.6 < found.steps / taken["steps"] < 1.6
+        assert 1 / 1.6 < found.evaluations / taken["rhs_evaluations"] < 1.6
+
+    @pytest.mark.slow
+    def test_combined_loads_take_the_time_that_was_estimated(self) -> None:
+        """The middle one of four scenes: what else the machine does meanwhile is in both times, but seldom alike."""
+        ratios = []
+        for make, speed in itertools.product((cases.scene_30310, cases.scene_32216), (1000.0, 3000.0)):
+            scene = make(speed, 4930.0, 5530.0)
+            found = estimate(Simulation(scene), revolutions=12.0)
+            ratios.append(found.wall_s / Simulation(scene).run(revolutions=12.0).stats["wall_s"])
+        assert 1 / 1.6 < float(np.median(ratios)) < 1.6, ratios
 
     def test_a_probe_goes_on_while_the_motion_changes(self) -> None:
         rising = [_Part(1.0, 1.0, steps, steps) for steps in (100.0, 200.0, 400.0, 400.0)]

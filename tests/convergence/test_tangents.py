@@ -64,6 +64,26 @@ def test_tangents_cost_no_accuracy(
     assert error[None] < {"standard": 5e-3, "reference": 5e-4}[accuracy]
 
 
+@pytest.mark.parametrize("accuracy", ["fast", "standard", "reference"])
+@pytest.mark.parametrize("law", ["coulomb", "boundary"])
+def test_tangents_stay_in_the_linear_range_of_friction(law: str, accuracy: str) -> None:
+    """At 27 000 rpm tolerances are ten times the slip over which friction of unloaded rollers turns round."""
+    effects = Effects.minimal().replace(back_rib=False, damping="hunt_crossley", damping_race=0.93, damping_cage=0.93)
+    if law == "boundary":
+        steep = effects.friction.replace(boundary_decay=5000.0, boundary_slope=614.0)
+        effects = effects.replace(lubrication="boundary", friction=steep)
+    scene = trb.cases.scene_32216(27094.0, 627.0, effects=effects, start=trb.Start.unequal(506))
+    lost = []
+    for share in (0.0, None):
+        sim = Simulation(scene, accuracy=accuracy, rings_share=share)  # type: ignore[arg-type]
+        before = sim.record()
+        while sim.time < 4e-3:
+            sim.step()
+        after = sim.record()
+        lost.append(sum(float(after[name] - before[name]) for name in after if name.startswith("loss_")))
+    assert lost[1] == pytest.approx(lost[0], rel={"fast": 0.1, "standard": 0.05, "reference": 0.02}[accuracy])
+
+
 def test_most_forces_come_from_tangents(states: list[tuple[NDArray[np.float64], float]]) -> None:
     counted = {}
     for share in (0.0, None):
