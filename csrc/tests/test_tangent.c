@@ -230,8 +230,7 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
     const double   *margins = b.tangents->rollers[j].margin;
     const double    margin = fmin(fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]), margins[TRB_PAIR_rib]);
     memcpy(y, b.y, sizeof y);
-    y[trb_state_roller(b.system, j) + (k == 1 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] +=
-        k == 1 ? 0.51 * margin : (k == 2 ? 1.01 : 0.99) * slip;
+    y[trb_state_roller(b.system, j) + (k == 1 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] += k == 1 ? 0.51 * margin : (k == 2 ? 1.01 : 0.99) * slip;
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
     CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - beyond);
     CHECK(b.tangents->beyond[j] == beyond);

@@ -1,5 +1,5 @@
-"""The benchmarks of accuracy and scaling run, and write what they promise; the table of estimates is whole. Timings in a slow test
-alone."""
+"""The benchmarks of accuracy and scaling run, and write what they promise; the table of estimates is whole. One slow test of
+timings."""
 
 from __future__ import annotations
 
