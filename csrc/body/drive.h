@@ -20,8 +20,8 @@ typedef struct trb_drive {
   double        shaft_angle;   /* rad */
   double        shaft_speed;   /* rad/s */
   double        shaft_rate;    /* rad/s2 */
-  double        outer_speed;   /* of the outer ring, rad/s */
-  double        outer_rate;    /* rad/s2 */
+  double        carried_speed; /* of the outer ring, with which all turns, rad/s */
+  double        carried_rate;  /* rad/s2 */
   double        rolling_speed; /* of the shaft relative to the outer ring: rollers' coordinates count from pure rolling at it, rad/s */
   double        rolling_rate;  /* its rate, rad/s2 */
   double        frame_angle;   /* angle of R: that of the kinematic orbit, rad */

@@ -7,7 +7,7 @@ static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, t
 void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)
 {
   const trb_geometry *g = &m->geometry;
-  const trb_rolling   rolling = trb_pure_rolling(m, drive->rolling_speed, drive->outer_speed);
+  const trb_rolling   rolling = trb_pure_rolling(m, drive->rolling_speed, drive->carried_speed);
   pose->radius = g->roller_centre_radius + y[TRB_ROLLER_r];
   pose->angle = trb_nominal_angle(m, roller) + y[TRB_ROLLER_psi];
   pose->cosine = cos(pose->angle);
@@ -19,7 +19,7 @@ void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, i
 void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)
 {
   const trb_geometry *g = &m->geometry;
-  const trb_rolling   rolling = trb_pure_rolling(m, drive->rolling_speed, drive->outer_speed);
+  const trb_rolling   rolling = trb_pure_rolling(m, drive->rolling_speed, drive->carried_speed);
   trb_roller_pose_unpack_centre(m, drive, roller, y, pose);
   pose->frame = trb_tilted_frame(y[TRB_ROLLER_skew], g->roller_axis_angle + y[TRB_ROLLER_tilt]);
   pose->orbit_speed = pose->v.y / pose->radius;
@@ -52,7 +52,7 @@ static void freeze_roller(const trb_geometry *g, const trb_roller_pose *r, doubl
 double trb_roller_inertia(const trb_model *m, const trb_drive *drive, const trb_roller_pose *r, double *rates, double *spin)
 {
   const trb_geometry  *g = &m->geometry;
-  const trb_rolling    rolling_rate = trb_pure_rolling(m, drive->rolling_rate, drive->outer_rate);
+  const trb_rolling    rolling_rate = trb_pure_rolling(m, drive->rolling_rate, drive->carried_rate);
   const int            heavy = trb_has_gravity(drive);
   const trb_vec3       fall = heavy ? trb_gravity_in(drive, r->cosine, r->sine) : trb_v(0, 0, 0);
   const trb_turn_rates turn =

@@ -76,8 +76,8 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
 {
   const trb_model    *m = s->m;
   const trb_geometry *g = &m->geometry;
-  const trb_rolling   rolling = trb_pure_rolling(m, s->e->shaft_speed - s->e->outer_speed, s->e->outer_speed);
-  const double        orbit = g->cage_speed_ratio * (s->e->shaft_speed - s->e->outer_speed) + s->e->outer_speed;
+  const trb_rolling   rolling = trb_pure_rolling(m, s->e->shaft_speed - s->e->carried_speed, s->e->carried_speed);
+  const double        orbit = g->cage_speed_ratio * (s->e->shaft_speed - s->e->carried_speed) + s->e->carried_speed;
   /* gyroscopic moment: rate of the angular momentum of a roller that spins and orbits */
   const double gyro = orbit * cos(g->roller_axis_angle) * g->roller_inertia_transverse * rolling.omega_n -
                       rolling.omega_n * g->roller_inertia_axial * rolling.omega_a;

@@ -18,7 +18,7 @@ typedef struct trb_equilibrium {
   double  load[TRB_RING_FREEDOMS];         /* in: force (3), N, and moment about x, y (2), N m, applied to the ring */
   int     fixed[TRB_RING_FREEDOMS];        /* in: 1 where the displacement is prescribed */
   double  displacement[TRB_RING_FREEDOMS]; /* in: prescribed values and the guess; out: m and rad */
-  double  shaft_speed, outer_speed;        /* in: of the rings, rad/s */
+  double  shaft_speed, carried_speed;      /* in: of the rings, rad/s */
   double *angles;                          /* in: orbit angles of the rollers, rad */
   int     warm;                            /* in: 1 where displacement and rollers are a guess close to the solution */
   double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt, skew) offsets */

@@ -254,9 +254,9 @@ static void channels_at(const trb_motion *motion, double time, hermite c[TRB_N_C
     angle[k] = angle_at(motion, low)[k] + channel_integral(a, turning[k], s, h) + turns * turn_of_tail(motion, k);
 }
 
-void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double outer)
+void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double carried)
 {
-  const double wanted[N_TURNING] = {shaft, outer};
+  const double wanted[N_TURNING] = {shaft, carried};
   hermite      c[TRB_N_CHANNELS];
   double       angle[N_TURNING];
   channels_at(motion, time, c, angle);
@@ -270,18 +270,18 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
   double  angle[N_TURNING];
   channels_at(motion, time, c, angle);
   const double  ratio = m->geometry.cage_speed_ratio;
-  const hermite outer = c[TRB_CHANNEL_outer_speed];
+  const hermite carried = c[TRB_CHANNEL_outer_speed];
   drive->shaft_angle = angle[0];
   drive->time = time;
   drive->shaft_speed = c[TRB_CHANNEL_shaft_speed].value;
   drive->shaft_rate = c[TRB_CHANNEL_shaft_speed].rate;
-  drive->outer_speed = outer.value;
-  drive->outer_rate = outer.rate;
-  drive->rolling_speed = drive->shaft_speed - outer.value;
-  drive->rolling_rate = drive->shaft_rate - outer.rate;
+  drive->carried_speed = carried.value;
+  drive->carried_rate = carried.rate;
+  drive->rolling_speed = drive->shaft_speed - carried.value;
+  drive->rolling_rate = drive->shaft_rate - carried.rate;
   drive->frame_angle = ratio * (angle[0] - angle[1]) + angle[1];
-  drive->frame_speed = ratio * drive->rolling_speed + outer.value;
-  drive->frame_rate = ratio * drive->rolling_rate + outer.rate;
+  drive->frame_speed = ratio * drive->rolling_speed + carried.value;
+  drive->frame_rate = ratio * drive->rolling_rate + carried.rate;
   drive->cosine = cos(drive->frame_angle);
   drive->sine = sin(drive->frame_angle);
   drive->load.force = trb_v(c[TRB_CHANNEL_force_x].value, c[TRB_CHANNEL_force_y].value, c[TRB_CHANNEL_force_z].value);

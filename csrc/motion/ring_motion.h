@@ -30,7 +30,7 @@ void       trb_motion_free(trb_motion *motion);
  * values and slopes. */
 trb_status trb_motion_repeat(trb_motion *motion, double period, trb_message *message);
 /* Sets where angles are counted from: those of shaft and outer ring at a time. Without it they are zero at the first knot. */
-void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double outer);
+void trb_motion_set_angles(trb_motion *motion, double time, double shaft, double carried);
 
 /* Whether speed, a prescribed ring's place or gravity change at a time: all that forces depend on but the state. */
 int trb_motion_under_way(const trb_motion *motion, double time);

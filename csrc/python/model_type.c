@@ -239,7 +239,7 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
   int              with_loads = 0, with_stiffness = 0;
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS] = {0};
   if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Oppd", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
-                                   &with_loads, &with_stiffness, &e.outer_speed))
+                                   &with_loads, &with_stiffness, &e.carried_speed))
     return NULL;
   if (read_doubles(load, "load", TRB_RING_FREEDOMS, e.load) != 0 || read_doubles(fixed, "fixed", TRB_RING_FREEDOMS, held) != 0 ||
       read_doubles(displacement, "displacement", TRB_RING_FREEDOMS, e.displacement) != 0)

@@ -42,7 +42,7 @@ void trb_integrator_set_tolerances(trb_integrator *it)
     const trb_system *system = &it->assembly->members[k];
     trb_drive         drive;
     trb_motion_at(it->members[k].motion, system->model, it->time, &drive);
-    const double share = speed_share(it, system->model, trb_system_shaft_speed(system, &drive, it->y) - drive.outer_speed);
+    const double share = speed_share(it, system->model, trb_system_shaft_speed(system, &drive, it->y) - drive.carried_speed);
     set_entries(it, system, trb_state_roller(system, 0), system->model->n_rollers * TRB_ROLLER_SIZE, share);
     for (int b = 0; b < system->n_bodies; b++)
       if (system->bodies[b].size > 0 && !system->bodies[b].carried)

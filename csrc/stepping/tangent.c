@@ -265,7 +265,7 @@ static int slips_little(const trb_dynamics *d, double share, const double *step,
   const trb_body_at *driven = &d->bodies[d->system->driven];
   const double       shaft = d->system->n_moving > 0 ? trb_dot(driven->ring.omega, driven->ring.axis) : d->drive.shaft_speed;
   const double       radius = 0.5 * p->roller_diameter;
-  const double       speed = radius * fabs(d->model->geometry.roller_spin_ratio * (shaft - d->drive.outer_speed));
+  const double       speed = radius * fabs(d->model->geometry.roller_spin_ratio * (shaft - d->drive.carried_speed));
   const double       slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
                             radius * fabs(step[TRB_ROLLER_omega_a]) +
                             p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));

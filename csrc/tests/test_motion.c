@@ -62,14 +62,14 @@ static void test_curves(const trb_model *m, const trb_motion *motion)
     trb_motion_at(motion, m, t - h, &before);
     trb_motion_at(motion, m, t + h, &after);
     CHECK_NEAR(d.shaft_rate, (after.shaft_speed - before.shaft_speed) / (2 * h), 1e-3);
-    CHECK_NEAR(d.outer_rate, (after.outer_speed - before.outer_speed) / (2 * h), 1e-3);
-    CHECK_NEAR(d.rolling_speed, d.shaft_speed - d.outer_speed, 0.0);
-    CHECK_NEAR(d.rolling_rate, d.shaft_rate - d.outer_rate, 0.0);
+    CHECK_NEAR(d.carried_rate, (after.carried_speed - before.carried_speed) / (2 * h), 1e-3);
+    CHECK_NEAR(d.rolling_speed, d.shaft_speed - d.carried_speed, 0.0);
+    CHECK_NEAR(d.rolling_rate, d.shaft_rate - d.carried_rate, 0.0);
     CHECK_NEAR(d.shaft_speed, (after.shaft_angle - before.shaft_angle) / (2 * h), 1e-5);
     CHECK_NEAR(d.ring.velocity.y, (after.displacement.y - before.displacement.y) / (2 * h), 1e-9);
     CHECK_NEAR(d.frame_speed, (after.frame_angle - before.frame_angle) / (2 * h), 1e-5);
-    CHECK_NEAR(d.frame_speed, m->geometry.cage_speed_ratio * d.rolling_speed + d.outer_speed, 1e-12);
-    CHECK_NEAR(d.frame_rate, m->geometry.cage_speed_ratio * d.rolling_rate + d.outer_rate, 1e-9);
+    CHECK_NEAR(d.frame_speed, m->geometry.cage_speed_ratio * d.rolling_speed + d.carried_speed, 1e-12);
+    CHECK_NEAR(d.frame_rate, m->geometry.cage_speed_ratio * d.rolling_rate + d.carried_rate, 1e-9);
     CHECK_NEAR(d.cosine * cos(d.frame_angle) + d.sine * sin(d.frame_angle), 1.0, 1e-15);
   }
 }

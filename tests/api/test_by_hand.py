@@ -33,6 +33,8 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     scene = SimpleNamespace(**{name: getattr(build()[1].scene, name) for name in ("bearing", "effects")})
     scene.to_dict, scene.ring_quantities = dict, build()[1].scene.ring_quantities
     scene.rotating_load = scene.growth = None
+    scene.speed_rpm = scene.turning_rpm = 3000.0
+    scene.outer_speed_rpm, scene.outer_turns = 0.0, False
     scene.lubricant = build()[1].scene.lubricant
     scene.misalignment_x = scene.misalignment_y = 0.0
     about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()

@@ -110,7 +110,9 @@ def test_the_clearance_of_a_land_follows() -> None:
 def test_growth_asks_for_what_it_needs() -> None:
     with pytest.raises(trb.InputError, match=r"material\.expansion = None : must be given"):
         grown().replace({"bearing.cage.material": trb.Material(youngs_modulus=3e9, poisson_ratio=0.4)})
-    with pytest.raises(trb.InputError, match=r"growth\.centrifugal = True : must be false where speed_rpm changes"):
+    with pytest.raises(
+        trb.InputError, match=r"growth\.centrifugal = True : must be false where the speed of a ring changes"
+    ):
         grown().replace(speed_rpm=trb.History.ramp(0.0, 1.0, 1000.0, 2000.0))
 
 

@@ -352,7 +352,7 @@ def motion_table(
 
     Returns
     -------
-    ndarray, shape (K, 32)
+    ndarray, shape (K, 34)
         Knot time, value and slope of each channel of `_core.motion_table()`, and 1 where a step need not end; the last
         `scene.period` repeats.
     """

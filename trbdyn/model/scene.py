@@ -254,8 +254,8 @@ class Scene(Model):
 
     def orbit_speed(self, time: float) -> float:
         """Speed at which rollers and cage go round the axis in pure rolling (rad/s)."""
-        inner, outer = (value_at(speed, time) * math.pi / 30.0 for speed in (self.speed_rpm, self.outer_speed_rpm))
-        return self.bearing.geometry.cage_speed_ratio * (inner - outer) + outer
+        inner, outer = (value_at(speed, time) for speed in (self.speed_rpm, self.outer_speed_rpm))
+        return (self.bearing.geometry.cage_speed_ratio * (inner - outer) + outer) * math.pi / 30.0
 
     def shaft_turn(self, time: float) -> float:
         """Angle that the shaft has turned by since the start (rad)."""

@@ -52,7 +52,7 @@ class RingMotion:
 
     Attributes
     ----------
-    table : ndarray, shape (K, 32)
+    table : ndarray, shape (K, 34)
         As of `trbdyn.model.flatten.motion_table`.
     period : float
         After the last knot the last part of the table, this long, repeats (s); 0: everything stays.

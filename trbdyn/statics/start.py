@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from trbdyn import _core
 from trbdyn.errors import InputError
+from trbdyn.model.motion import value_at
 from trbdyn.statics.cage_start import place_cage
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium, nominal_angles
@@ -40,7 +42,10 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
     vector = np.zeros(model.n_state)
     state = StateView(model.state_layout(), vector)
     geometry = scene.bearing.geometry
-    orbit = scene.orbit_speed(scene.start.time)
+    inner, outer = (
+        value_at(speed, scene.start.time) * math.pi / 30.0 for speed in (scene.speed_rpm, scene.outer_speed_rpm)
+    )
+    orbit = geometry.cage_speed_ratio * (inner - outer) + outer
     radius, axial, tilt, skew = equilibrium.rollers.T
     angle = geometry.roller_axis_angle
     state["roller_r"], state["roller_z"], state["roller_tilt"], state["roller_skew"] = radius, axial, tilt, skew
