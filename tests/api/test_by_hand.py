@@ -35,6 +35,7 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     scene.rotating_load = scene.growth = None
     scene.speed_rpm = scene.turning_rpm = 3000.0
     scene.outer_speed_rpm, scene.outer_turns = 0.0, False
+    scene.elastic_cage = None
     scene.lubricant = build()[1].scene.lubricant
     scene.misalignment_x = scene.misalignment_y = 0.0
     about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
