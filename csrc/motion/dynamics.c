@@ -425,13 +425,18 @@ void trb_dynamics_put_hub(const trb_dynamics *d, const double *y, double *rates)
   trb_dynamics_book_bodies(d, rates + d->quadrature + TRB_Q_losses);
   for (int b = 0; b < d->system->n_bodies; b++) {
     const trb_body *body = &d->system->bodies[b];
-    double         *own = rates + body->first, added[TRB_MOST_CARRIED];
+    double         *own = rates + body->first;
     if (body->size == 0) continue;
-    trb_dynamics_body_rates(d, b, y, &d->on_body[b], body->carried ? added : own);
-    for (int i = 0; i < body->size && body->carried; i++) own[i] += added[i];
+    if (body->carried) {
+      double added[TRB_MOST_CARRIED] = {0};
+      trb_dynamics_body_rates(d, b, y, &d->on_body[b], added);
+      for (int i = 0; i < body->size; i++) own[i] += added[i];
+      add_passed(d, b, y, rates);
+      continue;
+    }
+    trb_dynamics_body_rates(d, b, y, &d->on_body[b], own);
     if (d->bodies[b].deformed != NULL) body->kind->pushed(body, d->bodies[b].deformed->force, own);
-    if (body->carried) add_passed(d, b, y, rates);
-    else if (body->kind->work != NULL) {
+    if (body->kind->work != NULL) {
       const trb_drive_power power = body->kind->work(d->model, body, &d->drive, y + body->first, &d->on_body[b]);
       rates[d->quadrature + TRB_Q_work_shaft] += power.shaft;
       rates[d->quadrature + TRB_Q_work_ring] += power.place;

@@ -158,7 +158,9 @@ trb_status trb_simulation_create(const trb_system *system, const trb_motion *mot
                                  const trb_settings *settings, double time, const double *state, trb_simulation **simulation,
                                  trb_message *message)
 {
-  return trb_simulation_create_all(&system, &motion, 1, kind, variant, settings, time, state, trb_state_size(system), simulation, message);
+  const trb_system *const systems[TRB_MOST_MEMBERS] = {system};
+  const trb_motion *const motions[TRB_MOST_MEMBERS] = {motion};
+  return trb_simulation_create_all(systems, motions, 1, kind, variant, settings, time, state, trb_state_size(system), simulation, message);
 }
 
 void trb_simulation_free(trb_simulation *s)
