@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ from numpy.typing import NDArray
 
 import trbdyn as trb
 from trbdyn import Effects, InputError, RingBody, RunWarning, Scene, Simulation, Start
-from trbdyn.run.assembly import AssemblyResult, AssemblySimulation
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.run.assembly import AssemblySimulation
+from trbdyn.run.replay import Replay
 from trbdyn.statics.seat import Seat
 
 Array = NDArray[np.float64]
@@ -193,7 +196,7 @@ def test_unbalance() -> None:
     assert max(closures(result)) < 1e-3
 
 
-def test_files(tmp_path: Any) -> None:
+def test_files(tmp_path: Path) -> None:
     """A run into files gives the numbers of a run in memory, and each file is a result of its own."""
     kept = pair().run(duration=1e-3)
     written = pair().run(duration=1e-3, output=tmp_path / "pair")
@@ -205,9 +208,59 @@ def test_files(tmp_path: Any) -> None:
     assert again.peaks["pocket_force_peak"].shape == one.peaks["pocket_force_peak"].shape
 
 
+def test_records_are_evaluated_again() -> None:
+    """With the ring where the shaft had it: loads, films and slip of both bearings, and a rating by the loads of the run."""
+    load = 2000.0
+    result = pair({"force_x": load}, shaft=STILL + np.array([1e-6, 0.0, 0.0, 2e-5, -1e-5])).run(duration=0.01)
+    for one in result.values():
+        again = Replay(one).record(len(one) - 1)
+        for name in (
+            "inner_load",
+            "outer_load",
+            "rib_load",
+            "inner_film_parameter",
+            "inner_slide_roll_ratio",
+            "ring_force",
+        ):
+            if name in again:
+                largest = np.abs(one[name][-1]).max()
+                assert again[name] == pytest.approx(one[name][-1], abs=1e-5 * largest + 1e-12), name
+        assert again["inner_torque"] == pytest.approx(one["inner_torque"][-1], rel=1e-4)
+        assert one.summary()["basic_life_hours"] is None  # its scene does not know what the shaft carries
+    rated = trb.rating(result["left"])
+    carried = np.linalg.norm(result["left"].ring_force[len(result.time) // 2 :, :2], axis=1).mean()
+    assert rated.radial_load == pytest.approx(carried, rel=0.1)
+
+
+def test_what_single_bearings_warn_of_is_said(tmp_path: Path) -> None:
+    """Pressures that dent raceways, and scenes that can hardly be meant, with the bearing's name."""
+    heavy = {"left": seat(displacement=(0.0, 0.0, -8e-4)), "right": seat(turned=True, shift=-1.6e-3)}
+    with pytest.warns(UserWarning, match=r"left: .*GPa"):
+        simulation = AssemblySimulation(heavy, SHAFT, np.array([0.0, 0.0, -8e-4, 0.0, 0.0]), {})
+    with pytest.warns(RunWarning, match=r"right: the largest pressure"):
+        result = simulation.run(duration=1e-4, output=tmp_path)
+    assert any("ISO 76" in text for text in result["left"].warnings)
+    with pytest.raises(trb.FileError, match="left"):
+        simulation.run(duration=1e-4, output=tmp_path)
+
+
 def test_refused() -> None:
     with pytest.raises(InputError, match="first bearing has the shaft's axes"):
         AssemblySimulation({"left": seat(turned=True)}, SHAFT, STILL, {})
+    wrong = seat(turned=True)
+    for scene, text in (
+        (wrong.scene.replace(speed_rpm=3000.0), r"seats\[1\]\.scene\.speed_rpm = 3000\.0 : must be -3000"),
+        (wrong.scene.replace(gravity=WEIGHT), r"seats\[1\]\.scene\.gravity"),
+        (wrong.scene.replace(start=Start.equal().replace(time=1.0)), r"start\.time = 1\.0 : must be 0"),
+    ):
+        with pytest.raises(InputError, match=text):
+            AssemblySimulation({"left": seat(), "right": replace(wrong, scene=scene)}, SHAFT, STILL, {})
+    with pytest.raises(InputError, match=r"loads\.force_q.*must be one of force_x"):
+        pair({"force_q": 1.0})
+    with pytest.raises(InputError, match=r"mass_offset.*each seat"):
+        pair(body=SHAFT.replace(mass_offset=0.01))
+    with pytest.raises(InputError, match=r"unbalance.*torque"):
+        pair({"torque": 1.0}, body=SHAFT.replace(unbalance=1e-5))
     with pytest.raises(InputError, match="checkpoint_every"):
         AssemblySimulation({"left": seat()}, SHAFT, STILL, {}, checkpoint_every=0.1)
     with pytest.raises(InputError, match="must be one of left"):

@@ -290,7 +290,7 @@ class RingLoad:
     displacement : ndarray, shape (5,)
         Displacement along x, y, z (m) and rotation about x, y (rad).
     shaft_speed, outer_speed : float
-        Speed of the shaft (rad/s).
+        Speeds of shaft and outer ring (rad/s).
     gravity : ndarray, shape (3,)
         Acceleration of gravity (m/s2).
     """
@@ -368,8 +368,8 @@ def motion_table(
         "displacement_z": ring[2],
         "rotation_x": ring[3],
         "rotation_y": ring[4],
-        "shaft_speed": _scaled(scene.speed_rpm, math.pi / 30.0),
-        "outer_speed": _scaled(scene.outer_speed_rpm, math.pi / 30.0),
+        "shaft_speed": scaled(scene.speed_rpm, math.pi / 30.0),
+        "outer_speed": scaled(scene.outer_speed_rpm, math.pi / 30.0),
         "gravity_x": gravity[0],
         "gravity_y": gravity[1],
         "gravity_z": gravity[2],
@@ -381,7 +381,7 @@ def motion_table(
         raise RuntimeError(f"the core's table of motion and the scene differ in {sorted(set(names) ^ set(channels))}")
     quantities = [channels[name] for name in names]
     if joints is not None:
-        own = [*gravity, scene.speed_rpm, *(place for place in given if place is not None)]
+        own = [*gravity, scene.speed_rpm, scene.outer_speed_rpm, *(place for place in given if place is not None)]
         end = scene.settled + (scene.period or 0.0)
         joints = np.append(joints, joint_times(own, scene.start.time, end))
     settled = settled_time(list((loads or {}).values()), scene.settled)
@@ -404,16 +404,20 @@ def loads_period(scene: Scene, loads: Mapping[str, float | History]) -> float | 
     return common_period(periods if scene.period is None else {"scene": scene.period} | periods)
 
 
+def load_channels() -> list[str]:
+    """Names of the core's channels of loads on a free ring."""
+    return [name for name, _, _ in _core.motion_table() if name.startswith(("force_", "moment_", "torque"))]
+
+
 def _loads_on_free_ring(scene: Scene) -> dict[str, float | History]:
     """Loads on a free ring, by the names of their channels; zero for any other."""
-    names = [name for name, _, _ in _core.motion_table() if name.startswith(("force_", "moment_", "torque"))]
-    loads: dict[str, float | History] = dict.fromkeys(names, 0.0)
+    loads: dict[str, float | History] = dict.fromkeys(load_channels(), 0.0)
     if scene.ring != "free":
         return loads
     direction = math.radians(value_at(scene.radial_direction_deg, 0.0))
     for axis, factor, quarter in (("x", math.cos(direction), 0.0), ("y", math.sin(direction), -90.0)):
-        loads[f"force_{axis}"] = _with_rotating(scene, _scaled(scene.radial_load, factor), quarter)
-    loads["force_z"] = _scaled(scene.axial_load, -1.0)
+        loads[f"force_{axis}"] = _with_rotating(scene, scaled(scene.radial_load, factor), quarter)
+    loads["force_z"] = scaled(scene.axial_load, -1.0)
     for axis, moment in zip("xy", scene.moments, strict=True):
         loads[f"moment_{axis}"] = 0.0 if moment is None else moment
     loads["torque"] = 0.0 if scene.torque is None else scene.torque
@@ -437,7 +441,7 @@ def _gravity(scene: Scene) -> tuple[float | History, float | History, float | Hi
     return scene.gravity if scene.effects.gravity else (0.0, 0.0, 0.0)
 
 
-def _scaled(quantity: float | History, factor: float) -> float | History:
+def scaled(quantity: float | History, factor: float) -> float | History:
     if not isinstance(quantity, History):
         return factor * quantity
     slopes = quantity.slopes

@@ -5,6 +5,7 @@ docs/theory/motion.md#bearings-on-one-shaft has the equations.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time as clock
 import warnings
@@ -18,23 +19,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
-from trbdyn.base.shown import Displayed, Shown
-from trbdyn.errors import InputError, RunWarning, StepError
+from trbdyn.errors import FileError, InputError, RunWarning, StepError
 from trbdyn.model.motion import History
 from trbdyn.model.ring_body import RingBody
-from trbdyn.model.shaft import turns
+from trbdyn.model.scene import Scene
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.file_format import RunInfo
-from trbdyn.results.observables.energy import EnergyAudit, energy_audit
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
 from trbdyn.run import keeping
 from trbdyn.run.memory import Kept
 from trbdyn.run.options import RunOptions
 from trbdyn.run.process import has_a_spare_core, interrupts
-from trbdyn.run.running import CHUNK_RECORDS, CHUNK_STEPS, output_times
+from trbdyn.run.running import CHUNK_RECORDS, CHUNK_STEPS, output_times, statistics_of
 from trbdyn.run.watch import RING_GONE, Watch
+from trbdyn.statics.plausible import UnusualInput, dented
 from trbdyn.statics.seat import Seat, Seated, seat_all
 
 Array = NDArray[np.float64]
@@ -43,100 +44,6 @@ Layout = list[tuple[str, int, tuple[int, ...]]]
 WITHOUT_BIAS: Final = (
     "The bias of the presets was measured with one bearing whose ring is held, not with bearings on a shaft."
 )
-
-
-class AssemblyResult(Mapping[str, Result], Displayed):
-    """What a run of bearings on one shaft gives: a result of each bearing by its name, each in the bearing's own axes.
-
-    Parameters
-    ----------
-    bearings : mapping of str to Result
-        The results. The first bearing's energies are those of the shaft, too.
-    seats : sequence of Seat
-        How the bearings sit on the shaft, in the same order.
-    """
-
-    def __init__(self, bearings: Mapping[str, Result], seats: Sequence[Seat]) -> None:
-        self._bearings = dict(bearings)
-        self._seats = tuple(seats)
-
-    def __getitem__(self, name: str) -> Result:
-        """The result of a bearing.
-
-        Raises
-        ------
-        InputError
-            If no bearing has this name.
-        """
-        if name not in self._bearings:
-            raise InputError.of("bearing", name, f"must be one of {', '.join(self._bearings)}")
-        return self._bearings[name]
-
-    def __iter__(self) -> Any:
-        return iter(self._bearings)
-
-    def __len__(self) -> int:
-        return len(self._bearings)
-
-    def __repr__(self) -> str:
-        return f"<AssemblyResult: {', '.join(self._bearings)}: {self.message}>"
-
-    def _shown(self) -> Shown:
-        rows: list[tuple[str, ...]] = [("how it ended", self.message), ("energy closure", f"{self.energy.closure:.2g}")]
-        parts = tuple(Shown(name, notes=(repr(result),)) for name, result in self.items())
-        return Shown(f"Result: {'success' if self.success else 'failed'}", tuple(rows), parts=parts)
-
-    @property
-    def _first(self) -> Result:
-        return next(iter(self._bearings.values()))
-
-    @property
-    def success(self) -> bool:
-        """Whether the run reached its end."""
-        return self._first.success
-
-    @property
-    def message(self) -> str:
-        """How it ended, in a sentence."""
-        return self._first.message
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        """What the integrator did, for all bearings together."""
-        return self._first.stats
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What the watch found, with the bearing's name where it concerns one."""
-        return tuple(dict.fromkeys(f"{name}: {text}" for name, result in self.items() for text in result.warnings))
-
-    @property
-    def time(self) -> Array:
-        """Times of the records (s), shape (T,)."""
-        return self._first.time
-
-    @property
-    def shaft_position(self) -> Array:
-        """Displacement of the shaft's centre of mass along its axes x, y, z (m), shape (T, 3)."""
-        seat, axis = self._seats[0], self.shaft_axis
-        return self._first.ring_position - [0.0, 0.0, seat.shift] + seat.mass_offset * (axis - [0.0, 0.0, 1.0])
-
-    @property
-    def shaft_axis(self) -> Array:
-        """Direction of the shaft's axis (1), shape (T, 3)."""
-        turn = self._first.ring_tilt
-        across = np.column_stack([np.tan(turn[:, 1]), -np.tan(turn[:, 0]), np.ones(len(turn))])
-        return across / np.linalg.norm(across, axis=1)[:, None]
-
-    @property
-    def energy(self) -> EnergyAudit:
-        """The audit of all bearings and the shaft together; what passes between them is left out."""
-        terms: dict[str, Array] = {}
-        for result in self._bearings.values():
-            for field in result.fields:
-                if field.group == "energy" and result[field.name].ndim == 1:
-                    terms[field.name] = terms.get(field.name, 0.0) + result[field.name]
-        return energy_audit(terms)
 
 
 @dataclass
@@ -195,16 +102,24 @@ class AssemblySimulation:
             raise InputError.of(
                 ("run", "checkpoint_every"), self.options.checkpoint_every, "must not be given for an assembly yet"
             )
-        self.seats = dict(seats)
-        self._seated: Seated = seat_all(list(seats.values()), body, shaft, loads, instruction_set)
-        self._core = self._seated.open(
-            next(iter(seats.values())).scene.start.time, self._seated.vector, self.options.settings()
-        )
+        self.seats = {name: seat.at(shaft) for name, seat in seats.items()}
+        self._seated: Seated = seat_all(list(self.seats.values()), body, shaft, loads, instruction_set)
+        self._core = self._seated.open(self._first.start.time, self._seated.vector, self.options.settings())
         self._reached = self._core.time
+        self.warnings = tuple(
+            f"{name}: {text}" for name, texts in zip(self.seats, self._seated.unusual, strict=True) for text in texts
+        )
+        for text in self.warnings:
+            warnings.warn(text, UnusualInput, stacklevel=2)
         self._seen = [self._look_of(number, seat) for number, seat in enumerate(self.seats.values())]
 
     def __repr__(self) -> str:
         return f"<AssemblySimulation: {', '.join(self.seats)}; at {self.time:g} s, accuracy {self.options.accuracy!r}>"
+
+    @property
+    def _first(self) -> Scene:
+        """The scene of the first bearing, whose axes and speed are the shaft's."""
+        return next(iter(self.seats.values())).scene
 
     @property
     def time(self) -> float:
@@ -297,7 +212,7 @@ class AssemblySimulation:
         FileError
             If a file cannot be written, or is there already.
         """
-        speed = next(iter(self.seats.values())).scene.speed_rpm
+        speed = self._first.turning_rpm
         options = self.options.replace(revolutions=revolutions, duration=duration)
         end = options.end_time(speed, self._reached)
         options = options.replace(**keeping.kept_by_default(end - self._reached, speed, save_every, save_groups))  # type: ignore[arg-type]
@@ -309,7 +224,8 @@ class AssemblySimulation:
     def _open_bearings(
         self, options: RunOptions, times: Array, output: str | Path | None, *, overwrite: bool
     ) -> list[_Bearing]:
-        folder, out, at = None if output is None else Path(output), [], 0
+        folder, at = None if output is None else Path(output), 0
+        out: list[_Bearing] = []
         with_peaks = peak_table.GROUP in options.save_groups
         fields = field_table.table() + (peak_table.table() if with_peaks else ())
         if folder is not None:
@@ -323,20 +239,33 @@ class AssemblySimulation:
             if folder is None:
                 kept = Kept(layout, field_table.select(fields, options.save_groups))
             else:
-                kept = ResultWriter(
-                    folder / f"{name}.h5",
-                    scene=seat.at(np.zeros(5)).scene,
-                    layout=layout,
-                    fields=fields,
-                    groups=options.save_groups,
-                    meta=_meta(self, options, name),
-                    geometry=asdict(seat.scene.bearing.geometry),
-                    expected=times.size,
-                    overwrite=overwrite,
-                )
-            out.append(_Bearing(name, seat, layout, at, [], kept))
+                try:
+                    kept = ResultWriter(
+                        folder / f"{name}.h5",
+                        scene=seat.scene,
+                        layout=layout,
+                        fields=fields,
+                        groups=options.save_groups,
+                        meta=_meta(self, options, name),
+                        geometry=asdict(seat.scene.bearing.geometry),
+                        expected=times.size,
+                        overwrite=overwrite,
+                    )
+                except FileError:
+                    close_files(out)
+                    raise
+            doubts = list(self._seated.unusual[len(out)])
+            out.append(_Bearing(name, seat, layout, at, doubts, kept))
             at += length
         return out
+
+
+def close_files(bearings: Sequence[_Bearing]) -> None:
+    """Close what a run that does not end as it should has begun to write."""
+    for bearing in bearings:
+        if isinstance(bearing.kept, ResultWriter):
+            with contextlib.suppress(FileError):
+                bearing.kept.close()
 
 
 def _meta(sim: AssemblySimulation, options: RunOptions, name: str) -> dict[str, Any]:
@@ -347,7 +276,7 @@ def _meta(sim: AssemblySimulation, options: RunOptions, name: str) -> dict[str, 
         "core_version": _core.version(),
         "settings": settings,
         "kept": keeping.said(options.save_every or 0.0, options.save_groups),
-        "notes": [],
+        "notes": list(sim._seated.unusual[list(sim.seats).index(name)]),
         "accuracy": WITHOUT_BIAS,
         "assembly": {"bearing": name, "bearings": list(sim.seats)},
     }
@@ -369,6 +298,10 @@ class _Run:
                 message = self._loop(interrupted)
         except _core.CoreStepError as error:
             raise StepError(str(error), time=core.time, result=self._finish(False, str(error))) from None
+        except BaseException:
+            core.end_peaks()
+            close_files(self.bearings)
+            raise
         return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
 
     def _loop(self, interrupted: list[int]) -> str | None:
@@ -405,10 +338,13 @@ class _Run:
         moved = float(np.abs(rows[:, place : place + 3]).max(initial=0.0))
         if not moved > RING_GONE * bearing.seat.scene.bearing.roller.diameter:
             return None
-        text = f"{bearing.name}: the ring stands {1e3 * moved:.3g} mm from its place: nothing holds the shaft there"
+        text = f"the ring stands {1e3 * moved:.3g} mm from its place: nothing holds the shaft there"
+        self._doubt(bearing, text)
+        return f"ended: {bearing.name}: {text}"
+
+    def _doubt(self, bearing: _Bearing, text: str) -> None:
         bearing.doubts.append(text)
-        warnings.warn(text, RunWarning, stacklevel=5)
-        return f"ended: {text}"
+        warnings.warn(f"{bearing.name}: {text}", RunWarning, stacklevel=6)
 
     def _keep(self, records: Array) -> None:
         if not len(records):
@@ -426,22 +362,21 @@ class _Run:
             sim._reached = core.time
         whole, at, results = core.whole_peaks(sim._reached), 0, {}
         core.end_peaks()
-        turned = abs(turns(self.bearings[0].seat.scene.speed_rpm, float(self.times[0]), sim._reached))
-        length = sim._reached - float(self.times[0])
-        stats: dict[str, Any] = {
-            **sim.statistics,
-            "wall_s": clock.perf_counter() - self.began,
-            "stepping_s": self.spent,
-            "bearing_time_s": length,
-            "revolutions": turned,
-            "wall_s_per_revolution": self.spent / turned if turned > 0.0 else math.nan,
-            "real_time_factor": length / self.spent if self.spent > 0.0 else math.nan,
-            "integrator": self.options.integrator,
-            "instruction_set": sim._seated.models[0].instruction_set,
-        }
+        stats = statistics_of(
+            sim.statistics,
+            sim._first,
+            start=float(self.times[0]),
+            end=sim._reached,
+            began=self.began,
+            spent=self.spent,
+            integrator=self.options.integrator,
+            instruction_set=sim._seated.models[0].instruction_set,
+        )
         for bearing, model in zip(self.bearings, sim._seated.models, strict=True):
             peaks = peak_table.from_row(whole[at : at + model.peak_length], model.peak_layout()) if whole.size else {}
             at += model.peak_length if whole.size else 0
+            if text := dented(peaks):
+                self._doubt(bearing, text)
             how: dict[str, Any] = {
                 "peaks": peaks,
                 "success": success,
@@ -459,7 +394,7 @@ class _Run:
         if isinstance(bearing.kept, ResultWriter):
             bearing.kept.finish(**how)
             return load(bearing.kept.path)
-        scene = bearing.seat.at(np.zeros(5)).scene
+        scene = bearing.seat.scene
         how |= {"warnings": tuple(bearing.doubts), "geometry": asdict(scene.bearing.geometry)}
         info = RunInfo(scene=scene.to_dict(), meta=_meta(self.sim, self.options, bearing.name), **how)
         return Result(bearing.kept.source(), info, scene)

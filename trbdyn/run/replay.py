@@ -6,17 +6,20 @@ motion, and from the state the core gives everything again: pressure, film and s
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn import _core
 from trbdyn.cage.simulated import cage_modes
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
 from trbdyn.model.shaft import angle_turned
 from trbdyn.run.simulation import Simulation
-from trbdyn.statics.free_ring import put_axis
+from trbdyn.statics.free_ring import put_axis, turn_of
+from trbdyn.statics.ring_motion import RingMotion
 from trbdyn.statics.state_view import StateView
 
 if TYPE_CHECKING:
@@ -34,7 +37,7 @@ class Replay:
     Parameters
     ----------
     result : Result
-        Needs the groups time, cage and rollers, and the group ring where the ring is free.
+        Needs the groups time, cage and rollers, and the group ring where the ring is free or sits on a shaft with other bearings.
 
     Raises
     ------
@@ -43,7 +46,9 @@ class Replay:
     """
 
     def __init__(self, result: Result) -> None:
-        for group in NEEDED if result.scene.ring_body is None else (*NEEDED, "ring"):
+        self._on_shaft = "assembly" in result.meta
+        moves = self._on_shaft or result.scene.ring_body is not None
+        for group in (*NEEDED, "ring") if moves else NEEDED:
             if group not in result.groups:
                 raise InputError.of(
                     "result", f"groups {', '.join(result.groups)}", f"must have the recorded group {group!r}"
@@ -170,11 +175,36 @@ class Replay:
         index : int
             Number of the record.
         """
-        return self._simulation.contacts(self.state(index), float(self.result["time"][index]))
+        time, state = float(self.result["time"][index]), self.state(index)
+        return self._place(index).contacts(time, state) if self._on_shaft else self._simulation.contacts(state, time)
+
+    def _place(self, index: int) -> _core.Simulation:
+        """The core with the ring where the shaft, which other bearings carry as well, had it at a record."""
+        result, time = self.result, float(self.result["time"][index])
+        angle, speed = self._prescribed(index)
+        outer_angle, outer_speed = self._outer(index)
+        turn_x, turn_y = result["ring_tilt"][index]
+        axis = np.array([np.tan(turn_y), -np.tan(turn_x), 1.0])
+        axis /= np.linalg.norm(axis)
+        spin = result["ring_angular_velocity"][index]
+        values = {"shaft_speed": (speed, 0.0), "outer_speed": (outer_speed, 0.0)}
+        leaning = spin - (spin @ axis) * axis  # rates of small rotations, to the square of the rotation
+        for name, *both in zip("xyz", result["ring_position"][index], result["ring_velocity"][index], strict=True):
+            values[f"displacement_{name}"] = (both[0], both[1])
+        for name, *both in zip("xy", turn_of(axis), leaning[:2], strict=True):
+            values[f"rotation_{name}"] = (both[0], both[1])
+        channels = [values.get(name, (0.0, 0.0)) for name, _, _ in _core.motion_table()]
+        table = np.array([[time, *(number for channel in channels for number in channel), 0.0]])
+        motion = RingMotion(table, 0.0, time, time, angle, outer_angle)
+        return motion.open(self._simulation._model, time, self.state(index), {})
 
     def record(self, index: int) -> dict[str, Array]:
         """A record, evaluated again: what was recorded, to rounding, but for spin angles and energies."""
-        return self._simulation.record(self.state(index), float(self.result["time"][index]))
+        time, state = float(self.result["time"][index]), self.state(index)
+        if not self._on_shaft:
+            return self._simulation.record(state, time)
+        row, layout = self._place(index).observe(time, state), self._simulation._model.record_layout()
+        return {name: row[offset : offset + math.prod(shape)].reshape(shape) for name, offset, shape in layout}
 
 
 def _in_orbit(vectors: Array, angles: Array) -> Array:

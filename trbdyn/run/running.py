@@ -7,7 +7,7 @@ import math
 import os
 import time as clock
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,6 +35,7 @@ from trbdyn.run.watch import Watch
 from trbdyn.statics.plausible import dented
 
 if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
     from trbdyn.run.simulation import Simulation
 
 Array = NDArray[np.float64]
@@ -327,26 +328,6 @@ class Run:
         self.doubts.append(text)
         warnings.warn(text, RunWarning, stacklevel=4)
 
-    def _stats(self) -> dict[str, Any]:
-        """Solver statistics of the whole simulation, and the wall time of this run."""
-        sim = self.sim
-        turned = abs(turns(sim.scene.turning_rpm, float(self.times[0]), sim._reached))
-        bearing = sim._reached - float(self.times[0])
-        stats: dict[str, Any] = {
-            name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
-            for name, value in sim.statistics.items()
-        }
-        return stats | {
-            "wall_s": clock.perf_counter() - self.began,
-            "stepping_s": self.spent,
-            "bearing_time_s": bearing,
-            "revolutions": turned,
-            "wall_s_per_revolution": self.spent / turned if turned > 0.0 else math.nan,
-            "real_time_factor": bearing / self.spent if self.spent > 0.0 else math.nan,
-            "integrator": self.options.integrator,
-            "instruction_set": sim.instruction_set,
-        }
-
     def _finish(self, success: bool, message: str) -> Result:
         sim = self.sim
         if success:
@@ -367,7 +348,16 @@ class Run:
             "peaks": peaks,
             "success": success,
             "message": message,
-            "stats": self._stats(),
+            "stats": statistics_of(
+                sim.statistics,
+                sim.scene,
+                start=float(self.times[0]),
+                end=sim._reached,
+                began=self.began,
+                spent=self.spent,
+                integrator=self.options.integrator,
+                instruction_set=sim.instruction_set,
+            ),
             "counters": sim.counters,
             "warnings": self.doubts,
             "final_time": ended.time,
@@ -396,6 +386,49 @@ def _hand_over(result: Result, error: BaseException) -> None:
         error.add_note(
             f"The run ended by this; its {len(result)} records so far are in the error's attribute 'result'."
         )
+
+
+def statistics_of(
+    counted: Mapping[str, float],
+    scene: Scene,
+    *,
+    start: float,
+    end: float,
+    began: float,
+    spent: float,
+    integrator: str,
+    instruction_set: str,
+) -> dict[str, Any]:
+    """Solver statistics of a whole simulation, and the wall time of one of its runs.
+
+    Parameters
+    ----------
+    counted : mapping of str to float
+        What the integrator did.
+    scene : Scene
+        The scene, by whose speed turns are counted.
+    start, end : float
+        Bearing time of the run (s).
+    began, spent : float
+        When it began by the clock, and the time that the core took (s).
+    integrator, instruction_set : str
+        What it was computed with.
+    """
+    turned, length = abs(turns(scene.turning_rpm, start, end)), end - start
+    stats: dict[str, Any] = {
+        name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
+        for name, value in counted.items()
+    }
+    return stats | {
+        "wall_s": clock.perf_counter() - began,
+        "stepping_s": spent,
+        "bearing_time_s": length,
+        "revolutions": turned,
+        "wall_s_per_revolution": spent / turned if turned > 0.0 else math.nan,
+        "real_time_factor": length / spent if spent > 0.0 else math.nan,
+        "integrator": integrator,
+        "instruction_set": instruction_set,
+    }
 
 
 def output_times(start: float, end: float, every: float) -> Array:

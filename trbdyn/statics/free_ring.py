@@ -14,6 +14,20 @@ Array = NDArray[np.float64]
 _ALONG = np.array([0.0, 0.0, 1.0])
 
 
+def axis_of(turn: Array) -> Array:
+    """The axis, shape (3,), of a ring that is rotated about x and y (rad), shape (2,)."""
+    angle = math.hypot(*turn)
+    sinc = float(np.sinc(angle / math.pi))
+    return np.array([sinc * turn[1], -sinc * turn[0], math.cos(angle)])
+
+
+def turn_of(axis: Array) -> Array:
+    """The rotation about x and y (rad), shape (2,), that turns z into an axis."""
+    angle = math.atan2(math.hypot(axis[0], axis[1]), axis[2])
+    sinc = float(np.sinc(angle / math.pi))
+    return np.array([-axis[1] / sinc, axis[0] / sinc])
+
+
 def place_ring(state: StateView, displacement: Array, offset: float) -> None:
     """Put a free ring, at rest, at a displacement.
 
@@ -26,10 +40,7 @@ def place_ring(state: StateView, displacement: Array, offset: float) -> None:
     offset : float
         Axial position of its centre of mass from the roller-centre plane (m): the state holds that of the centre of mass.
     """
-    turn_x, turn_y = displacement[3:]
-    angle = math.hypot(turn_x, turn_y)
-    sinc = float(np.sinc(angle / math.pi))
-    put_axis(state, displacement[:3], np.array([sinc * turn_y, -sinc * turn_x, math.cos(angle)]), offset)
+    put_axis(state, displacement[:3], axis_of(displacement[3:]), offset)
 
 
 def put_axis(state: StateView, place: Array, axis: Array, offset: float) -> None:

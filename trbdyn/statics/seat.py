@@ -23,17 +23,21 @@ from trbdyn.model.flatten import (
     block_of,
     diameter_deviation,
     face_rows,
+    load_channels,
     loads_period,
     motion_table,
     named_entries,
+    scaled,
     scene_entries,
 )
 from trbdyn.model.motion import History
 from trbdyn.model.ring_body import RingBody
 from trbdyn.model.scene import Scene
+from trbdyn.statics.cage_start import pressed_rollers
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium
-from trbdyn.statics.free_ring import put_axis
+from trbdyn.statics.free_ring import axis_of, put_axis, turn_of
+from trbdyn.statics.plausible import unusual
 from trbdyn.statics.ring_motion import RingMotion, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
@@ -70,6 +74,10 @@ class Seat:
         """A vector of the shaft's axes in those of the bearing, or back."""
         return vector * np.array([1.0, -1.0, -1.0]) if self.turned else vector
 
+    def of_shaft(self, quantity: float | History) -> float | History:
+        """What goes along or about the shaft's y or z, such as its speed, in the axes of the bearing."""
+        return scaled(quantity, -1.0) if self.turned else quantity
+
     def ring_place(self, shaft: Array) -> Array:
         """Where the ring stands, in the bearing's axes.
 
@@ -83,11 +91,11 @@ class Seat:
         ndarray, shape (5,)
             The same of the ring at its roller-centre plane.
         """
-        axis = self.axes(_axis_of(shaft[3:]))
+        axis = self.axes(axis_of(shaft[3:]))
         if self.turned:
             axis = -axis
         place = self.axes(shaft[:3]) + self.shift * _ALONG - self.mass_offset * (axis - _ALONG)
-        return np.concatenate([place, _turn_of(axis)])
+        return np.concatenate([place, turn_of(axis)])
 
     def at(self, shaft: Array) -> Seat:
         """The seat with its ring where the shaft puts it."""
@@ -97,18 +105,6 @@ class Seat:
             ring="held", ring_body=None, axial_load=0.0, radial_load=0.0, unloaded="refused", **values
         )
         return Seat(scene, self.mass_offset, self.turned, self.shift)
-
-
-def _axis_of(turn: Array) -> Array:
-    angle = math.hypot(*turn)
-    sinc = float(np.sinc(angle / math.pi))
-    return np.array([sinc * turn[1], -sinc * turn[0], math.cos(angle)])
-
-
-def _turn_of(axis: Array) -> Array:
-    angle = math.atan2(math.hypot(axis[0], axis[1]), axis[2])
-    sinc = float(np.sinc(angle / math.pi))
-    return np.array([-axis[1] / sinc, axis[0] / sinc])
 
 
 @dataclass(frozen=True)
@@ -127,6 +123,8 @@ class Seated:
         Where the parts of each bearing's state lie in the whole, as of `_core.state_layouts`.
     vector : ndarray
         The state at the start.
+    unusual : tuple of tuple of str
+        What can hardly be meant in each bearing's scene.
     """
 
     models: tuple[_core.Model, ...]
@@ -134,6 +132,7 @@ class Seated:
     equilibria: tuple[Equilibrium, ...]
     layouts: list[list[tuple[str, int, tuple[int, ...]]]]
     vector: Array
+    unusual: tuple[tuple[str, ...], ...]
 
     def open(self, time: float, vector: Array, settings: dict[str, float | str]) -> _core.Simulation:
         """The core's simulation from a time (s) and state on."""
@@ -156,8 +155,8 @@ def seat_all(
     seats : sequence of Seat
         The bearings. The first one must not be turned: its axes are those of the shaft.
     body : RingBody
-        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it. Its `mass_offset`
-        is that of the first seat, whatever is given.
+        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it. The seats say where
+        its centre of mass lies.
     shaft : ndarray, shape (5,)
         Displacement of its centre of mass (m), and rotation about x and y (rad), at the start.
     loads : mapping of str to float or History
@@ -172,8 +171,7 @@ def seat_all(
     InputError
         If the numbers do not fit together.
     """
-    if seats[0].turned:
-        raise InputError.of(("seats", 0, "turned"), True, "must be False: the first bearing has the shaft's axes")
+    _check(seats, body, loads)
     placed = [seat.at(shaft) for seat in seats]
     held = [build_model(seat.scene, instruction_set) for seat in placed]
     found = [ring_motion(model, seat.scene) for model, seat in zip(held, placed, strict=True)]
@@ -182,15 +180,48 @@ def seat_all(
     free = 2.0 if "torque" in loads else 1.0
     models = tuple(_model(seat, body, number, free, instruction_set) for number, seat in enumerate(placed))
     size, layouts = _core.state_layouts(models)
-    vector = np.zeros(size)
+    vector, said = np.zeros(size), []
     for model, seat, (motion, equilibrium), layout in zip(held, placed, found, layouts, strict=True):
-        own = StateView(model.state_layout(), start_state(model, seat.scene, motion, equilibrium))
-        whole = StateView(layout, vector)
+        alone = start_state(model, seat.scene, motion, equilibrium)
+        pressed = pressed_rollers(model, seat.scene, motion, alone)
+        said.append((*unusual(seat.scene, equilibrium), *((pressed,) if pressed else ())))
+        own, whole = StateView(model.state_layout(), alone), StateView(layout, vector)
         for name in own.names:
             if name != "quadratures":
                 whole[name] = own[name]
-    put_axis(StateView(layouts[0], vector), shaft[:3], _axis_of(shaft[3:]), 0.0)
-    return Seated(models, tuple(motions), tuple(equilibrium for _, equilibrium in found), layouts, vector)
+    put_axis(StateView(layouts[0], vector), shaft[:3], axis_of(shaft[3:]), 0.0)
+    equilibria = tuple(equilibrium for _, equilibrium in found)
+    return Seated(models, tuple(motions), equilibria, layouts, vector, tuple(said))
+
+
+def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, float | History]) -> None:
+    """Refuse what no shaft can do, or what would not act."""
+    first = seats[0]
+    if first.turned:
+        raise InputError.of(("seats", 0, "turned"), True, "must be False: the first bearing has the shaft's axes")
+    if body.mass_offset != 0.0:
+        raise InputError.of(
+            ("body", "mass_offset"), body.mass_offset, "must be 0: each seat has its own mass_offset (m)"
+        )
+    if body.unbalance > 0.0 and "torque" in loads:
+        limit = "must be 0 together with a torque: its effect on the speed is not simulated (kg m)"
+        raise InputError.of(("body", "unbalance"), body.unbalance, limit)
+    for name in loads:
+        if name not in load_channels():
+            raise InputError.of(("loads", name), loads[name], f"must be one of {', '.join(load_channels())}")
+    for number, seat in enumerate(seats):
+        start = seat.scene.start
+        if start.kind == "state":
+            limit = "must not be 'state': the state of a bearing alone knows nothing of the shaft"
+            raise InputError.of(("seats", number, "scene", "start", "kind"), "state", limit)
+        for name, own, needed in (
+            ("speed_rpm", seat.scene.speed_rpm, seat.of_shaft(first.scene.speed_rpm)),
+            ("gravity", seat.scene.gravity, (first.scene.gravity[0], *map(seat.of_shaft, first.scene.gravity[1:]))),
+            ("start.time", start.time, first.scene.start.time),
+        ):
+            if own != needed:
+                limit = f"must be {needed}: that of the first bearing, in the axes of this one"
+                raise InputError.of(("seats", number, "scene", name), own, limit)
 
 
 def _with_loads(motion: RingMotion, scene: Scene, loads: Mapping[str, float | History]) -> RingMotion:
