@@ -168,7 +168,7 @@ class StubScene:
     axial_load, radial_load = 4930.0, 0.0
     rotating_load = None
     speed_rpm = turning_rpm = 3000.0
-    outer_speed_rpm, outer_turns = 0.0, False
+    outer_speed_rpm, outer_turns, turning_ring, torque = 0.0, False, "shaft", None
     growth = None
     misalignment_x = misalignment_y = 0.0
 

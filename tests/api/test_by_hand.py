@@ -34,7 +34,7 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     scene.to_dict, scene.ring_quantities = dict, build()[1].scene.ring_quantities
     scene.rotating_load = scene.growth = None
     scene.speed_rpm = scene.turning_rpm = 3000.0
-    scene.outer_speed_rpm, scene.outer_turns = 0.0, False
+    scene.outer_speed_rpm, scene.outer_turns, scene.turning_ring, scene.torque = 0.0, False, "shaft", None
     scene.elastic_cage = None
     scene.lubricant = build()[1].scene.lubricant
     scene.misalignment_x = scene.misalignment_y = 0.0

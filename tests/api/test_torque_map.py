@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -81,9 +82,12 @@ class FakeRun:
     """A run of made-up records."""
 
     groups = ("energy", "torque")
+    meta: ClassVar = {}
+    scene = SimpleNamespace(torque=None)
 
     def __init__(self, time: np.ndarray, fields: dict[str, np.ndarray]) -> None:
         self.fields = fields | {"time": time}
+        self.rolling_speed, self.rolled = fields["shaft_speed"], fields["shaft_angle"]
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.fields[name]

@@ -10,6 +10,8 @@ import pytest
 
 import trbdyn as trb
 from trbdyn import Effects, History, InputError, Scene, Simulation, Start
+from trbdyn.plot import conditions
+from trbdyn.reporting.verdict import verdict
 from trbdyn.run.replay import Replay
 
 BARE = {"gravity": (0.0, 0.0, 0.0)}
@@ -55,6 +57,28 @@ def test_the_cage_turns_with_both(inner: float, outer: float) -> None:
     put_in = sign * (result.inner_torque * inner - result.outer_torque * outer) * np.pi / 30.0
     works = np.gradient(result.work_shaft, result.time)
     assert works[half:].mean() == pytest.approx(put_in[half:].mean(), rel=0.02)
+
+
+def test_torque_of_the_summary() -> None:
+    """The friction torque is that of the moments on the rings, whichever ring turns; losses over the speed between both."""
+    ratio = trb.cases.rig_30310().geometry.cage_speed_ratio
+    for inner, outer in ((3000.0, 1000.0), (0.0, 2000.0), (2000.0 * (1.0 - ratio), -2000.0 * ratio)):
+        result = Simulation(scene(inner, outer)).run(duration=0.05)
+        found = result.summary()
+        assert found["torque"] == pytest.approx(np.abs(result.inner_torque[len(result) // 2 :]).mean(), rel=2e-3)
+        assert sum(found["torque_by_loss"].values()) == pytest.approx(found["torque"], rel=0.02)
+        assert found["outer_speed_rpm"] == pytest.approx(outer)
+
+
+def test_turns_are_those_of_the_ring_that_turns() -> None:
+    """A wheel hub: turns, the report's words and verdicts, titles."""
+    result = Simulation(scene(0.0, 3000.0, radial_load=2000.0)).run(revolutions=30)
+    assert result.revolutions == pytest.approx(30.0, rel=1e-6)
+    sentences = " ".join(sentence[2] for sentence in verdict(result, result.summary()))
+    assert "30 turns of the outer ring" in sentences
+    assert "less than one turn of the rollers" not in sentences
+    assert "outer ring 3000 rpm" in conditions(result)
+    assert "outer ring 3000 rpm" in repr(result.scene)
 
 
 def test_centrifugal_forces_are_those_of_the_orbit() -> None:

@@ -162,6 +162,7 @@ class Scene(Model):
     def _title(self) -> str:
         given = (
             ("speed", self.speed_rpm, "rpm"),
+            ("outer ring", self.outer_speed_rpm, "rpm"),
             ("axial load", self.axial_load, "N"),
             ("radial load", self.radial_load, "N"),
         )
@@ -249,8 +250,12 @@ class Scene(Model):
     @property
     def turning_rpm(self) -> float | History:
         """The speed by which turns are counted (rpm): that of the shaft, or of the outer ring where the shaft rests."""
-        rests = not any(values_of(self.speed_rpm))
-        return self.outer_speed_rpm if rests and self.outer_turns else self.speed_rpm
+        return self.speed_rpm if self.turning_ring == "shaft" else self.outer_speed_rpm
+
+    @property
+    def turning_ring(self) -> Literal["shaft", "outer ring"]:
+        """What turns are counted of: the shaft, or the outer ring where the shaft rests."""
+        return "outer ring" if self.outer_turns and not any(values_of(self.speed_rpm)) else "shaft"
 
     def orbit_speed(self, time: float) -> float:
         """Speed at which rollers and cage go round the axis in pure rolling (rad/s)."""

@@ -217,6 +217,8 @@ def conditions(result: Result) -> str:
     """Bearing, speed and loads of a run, for a title."""
     scene = result.scene
     parts = [f"{float(abs(result['shaft_speed']).mean()) * 30.0 / math.pi:.4g} rpm"]
+    if scene.outer_turns:
+        parts.append(f"outer ring {float(result.outer_speed.mean()) * 30.0 / math.pi:.4g} rpm")
     for load, name in ((scene.axial_load, "$F_a$"), (scene.radial_load, "$F_r$")):
         if isinstance(load, int | float) and load:
             parts.append(f"{name} {load:g} N")

@@ -33,8 +33,7 @@ def revolutions(result: Result) -> np.ndarray:
 
 def turns_label(result: Result) -> str:
     """What an axis over `revolutions` says."""
-    scene = result.scene
-    return "shaft revolutions" if scene.turning_rpm is scene.speed_rpm else "revolutions of the outer ring"
+    return "shaft revolutions" if result.scene.turning_ring == "shaft" else "revolutions of the outer ring"
 
 
 def need_cage(result: Result) -> None:
@@ -293,7 +292,7 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
         need_cage(result)
     points = [
         (
-            float(np.mean(np.abs(result["shaft_speed"]))) * 30.0 / np.pi,
+            float(np.mean(np.abs(result.turning_speed))) * 30.0 / np.pi,
             float(np.mean(np.abs(result["ring_force"][:, 2]))) / 1e3,
             result.settled.cage_motion.orbit_over_play,
         )

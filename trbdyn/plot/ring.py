@@ -101,9 +101,9 @@ def ring_orders(result: Result) -> dict[str, float]:
         turn (1).
     """
     geometry, count = result.scene.bearing.geometry, result.scene.bearing.n_rollers
-    shaft, outer = float(result["shaft_speed"].mean()), float(result.outer_speed.mean())
-    turning = shaft or outer
-    inner, outer = shaft / turning, outer / turning
+    inner, outer = (
+        float(speed.mean() / result.turning_speed.mean()) for speed in (result["shaft_speed"], result.outer_speed)
+    )
     cage = geometry.cage_speed_ratio * (inner - outer) + outer
     return {
         "shaft": inner,
@@ -156,7 +156,7 @@ def ring_spectrum(
     if along not in ("x", "y", "z"):
         raise InputError.of("along", along, "must be 'x', 'y' or 'z'")
     frequency, density = observables.spectrum(result["time"], result["ring_velocity"][:, "xyz".index(along)], segments)
-    shaft = abs(float(result["shaft_speed"].mean()) or float(result.outer_speed.mean())) / (2.0 * np.pi)
+    shaft = abs(float(result.turning_speed.mean())) / (2.0 * np.pi)
     kept = (frequency > 0.0) & (frequency <= orders * shaft)
     scale = (2.0 * np.pi * frequency[kept]) ** powers[of]
     amplitude = np.sqrt(density[kept]) * scale

@@ -41,7 +41,7 @@ def section_points(result: Result, once_per: Literal["cage", "shaft", "roller"] 
     periods = {"cage": 2.0 * np.pi, "shaft": 2.0 * np.pi, "roller": 2.0 * np.pi / result.scene.bearing.n_rollers}
     if once_per not in periods:
         raise InputError.of("once_per", once_per, "must be 'cage', 'shaft' or 'roller'")
-    angle = np.abs(result["shaft_angle" if once_per == "shaft" else "cage_angle"])
+    angle = np.abs(result.turned if once_per == "shaft" else result["cage_angle"])
     period, path = periods[once_per], result.cage_locus()
     first, last = int(np.ceil(angle[0] / period)), int(np.floor(angle[-1] / period))
     wanted = period * np.arange(first, last + 1)
@@ -161,7 +161,7 @@ def waterfall(results: Sequence[Result], ax: Axes | None = None, reach: float = 
 
 
 def _speed(result: Result) -> float:
-    return float(np.abs(result["shaft_speed"]).mean()) * 30.0 / np.pi
+    return float(np.abs(result.turning_speed).mean()) * 30.0 / np.pi
 
 
 def torque_sources(result: Result, ax: Axes | None = None) -> Axes:

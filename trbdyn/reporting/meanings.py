@@ -7,7 +7,7 @@ from typing import Final
 MEANINGS: Final[dict[str, str]] = {
     "success": "Whether the run reached its end.",
     "message": "How it ended.",
-    "revolutions": "Turns of the shaft from the first to the last record.",
+    "revolutions": "Turns of the shaft, or of the outer ring where the shaft rests, from the first to the last record.",
     "duration": "Time that passed in the bearing.",
     "settled": "Whether the motion has stopped to drift.",
     "settling": "Settled, still drifting, or not to be told from this record.",
@@ -21,6 +21,7 @@ MEANINGS: Final[dict[str, str]] = {
     "accuracy_note": "What the tolerances of the run do to peaks, percentiles and contact times, as measured on a like scene.",
     "confidence_note": "How the numbers behind ± were found: the true mean lies within in 95 of 100 cases.",
     "speed_rpm": "Mean speed of the inner ring.",
+    "outer_speed_rpm": "Mean speed of an outer ring that turns.",
     "cage_speed_ratio": "Turns of the cage for each turn of the shaft.",
     "cage_speed_ratio_kinematic": "The same if all rollers rolled without slip.",
     "cage_slip": "How much slower than pure rolling the roller set goes round.",

@@ -75,7 +75,7 @@ def _settled(numbers: dict[str, Any]) -> bool:
 
 
 def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
-    turns = f"{numbers['revolutions']:.4g} turns of the shaft ({numbers['duration']:.4g} s)"
+    turns = f"{numbers['revolutions']:.4g} turns of the {_ring(numbers)} ({numbers['duration']:.4g} s)"
     if not result.success:
         return "bad", "The run did not reach its end", f"{turns} were simulated. {result.message}"
     if _settled(numbers):
@@ -102,7 +102,12 @@ def _needed(numbers: dict[str, Any]) -> str:
     turns = numbers["revolutions"] * needed / length
     wall = numbers.get("wall_s_per_revolution")
     cost = f", about {_time(wall * turns)} of computing" if wall and turns else ""
-    return f"A run of about {_two(needed)} s ({_two(turns)} turns of the shaft{cost}) is expected to tell. "
+    return f"A run of about {_two(needed)} s ({_two(turns)} turns of the {_ring(numbers)}{cost}) is expected to tell. "
+
+
+def _ring(numbers: dict[str, Any]) -> str:
+    """What turns are counted of."""
+    return "outer ring" if numbers.get("outer_speed_rpm") and not numbers.get("speed_rpm") else "shaft"
 
 
 def _two(value: float) -> str:
@@ -276,7 +281,8 @@ def _whole_turn(numbers: dict[str, Any]) -> bool:
     """Whether the averages hold one turn of the rollers around the bearing, so that each was in the loaded zone."""
     ratio = numbers.get("cage_speed_ratio_kinematic") or 0.4
     seconds = (numbers.get("window_end") or 0.0) - (numbers.get("window_start") or 0.0)
-    return bool(abs(numbers.get("speed_rpm") or 0.0) / 60.0 * seconds * ratio >= 0.99)
+    turning = numbers.get("speed_rpm") or numbers.get("outer_speed_rpm") or 0.0
+    return bool(abs(turning * ratio) / 60.0 * seconds >= 0.99)
 
 
 def _too_short(headline: str, number: str) -> Sentence:
@@ -383,5 +389,5 @@ def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: i
     if effects.planar:
         out.append("The scene is planar: axial motion and tilts are frozen.")
     if numbers["revolutions"] < 10.0:
-        out.append(f"The run is short: {numbers['revolutions']:.3g} turns of the shaft.")
+        out.append(f"The run is short: {numbers['revolutions']:.3g} turns of the {_ring(numbers)}.")
     return out

@@ -116,8 +116,8 @@ class Derived(ABC):
 
     @property
     def revolutions(self) -> float:
-        """Turns of the shaft between the first and the last record."""
-        angle = self["shaft_angle"]
+        """Turns of the shaft, or of the outer ring where the shaft rests, between the first and the last record."""
+        angle = self.turned
         return float(abs(angle[-1] - angle[0]) / (2.0 * np.pi)) if angle.size else 0.0
 
     @property
@@ -236,10 +236,27 @@ class Derived(ABC):
     @property
     def turned(self) -> Array:
         """Angle of the shaft, or of the outer ring where the shaft rests (rad), shape (T,)."""
-        scene = self.scene
-        if scene.turning_rpm is scene.speed_rpm:
-            return self["shaft_angle"]
-        return np.array([angle_turned(scene.outer_speed_rpm, 0.0, float(time)) for time in self["time"]])
+        return self["shaft_angle"] if self.scene.turning_ring == "shaft" else self._outer_angle()
+
+    def _outer_angle(self) -> Array:
+        """Angle of the outer ring (rad), shape (T,)."""
+        speed = self.scene.outer_speed_rpm
+        return np.array([angle_turned(speed, 0.0, float(time)) for time in self["time"]])
+
+    @property
+    def turning_speed(self) -> Array:
+        """Speed of the shaft, or of the outer ring where the shaft rests (rad/s), shape (T,)."""
+        return self["shaft_speed"] if self.scene.turning_ring == "shaft" else self.outer_speed
+
+    @property
+    def rolled(self) -> Array:
+        """Angle between the rings (rad), shape (T,): that of the shaft, less that of an outer ring that turns."""
+        return self["shaft_angle"] - self._outer_angle() if self.scene.outer_turns else self["shaft_angle"]
+
+    @property
+    def rolling_speed(self) -> Array:
+        """Speed of the shaft relative to the outer ring (rad/s), shape (T,)."""
+        return self["shaft_speed"] - self.outer_speed if self.scene.outer_turns else self["shaft_speed"]
 
     @property
     def outer_speed(self) -> Array:
@@ -251,8 +268,7 @@ class Derived(ABC):
     @property
     def rolling_orbit(self) -> Array:
         """Speed of the rollers' orbit in pure rolling (rad/s), shape (T,)."""
-        outer = self.outer_speed
-        return self.geometry["cage_speed_ratio"] * (self["shaft_speed"] - outer) + outer
+        return self.geometry["cage_speed_ratio"] * self.rolling_speed + self.outer_speed
 
     @property
     def cage_motion(self) -> observables.CageMotion:
@@ -287,9 +303,7 @@ class Derived(ABC):
     def spin_slip(self) -> Array:
         """Slip of each roller's spin against pure rolling, shape (T, Z); positive when slower."""
         ratio = self.geometry["roller_spin_ratio"]
-        return observables.kinematic_slip(
-            np.abs(self["roller_spin_speed"]), np.abs(self["shaft_speed"] - self.outer_speed), ratio
-        )
+        return observables.kinematic_slip(np.abs(self["roller_spin_speed"]), np.abs(self.rolling_speed), ratio)
 
     def pocket_statistics(self, threshold: float = 0.0) -> observables.PocketStatistics:
         """Peak, 95th percentile, mean and duty of the force on each face of each pocket (forces above `threshold`, N).
@@ -360,13 +374,13 @@ class Derived(ABC):
 
     @property
     def torque_by_loss(self) -> dict[str, float]:
-        """Friction torque of the shaft by what loses it, N m: the power loss of each mechanism over the mean speed of
-        the shaft.
+        """Friction torque of the shaft by what loses it, N m: the power loss of each mechanism over the mean speed
+        between the rings.
 
         Unlike `torque_split`, which tells the forces on the inner ring, its shares are those of the power loss. Empty
         at standstill.
         """
-        speed = float(np.abs(self["shaft_speed"]).mean())
+        speed = float(np.abs(self.rolling_speed).mean())
         return {name: value / speed for name, value in self.power_split.items()} if speed > 0.0 else {}
 
     def _energies(self) -> dict[str, Array]:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 LABELS: dict[str, tuple[str, str]] = {
     "success": ("finished", ""),
     "message": ("how it ended", ""),
-    "revolutions": ("shaft revolutions", ""),
+    "revolutions": ("revolutions of the shaft, or of the outer ring where the shaft rests", ""),
     "duration": ("bearing time", "s"),
     "settled": ("settled", ""),
     "settling": ("settling: settled, drifting or unknown", ""),
@@ -45,6 +45,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "window_start": ("averages from", "s"),
     "window_end": ("averages to", "s"),
     "speed_rpm": ("shaft speed", "rpm"),
+    "outer_speed_rpm": ("outer ring's speed", "rpm"),
     "cage_speed_ratio": ("cage speed / shaft speed", ""),
     "cage_speed_ratio_kinematic": ("the same, pure rolling", ""),
     "cage_slip": ("slip of the roller set", ""),
@@ -174,7 +175,8 @@ def summary(result: Result) -> Summary:
     if len(result) > 1:
         out |= _motion(result)
     out |= _running_plays(result.scene) | _deflection(result)
-    out |= _ratings(result.scene)
+    # the ring of a bearing on a shaft moves: what it carries is known from its records alone (trbdyn.rating of the result)
+    out |= {} if "assembly" in result.meta else _ratings(result.scene)
     out |= _cost(result)
     out["accuracy_note"] = result.meta.get("accuracy") or None
     return Summary({name: clean(out.get(name)) for name in LABELS})
@@ -229,6 +231,8 @@ def _motion(result: Result) -> dict[str, Any]:
     time = window["time"]
     out |= {"window_start": float(time[0]), "window_end": float(time[-1])}
     out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
+    if window.scene.outer_turns:
+        out["outer_speed_rpm"] = float(window.outer_speed.mean()) * 30.0 / np.pi
     out |= averages(window)
     if "pocket_force_peak" in out and peak_band.drops(window):
         out["pocket_force_peak_low"], out["pocket_force_peak_high"] = peak_band.band(out["pocket_force_peak"])
@@ -286,8 +290,7 @@ def _kinematic_ratio(window: Result) -> float | None:
     ratio: float | None = window.geometry.get("cage_speed_ratio")
     if ratio is None or not window.scene.outer_turns:
         return ratio
-    shaft = float(window["shaft_speed"].mean())
-    return float(window.rolling_orbit.mean()) / (shaft if shaft else float(window.outer_speed.mean()))
+    return float(window.rolling_orbit.mean() / window.turning_speed.mean())
 
 
 def _rollers(window: Result) -> dict[str, Any]:
@@ -349,16 +352,20 @@ def _torque(window: Result) -> dict[str, Any]:
 
 
 def shaft_torque(window: Result) -> float:
-    """Mean friction torque of the shaft (N m): its work over its turn, which records between impacts do not alias.
+    """Mean friction torque of the shaft (N m): the work of both rings' drives over the turn between the rings, which records
+    between impacts do not alias.
 
-    The mean of the records where the work was not recorded, or the shaft stands still or turns back.
+    The mean of the records where the work was not recorded, or is not that of friction alone: where the rings do not turn against
+    each other in one direction, a torque turns the shaft, or other bearings sit on it.
     """
-    speed = window["shaft_speed"]
+    speed = window.rolling_speed
+    if window.scene.torque is not None or "assembly" in window.meta:
+        return float(window["inner_torque"].mean())
     one_way = bool(np.all(speed > 0.0) or np.all(speed < 0.0))
     if "energy" not in window.groups or not one_way or len(window) < 2:
         return float(window["inner_torque"].mean())
-    turn = window["shaft_angle"][-1] - window["shaft_angle"][0]
-    return float((window["work_shaft"][-1] - window["work_shaft"][0]) / abs(turn))
+    rolled = window.rolled
+    return float((window["work_shaft"][-1] - window["work_shaft"][0]) / abs(rolled[-1] - rolled[0]))
 
 
 def mean_loss(window: Result) -> float:

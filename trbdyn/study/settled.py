@@ -42,5 +42,5 @@ def drift(result: Result) -> float:
 def stored(result: Result) -> float:
     """How much of the shaft's power over the second half of a run was not lost but went into motion or springs (1)."""
     half = result.window(0.5 * (result["time"][0] + result["time"][-1]))
-    power = abs(shaft_torque(half) * half["shaft_speed"].mean())
+    power = abs(shaft_torque(half) * half.rolling_speed.mean())
     return abs(power - mean_loss(half)) / max(power, 1e-300)

@@ -114,7 +114,7 @@ def frames(result: Result, *, revolutions: float | None, max_frames: int, along:
     quantities = _quantities(result, index, pose)
     if along:
         quantities.append(_along(result, index))
-    time, turns = result["time"][index], np.abs(result["shaft_angle"][index]) / (2.0 * np.pi)
+    time, turns = result["time"][index], np.abs(result.turned[index]) / (2.0 * np.pi)
     return Frames(index, len(shown), time, turns, pose, tuple(quantities))
 
 
@@ -268,5 +268,10 @@ def facts(result: Result) -> dict[str, Any]:
             loads.append(f"{label} {value:g} N")
         else:
             loads.append(f"{label} changes in time")
-    speed = float(np.abs(result["shaft_speed"]).mean()) * 30.0 / np.pi
-    return {"bearing": scene.bearing.name, "speed_rpm": speed, "loads": ", ".join(loads)}
+    speed = float(np.abs(result.turning_speed).mean()) * 30.0 / np.pi
+    return {
+        "bearing": scene.bearing.name,
+        "speed_rpm": speed,
+        "turning": scene.turning_ring,
+        "loads": ", ".join(loads),
+    }

@@ -126,13 +126,14 @@ def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None
 
 
 def shown_turns(result: Result, frames: Frames) -> str:
-    """Which turns of the shaft are shown, and why, in words."""
+    """Which turns are shown, and why, in words."""
+    ring = result.scene.turning_ring
     first, last = float(frames.turns[0]), float(frames.turns[-1])
     if frames.index[0] == 0:
-        return f"all {last - first:.3g} turns of the shaft are shown"
+        return f"all {last - first:.3g} turns of the {ring} are shown"
     return (
-        f"the last {last - first:.3g} of {result.revolutions:.3g} turns of the shaft are shown, so that single hits can be seen; "
-        "revolutions=None shows all"
+        f"the last {last - first:.3g} of {result.revolutions:.3g} turns of the {ring} are shown, so that single hits "
+        "can be seen; revolutions=None shows all"
     )
 
 

@@ -377,7 +377,7 @@
   }
   const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2];
   const rate = head.turns && turns[N - 1] > turns[0] ? (turns[N - 1] - turns[0]) / (time[N - 1] - time[0]) : 0;
-  for (const s of speeds) byId("speed").add(new Option(rate > 0 ? `${s} turns of the shaft a second (slowed ${number(rate / s)} times)` : `${s}`, s));
+  for (const s of speeds) byId("speed").add(new Option(rate > 0 ? `${s} turns of the ${head.turning} a second (slowed ${number(rate / s)} times)` : `${s}`, s));
   state.speed = 0.25;
   byId("speed").value = String(state.speed);
   byId("speed").addEventListener("change", (event) => { state.speed = Number(event.target.value); });
@@ -477,7 +477,7 @@
     describe(b);
     slider.value = state.place;
     const at = (list) => list[b.first] * (1 - b.share) + list[b.first + 1] * b.share;
-    byId("clock").textContent = `${(head.time.start + at(time)).toFixed(5)} s, turn ${at(turns).toFixed(2)} of the shaft`;
+    byId("clock").textContent = `${(head.time.start + at(time)).toFixed(5)} s, turn ${at(turns).toFixed(2)} of the ${head.turning}`;
     renderer.render(scene, camera);
     drawn++;
   }
