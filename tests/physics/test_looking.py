@@ -112,19 +112,19 @@ def test_records_sum_up_contacts(kit: SimpleNamespace) -> None:
 def test_a_look_shows_nothing_of_the_look_before(kit: SimpleNamespace) -> None:
     """Rollers that have left their raceways, ribs and pockets have no trace of the contacts that they had."""
     effects = Effects.standard()
-    sim, anew = kit.simulate(effects), kit.simulate(effects)
+    sim, fresh = kit.simulate(effects), kit.simulate(effects)
     for seed in range(4):
         sim.contacts(kit.perturbed(sim, seed))
         sim.record(kit.perturbed(sim, seed))
         vector = kit.perturbed(sim, 10 + seed)
         sim.view(vector)["roller_r"][seed::3] -= 2e-4  # off the outer raceway
         sim.view(vector)["roller_z"][seed::3] += 5e-4  # and off the others
-        looks = [(one.contacts(vector), one.record(vector)) for one in (sim, anew)]
+        looks = [(one.contacts(vector), one.record(vector)) for one in (sim, fresh)]
         for seen, wanted in zip(*looks, strict=True):
             for name, values in wanted.items():
                 np.testing.assert_array_equal(seen[name], values, err_msg=name)
         assert (looks[0][0]["raceway_load"][0].sum(axis=-1) == 0.0).any()
-        anew = kit.simulate(effects)
+        fresh = kit.simulate(effects)
 
 
 def test_parts_of_a_state_are_views(kit: SimpleNamespace) -> None:
