@@ -246,6 +246,16 @@ def test_what_does_not_go_together_is_refused(tmp_path: Path) -> None:
         Simulation(known)
 
 
+def test_a_mass_that_is_not_that_of_the_frame_is_said() -> None:
+    """Its frequencies would be those of another cage."""
+    bearing = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
+    given = {"speed_rpm": 3000, "axial_load": 4930.0, "elastic_cage": trb.ElasticCage(n_modes=2)}
+    heavy = trb.Scene(bearing.replace({"cage.mass": 0.3}), **given)
+    with pytest.warns(UserWarning, match=r"cage\.mass = 0\.3 kg, but the rims and bars .* weigh 0\.1998 kg"):
+        trb.Simulation(heavy)
+    assert not trb.Simulation(trb.Scene(bearing, **given)).warnings
+
+
 def test_records_keep_the_modes_and_are_evaluated_again(tmp_path: Path) -> None:
     start = trb.Start(kind="whirl", eccentricity=0.95)
     result = Simulation(scene(trb.ElasticCage(n_modes=4), start=start)).run(duration=4e-3, output=tmp_path / "run.h5")

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CageStress:
     """Normal stress along the bars at their roots.
 
@@ -49,6 +49,11 @@ class CageStress:
     point_name: tuple[str, ...]
     point_place: FloatArray
     is_complete: bool
+
+    def __repr__(self) -> str:
+        name, time, stress = self.worst
+        size = f"{len(self.time)} records at {len(self.point_name)} points"
+        return f"<CageStress: {size}; largest {stress / 1e6:.4g} MPa at {time:g} s: {name}>"
 
     @property
     def worst(self) -> tuple[str, float, float]:
