@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+import common
 import numpy as np
 
 from trbdyn import Scene, Simulation, Start
+from trbdyn.run.assembly import AssemblySimulation
 from trbdyn.run.options import Tolerances
 
 SHOWN = ("ms_per_turn", "steps_per_turn", "evaluations_per_turn", "error", "time_ratio")
@@ -27,7 +29,25 @@ TIGHTER = 50.0
 """Factor of the tight tolerances."""
 
 
-def advance(simulation: Simulation, duration: float) -> float:
+def open_report(
+    name: str, text: str | None, columns: Mapping[str, str], arguments: Sequence[str] | None
+) -> tuple[common.Report, int]:
+    """The report of a benchmark that runs variants beside each other, and how many pieces each of them runs."""
+    parser = common.parser(text)
+    parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
+    options = parser.parse_args(arguments)
+    return common.Report(name, options, columns), 1 if options.smoke else 16 if options.quick else 160
+
+
+def close_report(report: common.Report, shown: Sequence[str]) -> common.Report:
+    """Print and keep it."""
+    report.readme = common.table(report.results, shown)
+    print(report.readme)
+    report.finish()
+    return report
+
+
+def advance(simulation: Simulation | AssemblySimulation, duration: float) -> float:
     """Step on for some bearing time (s); gives the processor time (s)."""
     end, begin = simulation.time + duration, time.process_time()
     while simulation.time < end:
@@ -46,11 +66,15 @@ def error_of(scene: Scene, simulation: Simulation) -> float:
     return float(np.max(np.abs(paths[1] - paths[0])) / scene.bearing.cage.play_radial)
 
 
-def rows_of(variants: Mapping[str, Scene], pieces: int) -> dict[str, dict[str, Any]]:
-    """Every variant of a scene, pieces of a quarter of a turn in turns; the first one is what the others are compared with."""
-    first = next(iter(variants))
-    quarter = 15.0 / float(variants[first].speed_rpm)
-    sims = {name: Simulation(scene) for name, scene in variants.items()}
+def rows_of(
+    variants: Mapping[str, Scene | AssemblySimulation], pieces: int, speed_rpm: float
+) -> dict[str, dict[str, Any]]:
+    """Every variant, pieces of a quarter of a turn in turns; the first one is what the others are compared with.
+
+    The error of bearings on a shaft is not measured: nan.
+    """
+    first, quarter = next(iter(variants)), 15.0 / speed_rpm
+    sims = {name: Simulation(one) if isinstance(one, Scene) else one for name, one in variants.items()}
     for sim in sims.values():
         advance(sim, 8 * quarter)
     before = {name: sim.statistics for name, sim in sims.items()}
@@ -60,7 +84,7 @@ def rows_of(variants: Mapping[str, Scene], pieces: int) -> dict[str, dict[str, A
     for piece in range(pieces):
         for name, sim in sims.items():
             taken[name].append(advance(sim, quarter))
-            if piece % every == every - 1:
+            if piece % every == every - 1 and isinstance(sim, Simulation):
                 errors[name].append(error_of(sim.scene, sim))
     out = {}
     for name, sim in sims.items():
@@ -69,7 +93,7 @@ def rows_of(variants: Mapping[str, Scene], pieces: int) -> dict[str, dict[str, A
             "ms_per_turn": 4e3 * float(np.mean(taken[name])),
             "steps_per_turn": (now["steps"] - before[name]["steps"]) / turns,
             "evaluations_per_turn": (now["rhs_evaluations"] - before[name]["rhs_evaluations"]) / turns,
-            "error": float(np.mean(errors[name])),
+            "error": float(np.mean(errors[name])) if errors[name] else float("nan"),
             "time_ratio": float(np.sum(taken[name]) / np.sum(taken[first])),
         }
     return out

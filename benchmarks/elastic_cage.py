@@ -44,22 +44,16 @@ def scenes() -> dict[str, Scene]:
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     """Run it."""
-    parser = common.parser(__doc__)
-    parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
-    options = parser.parse_args(arguments)
-    report = common.Report("elastic_cage", options, COLUMNS)
+    report, pieces = beside.open_report("elastic_cage", __doc__, COLUMNS, arguments)
     for name, scene in scenes().items():
         variants = {
             str(count): scene.replace(elastic_cage=ElasticCage(n_modes=count) if count else None) for count in MODES
         }
-        for count, row in beside.rows_of(variants, 1 if options.smoke else 16 if options.quick else 160).items():
+        for count, row in beside.rows_of(variants, pieces, float(scene.speed_rpm)).items():
             report.add(scene=name, modes=int(count), **row)
     rows = {(row["scene"], row["modes"]): row for row in report.results}
     report.summary["ratio_20"] = rows["colliding cage", 20]["time_ratio"]
-    report.readme = common.table(report.results, SHOWN)
-    print(report.readme)
-    report.finish()
-    return report
+    return beside.close_report(report, SHOWN)
 
 
 if __name__ == "__main__":

@@ -2,9 +2,11 @@
 
     python benchmarks/free_ring.py [--quick] [--json FILE]
 
-The same scenes with a held ring, with a free ring of 0.7 kg and with a rotor of 20 kg. Time is processor time of the steps alone,
-of pieces of bearing time that all of them take in turns. The error is that of the cage's centre after a few milliseconds from a
-state in the middle of the run, against a fiftieth of the tolerances; it is measured for each ring beside itself.
+The same scenes with a held ring, with a free ring of 0.7 kg and with a rotor of 20 kg; and two such bearings, their cages
+colliding, preloaded against each other on a shaft of 5 kg, beside one of them with its ring held. Time is processor time of the
+steps alone, of pieces of bearing time that all of them take in turns. The error is that of the cage's centre after a few
+milliseconds from a state in the middle of the run, against a fiftieth of the tolerances; it is measured for each ring beside
+itself, and not for the two bearings on a shaft.
 """
 
 from __future__ import annotations
@@ -13,8 +15,11 @@ from collections.abc import Sequence
 
 import beside
 import common
+import numpy as np
 
 from trbdyn import RingBody, Scene, Start, cases
+from trbdyn.run.assembly import AssemblySimulation
+from trbdyn.statics.seat import Seat
 
 SHOWN = ("scene", "ring", *beside.SHOWN)
 
@@ -45,21 +50,40 @@ def with_ring(scene: Scene, body: RingBody | None) -> Scene:
     return scene if body is None else scene.replace(ring="free", ring_body=body)
 
 
+def pair() -> dict[str, Scene | AssemblySimulation]:
+    """One held bearing, and two on a shaft, the second one the other way round."""
+    body = RingBody(mass=5.0, inertia_axial=5e-3, inertia_transverse=3e-2)
+    preload, weight = -20e-6, 9.80665
+    seats = {
+        name: Seat(
+            Scene(
+                cases.rig_30310(),
+                speed_rpm=sign * 3000.0,
+                displacement=(0.0, 0.0, preload),
+                gravity=(0.0, -sign * weight, 0.0),
+                start=Start.whirl(0.9),
+            ),
+            mass_offset=-0.05,
+            turned=sign < 0.0,
+            shift=preload * (1.0 - sign),
+        )
+        for name, sign in (("left", 1.0), ("right", -1.0))
+    }
+    shaft = np.array([0.0, 0.0, preload, 0.0, 0.0])
+    return {"held": seats["left"].scene, "two on a shaft": AssemblySimulation(seats, body, shaft, {})}
+
+
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     """Run it."""
-    parser = common.parser(__doc__)
-    parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
-    options = parser.parse_args(arguments)
-    report = common.Report("free_ring", options, COLUMNS)
+    report, pieces = beside.open_report("free_ring", __doc__, COLUMNS, arguments)
     for name, scene in scenes().items():
         variants = {ring: with_ring(scene, body) for ring, body in RINGS.items()}
-        for ring, row in beside.rows_of(variants, 1 if options.smoke else 16 if options.quick else 160).items():
+        for ring, row in beside.rows_of(variants, pieces, float(scene.speed_rpm)).items():
             report.add(scene=name, ring=ring, **row)
+    for ring, row in beside.rows_of(pair(), pieces, 3000.0).items():
+        report.add(scene="preloaded, colliding", ring=ring, **row)
     report.summary["worst_ratio"] = max(row["time_ratio"] for row in report.results if row["ring"] == "free, 0.7 kg")
-    report.readme = common.table(report.results, SHOWN)
-    print(report.readme)
-    report.finish()
-    return report
+    return beside.close_report(report, SHOWN)
 
 
 if __name__ == "__main__":

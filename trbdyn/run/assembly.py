@@ -131,6 +131,20 @@ class AssemblySimulation:
         """What the integrator did."""
         return self._core.statistics()
 
+    def step(self) -> float:
+        """One step of the integrator; gives the new time (s).
+
+        Raises
+        ------
+        StepError
+            If the integrator cannot go on; the state stays the last good one.
+        """
+        try:
+            self._reached = self._core.step()
+        except _core.CoreStepError as error:
+            raise StepError(str(error), time=self._core.time) from None
+        return self._reached
+
     def state(self, bearing: str) -> dict[str, Array]:
         """Parts of a bearing's present state by name; those of ``inner_ring`` are the shaft's."""
         view = self._seated.view(list(self.seats).index(bearing), self._core.state())
