@@ -26,6 +26,7 @@ enum {
 #undef TRB_STATE_ENUM
       TRB_FREE_RING_SIZE
 };
+_Static_assert((int)TRB_FREE_RING_SIZE <= (int)TRB_MOST_CARRIED, "room for what a carried ring adds to the rates of the shaft");
 
 extern const trb_body_kind trb_ring_free;
 

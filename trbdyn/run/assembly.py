@@ -34,7 +34,7 @@ from trbdyn.run.memory import Kept
 from trbdyn.run.options import RunOptions
 from trbdyn.run.process import has_a_spare_core, interrupts
 from trbdyn.run.running import CHUNK_RECORDS, CHUNK_STEPS, output_times, statistics_of
-from trbdyn.run.watch import RING_GONE, Watch
+from trbdyn.run.watch import RING_GONE, Account, Watch
 from trbdyn.statics.plausible import UnusualInput, dented
 from trbdyn.statics.seat import Seat, Seated, seat_all
 
@@ -58,6 +58,27 @@ class _Bearing:
     """Where its part of a row begins."""
     doubts: list[str]
     kept: Kept | ResultWriter
+
+
+class _Seen:
+    """What the watch over a run asks of a simulation, for one bearing of several: its fields in the rows of all of them."""
+
+    def __init__(self, sim: AssemblySimulation, number: int) -> None:
+        models = sim._seated.models
+        before = sum(model.record_length for model in models[:number])
+        layout = [(name, at + before, shape) for name, at, shape in models[number].record_layout()]
+        self.sim, self.options, self.scene = sim, sim.options, list(sim.seats.values())[number].scene
+        self._account: Account | None = None
+        self._model = SimpleNamespace(record_layout=lambda: layout)
+        self._motion = SimpleNamespace(open=lambda _, *given: sim._seated.open(*given))
+
+    @property
+    def _core(self) -> _core.Simulation:
+        return self.sim._core
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        return self.sim.statistics
 
 
 class AssemblySimulation:
@@ -111,7 +132,7 @@ class AssemblySimulation:
         )
         for text in self.warnings:
             warnings.warn(text, UnusualInput, stacklevel=2)
-        self._seen = [self._look_of(number, seat) for number, seat in enumerate(self.seats.values())]
+        self._seen: list[Any] = [_Seen(self, number) for number in range(len(self.seats))]
 
     def __repr__(self) -> str:
         return f"<AssemblySimulation: {', '.join(self.seats)}; at {self.time:g} s, accuracy {self.options.accuracy!r}>"
@@ -161,31 +182,6 @@ class AssemblySimulation:
             }
             at += model.record_length
         return out
-
-    def _look_of(self, number: int, seat: Seat) -> Any:
-        """What the watch asks of a simulation, for one bearing."""
-        before = sum(model.record_length for model in self._seated.models[:number])
-        layout = [(name, at + before, shape) for name, at, shape in self._seated.models[number].record_layout()]
-
-        class Seen(SimpleNamespace):
-            @property
-            def statistics(inner) -> dict[str, float]:
-                return self._core.statistics()
-
-            @property
-            def _core(inner) -> _core.Simulation:
-                return self._core
-
-        def opened(model: Any, time: float, vector: Array, settings: dict[str, float | str]) -> _core.Simulation:
-            return self._seated.open(time, vector, settings)
-
-        return Seen(
-            _account=None,
-            _model=SimpleNamespace(record_layout=lambda: layout),
-            _motion=SimpleNamespace(open=opened),
-            options=self.options,
-            scene=seat.scene,
-        )
 
     def run(
         self,
