@@ -19,7 +19,7 @@ import numpy as np
 
 from trbdyn import RingBody, Scene, Start, cases
 from trbdyn.run.assembly import AssemblySimulation
-from trbdyn.statics.seat import Seat
+from trbdyn.statics.seat import Seat, Seating
 
 SHOWN = ("scene", "ring", *beside.SHOWN)
 
@@ -70,7 +70,7 @@ def pair() -> dict[str, Scene | AssemblySimulation]:
         for name, sign in (("left", 1.0), ("right", -1.0))
     }
     shaft = np.array([0.0, 0.0, preload, 0.0, 0.0])
-    return {"held": seats["left"].scene, "two on a shaft": AssemblySimulation(seats, body, shaft, {})}
+    return {"held": seats["left"].scene, "two on a shaft": AssemblySimulation(Seating(seats, body, shaft))}
 
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from trbdyn.base.version import __version__
     from trbdyn.errors import FileError, InputError, LoadError, RunWarning, StepError, TrbError
     from trbdyn.model import cases, lubricants, pocket_shapes
+    from trbdyn.model.assembly import Assembly, PreloadSpring, Shaft, ShaftBearing, ShaftLoad
     from trbdyn.model.bearing import Bearing, Cage, CageBody, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.model.effects import Effects
     from trbdyn.model.growth import Growth
@@ -33,12 +34,17 @@ if TYPE_CHECKING:
     from trbdyn.plot import animation
     from trbdyn.reporting import report
     from trbdyn.results import observables
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result, load
+    from trbdyn.run.assembly import AssemblySimulation
     from trbdyn.run.options import RunOptions
     from trbdyn.run.rating import rating
     from trbdyn.run.resume import resume
     from trbdyn.run.simulation import Simulation
+    from trbdyn.run.toml_assembly import load_assembly
     from trbdyn.run.toml_case import load_case
+    from trbdyn.statics.assembly import equilibrium
+    from trbdyn.statics.preload import preload_diagram
     from trbdyn.statics.stiffness import stiffness
     from trbdyn.study.planning import plan
     from trbdyn.study.thermal import thermal
@@ -60,6 +66,9 @@ _MODULES = {
 }
 
 _NAMES = {
+    "Assembly": "trbdyn.model.assembly",
+    "AssemblyResult": "trbdyn.results.assembly",
+    "AssemblySimulation": "trbdyn.run.assembly",
     "Bearing": "trbdyn.model.bearing",
     "Cage": "trbdyn.model.bearing",
     "CageBody": "trbdyn.model.bearing",
@@ -78,6 +87,7 @@ _NAMES = {
     "Oil": "trbdyn.model.lubricants",
     "OtherPocket": "trbdyn.model.pocket",
     "Pocket": "trbdyn.model.pocket",
+    "PreloadSpring": "trbdyn.model.assembly",
     "Profile": "trbdyn.model.bearing",
     "Result": "trbdyn.results.result",
     "Ribs": "trbdyn.model.bearing",
@@ -90,14 +100,20 @@ _NAMES = {
     "RunWarning": "trbdyn.errors",
     "Scatter": "trbdyn.model.bearing",
     "Scene": "trbdyn.model.scene",
+    "Shaft": "trbdyn.model.assembly",
+    "ShaftBearing": "trbdyn.model.assembly",
+    "ShaftLoad": "trbdyn.model.assembly",
     "Simulation": "trbdyn.run.simulation",
     "Start": "trbdyn.model.scene",
     "StepError": "trbdyn.errors",
     "TrbError": "trbdyn.errors",
     "__version__": "trbdyn.base.version",
+    "equilibrium": "trbdyn.statics.assembly",
     "load": "trbdyn.results.result",
+    "load_assembly": "trbdyn.run.toml_assembly",
     "load_case": "trbdyn.run.toml_case",
     "plan": "trbdyn.study.planning",
+    "preload_diagram": "trbdyn.statics.preload",
     "rating": "trbdyn.run.rating",
     "report": "trbdyn.reporting",
     "resume": "trbdyn.run.resume",
@@ -110,6 +126,9 @@ _NAMES = {
 }
 
 __all__ = [
+    "Assembly",
+    "AssemblyResult",
+    "AssemblySimulation",
     "Bearing",
     "Cage",
     "CageBody",
@@ -127,6 +146,7 @@ __all__ = [
     "Oil",
     "OtherPocket",
     "Pocket",
+    "PreloadSpring",
     "Profile",
     "Result",
     "Ribs",
@@ -138,6 +158,9 @@ __all__ = [
     "RunWarning",
     "Scatter",
     "Scene",
+    "Shaft",
+    "ShaftBearing",
+    "ShaftLoad",
     "Simulation",
     "Start",
     "StepError",
@@ -145,9 +168,11 @@ __all__ = [
     "__version__",
     "animation",
     "cases",
+    "equilibrium",
     "errors",
     "laws",
     "load",
+    "load_assembly",
     "load_case",
     "lubricants",
     "observables",
@@ -155,6 +180,7 @@ __all__ = [
     "planet",
     "plot",
     "pocket_shapes",
+    "preload_diagram",
     "rating",
     "report",
     "resume",

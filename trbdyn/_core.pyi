@@ -89,9 +89,10 @@ class Model:
     ) -> dict[str, Any]:
         """Static equilibrium at speed. load (5,): force (3) and moment about x, y (2) on the ring; fixed (5,): 1 where
         `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers; rollers (4 Z,): with `displacement` a
-        guess close to the solution, from which loads are given as 0 without `loads`. Gives displacement (5,), rollers
-        (Z, 4: r, z, tilt, skew offsets), loads (Z, 3: outer, inner, rib), residual, iterations; with `stiffness` that of the ring
-        (5, 5) and follow (Z, 20): slopes of each roller's four offsets with the ring's five coordinates; else zeros."""
+        guess close to the solution, from which loads are given as 0 without `loads`. Gives displacement (5,), reaction (5,):
+        what holds the ring against its rollers, energy: its potential; rollers (Z, 4: r, z, tilt, skew offsets), loads (Z, 3:
+        outer, inner, rib), residual, iterations; with `stiffness` that of the ring (5, 5) and follow (Z, 20): slopes of each
+        roller's four offsets with the ring's five coordinates; else zeros."""
     def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
         """(name, offset, shape) of every field of a record."""
     def peak_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:

@@ -18,6 +18,10 @@ enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
 #define TRB_BALANCE_FORCE 1e-7
 /* Share of the imbalance that may be left after a step with a stiffness that is kept for the next one. */
 #define TRB_KEEP_STIFFNESS 0.05
+/* Stiffness of a usual contact, N/m, and the share of it that holds a roller which nothing else holds: it stays where it is as the ring
+ * moves. */
+#define TRB_USUAL_CONTACT 1e9
+#define TRB_LOOSE_SHARE 1e-9
 /* Steps of differences. */
 #define TRB_STEP_LENGTH 1e-10
 #define TRB_STEP_ANGLE 1e-8
@@ -212,13 +216,19 @@ static void hold_row(double *row, int width, int unknown)
   row[unknown] = 1.0;
 }
 
+/* Stiffness of a usual contact against a coordinate of a roller. */
+static double usual_stiffness(const trb_model *m, int coordinate)
+{
+  const double arm = 0.5 * m->params.effective_length;
+  return coordinate < 2 ? TRB_USUAL_CONTACT : TRB_USUAL_CONTACT * arm * arm / 3.0;
+}
+
 /* Damped Newton step: (K + damping D) step = force, rollers eliminated onto the ring. D is the stiffness of a typical contact. */
 static int newton_step(solver *s, double damping, double *step_rollers, double *step_ring)
 {
   const int    n = s->m->n_rollers;
-  const double contact = 1e9, arm = 0.5 * s->m->params.effective_length, radius = 0.5 * s->m->params.pitch_diameter;
-  const double turn = contact * arm * arm / 3.0, roller_scale[N] = {contact, contact, turn, turn};
-  const double ring_scale[R] = {contact, contact, contact, contact * radius * radius, contact * radius * radius};
+  const double radius = 0.5 * s->m->params.pitch_diameter, across = TRB_USUAL_CONTACT * radius * radius;
+  const double ring_scale[R] = {TRB_USUAL_CONTACT, TRB_USUAL_CONTACT, TRB_USUAL_CONTACT, across, across};
   enum { WIDTH = N + R + 1 };
   double ring[R * (R + 1)];
   for (int i = 0; i < R; i++) {
@@ -232,7 +242,7 @@ static int newton_step(solver *s, double damping, double *step_rollers, double *
     const double *from_ring = s->from_ring + (size_t)j * N * R;
     for (int i = 0; i < N; i++) {
       for (int c = 0; c < N; c++) a[WIDTH * i + c] = s->own[N * N * j + N * i + c];
-      a[WIDTH * i + i] += damping * roller_scale[i];
+      a[WIDTH * i + i] += damping * usual_stiffness(s->m, i);
       for (int c = 0; c < R; c++) a[WIDTH * i + N + c] = s->to_ring[N * R * j + R * i + c];
       a[WIDTH * i + N + R] = s->forces[N * j + i];
       if (s->held[i]) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
@@ -270,11 +280,14 @@ static double shorten(const solver *s, const double *step_rollers, const double 
   return longest > most ? most / longest : 1.0;
 }
 
+/* Largest force on the ring, of its load or of a roller: the net force on a roller in equilibrium says nothing. */
 static double largest_load(const solver *s)
 {
   double largest = 0.0;
-  for (int i = 0; i < 3; i++) largest = fmax(largest, fabs(s->e->load[i]));
-  for (int j = 0; j < s->m->n_rollers; j++) largest = fmax(largest, fabs(s->d->loads[j].roller.force.x));
+  for (int i = 0; i < 3; i++) {
+    largest = fmax(largest, fabs(s->e->load[i]));
+    for (int j = 0; j < s->m->n_rollers; j++) largest = fmax(largest, fabs(s->ring[R * j + i]));
+  }
   return largest;
 }
 
@@ -365,6 +378,18 @@ static trb_status read_loads(solver *s, trb_message *message)
   return TRB_OK;
 }
 
+/* What holds the ring at the solution, and the potential without that of its load. */
+static void read_reaction(const solver *s)
+{
+  trb_equilibrium *e = s->e;
+  e->energy = s->energy;
+  for (int i = 0; i < R; i++) {
+    e->reaction[i] = 0.0;
+    e->energy += e->load[i] * e->displacement[i];
+    for (int j = 0; j < s->m->n_rollers; j++) e->reaction[i] -= s->ring[R * j + i];
+  }
+}
+
 /* Stiffness of the ring whose rollers follow it, and how they follow: K = K_ring - F own^-1 T with the borders F and T. */
 static trb_status condense(solver *s, trb_message *message)
 {
@@ -377,6 +402,7 @@ static trb_status condense(solver *s, trb_message *message)
     for (int i = 0; i < N; i++) {
       for (int c = 0; c < N; c++) a[WIDTH * i + c] = s->own[N * N * j + N * i + c];
       for (int c = 0; c < R; c++) a[WIDTH * i + N + c] = s->to_ring[N * R * j + R * i + c];
+      a[WIDTH * i + i] += TRB_LOOSE_SHARE * usual_stiffness(s->m, i);
       if (s->held[i]) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
     }
     if (!eliminate(a, N, R))
@@ -415,6 +441,7 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
     at += n * sizes[i];
   }
   status = iterate(&s, at, step_ring, message);
+  read_reaction(&s);
   if (status == TRB_OK && e->loads != NULL) status = read_loads(&s, message);
   if (status == TRB_OK && e->stiffness != NULL) status = condense(&s, message);
   free(block);

@@ -11,11 +11,11 @@ import pytest
 from numpy.typing import NDArray
 
 import trbdyn as trb
-from trbdyn import Effects, InputError, RingBody, RunWarning, Scene, Simulation, Start
+from trbdyn import Effects, FileError, InputError, RingBody, RunWarning, Scene, Simulation, Start
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.run.assembly import AssemblySimulation
 from trbdyn.run.replay import Replay
-from trbdyn.statics.seat import Seat
+from trbdyn.statics.seat import Seat, Seating
 
 Array = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ def pair(
     **given: Any,
 ) -> AssemblySimulation:
     seats = {"left": seat(**given), "right": seat(turned=True, **given)}
-    return AssemblySimulation(seats, body, shaft, loads or {}, **(options or {}))
+    return AssemblySimulation(Seating(seats, body, shaft, loads or {}), **(options or {}))
 
 
 def closures(result: AssemblyResult) -> list[float]:
@@ -132,7 +132,7 @@ def test_a_heavy_shaft_stands_still() -> None:
     body = RingBody(mass=1e5, inertia_axial=1e3, inertia_transverse=1e4)
     effects = Effects.standard().replace(gravity=False)
     seats = {"left": seat(effects=effects, start=Start.whirl(0.9)), "right": seat(turned=True, effects=effects)}
-    together = AssemblySimulation(seats, body, STILL, {}, **FINE).run(duration=4e-3)
+    together = AssemblySimulation(Seating(seats, body, STILL), **FINE).run(duration=4e-3)
     for name, one in seats.items():
         alone = Simulation(one.scene, **FINE).run(duration=4e-3)
         moved = np.abs(alone.cage_position - alone.cage_position[0]).max()
@@ -197,15 +197,32 @@ def test_unbalance() -> None:
 
 
 def test_files(tmp_path: Path) -> None:
-    """A run into files gives the numbers of a run in memory, and each file is a result of its own."""
+    """A run into a file gives the numbers of a run in memory, and each bearing in it is a result of its own."""
     kept = pair().run(duration=1e-3)
-    written = pair().run(duration=1e-3, output=tmp_path / "pair")
+    path = tmp_path / "pair.h5"
+    written = pair().run(duration=1e-3, output=path)
+    assert list(tmp_path.iterdir()) == [path]
+    assert written.shaft_position == pytest.approx(kept.shaft_position, rel=1e-9, abs=1e-15)
     for name, one in kept.items():
-        again = trb.load(tmp_path / "pair" / f"{name}.h5")
+        again = trb.load(path, bearing=name)
         assert again.cage_position == pytest.approx(one.cage_position, rel=1e-6)
         assert written[name].outer_load == pytest.approx(one.outer_load, rel=1e-6)
         assert again.meta["assembly"]["bearing"] == name
     assert again.peaks["pocket_force_peak"].shape == one.peaks["pocket_force_peak"].shape
+    for wrong in ("middle", "run", "left/run", ".."):
+        with pytest.raises(FileError, match="no bearing of the name"):
+            trb.load(path, bearing=wrong)
+    with pytest.raises(FileError, match="several bearings on one shaft"):
+        trb.load(path)
+    with pytest.raises(FileError, match="exists already"):
+        pair().run(duration=1e-3, output=path)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_file_of_one_bearing_is_no_assembly(tmp_path: Path) -> None:
+    Simulation(seat().scene).run(duration=1e-3, output=tmp_path / "one.h5")
+    with pytest.raises(FileError, match="one bearing alone"):
+        AssemblyResult.load(tmp_path / "one.h5")
 
 
 def test_records_are_evaluated_again() -> None:
@@ -236,17 +253,18 @@ def test_what_single_bearings_warn_of_is_said(tmp_path: Path) -> None:
     """Pressures that dent raceways, and scenes that can hardly be meant, with the bearing's name."""
     heavy = {"left": seat(displacement=(0.0, 0.0, -8e-4)), "right": seat(turned=True, shift=-1.6e-3)}
     with pytest.warns(UserWarning, match=r"left: .*GPa"):
-        simulation = AssemblySimulation(heavy, SHAFT, np.array([0.0, 0.0, -8e-4, 0.0, 0.0]), {})
+        simulation = AssemblySimulation(Seating(heavy, SHAFT, np.array([0.0, 0.0, -8e-4, 0.0, 0.0])))
     with pytest.warns(RunWarning, match=r"right: the largest pressure"):
-        result = simulation.run(duration=1e-4, output=tmp_path)
+        result = simulation.run(duration=1e-4, output=tmp_path / "heavy.h5")
     assert any("ISO 76" in text for text in result["left"].warnings)
-    with pytest.raises(trb.FileError, match="left"):
-        simulation.run(duration=1e-4, output=tmp_path)
+    (tmp_path / "other.right.h5").touch()
+    with pytest.raises(FileError, match=r"other\.right\.h5: the file exists already"):
+        simulation.run(duration=1e-4, output=tmp_path / "other.h5")
 
 
 def test_refused() -> None:
     with pytest.raises(InputError, match="first bearing has the shaft's axes"):
-        AssemblySimulation({"left": seat(turned=True)}, SHAFT, STILL, {})
+        AssemblySimulation(Seating({"left": seat(turned=True)}, SHAFT, STILL))
     wrong = seat(turned=True)
     for scene, text in (
         (wrong.scene.replace(speed_rpm=3000.0), r"seats\[1\]\.scene\.speed_rpm = 3000\.0 : must be -3000"),
@@ -254,7 +272,7 @@ def test_refused() -> None:
         (wrong.scene.replace(start=Start.equal().replace(time=1.0)), r"start\.time = 1\.0 : must be 0"),
     ):
         with pytest.raises(InputError, match=text):
-            AssemblySimulation({"left": seat(), "right": replace(wrong, scene=scene)}, SHAFT, STILL, {})
+            AssemblySimulation(Seating({"left": seat(), "right": replace(wrong, scene=scene)}, SHAFT, STILL))
     with pytest.raises(InputError, match=r"loads\.force_q.*must be one of force_x"):
         pair({"force_q": 1.0})
     with pytest.raises(InputError, match=r"mass_offset.*each seat"):
@@ -262,7 +280,7 @@ def test_refused() -> None:
     with pytest.raises(InputError, match=r"unbalance.*torque"):
         pair({"torque": 1.0}, body=SHAFT.replace(unbalance=1e-5))
     with pytest.raises(InputError, match="checkpoint_every"):
-        AssemblySimulation({"left": seat()}, SHAFT, STILL, {}, checkpoint_every=0.1)
+        AssemblySimulation(Seating({"left": seat()}, SHAFT, STILL), checkpoint_every=0.1)
     with pytest.raises(InputError, match="must be one of left"):
         pair().run(duration=1e-4)["middle"]
     with pytest.raises(InputError, match=r"revolutions"):
@@ -276,7 +294,7 @@ def test_elastic_cages_on_one_shaft() -> None:
         changes = {"bearing.cage.body": trb.cases.cage_body_30310(), "elastic_cage": trb.ElasticCage(n_modes=count)}
         one = seat(turned=turned)
         seats[name] = replace(one, scene=one.scene.replace(changes | {"start": trb.Start.whirl(0.9)}))
-    result = AssemblySimulation(seats, SHAFT, STILL, {}).run(duration=5e-3)
+    result = AssemblySimulation(Seating(seats, SHAFT, STILL)).run(duration=5e-3)
     assert [result[name]["cage_mode"].shape[1] for name in seats] == [8, 5]
     for one in result.values():
         assert np.abs(one["cage_mode"]).max() > 1e-8

@@ -8,13 +8,15 @@ import tomllib
 import warnings
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
+    from trbdyn.model.assembly import Assembly
     from trbdyn.model.scene import Scene
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
     from trbdyn.run.options import RunOptions
 
@@ -31,25 +33,52 @@ def add_set(parser: argparse.ArgumentParser) -> None:
 
 
 def case_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene, RunOptions]:
-    """A case, with ``table.key=value`` changes put in."""
-    from trbdyn.run.toml_case import case_from_dict, find_case, load_case, read_tables
+    """A case of one bearing, with ``table.key=value`` changes put in."""
+    from trbdyn.run.toml_case import case_from_dict
 
-    if not changes:
-        return load_case(name)
+    return case_from_dict(_tables(name, changes))
+
+
+def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Assembly, RunOptions]:
+    """A case of one bearing or of several on a shaft, with ``table.key=value`` changes put in."""
+    from trbdyn.run.toml_assembly import assembly_from_dict
+    from trbdyn.run.toml_case import case_from_dict
+
+    values = _tables(name, changes)
+    return assembly_from_dict(values) if "assembly" in values else case_from_dict(values)
+
+
+def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:
+    from trbdyn.run.toml_assembly import find_assembly
+    from trbdyn.run.toml_case import find_case, read_tables, shipped_cases
+
     path = file_path(name, "case")
-    values = read_tables(path if path.exists() else find_case(name))
+    if not path.exists() and (found := find_assembly(name)) is not None:
+        path = found
+    elif not path.exists() and (changes or name.removesuffix(".toml") in shipped_cases()):
+        path = find_case(name)
+    values = read_tables(path, f"; cases that ship with the package: {', '.join(shipped_cases())}")
     for change in changes:
         key, equals, text = change.partition("=")
         *tables, last = key.strip().split(".")
         if not equals or not last:
             raise InputError.of("--set", change, "must be KEY=VALUE, for instance scene.speed_rpm=1000")
-        table = values
+        table: Any = values
         for part in tables:
-            table = table.setdefault(part, {})
-            if not isinstance(table, dict):
+            if isinstance(table, list):
+                if not part.isdigit() or int(part) >= len(table):
+                    raise InputError.of("--set", change, f"{part!r} must be a number from 0 to {len(table) - 1}")
+                table = table[int(part)]
+            else:
+                table = table.setdefault(part, {})
+            if not isinstance(table, dict | list):
                 raise InputError.of("--set", change, f"{part!r} is a value, not a table")
+        if isinstance(table, list):
+            raise InputError.of(
+                "--set", change, f"{tables[-1]!r} is a list of tables: name one of them, {tables[-1]}.0.{last}"
+            )
         table[last] = _toml_value(text)
-    return case_from_dict(values)
+    return values
 
 
 def _toml_value(text: str) -> Any:
@@ -62,25 +91,55 @@ def _toml_value(text: str) -> Any:
         raise InputError.of("--set", text, "must be a TOML value that is not that long or deep") from None
 
 
+@overload
 def simulate(
-    scene: Scene, run: RunOptions, output: Path, *, quiet: bool, overwrite: bool, given: Collection[str] = ()
-) -> Result:
+    subject: Scene, run: RunOptions, output: Path, *, quiet: bool, overwrite: bool, given: Collection[str] = ()
+) -> Result: ...
+
+
+@overload
+def simulate(
+    subject: Scene | Assembly,
+    run: RunOptions,
+    output: Path,
+    *,
+    quiet: bool,
+    overwrite: bool,
+    given: Collection[str] = (),
+) -> Result | AssemblyResult: ...
+
+
+def simulate(
+    subject: Scene | Assembly,
+    run: RunOptions,
+    output: Path,
+    *,
+    quiet: bool,
+    overwrite: bool,
+    given: Collection[str] = (),
+) -> Result | AssemblyResult:
     """Run a case; what is not given of what to keep is chosen by the length of the run."""
+    from trbdyn.model.assembly import Assembly
+    from trbdyn.run.assembly import AssemblySimulation
     from trbdyn.run.simulation import Simulation
 
-    run.end_time(scene.speed_rpm)
+    run.end_time(subject.speed_rpm)
+    simulation: Simulation | AssemblySimulation
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)
-        simulation = Simulation(scene, **run.of_simulation())
+        if isinstance(subject, Assembly):
+            simulation = AssemblySimulation(subject, **run.of_simulation())
+        else:
+            simulation = Simulation(subject, **run.of_simulation())
     for note in notes:
         print(f"trbdyn: warning: {note.message}", file=sys.stderr)
-    return simulation.run(
-        revolutions=run.revolutions,
-        duration=run.duration,
-        until=run.until,
-        save_every=run.save_every if "save_every" in given else None,
-        save_groups=run.save_groups if "save_groups" in given else None,
-        progress=not quiet,
-        output=output,
-        overwrite=overwrite,
-    )
+    how: dict[str, Any] = {
+        name: getattr(run, name) if name in given else None for name in ("save_every", "save_groups")
+    }
+    how |= {"revolutions": run.revolutions, "duration": run.duration, "progress": not quiet}
+    how |= {"output": output, "overwrite": overwrite}
+    if isinstance(simulation, Simulation):
+        return simulation.run(until=run.until, **how)
+    if run.until:
+        raise InputError.of(("run", "until"), run.until, "must not be given for an assembly yet")
+    return simulation.run(**how)

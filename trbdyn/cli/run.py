@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path, output_path
 from trbdyn.cli.called import command
-from trbdyn.cli.case import add_set, case_with_changes, simulate
+from trbdyn.cli.case import add_set, simulate, subject_with_changes
 from trbdyn.cli.outcome import DONE, FAILED, one_line
 from trbdyn.errors import FileError, InputError
 
 if TYPE_CHECKING:
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
 
@@ -67,7 +68,7 @@ def _wanted(text: str) -> tuple[str, float]:
 
 
 def _run(options: argparse.Namespace) -> int:
-    scene, run = case_with_changes(options.case, options.changes)
+    subject, run = subject_with_changes(options.case, options.changes)
     changes = {
         name: getattr(options, name)
         for name in ("revolutions", "duration", "save_every", "accuracy", "checkpoint_every")
@@ -84,7 +85,7 @@ def _run(options: argparse.Namespace) -> int:
     _check_summary(options.summary, output, overwrite=options.overwrite)
     given = run.model_fields_set | changes.keys()
     result = simulate(
-        scene, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite, given=given
+        subject, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite, given=given
     )
     return _finish(result, output, options.summary, quiet=options.quiet)
 
@@ -121,16 +122,22 @@ def _how_to_go_on(output: Path) -> str:
     return f"; go on with: {command('resume', output)}" if checkpoint_path(output).exists() else ""
 
 
-def _finish(result: Result, output: Path, summary_file: str | Path | None, *, quiet: bool) -> int:
+def _finish(result: Result | AssemblyResult, output: Path, summary_file: str | Path | None, *, quiet: bool) -> int:
     """Write and print the summary; the exit code says whether the run reached its end."""
     from trbdyn.results import summary
+    from trbdyn.results.assembly import AssemblyResult
 
-    values = result.summary()
+    if isinstance(result, AssemblyResult):
+        values, table = dict(result.summary()), str(result)
+        one = next(iter(result.values()))
+    else:
+        values, one = result.summary(), result
+        table = summary.table(values)
     if summary_file is not None:
         summary.write_json(values, summary_file)
     if not quiet:
-        print(summary.table(values))
-        print(f"\n{len(result)} records in {output}: {result.meta.get('kept', '')}")
+        print(table)
+        print(f"\n{len(one)} records in {output}: {one.meta.get('kept', '')}")
     if not result.success:
         print(f"trbdyn: {one_line(result.message)}{_how_to_go_on(output)}", file=sys.stderr)
     return DONE if result.success else FAILED

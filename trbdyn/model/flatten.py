@@ -334,7 +334,7 @@ def motion_table(
     scene: Scene,
     path: Sequence[float | History],
     joints: FloatArray | None = None,
-    loads: Mapping[str, float | History] | None = None,
+    loads: Mapping[str, Load] | None = None,
 ) -> FloatArray:
     """Prescribed motion of the inner ring, as the core takes it.
 
@@ -347,7 +347,7 @@ def motion_table(
         taken from the scene instead.
     joints : ndarray, shape (J,), optional
         Times at which a part of the path ends (s): where what acts on the ring has a joint.
-    loads : mapping of str to float or History, optional
+    loads : mapping of str to Load, optional
         Loads on a free ring by the names of their channels, such as ``"force_x"``, in place of the scene's.
 
     Returns
@@ -374,21 +374,38 @@ def motion_table(
         "gravity_y": gravity[1],
         "gravity_z": gravity[2],
         **_loads_on_free_ring(scene),
-        **(loads or {}),
     }
     names = [name for name, _, _ in _core.motion_table()]
     if set(names) != set(channels):
         raise RuntimeError(f"the core's table of motion and the scene differ in {sorted(set(names) ^ set(channels))}")
-    quantities = [channels[name] for name in names]
+    sums = {name: parts_of(load) for name, load in (loads or {}).items()}
+    quantities = [0.0 if name in sums else channels[name] for name in names]
+    added = [quantity for parts in sums.values() for _, quantity in parts]
     if joints is not None:
         own = [*gravity, scene.speed_rpm, scene.outer_speed_rpm, *(place for place in given if place is not None)]
         end = scene.settled + (scene.period or 0.0)
         joints = np.append(joints, joint_times(own, scene.start.time, end))
-    settled = settled_time(list((loads or {}).values()), scene.settled)
-    return knot_table(quantities, scene.start.time, settled, loads_period(scene, loads or {}), joints)
+    settled = settled_time(added, scene.settled)
+    table = knot_table([*quantities, *added], scene.start.time, settled, loads_period(scene, loads or {}), joints)
+    columns = iter(range(1 + 2 * len(names), table.shape[1] - 1, 2))
+    for name, parts in sums.items():
+        to = 1 + 2 * names.index(name)
+        for factor, _ in parts:
+            column = next(columns)
+            table[:, to : to + 2] += factor * table[:, column : column + 2]
+    return np.delete(table, np.s_[1 + 2 * len(names) : -1], axis=1)
 
 
-def loads_period(scene: Scene, loads: Mapping[str, float | History]) -> float | None:
+Load = float | History | tuple[tuple[float, float | History], ...]
+"""What acts in a channel: a quantity, or a sum of quantities, each with its factor."""
+
+
+def parts_of(load: Load) -> tuple[tuple[float, float | History], ...]:
+    """A load as a sum."""
+    return load if isinstance(load, tuple) else ((1.0, load),)
+
+
+def loads_period(scene: Scene, loads: Mapping[str, Load]) -> float | None:
     """Common period of a scene and of loads that act besides (s); None if nothing repeats.
 
     Raises
@@ -398,7 +415,8 @@ def loads_period(scene: Scene, loads: Mapping[str, float | History]) -> float | 
     """
     periods = {
         name: load.times[-1] - load.times[0]
-        for name, load in loads.items()
+        for name, several in loads.items()
+        for _, load in parts_of(several)
         if isinstance(load, History) and load.repeats
     }
     return common_period(periods if scene.period is None else {"scene": scene.period} | periods)

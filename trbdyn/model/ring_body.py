@@ -75,10 +75,7 @@ class RingBody(Model):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        most = 2.0 * self.inertia_transverse
-        if self.inertia_axial > most * (1.0 + 1e-9):
-            limit = f"must be <= {most:.6g}: no body has more than twice its inertia_transverse (kg m2)"
-            raise InputError.of("inertia_axial", self.inertia_axial, limit)
+        check_inertias(self.inertia_axial, self.inertia_transverse)
         return self
 
     @classmethod
@@ -117,6 +114,20 @@ class RingBody(Model):
             inertia_transverse=mass * (0.25 * squares + length**2 / 12.0),
             mass_offset=mass_offset,
         )
+
+
+def check_inertias(axial: float, transverse: float) -> None:
+    """Refuse moments of inertia (kg m2) that no body has.
+
+    Raises
+    ------
+    InputError
+        If the axial one is more than twice the transverse one.
+    """
+    most = 2.0 * transverse
+    if axial > most * (1.0 + 1e-9):
+        limit = f"must be <= {most:.6g}: no body has more than twice its inertia_transverse (kg m2)"
+        raise InputError.of("inertia_axial", axial, limit)
 
 
 def check_free_ring(scene: Scene) -> None:

@@ -40,6 +40,22 @@ MAX_GRAVITY = 1e7
 """Largest part of gravity (m/s2), a million times the usual: no machine shakes harder, and nothing overflows."""
 
 
+def oil_by_name(given: Any) -> Any:
+    """The name of an oil that ships stands for it at 60 C; anything else is given back.
+
+    Raises
+    ------
+    InputError
+        If there is no such oil.
+    """
+    if not isinstance(given, str):
+        return given
+    if given.lower() not in OILS:
+        limit = f"must be one of {', '.join(OILS)}, a Lubricant, or an Oil at a temperature: oil.at(60.0)"
+        raise InputError([Problem((), given, limit)])
+    return OILS[given.lower()]()
+
+
 class Scene(Model):
     """One bearing, what acts on it, and how it starts. Every quantity is a number or a `History`.
 
@@ -139,13 +155,7 @@ class Scene(Model):
     @field_validator("lubricant", mode="before")
     @classmethod
     def _oil_by_name(cls, given: Any) -> Any:
-        """The name of an oil that ships stands for it at 60 C."""
-        if not isinstance(given, str):
-            return given
-        if given.lower() not in OILS:
-            limit = f"must be one of {', '.join(OILS)}, a Lubricant, or an Oil at a temperature: oil.at(60.0)"
-            raise InputError([Problem((), given, limit)])
-        return OILS[given.lower()]()
+        return oil_by_name(given)
 
     @field_validator("displacement", mode="before")
     @classmethod

@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+import os
+from collections.abc import Mapping
+from typing import Any, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.errors import InputError
+from trbdyn.base.validation import number_of
+from trbdyn.errors import FileError, InputError
+from trbdyn.model.assembly import Assembly
+from trbdyn.results.assembly_file import description_in
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
-from trbdyn.results.result import Result
-from trbdyn.statics.seat import Seat
+from trbdyn.results.result import Result, load
+from trbdyn.results.summary import Summary
 
 Array = NDArray[np.float64]
+
+TABLE: Final = {
+    "axial_load": "axial load, mean, N",
+    "radial_load": "radial load, mean, N",
+    "torque": "friction torque, N m",
+    "power_loss": "power loss, W",
+    "orbit_radius_over_cpr": "orbit radius of the cage / Cpr",
+    "axis_distance_over_cpr": "distance of the cage from the axis / Cpr",
+    "pocket_force_peak": "pocket force, largest, N",
+    "inner_pressure_max": "largest pressure, inner raceway, Pa",
+    "energy_closure": "energy audit: residual / dissipated",
+}
+"""What the table of an assembly shows of each bearing: names in `AssemblyResult.summary`, and what they are called."""
 
 
 class AssemblyResult(Mapping[str, Result], Displayed):
@@ -24,13 +41,40 @@ class AssemblyResult(Mapping[str, Result], Displayed):
     ----------
     bearings : mapping of str to Result
         The results. The first bearing's energies are those of the shaft, too.
-    seats : sequence of Seat
-        How the bearings sit on the shaft, in the same order.
+    assembly : Assembly, optional
+        The assembly; without it the axes of the shaft are those of the first bearing.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> result = trb.AssemblySimulation(trb.load_assembly("pair_30310")).run(revolutions=0.1)
+    >>> result["left"].cage_position.shape == result["right"].cage_position.shape
+    True
     """
 
-    def __init__(self, bearings: Mapping[str, Result], seats: Sequence[Seat]) -> None:
+    def __init__(self, bearings: Mapping[str, Result], assembly: Assembly | None = None) -> None:
         self._bearings = dict(bearings)
-        self._seats = tuple(seats)
+        self.assembly = assembly
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Load the file of a run.
+
+        Parameters
+        ----------
+        path : path-like
+            A file that `AssemblySimulation.run` has written.
+
+        Raises
+        ------
+        FileError
+            If the file is missing, damaged, of another kind or of a later version.
+        """
+        table = description_in(path)
+        if table is None:
+            raise FileError(f"{path}: this file holds one bearing alone: load it with trb.load")
+        assembly = None if table["assembly"] is None else Assembly.from_dict(table["assembly"])
+        return cls({name: load(path, bearing=name) for name in table["bearings"]}, assembly)
 
     def __getitem__(self, name: str) -> Result:
         """The result of a bearing.
@@ -53,10 +97,53 @@ class AssemblyResult(Mapping[str, Result], Displayed):
     def __repr__(self) -> str:
         return f"<AssemblyResult: {', '.join(self._bearings)}: {self.message}>"
 
+    def __str__(self) -> str:
+        return self._shown().text()
+
     def _shown(self) -> Shown:
-        rows: list[tuple[str, ...]] = [("how it ended", self.message), ("energy closure", f"{self.energy.closure:.2g}")]
-        parts = tuple(Shown(name, notes=(repr(result),)) for name, result in self.items())
-        return Shown(f"Result: {'success' if self.success else 'failed'}", tuple(rows), parts=parts)
+        numbers = self.summary()
+        rows: list[tuple[str, ...]] = [("", *self)]
+        for name, text in TABLE.items():
+            values = [one.get(name) for one in numbers.values()]
+            if any(value is not None for value in values):
+                rows.append((text, *("-" if value is None else f"{value:.5g}" for value in values)))
+        shaft = 1e6 * self.shaft_position
+        mean = shaft.mean(axis=0)
+        notes = (
+            f"{self.message}; energy closure of the whole {self.energy.closure:.2g}; power loss of all bearings "
+            f"{sum(one['power_loss'] or 0.0 for one in numbers.values()):.5g} W.",
+            f"The shaft's centre of mass stands at ({mean[0]:.4g}, {mean[1]:.4g}, {mean[2]:.4g}) um in the mean, and moves by up "
+            f"to {np.hypot(*(shaft - mean)[:, :2].T).max():.3g} um about that across the axis.",
+            *self.warnings,
+        )
+        parts = tuple(one._shown() for one in numbers.values())
+        title = f"Result: {'success' if self.success else 'failed'}"
+        return Shown(title, tuple(rows), head=("", *self), notes=notes, parts=parts)
+
+    def summary(self) -> dict[str, Summary]:
+        """The summary of each bearing by its name, with its mean loads: ``axial_load`` and ``radial_load`` (N)."""
+        found = {}
+        for name, result in self.items():
+            found[name] = numbers = result.summary()
+            window = result.time >= (numbers["window_start"] or result.time[0])
+            numbers |= {load: float(values[window].mean()) for load, values in self.loads(name).items()}
+        return found
+
+    def loads(self, name: str) -> dict[str, Array]:
+        """Loads of the shaft on a bearing at each record (N), shape (T,).
+
+        Parameters
+        ----------
+        name : str
+            Name of the bearing.
+
+        Returns
+        -------
+        dict
+            ``axial_load``, towards the small ends of its rollers, and ``radial_load``.
+        """
+        force = self[name].ring_force
+        return {"axial_load": force[:, 2], "radial_load": np.hypot(force[:, 0], force[:, 1])}
 
     @property
     def _first(self) -> Result:
@@ -90,12 +177,42 @@ class AssemblyResult(Mapping[str, Result], Displayed):
     @property
     def shaft_position(self) -> Array:
         """Displacement of the shaft's centre of mass along its axes x, y, z (m), shape (T, 3)."""
-        seat, axis = self._seats[0], self.shaft_axis
-        return self._first.ring_position - [0.0, 0.0, seat.shift] + seat.mass_offset * (axis - [0.0, 0.0, 1.0])
+        seat, axis = self._first.meta["assembly"]["seat"], self._axis
+        place = self._first.ring_position - [0.0, 0.0, seat["shift"]] + seat["mass_offset"] * (axis - [0.0, 0.0, 1.0])
+        return place * self._signs
 
     @property
     def shaft_axis(self) -> Array:
         """Direction of the shaft's axis (1), shape (T, 3)."""
+        return self._axis * self._signs * self._signs[2]
+
+    def shaft_displacement(self, position: float) -> Array:
+        """Displacement of a point of the shaft's axis along x, y and z (m), shape (T, 3).
+
+        Parameters
+        ----------
+        position : float
+            Position of the point along the shaft (m).
+
+        Raises
+        ------
+        InputError
+            If the assembly is not known.
+        """
+        if self.assembly is None:
+            raise InputError.of("assembly", None, "must be known, to say where a point of the shaft is")
+        arm = number_of("position", position) - self.assembly.shaft.mass_position
+        return self.shaft_position + arm * (self.shaft_axis - [0.0, 0.0, 1.0])
+
+    @property
+    def _signs(self) -> Array:
+        """Signs of the shaft's axes in those of the first bearing: it may sit the other way round."""
+        turned = self.assembly is not None and self.assembly.bearings[0].side > 0.0
+        return np.array([1.0, -1.0, -1.0]) if turned else np.ones(3)
+
+    @property
+    def _axis(self) -> Array:
+        """Direction of the axis in the first bearing's axes, shape (T, 3)."""
         turn = self._first.ring_tilt
         across = np.column_stack([np.tan(turn[:, 1]), -np.tan(turn[:, 0]), np.ones(len(turn))])
         return across / np.linalg.norm(across, axis=1)[:, None]

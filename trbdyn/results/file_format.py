@@ -15,6 +15,9 @@ Schema ``trbdyn-result``, version 2:
 - ``/run/peaks``: the peaks of the whole run, one field after the other
 - attributes of the root, as text and numbers: for other programs; `trbdyn.load` reads the head
 
+The file of an assembly has a group for each bearing, named as the bearing, that holds all this, and ``/assembly``: what the
+bearings sit on, as JSON. While its run goes on, each bearing has a file of its own beside it (``pair.left.h5``).
+
 All of ``/run`` but the head is empty until the run has ended. A file is data: nothing in it is executed, and links or storage
 that lead out of the file are refused.
 
@@ -49,6 +52,11 @@ Array = NDArray[np.float64]
 
 SCHEMA = "trbdyn-result"
 SCHEMA_VERSION = 2
+
+ASSEMBLY = "assembly"
+"""Dataset of the file of an assembly: JSON with schema, versions, the names of its bearings and their description."""
+ASSEMBLY_SCHEMA = "trbdyn-assembly"
+ASSEMBLY_VERSION = 1
 
 BLOCK_ROWS = 512
 """Most rows of a chunk: what waits in memory is written in whole chunks where that is possible."""

@@ -50,31 +50,45 @@ def make(
     rows : int
         Records of a chunk.
     """
+    with h5py.File(path, "w", libver=LIBVER, locking=False) as file:
+        fill(file, head, fields, shapes, rows=rows)
+
+
+def fill(
+    file: h5py.Group,
+    head: Mapping[str, Any],
+    fields: Sequence[Field],
+    shapes: Mapping[str, tuple[int, ...]],
+    *,
+    rows: int,
+) -> None:
+    """Make the objects of a result in an empty file or group; see `make`."""
     created = datetime.now(UTC).isoformat()
     about = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__, "created": created}
     table = [[entry.name, entry.group, entry.kind, entry.unit, entry.text] for entry in fields]
     text = json_text(about | dict(head) | {"fields": table}).encode()
-    with h5py.File(path, "w", libver=LIBVER, locking=False) as file:
-        simple = {name: value for name, value in head["meta"].items() if isinstance(value, str | bool | int | float)}
-        file.attrs.update(about | {"run_id": head["run_id"]} | simple)
-        run = file.create_group("run")
-        # each a scale of its own: netCDF's readers would have to make up dimensions otherwise
-        made = [
-            _dataset(run, "head", (1,), np.dtype(f"S{len(text)}")),
-            # not packed: it is written again and again in the same place
-            _dataset(run, "committed", (3,), np.dtype("i8"), packed=False),
-            _dataset(run, "ending", (), np.dtype("u1"), rows=4096),
-            _dataset(run, "final_state", (), np.dtype("f8"), rows=512),
-            _dataset(run, "peaks", (), np.dtype("f8"), rows=512),
-        ]
-        for dataset in made:
-            h5py.h5ds.set_scale(dataset, h5py.h5i.get_name(dataset).rpartition(b"/")[2])
-        run["head"][0] = np.bytes_(text)
-        _make_fields(file, fields, shapes, rows=rows)
-        commit(file, 0)
+    simple = {name: value for name, value in head["meta"].items() if isinstance(value, str | bool | int | float)}
+    file.attrs.update(about | {"run_id": head["run_id"]} | simple)
+    run = file.create_group("run")
+    # each a scale of its own: netCDF's readers would have to make up dimensions otherwise
+    made = [
+        _dataset(run, "head", (1,), np.dtype(f"S{len(text)}")),
+        # not packed: it is written again and again in the same place
+        _dataset(run, "committed", (3,), np.dtype("i8"), packed=False),
+        _dataset(run, "ending", (), np.dtype("u1"), rows=4096),
+        _dataset(run, "final_state", (), np.dtype("f8"), rows=512),
+        _dataset(run, "peaks", (), np.dtype("f8"), rows=512),
+    ]
+    for dataset in made:
+        h5py.h5ds.set_scale(dataset, h5py.h5i.get_name(dataset).rpartition(b"/")[2])
+    run["head"][0] = np.bytes_(text)
+    _make_fields(file, fields, shapes, rows=rows)
+    commit(file, 0)
 
 
-def _make_fields(file: h5py.File, fields: Sequence[Field], shapes: Mapping[str, tuple[int, ...]], *, rows: int) -> None:
+def _make_fields(
+    file: h5py.Group, fields: Sequence[Field], shapes: Mapping[str, tuple[int, ...]], *, rows: int
+) -> None:
     scales: dict[str, h5py.h5d.DatasetID] = {}
     for dim, size in {
         dim: size for entry in fields for dim, size in zip(entry.dims, shapes[entry.name], strict=True)
@@ -169,9 +183,18 @@ def append(group: h5py.Group, name: str, rows: NDArray[Any]) -> None:
         dataset.write_direct_chunk((start + at, *origin), packed(chunk))
 
 
-def commit(file: h5py.File, n_records: int, n_ending: int = 0) -> None:
+def copy_chunks(source: h5py.Dataset, target: h5py.Dataset) -> None:
+    """Take over what a dataset holds into an empty one that was made alike, chunk by chunk as it is packed."""
+    target.resize(source.shape)
+    for number in range(source.id.get_num_chunks()):
+        place = source.id.get_chunk_info(number).chunk_offset
+        mask, data = source.id.read_direct_chunk(place)
+        target.id.write_direct_chunk(place, data, mask)
+
+
+def commit(file: h5py.Group, n_records: int, n_ending: int = 0) -> None:
     """Let the records so far count, once they are written."""
-    file.flush()
+    file.file.flush()
     # the last number tells it from zeros, whose checksum is zero
     file["run/committed"][:] = (n_records, n_ending, 1)
 

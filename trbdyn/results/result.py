@@ -403,13 +403,15 @@ def moved(result: Result, path: Path) -> Result:
     return result
 
 
-def load(path: str | os.PathLike[str]) -> Result:
+def load(path: str | os.PathLike[str], *, bearing: str = "") -> Result:
     """Load a result file.
 
     Parameters
     ----------
     path : path-like
         A file written by a run.
+    bearing : str
+        Name of a bearing in the file of an assembly; `AssemblyResult.load` loads them all.
 
     Returns
     -------
@@ -422,5 +424,5 @@ def load(path: str | os.PathLike[str]) -> Result:
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
-    source = FileSource(path)
+    source = FileSource(path, bearing)
     return Result(source, source.info)

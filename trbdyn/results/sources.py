@@ -19,7 +19,7 @@ from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError
 from trbdyn.results import hdf5_file
 from trbdyn.results.fields import Field
-from trbdyn.results.file_format import PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason, stored_type
+from trbdyn.results.file_format import ASSEMBLY, PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason, stored_type
 from trbdyn.results.hdf5_checks import read_own
 
 Array = NDArray[np.float64]
@@ -85,8 +85,8 @@ class WindowSource:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[h5py.File]:
-    """A result file, open to be read; what goes wrong inside is a FileError that names it.
+def opened(path: Path, bearing: str = "") -> Iterator[h5py.Group]:
+    """A result file, or a bearing's part of one, open to be read; what goes wrong inside is a FileError that names it.
 
     Raises
     ------
@@ -96,7 +96,27 @@ def opened(path: Path) -> Iterator[h5py.File]:
     if not path.is_file():
         raise FileError(f"{path}: there is no such file")
     with _said(path), hdf5_file.open_to_read(path) as file:
-        yield file
+        yield part_of(file, bearing)
+
+
+def part_of(file: h5py.File, bearing: str) -> h5py.Group:
+    """A bearing's part of the file of an assembly; without a name the whole of any file.
+
+    Raises
+    ------
+    FileError
+        If there is none.
+    """
+    if not bearing:
+        return file
+    key = bearing.encode()
+    own = (
+        bearing.isidentifier() and file.id.links.exists(key) and file.id.links.get_info(key).type == h5py.h5l.TYPE_HARD
+    )
+    group = file[bearing] if own else None
+    if not isinstance(group, h5py.Group) or "run" not in group:
+        raise FileError(f"{file.filename}: the file holds no bearing of the name {bearing!r}")
+    return group
 
 
 @contextmanager
@@ -111,9 +131,14 @@ def _said(path: Path) -> Iterator[None]:
         raise FileError(f"{path}: the result cannot be read: {why}") from error
 
 
-def _read_head(path: Path, file: h5py.File) -> bytes:
+def _read_head(path: Path, file: h5py.Group) -> bytes:
     """What the file says of itself, as it is stored."""
     if "run/head" not in file:
+        if ASSEMBLY in file:
+            raise FileError(
+                f"{path}: this file holds several bearings on one shaft: load it with trb.AssemblyResult.load, or one of them "
+                "with trb.load(path, bearing=...)"
+            )
         if "schema" in file.attrs and "fields" in file:
             raise FileError(
                 f"{path}: written with format version 1, by a trbdyn before its first release; this one reads version "
@@ -123,10 +148,10 @@ def _read_head(path: Path, file: h5py.File) -> bytes:
     return bytes(read_own(_run(file), "head")[0])
 
 
-def _run(file: h5py.File) -> h5py.Group:
+def _run(file: h5py.Group) -> h5py.Group:
     group = file["run"] if file.id.links.get_info(b"run").type == h5py.h5l.TYPE_HARD else None
     if not isinstance(group, h5py.Group):
-        raise FileError(f"{file.filename}: 'run' leads out of the file, which results never do")
+        raise FileError(f"{file.file.filename}: 'run' leads out of the file, which results never do")
     return group
 
 
@@ -156,6 +181,8 @@ class FileSource:
     ----------
     path : path-like
         A file that `ResultWriter` has written.
+    bearing : str
+        Name of a bearing in the file of an assembly; by default the file holds one bearing alone.
 
     Attributes
     ----------
@@ -178,11 +205,11 @@ class FileSource:
         If the file is missing, damaged, of another kind or of a later version.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = file_path(path, "path")
+    def __init__(self, path: str | os.PathLike[str], bearing: str = "") -> None:
+        self.path, self.bearing = file_path(path, "path"), bearing
         self._cache: dict[str, Array] = {}
-        self._held: dict[int, h5py.File] = {}
-        with opened(self.path) as file:
+        self._held: dict[int, h5py.Group] = {}
+        with opened(self.path, bearing) as file:
             self._head = _read_head(self.path, file)
             head = _table_of_head(self.path, self._head)
             self.run_id, self.first_record = str(head["run_id"]), head["first_record"]
@@ -196,7 +223,12 @@ class FileSource:
             ending = _table(json.loads(read_own(_run(file), "ending", size).tobytes())) if self.finished else {}
             self.info = self._read_info(file, head, ending)
 
-    def _read_info(self, file: h5py.File, head: dict[str, Any], ending: dict[str, Any]) -> RunInfo:
+    @property
+    def head(self) -> dict[str, Any]:
+        """What the file says of itself."""
+        return _table_of_head(self.path, self._head)
+
+    def _read_info(self, file: h5py.Group, head: dict[str, Any], ending: dict[str, Any]) -> RunInfo:
         geometry, meta, scene = (_table(head[key]) for key in ("geometry", "meta", "scene"))
         stats, counters = (_table(ending.get(key, {})) for key in ("stats", "counters"))
         meta |= {key: head[key] for key in ("trbdyn_version", "created", "schema_version")}
@@ -223,7 +255,7 @@ class FileSource:
             peaks=self._read_peaks(file) if self.finished else {},
         )
 
-    def _read_peaks(self, file: h5py.File) -> dict[str, Array]:
+    def _read_peaks(self, file: h5py.Group) -> dict[str, Array]:
         """Peaks of the whole run; none in files of runs that kept none."""
         row, found, at = np.asarray(read_own(_run(file), "peaks"), dtype=float), {}, 0
         for name in (entry.name for entry in self.fields if entry.group == PEAKS) if row.size else ():
@@ -266,13 +298,13 @@ class FileSource:
                 with _said(self.path):
                     values = self._values(held, name)
             else:
-                with opened(self.path) as file:
+                with opened(self.path, self.bearing) as file:
                     values = self._values(file, name)
             values.flags.writeable = False
             self._cache[name] = values
         return self._cache[name]
 
-    def _values(self, file: h5py.File, name: str) -> Array:
+    def _values(self, file: h5py.Group, name: str) -> Array:
         head = _read_head(self.path, file)
         if head != self._head:
             # a run that was resumed has a new file with the same records
@@ -295,7 +327,7 @@ class FileSource:
         with _said(self.path):
             file = hdf5_file.open_to_read(self.path)
         try:
-            self._held[me] = file
+            self._held[me] = part_of(file, self.bearing)
             yield
         finally:
             self._held.pop(me, None)

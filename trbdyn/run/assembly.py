@@ -9,8 +9,8 @@ import contextlib
 import math
 import time as clock
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Final
@@ -19,13 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.base.own_files import output_path
 from trbdyn.errors import FileError, InputError, RunWarning, StepError
-from trbdyn.model.motion import History
-from trbdyn.model.ring_body import RingBody
+from trbdyn.model.assembly import Assembly
 from trbdyn.model.scene import Scene
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.assembly_file import gather, part_path
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import ResultWriter
@@ -33,10 +34,11 @@ from trbdyn.run import keeping
 from trbdyn.run.memory import Kept
 from trbdyn.run.options import RunOptions
 from trbdyn.run.process import has_a_spare_core, interrupts
-from trbdyn.run.running import CHUNK_RECORDS, CHUNK_STEPS, output_times, statistics_of
+from trbdyn.run.running import CHUNK_RECORDS, CHUNK_STEPS, output_times, progress_bar, statistics_of
 from trbdyn.run.watch import RING_GONE, Account, Watch
 from trbdyn.statics.plausible import UnusualInput, dented
-from trbdyn.statics.seat import Seat, Seated, seat_all
+from trbdyn.statics.seat import Seat, Seated, Seating, seat_all
+from trbdyn.statics.seating import seating_of
 
 Array = NDArray[np.float64]
 Layout = list[tuple[str, int, tuple[int, ...]]]
@@ -86,14 +88,8 @@ class AssemblySimulation:
 
     Parameters
     ----------
-    seats : mapping of str to Seat
-        The bearings by name; the first one is not turned, and its axes are those of the shaft.
-    body : RingBody
-        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it.
-    shaft : ndarray, shape (5,)
-        Where it stands at the start: displacement of its centre of mass (m), rotation about x and y (rad).
-    loads : mapping of str to float or History
-        What acts on it at the first bearing's roller-centre plane, by the names of the core's channels (N, N m).
+    subject : Assembly or Seating
+        An assembly begins in its equilibrium at speed; a seating says where the shaft stands.
     accuracy : str
         Preset of the tolerances.
     instruction_set : str
@@ -105,14 +101,22 @@ class AssemblySimulation:
     ------
     InputError
         If the numbers do not fit together.
+    LoadError
+        If the bearings of an assembly cannot carry its loads.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    >>> pair = trb.Assembly.pair(trb.cases.rig_30310(), "back to back", spread=0.15, end_play=-40e-6, shaft=shaft, speed_rpm=3000)
+    >>> result = trb.AssemblySimulation(pair).run(revolutions=0.05)
+    >>> sorted(result), result.success
+    (['left', 'right'], True)
     """
 
     def __init__(
         self,
-        seats: Mapping[str, Seat],
-        body: RingBody,
-        shaft: Array,
-        loads: Mapping[str, float | History],
+        subject: Assembly | Seating,
         *,
         accuracy: str = "standard",
         instruction_set: str = "",
@@ -123,8 +127,10 @@ class AssemblySimulation:
             raise InputError.of(
                 ("run", "checkpoint_every"), self.options.checkpoint_every, "must not be given for an assembly yet"
             )
-        self.seats = {name: seat.at(shaft) for name, seat in seats.items()}
-        self._seated: Seated = seat_all(list(self.seats.values()), body, shaft, loads, instruction_set)
+        self.assembly = subject if isinstance(subject, Assembly) else None
+        seating = seating_of(subject) if isinstance(subject, Assembly) else subject
+        self.seats = {name: seat.at(seating.shaft) for name, seat in seating.seats.items()}
+        self._seated: Seated = seat_all(replace(seating, seats=self.seats), instruction_set)
         self._core = self._seated.open(self._first.start.time, self._seated.vector, self.options.settings())
         self._reached = self._core.time
         self.warnings = tuple(
@@ -192,6 +198,7 @@ class AssemblySimulation:
         save_groups: Sequence[str] | None = None,
         output: str | Path | None = None,
         overwrite: bool = False,
+        progress: bool = False,
     ) -> AssemblyResult:
         """Step on and keep records of every bearing; output times never change the steps.
 
@@ -204,9 +211,12 @@ class AssemblySimulation:
         save_groups : sequence of str, optional
             Groups of quantities to keep; all by default.
         output : path-like, optional
-            Folder for a result file of each bearing, ``<name>.h5``; without it records stay in memory.
+            File to write; without it records stay in memory. While the run goes on, each bearing has a file of its own beside it,
+            which is what is left of a run that is killed: ``pair.left.h5`` for ``pair.h5``.
         overwrite : bool
-            Replace files that are there.
+            Replace a file that is there.
+        progress : bool
+            Show a bar on the terminal.
 
         Returns
         -------
@@ -228,30 +238,29 @@ class AssemblySimulation:
         options = options.replace(**keeping.kept_by_default(end - self._reached, speed, save_every, save_groups))  # type: ignore[arg-type]
         assert options.save_every is not None
         times = output_times(self._reached, end, options.save_every)
-        bearings = self._open_bearings(options, times, output, overwrite=overwrite)
-        return _Run(self, options, times, bearings).go()
+        path = None if output is None else output_path(output, overwrite=overwrite)
+        bearings = self._open_bearings(options, times, path, overwrite=overwrite)
+        return _Run(self, options, times, bearings, path, overwrite=overwrite).go(progress=progress)
 
     def _open_bearings(
-        self, options: RunOptions, times: Array, output: str | Path | None, *, overwrite: bool
+        self, options: RunOptions, times: Array, path: Path | None, *, overwrite: bool
     ) -> list[_Bearing]:
-        folder, at = None if output is None else Path(output), 0
         out: list[_Bearing] = []
+        at = 0
         with_peaks = peak_table.GROUP in options.save_groups
         fields = field_table.table() + (peak_table.table() if with_peaks else ())
-        if folder is not None:
-            folder.mkdir(parents=True, exist_ok=True)
         for (name, seat), model in zip(self.seats.items(), self._seated.models, strict=True):
             layout, length = list(model.record_layout()), model.record_length
             if with_peaks:
                 layout += [(field, first + length, shape) for field, first, shape in model.peak_layout()]
                 length += model.peak_length
             kept: Kept | ResultWriter
-            if folder is None:
+            if path is None:
                 kept = Kept(layout, field_table.select(fields, options.save_groups))
             else:
                 try:
                     kept = ResultWriter(
-                        folder / f"{name}.h5",
+                        part_path(path, name),
                         scene=seat.scene,
                         layout=layout,
                         fields=fields,
@@ -263,6 +272,8 @@ class AssemblySimulation:
                     )
                 except FileError:
                     close_files(out)
+                    for one in out:
+                        part_path(path, one.name).unlink(missing_ok=True)
                     raise
             doubts = list(self._seated.unusual[len(out)])
             out.append(_Bearing(name, seat, layout, at, doubts, kept))
@@ -288,24 +299,34 @@ def _meta(sim: AssemblySimulation, options: RunOptions, name: str) -> dict[str, 
         "kept": keeping.said(options.save_every or 0.0, options.save_groups),
         "notes": list(sim._seated.unusual[list(sim.seats).index(name)]),
         "accuracy": WITHOUT_BIAS,
-        "assembly": {"bearing": name, "bearings": list(sim.seats)},
+        "assembly": {"bearing": name, "bearings": list(sim.seats), "seat": sim.seats[name].numbers()},
     }
 
 
 class _Run:
     """One call of `AssemblySimulation.run`."""
 
-    def __init__(self, sim: AssemblySimulation, options: RunOptions, times: Array, bearings: list[_Bearing]) -> None:
+    def __init__(
+        self,
+        sim: AssemblySimulation,
+        options: RunOptions,
+        times: Array,
+        bearings: list[_Bearing],
+        path: Path | None,
+        *,
+        overwrite: bool,
+    ) -> None:
         self.sim, self.options, self.times, self.bearings = sim, options, times, bearings
+        self.path, self.overwrite = path, overwrite
         self.done, self.spent, self.began = 0, 0.0, clock.perf_counter()
 
-    def go(self) -> AssemblyResult:
+    def go(self, *, progress: bool) -> AssemblyResult:
         core = self.sim._core
         if peak_table.GROUP in self.options.save_groups:
             core.begin_peaks(float(self.times[0]))
         try:
-            with interrupts() as interrupted:
-                message = self._loop(interrupted)
+            with interrupts() as interrupted, progress_bar(self.times, shown=progress) as bar:
+                message = self._loop(interrupted, bar)
         except _core.CoreStepError as error:
             raise StepError(str(error), time=core.time, result=self._finish(False, str(error))) from None
         except BaseException:
@@ -314,7 +335,7 @@ class _Run:
             raise
         return self._finish(message is None, message or f"reached {self.times[-1]:.6g} s")
 
-    def _loop(self, interrupted: list[int]) -> str | None:
+    def _loop(self, interrupted: list[int], bar: Any) -> str | None:
         """Step until all records are filled; gives the reason if the run ended before, else None."""
         sim, core, beside = self.sim, self.sim._core, has_a_spare_core()
         going_on = self.options.when_wrong == "go_on"
@@ -334,6 +355,7 @@ class _Run:
             finally:
                 self.spent += clock.perf_counter() - before
             self._keep(records[:rows])
+            bar.update(sim.time - float(self.times[0]) - bar.n)
             doubts = [watch.look(final=self.done >= self.times.size) for watch in watches]
             doubts += [self._gone(bearing, records[:rows]) for bearing in self.bearings]
             if interrupted:
@@ -398,7 +420,12 @@ class _Run:
                 "final_state": None,
             }
             results[bearing.name] = self._result(bearing, how)
-        return AssemblyResult(results, [bearing.seat for bearing in self.bearings])
+        if self.path is None:
+            return AssemblyResult(results, sim.assembly)
+        parts = {name: part_path(self.path, name) for name in results}
+        described = None if sim.assembly is None else sim.assembly.to_dict()
+        gather(self.path, parts, described, overwrite=self.overwrite)
+        return AssemblyResult.load(self.path)
 
     def _result(self, bearing: _Bearing, how: dict[str, Any]) -> Result:
         if isinstance(bearing.kept, ResultWriter):

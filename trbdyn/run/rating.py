@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any, Final, overload
 
 import numpy as np
 
 from trbdyn.errors import InputError
+from trbdyn.model.assembly import Assembly
 from trbdyn.model.motion import value_at
 from trbdyn.model.scene import Scene
 from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
 from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, lamina_loads, ring_loads, sheet
+from trbdyn.standards.system import SystemRating, system_sheet
+from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 
 RECORDS: Final = 60
 """Records of a run that are evaluated, at most; evenly spread over its window."""
 
 
+@overload
 def rating(
     subject: Scene | Result,
     *,
@@ -24,7 +28,28 @@ def rating(
     filtered: bool | None = None,
     contamination: float | None = None,
     reliability: float = 90.0,
-) -> Rating:
+) -> Rating: ...
+
+
+@overload
+def rating(
+    subject: Assembly | ShaftEquilibrium,
+    *,
+    cleanliness: str | None = None,
+    filtered: bool | None = None,
+    contamination: float | None = None,
+    reliability: float = 90.0,
+) -> SystemRating: ...
+
+
+def rating(
+    subject: Scene | Result | Assembly | ShaftEquilibrium,
+    *,
+    cleanliness: str | None = None,
+    filtered: bool | None = None,
+    contamination: float | None = None,
+    reliability: float = 90.0,
+) -> Rating | SystemRating:
     """What every catalogue program answers first: equivalent load, rating lives, static safety, kappa, limits of speed.
 
     C, C0 and the factors are those of ``bearing.ratings`` (`Bearing.from_catalogue` keeps them there); what is not known is
@@ -33,8 +58,9 @@ def rating(
 
     Parameters
     ----------
-    subject : Scene or Result
-        A result needs the groups cage and rollers.
+    subject : Scene, Result, Assembly or ShaftEquilibrium
+        A result needs the groups cage and rollers. Of an assembly each bearing has a sheet under the loads of the equilibrium,
+        and the whole has lives.
     cleanliness : {'13/10', '15/12', '17/14', '19/16', '21/18'}, optional
         Particles in the oil, the last two numbers of ISO 4406; that of the scene's lubricant by default, and 17/14 where that
         has none, which is said with what a neighbouring class gives.
@@ -47,8 +73,8 @@ def rating(
 
     Returns
     -------
-    Rating
-        Prints as a table; `Rating.rows` has every number with its symbol, unit and source.
+    Rating or SystemRating
+        Prints as a table; `Rating.rows` has every number with its symbol, unit and source. Of an assembly a `SystemRating`.
 
     Raises
     ------
@@ -80,7 +106,9 @@ def rating(
         return sheet(subject, at_equilibrium(subject), **options)
     if isinstance(subject, Result):
         return sheet(subject.scene, of_run(subject), **options)
-    raise InputError.of("subject", type(subject).__name__, "must be a Scene or a Result")
+    if isinstance(subject, Assembly | ShaftEquilibrium):
+        return system_sheet(equilibrium(subject) if isinstance(subject, Assembly) else subject, **options)
+    raise InputError.of("subject", type(subject).__name__, "must be a Scene, a Result, an Assembly or its equilibrium")
 
 
 def of_run(result: Result) -> Loading:

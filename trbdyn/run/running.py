@@ -139,11 +139,8 @@ class Run:
             raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
 
     def go(self, *, progress: bool) -> Result:
-        from tqdm import tqdm
-
         sim = self.sim
-        span = float(self.times[-1] - self.times[0])
-        with tqdm(total=span, disable=not progress, unit="s", bar_format=_BAR) as bar:
+        with progress_bar(self.times, shown=progress) as bar:
             try:
                 with interrupts() as self.interrupted:
                     message = self._loop(bar)
@@ -429,6 +426,13 @@ def statistics_of(
         "integrator": integrator,
         "instruction_set": instruction_set,
     }
+
+
+def progress_bar(times: Array, *, shown: bool) -> Any:
+    """A bar on the terminal over the bearing time of a run, for use as a context manager."""
+    from tqdm import tqdm
+
+    return tqdm(total=float(times[-1] - times[0]), disable=not shown, unit="s", bar_format=_BAR)
 
 
 def output_times(start: float, end: float, every: float) -> Array:

@@ -126,18 +126,18 @@ def case_from_dict(values: Mapping[str, Any]) -> tuple[Scene, RunOptions]:
     InputError
         If a key is unknown or a value not allowed; the message names the full key.
     """
-    _check_names(values, TABLES, ())
-    tables = {name: _table(values, name) for name in TABLES}
+    check_names(values, TABLES, ())
+    tables = {name: table_of(values, name) for name in TABLES}
     if "bearing" not in values:
         raise InputError([Problem(("bearing",), MISSING, "is required; for instance case = '30310'")])
-    run = _build(RunOptions, tables["run"], ("run",))
+    run = build(RunOptions, tables["run"], ("run",))
     fields = {
         "bearing": bearing_from_table(tables["bearing"]),
-        "lubricant": _lubricant(tables["lubricant"]) if "lubricant" in values else vg100(),
-        "effects": _effects(tables["effects"]),
-        "start": _build(Start, tables["start"], ("start",)),
+        "lubricant": lubricant_from_table(tables["lubricant"]) if "lubricant" in values else vg100(),
+        "effects": effects_from_table(tables["effects"]),
+        "start": build(Start, tables["start"], ("start",)),
     }
-    _check_names(tables["scene"], set(Scene.model_fields) - set(_OWN_TABLES), ("scene",))
+    check_names(tables["scene"], set(Scene.model_fields) - set(_OWN_TABLES), ("scene",))
     try:
         return Scene(**fields, **tables["scene"]), run
     except InputError as error:
@@ -153,17 +153,17 @@ def bearing_from_table(table: Table) -> Bearing:
         If a key is unknown or a value not allowed; the message names the full key.
     """
     path = ("bearing",)
-    _check_names(table, {*Bearing.model_fields, "case"}, path)
+    check_names(table, {*Bearing.model_fields, "case"}, path)
     base = _choose(table, "case", BEARINGS, path)().inputs() if "case" in table else {}
-    values = _merged(base, _without(table, "case"))
+    values = _merged(base, without(table, "case"))
     cage = values.get("cage")
     if not isinstance(cage, dict) or not _has_shapes(cage):
-        return _build(Bearing, values, path)
-    plain = _build(Bearing, {**values, "cage": _without(cage, "pocket", "other_pockets")}, path)
+        return build(Bearing, values, path)
+    plain = build(Bearing, {**values, "cage": without(cage, "pocket", "other_pockets")}, path)
     pockets = _pockets(plain, cage, (*path, "cage"))
-    with _located((*path, "cage")):
+    with located((*path, "cage")):
         full = plain.cage.replace(**pockets)
-    with _located(path):
+    with located(path):
         return plain.replace(cage=full)
 
 
@@ -198,28 +198,28 @@ def _is_shape(table: object) -> bool:
 def _pocket(bearing: Bearing, table: Table, path: FieldPath) -> Pocket:
     """The pocket that a builder makes of the arguments in a table."""
     builder = _choose(table, "shape", SHAPES, path)
-    arguments = _without(table, "shape", "allow_interference")
+    arguments = without(table, "shape", "allow_interference")
     parameters = list(inspect.signature(builder).parameters.values())[1:]
-    _check_names(arguments, {"allow_interference", *(parameter.name for parameter in parameters)}, path)
+    check_names(arguments, {"allow_interference", *(parameter.name for parameter in parameters)}, path)
     for parameter in parameters:
         if parameter.default is parameter.empty and parameter.name not in arguments:
             raise InputError(
                 [Problem((*path, parameter.name), MISSING, f"is required by the shape '{table['shape']}'")]
             )
-    with _located(path):
+    with located(path):
         pocket = builder(bearing, **arguments)
         return pocket.replace(allow_interference=table.get("allow_interference", False))
 
 
-def _lubricant(table: Table) -> Lubricant:
-    return _build(Lubricant, table, ("lubricant",))
+def lubricant_from_table(table: Table) -> Lubricant:
+    return build(Lubricant, table, ("lubricant",))
 
 
-def _effects(table: Table) -> Effects:
+def effects_from_table(table: Table) -> Effects:
     path = ("effects",)
-    _check_names(table, {*Effects.model_fields, "preset"}, path)
+    check_names(table, {*Effects.model_fields, "preset"}, path)
     preset = _choose({"preset": "standard", **table}, "preset", PRESETS, path)
-    return _build(Effects, _merged(preset().to_dict(), _without(table, "preset")), path)
+    return build(Effects, _merged(preset().to_dict(), without(table, "preset")), path)
 
 
 def _in_tables(problem: Problem) -> Problem:
@@ -228,14 +228,14 @@ def _in_tables(problem: Problem) -> Problem:
     return Problem(path, problem.value, problem.allowed)
 
 
-def _table(values: Mapping[str, Any], name: str) -> Table:
+def table_of(values: Mapping[str, Any], name: str) -> Table:
     table = values.get(name, {})
     if not isinstance(table, dict):
         raise InputError.of(name, table, "must be a table of named values")
     return table
 
 
-def _check_names(table: Mapping[str, Any], allowed: Iterable[str], path: FieldPath) -> None:
+def check_names(table: Mapping[str, Any], allowed: Iterable[str], path: FieldPath) -> None:
     names = set(allowed)
     problems = [
         Problem((*path, key), value, unknown_name(key, names)) for key, value in table.items() if key not in names
@@ -253,13 +253,13 @@ def _choose(table: Mapping[str, Any], key: str, choices: Mapping[str, C], path: 
     return choices[value]
 
 
-def _build(model: type[M], table: Mapping[str, Any], path: FieldPath) -> M:
-    with _located(path):
+def build(model: type[M], table: Mapping[str, Any], path: FieldPath) -> M:
+    with located(path):
         return model(**table)
 
 
 @contextmanager
-def _located(path: FieldPath) -> Iterator[None]:
+def located(path: FieldPath) -> Iterator[None]:
     """Problems that arise inside are told with their full key."""
     try:
         yield
@@ -267,7 +267,7 @@ def _located(path: FieldPath) -> Iterator[None]:
         raise error.under(path) from None
 
 
-def _without(table: Table, *names: str) -> Table:
+def without(table: Table, *names: str) -> Table:
     return {key: value for key, value in table.items() if key not in names}
 
 

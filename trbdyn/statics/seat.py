@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from trbdyn.cage.simulated import mode_rows
 from trbdyn.errors import InputError
 from trbdyn.model.flatten import (
     Entry,
+    Load,
     block_of,
     diameter_deviation,
     face_rows,
@@ -78,6 +79,10 @@ class Seat:
         """What goes along or about the shaft's y or z, such as its speed, in the axes of the bearing."""
         return scaled(quantity, -1.0) if self.turned else quantity
 
+    def numbers(self) -> dict[str, float | bool]:
+        """Where it sits, as results keep it."""
+        return {"mass_offset": self.mass_offset, "turned": self.turned, "shift": self.shift}
+
     def ring_place(self, shaft: Array) -> Array:
         """Where the ring stands, in the bearing's axes.
 
@@ -105,6 +110,31 @@ class Seat:
             ring="held", ring_body=None, axial_load=0.0, radial_load=0.0, unloaded="refused", **values
         )
         return Seat(scene, self.mass_offset, self.turned, self.shift)
+
+
+@dataclass(frozen=True)
+class Seating:
+    """Bearings on a shaft at the start, and what acts on it.
+
+    Attributes
+    ----------
+    seats : mapping of str to Seat
+        The bearings by name. The first one must not be turned: its axes are those of the shaft.
+    body : RingBody
+        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it. The seats say where
+        its centre of mass lies.
+    shaft : ndarray, shape (5,)
+        Displacement of its centre of mass (m), and rotation about x and y (rad).
+    loads : mapping of str to Load
+        What acts on the shaft at the first bearing's roller-centre plane, by the names of the core's channels: ``"force_x"``,
+        ``"moment_y"`` and so on (N, N m); what is not named is zero. With a ``"torque"`` (N m) the shaft turns under it, in place
+        of the prescribed speed.
+    """
+
+    seats: Mapping[str, Seat]
+    body: RingBody
+    shaft: Array
+    loads: Mapping[str, Load] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -145,24 +175,13 @@ class Seated:
         return StateView(self.layouts[bearing], vector)
 
 
-def seat_all(
-    seats: Sequence[Seat], body: RingBody, shaft: Array, loads: Mapping[str, float | History], instruction_set: str = ""
-) -> Seated:
-    """Put bearings on a shaft that stands still at a place.
+def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
+    """What the core takes of bearings on a shaft that stands still at a place.
 
     Parameters
     ----------
-    seats : sequence of Seat
-        The bearings. The first one must not be turned: its axes are those of the shaft.
-    body : RingBody
-        Mass, moments of inertia, unbalance, dampers and supports of the shaft with all that is fixed to it. The seats say where
-        its centre of mass lies.
-    shaft : ndarray, shape (5,)
-        Displacement of its centre of mass (m), and rotation about x and y (rad), at the start.
-    loads : mapping of str to float or History
-        What acts on the shaft at the first bearing's roller-centre plane, by the names of the core's channels: ``"force_x"``,
-        ``"moment_y"`` and so on (N, N m); what is not named is zero. With a ``"torque"`` (N m) the shaft turns under it, in place
-        of the prescribed speed.
+    seating : Seating
+        The bearings, the shaft, its place and its loads.
     instruction_set : str
         Kernel variant; the fastest by default.
 
@@ -171,6 +190,7 @@ def seat_all(
     InputError
         If the numbers do not fit together.
     """
+    seats, body, shaft, loads = list(seating.seats.values()), seating.body, seating.shaft, seating.loads
     _check(seats, body, loads)
     placed = [seat.at(shaft) for seat in seats]
     held = [build_model(seat.scene, instruction_set) for seat in placed]
@@ -194,7 +214,7 @@ def seat_all(
     return Seated(models, tuple(motions), equilibria, layouts, vector, tuple(said))
 
 
-def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, float | History]) -> None:
+def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, Load]) -> None:
     """Refuse what no shaft can do, or what would not act."""
     first = seats[0]
     if first.turned:
@@ -224,7 +244,7 @@ def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, float | Hi
                 raise InputError.of(("seats", number, "scene", name), own, limit)
 
 
-def _with_loads(motion: RingMotion, scene: Scene, loads: Mapping[str, float | History]) -> RingMotion:
+def _with_loads(motion: RingMotion, scene: Scene, loads: Mapping[str, Load]) -> RingMotion:
     table, period = motion_table(scene, [0.0] * 5, loads=loads), loads_period(scene, loads)
     return replace(motion, table=table, period=(period or 0.0) if len(table) > 1 else 0.0)
 

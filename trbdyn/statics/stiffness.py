@@ -144,21 +144,35 @@ class Stiffness(Displayed):
         whole_stiffness = self.matrix + held.T @ np.diag([radial, radial, body.support_axial, tilt, tilt]) @ held
         inertia = np.array([body.mass] * 3 + [body.inertia_transverse] * 2)
         mass = arm.T @ np.diag(inertia) @ arm + self.roller_mass
-        gyro = np.zeros((5, 5))
-        if gyroscopic:
-            spin = body.inertia_axial * self.speed_rpm * np.pi / 30.0
-            gyro[3, 4], gyro[4, 3] = spin, -spin
-        zero, one = np.zeros((5, 5)), np.eye(5)
-        # both of equal size, or the eigenvalues lose their digits
-        size = np.sqrt(np.trace(whole_stiffness[:3, :3]) / np.trace(mass[:3, :3]))
-        whole = np.block([[zero, size * one], [-whole_stiffness / size, -gyro]])
-        values, vectors = eig(whole, np.block([[one, zero], [zero, mass]]))
-        up = np.flatnonzero(values.imag > 0.0)
-        up = up[np.argsort(values[up].imag)][:5]
-        shapes = vectors[:5, up].T
-        sizes = shapes * np.array([1.0, 1.0, 1.0, 0.5 * self.pitch_diameter, 0.5 * self.pitch_diameter])
-        largest = sizes[np.arange(len(up)), np.argmax(np.abs(sizes), axis=1)]
-        return Modes(frequencies=values[up].imag / (2.0 * np.pi), shapes=shapes / largest[:, None])
+        spin = body.inertia_axial * self.speed_rpm * np.pi / 30.0 if gyroscopic else 0.0
+        return vibrations(whole_stiffness, mass, spin, 0.5 * self.pitch_diameter)
+
+
+def vibrations(stiffness: Array, mass: Array, spin: float, radius: float) -> Modes:
+    """Natural vibrations of a rigid body with five coordinates, without damping.
+
+    Parameters
+    ----------
+    stiffness, mass : ndarray, shape (5, 5)
+        Of displacement along x, y, z (m) and rotation about x, y (rad).
+    spin : float
+        Angular momentum about the body's axis (kg m2/s).
+    radius : float
+        Radius at which rotations count in shapes (m).
+    """
+    gyro = np.zeros((5, 5))
+    gyro[3, 4], gyro[4, 3] = spin, -spin
+    zero, one = np.zeros((5, 5)), np.eye(5)
+    # both of equal size, or the eigenvalues lose their digits
+    size = np.sqrt(np.trace(stiffness[:3, :3]) / np.trace(mass[:3, :3]))
+    whole = np.block([[zero, size * one], [-stiffness / size, -gyro]])
+    values, vectors = eig(whole, np.block([[one, zero], [zero, mass]]))
+    up = np.flatnonzero(values.imag > 0.0)
+    up = up[np.argsort(values[up].imag)][:5]
+    shapes = vectors[:5, up].T
+    sizes = shapes * np.array([1.0, 1.0, 1.0, radius, radius])
+    largest = sizes[np.arange(len(up)), np.argmax(np.abs(sizes), axis=1)]
+    return Modes(frequencies=values[up].imag / (2.0 * np.pi), shapes=shapes / largest[:, None])
 
 
 def stiffness(scene: Scene, *, time: float | None = None) -> Stiffness:

@@ -1,0 +1,129 @@
+"""Assemblies as TOML files.
+
+A file has the tables ``[assembly]`` (speed_rpm, torque, gravity), ``[shaft]``, ``[run]`` as a case, a table ``[[bearings]]`` for
+each bearing and a table
+``[[loads]]`` for each load; their keys are the fields of `Assembly`, `Shaft`, `ShaftBearing` and `ShaftLoad`. The tables
+``[bearing]``, ``[lubricant]`` and ``[effects]`` are those of a case (`trbdyn.run.toml_case`) and hold for all bearings; a bearing
+may have its own. A load with ``gear = {...}`` has the arguments of `ShaftLoad.gear`.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from trbdyn.base.own_files import file_path
+from trbdyn.base.shipped import DATA
+from trbdyn.errors import InputError
+from trbdyn.model.assembly import Assembly, Shaft, ShaftBearing, ShaftLoad
+from trbdyn.run.options import RunOptions
+from trbdyn.run.toml_case import (
+    Table,
+    bearing_from_table,
+    build,
+    check_names,
+    effects_from_table,
+    located,
+    lubricant_from_table,
+    read_tables,
+    table_of,
+    without,
+)
+
+FOLDER: Final = DATA / "assemblies"
+SHARED: Final = {"bearing": bearing_from_table, "lubricant": lubricant_from_table, "effects": effects_from_table}
+TABLES: Final = ("assembly", "shaft", "bearings", "loads", "run", *SHARED)
+
+
+def shipped_assemblies() -> tuple[str, ...]:
+    """Names of the assemblies that ship with the package."""
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
+
+
+def load_assembly(path: str | Path) -> Assembly:
+    """The assembly of a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; where there is none of this name, an assembly that ships with the package.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or is no TOML.
+    InputError
+        If a key is unknown or a value not allowed; the message names the full key.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> trb.load_assembly("pair_30310").arrangement
+    'back to back'
+    """
+    file = file_path(path, "assembly")
+    file = file if file.exists() else find_assembly(str(path)) or file
+    hint = f"; assemblies that ship with the package: {', '.join(shipped_assemblies())}"
+    return assembly_from_dict(read_tables(file, hint))[0]
+
+
+def find_assembly(name: str) -> Path | None:
+    """The file of an assembly that ships with the package, by its name with or without ``.toml``; None where there is none."""
+    stem = name.removesuffix(".toml")
+    return FOLDER / f"{stem}.toml" if stem in shipped_assemblies() else None
+
+
+def assembly_from_dict(values: Mapping[str, Any]) -> tuple[Assembly, RunOptions]:
+    """The assembly of the tables of a file, and how it is run.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or a value not allowed; the message names the full key.
+    """
+    check_names(values, TABLES, ())
+    own = table_of(values, "assembly")
+    check_names(own, set(Assembly.model_fields) - {"shaft", "bearings", "loads"}, ("assembly",))
+    shared = {name: make(table_of(values, name)) for name, make in SHARED.items() if name in values}
+    bearings = tuple(_bearing(table, shared, index) for index, table in enumerate(_tables(values, "bearings")))
+    loads = tuple(_load(table, index) for index, table in enumerate(_tables(values, "loads")))
+    shaft = build(Shaft, table_of(values, "shaft"), ("shaft",))
+    run = build(RunOptions, table_of(values, "run"), ("run",))
+    try:
+        return Assembly(shaft=shaft, bearings=bearings, loads=loads, **own), run
+    except InputError as error:
+        inner = ("bearings", "loads", "shaft")
+        if any(problem.path and problem.path[0] in inner for problem in error.problems):
+            raise
+        raise error.under(("assembly",)) from None
+
+
+def _tables(values: Mapping[str, Any], name: str) -> list[Table]:
+    tables = values.get(name, [])
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InputError.of(name, tables, f"must be tables [[{name}]]")
+    return tables
+
+
+def _bearing(table: Table, shared: Mapping[str, Any], index: int) -> ShaftBearing:
+    path = ("bearings", index)
+    check_names(table, ShaftBearing.model_fields, path)
+    with located(path):
+        parts = {name: make(table_of(table, name)) for name, make in SHARED.items() if name in table}
+    return build(ShaftBearing, {**shared, **without(table, *SHARED), **parts}, path)
+
+
+def _load(table: Table, index: int) -> ShaftLoad:
+    path = ("loads", index)
+    if "gear" not in table:
+        return build(ShaftLoad, table, path)
+    arguments = {**table_of(table, "gear"), **without(table, "gear")}
+    known = inspect.signature(ShaftLoad.gear).parameters
+    check_names(arguments, known, path)
+    for name, parameter in known.items():
+        if parameter.default is parameter.empty and name not in arguments:
+            raise InputError.of((*path, "gear"), table["gear"], f"must have {name}")
+    with located(path):
+        return ShaftLoad.gear(**arguments)

@@ -1,0 +1,104 @@
+"""Ratings of several bearings on one shaft, and of all together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, sheet
+from trbdyn.statics.assembly import BearingOnShaft, ShaftEquilibrium
+
+WEIBULL_SLOPE: Final = 9.0 / 8.0
+"""Slope of the distribution of lives of roller bearings: ISO/TR 1281-1:2008."""
+_LIVES: Final = ("life_hours", "modified_life_hours", "reference_life_hours", "modified_reference_life_hours")
+
+
+@dataclass(frozen=True)
+class SystemRating(Displayed):
+    """Sheets of the bearings of an assembly, and the lives of the whole: none of its bearings has failed.
+
+    Attributes
+    ----------
+    bearings : dict of str to Rating
+        Sheet of each bearing, by its name.
+    life_hours, modified_life_hours : float or None
+        Basic and modified rating life of the whole (h); None where it is infinite or a bearing has none.
+    reference_life_hours, modified_reference_life_hours : float or None
+        The same with the reference lives of ISO 16281 (h).
+    """
+
+    bearings: dict[str, Rating]
+    life_hours: float | None
+    modified_life_hours: float | None
+    reference_life_hours: float | None
+    modified_reference_life_hours: float | None
+
+    def __str__(self) -> str:
+        return self._shown().text()
+
+    def _shown(self) -> Shown:
+        def row(name: str, one: Rating | SystemRating, *loads: str) -> tuple[str, ...]:
+            lives = [getattr(one, life) for life in _LIVES]
+            return (name, *(loads or ("", "", "")), *("-" if life is None else f"{life:.4g}" for life in lives))
+
+        head = ("bearing", "Fa N", "Fr N", "P N", "L10h h", "Lnmh h", "L10rh h", "Lnmrh h")
+        rows = [
+            row(name, one, f"{one.axial_load:.5g}", f"{one.radial_load:.5g}", f"{one.equivalent_load:.5g}")
+            for name, one in self.bearings.items()
+        ]
+        said = tuple(f"{name}: {text}" for name, one in self.bearings.items() for text in one.warnings)
+        return Shown("ratings and lives", (head, *rows, row("all", self)), head=head, notes=said)
+
+
+def system_life(lives: Sequence[float | None]) -> float | None:
+    """Life that all of some bearings reach with the same reliability: (sum L^-e)^(-1/e), e = 9/8.
+
+    Parameters
+    ----------
+    lives : sequence of float or None
+        Their lives, in one unit; None: infinite.
+
+    Notes
+    -----
+    Reliabilities multiply, and each is exp(-(L/L_c)^e): Weibull's distribution, ISO/TR 1281-1:2008.
+
+    Examples
+    --------
+    >>> from trbdyn.standards.system import system_life
+    >>> round(system_life([1000.0, 1000.0]))
+    540
+    """
+    total = sum(life**-WEIBULL_SLOPE for life in lives if life is not None and life < math.inf)
+    return float(total ** (-1.0 / WEIBULL_SLOPE)) if total > 0.0 else None
+
+
+def system_sheet(found: ShaftEquilibrium, **options: Any) -> SystemRating:
+    """Sheets of all bearings of a shaft in equilibrium; see `trbdyn.rating`."""
+    sheets = {one.name: sheet(one.scene, loading_of(one), **options) for one in found.bearings}
+    unknown = {life: any(_lacks(one, life) for one in sheets.values()) for life in _LIVES}
+    lives = {
+        life: None if unknown[life] else system_life([getattr(one, life) for one in sheets.values()]) for life in _LIVES
+    }
+    return SystemRating(bearings=sheets, **lives)
+
+
+def _lacks(one: Rating, life: str) -> bool:
+    """Whether a life cannot be told, though the bearing is loaded and turns."""
+    return getattr(one, life) is None and one.life_hours is not None
+
+
+def loading_of(one: BearingOnShaft) -> Loading:
+    """What a bearing's sheet stands on: the loads of the shaft on it, and the laminas where its ring stands."""
+    laminas = at_equilibrium(one.scene)
+    return Loading(
+        axial_load=one.axial_load,
+        radial_load=one.radial_load,
+        speed_rpm=laminas.speed_rpm,
+        lamina_loads=laminas.lamina_loads,
+        weights=None,
+        largest_pressure=laminas.largest_pressure,
+        source="equilibrium of the shaft on its bearings",
+    )

@@ -1,0 +1,82 @@
+"""How the bearings of an assembly sit on its shaft when a run begins: in the equilibrium at speed.
+
+The core has the coordinates of the shaft in the axes of the first bearing (`trbdyn.statics.seat`). Where that one sits the other
+way round, all that belongs to the shaft is turned by half a turn about x.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.model.assembly import Assembly
+from trbdyn.model.flatten import Load
+from trbdyn.model.motion import History
+from trbdyn.model.ring_body import RingBody
+from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
+from trbdyn.statics.seat import Seat, Seating
+from trbdyn.statics.shaft_balance import axis_of, turns_of
+
+Array = NDArray[np.float64]
+Parts = list[tuple[float, float | History]]
+
+
+def seating_of(assembly: Assembly) -> Seating:
+    """Bearings and shaft of an assembly in equilibrium at the time at which its first bearing starts.
+
+    Raises
+    ------
+    LoadError
+        If the bearings cannot carry the loads, or nothing holds a motion of the shaft.
+    """
+    found = equilibrium(assembly, time=assembly.bearings[0].start.time)
+    shaft, first = assembly.shaft, assembly.bearings[0]
+    turn3, turn2 = turns_of(first)
+    seats = {}
+    for index, (name, one, outer) in enumerate(
+        zip(assembly.names, assembly.bearings, found.outer_ring_places, strict=True)
+    ):
+        seats[name] = Seat(
+            scene=assembly.scene(index, displacement=(0.0, 0.0, -1e-6, 0.0, 0.0)),
+            mass_offset=-one.side * (shaft.mass_position - one.centre_plane),
+            turned=one.side != first.side,
+            shift=outer,
+        )
+    body = RingBody(
+        mass=shaft.mass,
+        inertia_axial=shaft.inertia_axial,
+        inertia_transverse=shaft.inertia_transverse,
+        unbalance=shaft.unbalance,
+        unbalance_angle_deg=float(turn3[1]) * shaft.unbalance_angle_deg,
+        damping=shaft.damping,
+        damping_turns=shaft.damping_turns,
+    )
+    place = np.concatenate([turn3 * found.displacement(shaft.mass_position), turn2 * found.tilt])
+    return Seating(seats, body, place, _loads(assembly, found))
+
+
+def _loads(assembly: Assembly, found: ShaftEquilibrium) -> dict[str, Load]:
+    """Forces and moments at the first bearing's roller-centre plane, in its axes. Lever arms lie along the axis of the start."""
+    first = assembly.bearings[0]
+    turn3, turn2 = turns_of(first)
+    axis, _ = axis_of(found.tilt)
+    parts: dict[str, Parts] = {name: [] for name in ("force_x", "force_y", "force_z", "moment_x", "moment_y")}
+
+    def add(name: str, factor: float, quantity: float | History) -> None:
+        if factor and quantity != 0.0:
+            parts[name].append((float(factor), quantity))
+
+    for load in assembly.acting(weight=not first.effects.gravity):
+        lever = np.array([*load.offset, 0.0]) + (load.position - first.centre_plane) * axis
+        # the columns are what a force along x, y and z does about x and y
+        about = np.array([[0.0, -lever[2], lever[1]], [lever[2], 0.0, -lever[0]]])
+        for number, letter in enumerate("xyz"):
+            add(f"force_{letter}", turn3[number], load.force[number])
+            add("moment_x", turn2[0] * about[0, number], load.force[number])
+            add("moment_y", turn2[1] * about[1, number], load.force[number])
+        add("moment_x", turn2[0], load.moment[0])
+        add("moment_y", turn2[1], load.moment[1])
+    loads: dict[str, Load] = {name: tuple(each) for name, each in parts.items() if each}
+    if assembly.torque is not None:
+        loads["torque"] = ((float(turn3[2]), assembly.torque),)
+    return loads

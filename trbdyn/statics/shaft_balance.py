@@ -1,0 +1,230 @@
+"""Forces on a rigid shaft that stands at a place on its bearings, their slopes and their potential
+(docs/theory/motion.md#a-shaft-on-several-bearings).
+
+Unknowns are the place of the shaft at a reference point of its axis, translation along x, y, z and rotation about x and y, and
+the axial place of each outer ring that a spring presses. Each bearing answers the place of its inner ring with the equilibrium
+of its rollers at speed, found by the core.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.model.assembly import Assembly, ShaftBearing
+from trbdyn.model.motion import value_at
+from trbdyn.statics.core_model import normal_contacts
+from trbdyn.statics.equilibrium import nominal_angles
+
+Array = NDArray[np.float64]
+
+_ALONG: Final = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a bearing does where its inner ring stands, in the bearing's own frame.
+
+    Attributes
+    ----------
+    displacement : ndarray, shape (5,)
+        Place of the inner ring against the outer ring (m, rad).
+    reaction : ndarray, shape (5,)
+        Force and moment that hold the inner ring there (N, N m).
+    stiffness : ndarray, shape (5, 5)
+        Slopes of the reaction with the displacement.
+    follow : ndarray, shape (Z, 4, 5)
+        How each roller follows the ring.
+    loads : ndarray, shape (Z, 3)
+        Normal loads of the rollers at the outer ring, the inner ring and the rib (N).
+    energy : float
+        Potential (J).
+    """
+
+    displacement: Array
+    reaction: Array
+    stiffness: Array
+    follow: Array
+    loads: Array
+    energy: float
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Forces on the shaft at a place. The unknowns are its five coordinates, and the places of the outer rings with a spring.
+
+    Attributes
+    ----------
+    place : ndarray, shape (5 + S,)
+        The unknowns (m, rad).
+    answers : tuple of Answer
+        Of the bearings.
+    missing : ndarray, shape (5 + S,)
+        Forces and moments that act on the shaft, and forces on the outer rings with a spring, and are not held (N, N m).
+    slopes : ndarray, shape (5 + S, 5 + S)
+        Slopes of the same with the place, with opposite sign.
+    energy : float
+        Potential of bearings, springs and loads (J).
+    """
+
+    place: Array
+    answers: tuple[Answer, ...]
+    missing: Array
+    slopes: Array
+    energy: float
+
+    @property
+    def stiffness(self) -> Array:
+        """Stiffness of the shaft, shape (5, 5), where the outer rings with a spring stay in equilibrium."""
+        return self.slopes[:5, :5] + self.slopes[:5, 5:] @ self.sprung_follow
+
+    @property
+    def sprung_follow(self) -> Array:
+        """How the outer rings with a spring follow the shaft, shape (S, 5)."""
+        follow: Array = -np.linalg.solve(self.slopes[5:, 5:], self.slopes[5:, :5])
+        return follow
+
+
+class ShaftOnBearings:
+    """An assembly at a time, ready to be asked for its forces.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The assembly.
+    time : float
+        Time of speed, loads and gravity (s).
+    """
+
+    def __init__(self, assembly: Assembly, time: float) -> None:
+        self.assembly = assembly
+        self.speed = value_at(assembly.speed_rpm, time) * math.pi / 30.0
+        scenes = [
+            assembly.scene(index, time=time, displacement=(0, 0, -1e-6, 0, 0))
+            for index in range(len(assembly.bearings))
+        ]
+        self._models = [normal_contacts(scene) for scene in scenes]
+        self._angles = [nominal_angles(scene) for scene in scenes]
+        self.sprung = [index for index, one in enumerate(assembly.bearings) if one.spring is not None]
+        self.loads: list[tuple[float, Array, Array, Array]] = []
+        for load in assembly.acting():
+            force = np.array([value_at(part, time) for part in load.force])
+            moment = np.array([*(value_at(part, time) for part in load.moment), 0.0])
+            self.loads.append((load.position, np.array([*load.offset, 0.0]), force, moment))
+
+    def answer(self, index: int, displacement: Array) -> Answer:
+        """What a bearing does where its inner ring stands at a displacement (m, rad).
+
+        Raises
+        ------
+        CoreLoadError
+            If its rollers have no equilibrium there.
+        """
+        turned = -self.assembly.bearings[index].side
+        found: dict[str, Any] = self._models[index].equilibrium(
+            np.zeros(5), np.ones(5), displacement, turned * self.speed, self._angles[index], None, True, True
+        )
+        return Answer(
+            displacement=displacement,
+            reaction=found["reaction"],
+            stiffness=found["stiffness"],
+            follow=found["follow"].reshape(-1, 4, 5),
+            loads=found["loads"],
+            energy=found["energy"],
+        )
+
+    def at(self, place: Array, reference: float, answers: tuple[Answer, ...] | None = None) -> Balance:
+        """Forces, slopes and potential where the shaft's axis stands at a place.
+
+        Parameters
+        ----------
+        place : ndarray, shape (5 + S,)
+            The unknowns at the reference point (m, rad).
+        reference : float
+            Position of the reference point along the shaft (m).
+        answers : tuple of Answer, optional
+            Of the bearings at this place, if they are known.
+
+        Raises
+        ------
+        CoreLoadError
+            If the rollers of a bearing have no equilibrium there.
+        """
+        axis, turning = axis_of(place[3:5])
+        missing, slopes = np.zeros(place.size), np.zeros((place.size, place.size))
+        energy, given = 0.0, []
+        for index, one in enumerate(self.assembly.bearings):
+            arm = one.centre_plane - reference
+            to_ring = ring_slopes(one, arm, turning, place.size, self._spring(index))
+            where = self._ring_place(index, place, arm, axis)
+            answer = self.answer(index, where) if answers is None else answers[index]
+            given.append(answer)
+            turn3, turn2 = turns_of(one)
+            change = answer.stiffness @ to_ring
+            force, pull = turn3 * answer.reaction[:3], turn3[:, None] * change[:3]
+            missing[:3] -= force
+            slopes[:3] += pull
+            missing[3:5] -= turn2 * answer.reaction[3:] + arm * np.cross(axis, force)[:2]
+            slopes[3:5] += turn2[:, None] * change[3:] + arm * np.cross(axis, pull, axisb=0)[:, :2].T
+            slopes[3:5, 3:5] += arm * np.cross(turning, force, axisa=0)[:, :2].T
+            energy += answer.energy
+            if one.spring is not None:
+                at, spring = 5 + self._spring(index), one.spring
+                missing[at] = spring.force - spring.stiffness * place[at] + answer.reaction[2]
+                slopes[at] = -change[2]
+                slopes[at, at] += spring.stiffness
+                energy += 0.5 * spring.stiffness * place[at] ** 2 - spring.force * place[at]
+        for position, offset, force, moment in self.loads:
+            arm = position - reference
+            missing[:3] += force
+            lever = np.cross(offset, force) + moment
+            missing[3:5] += lever[:2] + arm * np.cross(axis, force)[:2]
+            slopes[3:5, 3:5] -= arm * np.cross(turning, force, axisa=0)[:, :2].T
+            energy -= force @ (place[:3] + arm * (axis - _ALONG)) + lever[:2] @ place[3:5]
+        return Balance(place, tuple(given), missing, slopes, energy)
+
+    def _spring(self, index: int) -> int:
+        """Which of the springs presses a bearing; -1: none."""
+        return self.sprung.index(index) if index in self.sprung else -1
+
+    def _ring_place(self, index: int, place: Array, arm: float, axis: Array) -> Array:
+        one = self.assembly.bearings[index]
+        turn3, turn2 = turns_of(one)
+        where = np.concatenate([turn3 * (place[:3] + arm * (axis - _ALONG)), turn2 * place[3:5]])
+        where[2] += one.end_play if one.spring is None else -place[5 + self._spring(index)]
+        return where
+
+
+def turns_of(one: ShaftBearing) -> tuple[Array, Array]:
+    """Signs of a vector's three components, and of two of a rotation, from the shaft's frame to the bearing's and back."""
+    turned = -one.side
+    return np.array([1.0, turned, turned]), np.array([1.0, turned])
+
+
+def ring_slopes(one: ShaftBearing, arm: float, turning: Array, size: int, spring: int) -> Array:
+    """Slopes of the place of a bearing's inner ring against its outer ring with the unknowns, shape (5, size)."""
+    turn3, turn2 = turns_of(one)
+    slopes = np.zeros((5, size))
+    slopes[:3, :3] = np.diag(turn3)
+    slopes[:3, 3:5] = arm * turn3[:, None] * turning
+    slopes[3:, 3:5] = np.diag(turn2)
+    if spring >= 0:
+        slopes[2, 5 + spring] = -1.0
+    return slopes
+
+
+def axis_of(rotation: Array) -> tuple[Array, Array]:
+    """Direction of an axis that a rotation about x and y (rad) turned from z, shape (3,), and its slopes, shape (3, 2)."""
+    tx, ty = rotation
+    angle = math.hypot(tx, ty)
+    sinc = float(np.sinc(angle / math.pi))
+    bend = (math.cos(angle) - sinc) / angle**2 if angle > 1e-4 else -1.0 / 3.0 + angle**2 / 30.0
+    axis = np.array([sinc * ty, -sinc * tx, math.cos(angle)])
+    slopes = np.array(
+        [[bend * tx * ty, sinc + bend * ty**2], [-sinc - bend * tx**2, -bend * tx * ty], [-sinc * tx, -sinc * ty]]
+    )
+    return axis, slopes
