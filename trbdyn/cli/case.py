@@ -49,12 +49,12 @@ def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Ass
 
 
 def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:
-    from trbdyn.run.toml_assembly import find_assembly
+    from trbdyn.run.toml_assembly import find_assembly, shipped_assemblies
     from trbdyn.run.toml_case import find_case, read_tables, shipped_cases
 
     path = file_path(name, "case")
-    if not path.exists() and (found := find_assembly(name)) is not None:
-        path = found
+    if not path.exists() and name.removesuffix(".toml") in shipped_assemblies():
+        path = find_assembly(name)
     elif not path.exists() and (changes or name.removesuffix(".toml") in shipped_cases()):
         path = find_case(name)
     values = read_tables(path, f"; cases that ship with the package: {', '.join(shipped_cases())}")

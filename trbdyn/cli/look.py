@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path
-from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.case import add_set, subject_with_changes
 from trbdyn.cli.outcome import DONE
 
 if TYPE_CHECKING:
@@ -35,25 +35,35 @@ def add_look_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
 
 def _plot(options: argparse.Namespace) -> int:
     from trbdyn import plot
-    from trbdyn.results.result import load
+    from trbdyn.results.assembly import load_any
+    from trbdyn.results.result import Result
 
-    result = load(options.file)
+    result = load_any(options.file)
     folder = Path(f"{Path(options.file).with_suffix('')}_plots" if options.output is None else options.output)
     written = plot.all(result, folder, options.only)
     if options.animation:
         from trbdyn.plot import animation
 
-        written.append(animation.save(animation.animate(result), folder / "animation.gif"))
+        for name, one in {"": result}.items() if isinstance(result, Result) else result.items():
+            written.append(animation.save(animation.animate(one), folder / name / "animation.gif"))
     for path in written:
         print(path)
     return DONE
 
 
 def _info(options: argparse.Namespace) -> int:
+    from trbdyn.model.assembly import Assembly
+
     path = file_path(options.file, "file")
     if path.is_file() and path.suffix != ".toml":
         return _info_result(path, as_json=options.json)
-    scene, run = case_with_changes(options.file, options.changes)
+    scene, run = subject_with_changes(options.file, options.changes)
+    if isinstance(scene, Assembly):
+        from trbdyn.statics.assembly import equilibrium
+
+        as_json = {"assembly": scene.to_dict(), "run": run.to_dict()}
+        print(json.dumps(as_json, indent=2) if options.json else f"{scene._shown().text()}\n\n{equilibrium(scene)}")
+        return DONE
     if options.json:
         print(json.dumps({"scene": scene.to_dict(), "run": run.to_dict()}, indent=2))
         return DONE
@@ -66,9 +76,14 @@ def _info(options: argparse.Namespace) -> int:
 
 def _info_result(path: Path, *, as_json: bool) -> int:
     from trbdyn.results import summary
-    from trbdyn.results.result import load
+    from trbdyn.results.assembly import load_any
+    from trbdyn.results.result import Result
 
-    result = load(path)
+    result = load_any(path)
+    if not isinstance(result, Result):
+        about = {name: summary.clean(values) for name, values in result.summary().items()}
+        print(json.dumps(about, indent=2, allow_nan=False) if as_json else result)
+        return DONE
     values = result.summary()
     if as_json:
         about = {"meta": result.meta, "records": len(result), "groups": result.groups, "stats": result.stats}

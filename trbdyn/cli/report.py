@@ -23,6 +23,7 @@ def add_report_parser(commands: Any, parents: Sequence[argparse.ArgumentParser])
 
 def _report(options: argparse.Namespace) -> int:
     from trbdyn.reporting import report
+    from trbdyn.results.assembly import load_any
     from trbdyn.results.result import load
 
     output = Path(options.output or f"{Path(options.file).with_suffix('')}_report.html")
@@ -30,7 +31,7 @@ def _report(options: argparse.Namespace) -> int:
     if names[0] == names[1]:
         names = [str(options.file), str(options.other)]
     other = load(options.other) if options.other else None
-    print(report(load(options.file), output, other=other, names=names, title=options.title, pdf=options.pdf))
+    print(report(load_any(options.file), output, other=other, names=names, title=options.title, pdf=options.pdf))
     if options.pdf:
         print(output.with_suffix(".pdf"))
     return 0

@@ -39,10 +39,11 @@ def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -
 
 
 def _view(options: argparse.Namespace) -> int:
-    from trbdyn.results.result import load
+    from trbdyn.results.assembly import load_any
+    from trbdyn.results.result import Result
     from trbdyn.viewer import view
 
-    result = load(options.file)
+    result = load_any(options.file)
     output = Path(options.output or f"{Path(options.file).with_suffix('')}_view.html")
     view(
         result,
@@ -56,7 +57,10 @@ def _view(options: argparse.Namespace) -> int:
     if options.gltf:
         from trbdyn.viewer.gltf import save_gltf
 
-        print(save_gltf(result, options.gltf, exaggeration=options.exaggeration))
+        path = Path(options.gltf)
+        for name, one in {"": result}.items() if isinstance(result, Result) else result.items():
+            own = path.with_name(f"{path.stem}.{name}{path.suffix}") if name else path
+            print(save_gltf(one, own, exaggeration=options.exaggeration))
     if not options.no_open:
         webbrowser.open(output.resolve().as_uri())
     return 0

@@ -541,13 +541,15 @@ class Assembly(Model):
             limit = "must be < 0 in sum (preload): without a load on the shaft nothing is pressed together (m)"
             raise InputError.of(("bearings", 0, "end_play"), self.bearings[0].end_play, limit)
 
-    def _title(self) -> str:
+    @property
+    def title(self) -> str:
+        """Bearings, arrangement and speed in words."""
         kinds = ", ".join(f"{name} {one.bearing.name}" for name, one in zip(self.names, self.bearings, strict=True))
         speed = f"{self.speed_rpm:g} rpm" if isinstance(self.speed_rpm, int | float) else "a speed that changes in time"
         return f"{kinds}, {self.arrangement}, {speed}"
 
     def __repr__(self) -> str:
-        return f"<Assembly: {self._title()}>"
+        return f"<Assembly: {self.title}>"
 
     __str__ = __repr__
 
@@ -563,7 +565,7 @@ class Assembly(Model):
         for index, load in enumerate(self.loads):
             force = ", ".join(f"{part:.5g}" if isinstance(part, int | float) else "changes" for part in load.force)
             rows.append((f"load {index + 1}", force, "N", f"at {1e3 * load.position:.4g} mm"))
-        return Shown(f"Assembly: {self._title()}", tuple(rows))
+        return Shown(f"Assembly: {self.title}", tuple(rows))
 
     def __hash__(self) -> int:
         return hash(self.fingerprint)

@@ -19,6 +19,15 @@ from matplotlib.figure import Figure
 from trbdyn.base.own_files import folder_path
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
+from trbdyn.plot.assembly import (
+    bearing_loads,
+    load_zones,
+    preload_diagram,
+    shaft_drawing,
+    shaft_motion,
+    shaft_orbits,
+)
+from trbdyn.plot.assembly import of_result as of_assembly
 from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
 from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plot.elastic import cage_shape, cage_stress
@@ -27,9 +36,10 @@ from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
 from trbdyn.plot.style import SAVE_DPI, STYLE, styled
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
+from trbdyn.results.result import Result
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.assembly import AssemblyResult
 
 __all__ = [
     "PICTURES",
@@ -38,6 +48,7 @@ __all__ = [
     "attitude",
     "axial_motion",
     "bearing_drawing",
+    "bearing_loads",
     "cage_locus",
     "cage_shape",
     "cage_stress",
@@ -49,6 +60,7 @@ __all__ = [
     "film_map",
     "film_parameter",
     "load_zone",
+    "load_zones",
     "make_folder",
     "orbit_radius",
     "pocket_drawing",
@@ -57,12 +69,16 @@ __all__ = [
     "pocket_statistics",
     "poincare",
     "power_split",
+    "preload_diagram",
     "pressure_map",
     "ring_motion",
     "ring_orbit",
     "ring_orders",
     "ring_spectrum",
     "save",
+    "shaft_drawing",
+    "shaft_motion",
+    "shaft_orbits",
     "spacing_angles",
     "spectrum",
     "tilt",
@@ -154,14 +170,17 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
 
 
 def all(
-    result: Result, folder: str | os.PathLike[str], only: Iterable[str] | None = None, title: str | None = None
+    result: Result | AssemblyResult,
+    folder: str | os.PathLike[str],
+    only: Iterable[str] | None = None,
+    title: str | None = None,
 ) -> list[Path]:
     """Save every picture that the recorded groups allow, as PNG; those of the cage only if there is one.
 
     Parameters
     ----------
-    result : Result
-        The run.
+    result : Result or AssemblyResult
+        The run. The pictures of each bearing of an assembly go into a folder of its name.
     folder : path-like
         Folder to write to; made if it is missing.
     only : iterable of str, optional
@@ -181,6 +200,8 @@ def all(
     InputError
         If a picture is unknown, or needs a group that was not recorded.
     """
+    if not isinstance(result, Result):
+        return _all_of_assembly(result, folder, only, title)
     if only is None:
         chosen = list(drawable(result))
     else:
@@ -198,6 +219,21 @@ def all(
     return [save(PICTURES[name][0](result), folder / f"{name}.png", heading) for name in chosen]
 
 
+def _all_of_assembly(
+    result: AssemblyResult, folder: str | os.PathLike[str], only: Iterable[str] | None, title: str | None
+) -> list[Path]:
+    of_shaft = of_assembly(result)
+    wanted = None if only is None else list(only)
+    own = of_shaft if wanted is None else [name for name in wanted if name in of_shaft]
+    of_bearings = None if wanted is None else [name for name in wanted if name not in of_shaft]
+    folder = make_folder(folder)
+    written = [save(of_shaft[name](), folder / f"{name}.png", title) for name in own]
+    for name, one in result.items():
+        if of_bearings is None or of_bearings:
+            written += all(one, folder / name, of_bearings, title)
+    return written
+
+
 def drawable(result: Result) -> tuple[str, ...]:
     """Names of the pictures that the recorded groups allow; those of the cage if there is one, of the ring if it is free.
 
@@ -207,7 +243,7 @@ def drawable(result: Result) -> tuple[str, ...]:
         The run.
     """
     there = set(result.groups) - (set() if result.has_cage else {"pocket"})
-    if result.scene.ring_body is None:
+    if not result.ring_moves:
         there -= {"ring"}
     names = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
     return tuple(name for name in names if result.has_cage or name in _OF_ROLLERS or "cage" not in PICTURES[name][1])
@@ -219,6 +255,11 @@ def conditions(result: Result) -> str:
     parts = [f"{float(abs(result['shaft_speed']).mean()) * 30.0 / math.pi:.4g} rpm"]
     if scene.outer_turns:
         parts.append(f"outer ring {float(result.outer_speed.mean()) * 30.0 / math.pi:.4g} rpm")
+    if "assembly" in result.meta:
+        parts.insert(0, f"{result.meta['assembly']['bearing']} on its shaft")
+        if "ring" in result.groups:
+            axial, radial = (float(load.mean()) for load in result.ring_loads)
+            parts.append(f"mean $F_a$ {axial:.4g} N, $F_r$ {radial:.4g} N")
     for load, name in ((scene.axial_load, "$F_a$"), (scene.radial_load, "$F_r$")):
         if isinstance(load, int | float) and load:
             parts.append(f"{name} {load:g} N")

@@ -1,19 +1,34 @@
-"""Pictures of a shaft on several bearings: preload diagram and load zones."""
+"""Pictures of a shaft on several bearings: its section, preload diagram, load zones, its motion and the bearings' loads."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+from numpy.typing import NDArray
 
-from trbdyn.plot.style import COLOURS, GREY, LINES, canvas, legend, line, styled
+from trbdyn.errors import InputError
+from trbdyn.model.assembly import Assembly, ShaftBearing
+from trbdyn.model.motion import value_at
+from trbdyn.model.outlines import cone_outline, cup_outline
+from trbdyn.plot.cage import revolutions, turns_label
+from trbdyn.plot.drawing import ROLLER, STEEL, placed, roller_outline
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, sequence, styled
 
 if TYPE_CHECKING:
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.statics.assembly import ShaftEquilibrium
     from trbdyn.statics.preload import PreloadDiagram
+
+Array = NDArray[np.float64]
+
+__all__ = ["bearing_loads", "load_zones", "preload_diagram", "shaft_drawing", "shaft_motion", "shaft_orbits"]
 
 
 def preload_diagram(diagram: PreloadDiagram, ax: Axes | None = None) -> Axes:
@@ -77,3 +92,220 @@ def load_zones(found: ShaftEquilibrium) -> Figure:
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08))
         figure.suptitle("Loads of the rollers (N)", fontsize=11)
     return figure
+
+
+def shaft_drawing(assembly: Assembly, ax: Axes | None = None) -> Axes:
+    """The shaft with its bearings in section, their load lines and load centres, and the loads at the time 0.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The assembly.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> trb.plot.shaft_drawing(trb.load_assembly("pair_30310")).get_xlabel()
+    'along the shaft, z (mm)'
+    """
+    tops, bores, ends = [], [], [1e3 * assembly.shaft.mass_position]
+    with canvas(ax, (7.2, 4.6), "The shaft and its bearings") as ax:
+        for name, one in zip(assembly.names, assembly.bearings, strict=True):
+            outlines = [
+                _in_place(one, 1e3 * np.array(points)[:, ::-1])
+                for points in (cup_outline(one.bearing), cone_outline(one.bearing))
+            ]
+            for points in outlines:
+                _mirrored(ax, points, facecolor=STEEL, hatch="///", alpha=0.9)
+            roller = _in_place(one, placed(one.bearing, roller_outline(one.bearing)))
+            _mirrored(ax, roller, facecolor=ROLLER, zorder=3)
+            middle, centre = roller.mean(axis=0), 1e3 * one.position
+            for side in (1.0, -1.0):
+                ax.plot([middle[0], centre], [side * middle[1], 0.0], color=COLOURS[0], linewidth=0.8, linestyle=":")
+            ax.plot(centre, 0.0, "o", color=COLOURS[0], ms=4, zorder=5)
+            top = max(points[:, 1].max() for points in outlines)
+            ax.annotate(
+                f"{name}: {one.bearing.name}",
+                (middle[0], top),
+                (0, 5),
+                textcoords="offset points",
+                ha="center",
+                fontsize=9,
+            )
+            tops.append(top)
+            bores.append(min(points[:, 1].min() for points in outlines))
+            ends += [*(end for points in outlines for end in points[:, 0]), centre]
+        ends += [1e3 * load.position for load in assembly.loads]
+        low, high = min(ends) - 8.0, max(ends) + 8.0
+        ax.add_patch(
+            Rectangle((low, -min(bores)), high - low, 2.0 * min(bores), facecolor="#F5F6F7", edgecolor=LIGHT, zorder=0)
+        )
+        ax.axhline(0.0, color=GREY, linewidth=0.8, linestyle=(0, (8, 2, 1, 2)))
+        ax.plot(
+            1e3 * assembly.shaft.mass_position,
+            0.0,
+            "P",
+            color="black",
+            ms=7,
+            zorder=6,
+            label="centre of mass of the shaft",
+        )
+        ax.plot([], [], "o:", color=COLOURS[0], ms=4, label="load centres")
+        _arrows(assembly, ax, 0.55 * max(tops))
+        ax.set_aspect("equal")
+        ax.set(xlim=(low - 4.0, high + 4.0), ylim=(-1.15 * max(tops), 1.25 * max(tops)))
+        ax.set(xlabel="along the shaft, z (mm)", ylabel="across, y (mm)")
+        ax.grid(visible=False)
+        legend(ax, ncols=3)
+    return ax
+
+
+def _in_place(one: ShaftBearing, points: Array) -> Array:
+    """Points of a bearing, (z, r) in mm, where it sits on the shaft."""
+    return np.column_stack([1e3 * one.centre_plane - one.side * points[:, 0], points[:, 1]])
+
+
+def _mirrored(ax: Axes, points: Array, **style: Any) -> None:
+    for side in (1.0, -1.0):
+        ax.add_patch(Polygon(points * [1.0, side], edgecolor="black", linewidth=0.8, **style))
+
+
+def _arrows(assembly: Assembly, ax: Axes, longest: float) -> None:
+    """Forces in the plane of the drawing, y and z, and how large the part across it, x, is."""
+    forces = [[value_at(part, 0.0) for part in load.force] for load in assembly.loads]
+    largest = max((math.hypot(*force[1:]) for force in forces), default=0.0)
+    for load, force in zip(assembly.loads, forces, strict=True):
+        at = (1e3 * load.position, 1e3 * load.offset[1])
+        scale = longest / largest if largest > 0.0 else 0.0
+        end = (at[0] + scale * force[2], at[1] + scale * force[1])
+        words = f"{math.hypot(*force[1:]):.4g} N" + (f", x {force[0]:.4g} N" if force[0] else "")
+        ax.annotate("", end, at, arrowprops={"arrowstyle": "-|>", "color": COLOURS[6], "linewidth": 1.6}, zorder=7)
+        ax.annotate(words, end, (4, 4), textcoords="offset points", color=COLOURS[6], fontsize=8, zorder=8)
+    if forces:
+        ax.plot([], [], color=COLOURS[6], linewidth=1.6, label="loads, their part in this plane")
+
+
+def bearing_loads(result: AssemblyResult, ax: Axes | None = None) -> Axes:
+    """Axial and radial load of the shaft on each bearing.
+
+    Parameters
+    ----------
+    result : AssemblyResult
+        Needs the group ring.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+    """
+    with canvas(ax, title="Loads of the bearings") as ax:
+        for index, (name, one) in enumerate(result.items()):
+            for load, style in (("axial_load", "-"), ("radial_load", (0, (5, 1.5)))):
+                values = 1e-3 * result.loads(name)[load]
+                line(ax, revolutions(one), values, index, f"{name}, {load[:-5]}", linestyle=style)
+        ax.set(xlabel=turns_label(one), ylabel="load (kN)")
+        legend(ax)
+    return ax
+
+
+def shaft_orbits(result: AssemblyResult) -> Figure:
+    """Path of the shaft's axis across the axis in the plane of each bearing's rollers, seen against z: x to the right, y upwards.
+
+    Parameters
+    ----------
+    result : AssemblyResult
+        Needs the group ring, and the assembly.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        If the assembly is not known.
+    """
+    assembly = _known(result)
+    with styled():
+        count = len(result)
+        figure, axes = plt.subplots(1, count, figsize=(3.8 * count, 4.0), squeeze=False)
+        figure.suptitle("Path of the shaft's axis at its bearings", fontsize=11)
+        for ax, (name, one), bearing in zip(axes[0], result.items(), assembly.bearings, strict=True):
+            place = 1e6 * result.shaft_displacement(bearing.centre_plane)[:, :2]
+            mean = place.mean(axis=0)
+            path = place - mean
+            points = ax.scatter(*path.T, c=revolutions(one), s=3, cmap=sequence(), linewidths=0)
+            ax.plot(*path.T, color=GREY, linewidth=0.4, zorder=0)
+            ax.set(
+                title=name,
+                xlabel=f"x from its mean, {mean[0]:.3g} µm (µm)",
+                ylabel=f"y from its mean, {mean[1]:.3g} µm (µm)",
+            )
+            ax.set_aspect("equal", adjustable="datalim")
+            ax.locator_params(nbins=5)
+        figure.colorbar(points, ax=list(axes[0]), label=turns_label(one), location="bottom", shrink=0.6, aspect=40)
+    return figure
+
+
+def shaft_motion(result: AssemblyResult) -> Figure:
+    """Displacement of the shaft's centre of mass and its tilt over the turns of the shaft.
+
+    Parameters
+    ----------
+    result : AssemblyResult
+        Needs the group ring.
+
+    Returns
+    -------
+    Figure
+    """
+    one = next(iter(result.values()))
+    turned, place, axis = revolutions(one), 1e6 * result.shaft_position, 1e3 * result.shaft_axis
+    with styled():
+        figure, axes = plt.subplots(3, 1, figsize=(6.4, 5.6), sharex=True)
+        figure.suptitle("Motion of the shaft", fontsize=11)
+        for index, name in enumerate("xy"):
+            line(axes[0], turned, place[:, index], 2 * index, name, linestyle=("-", "--")[index])
+        line(axes[1], turned, place[:, 2], 0)
+        for index, (name, values) in enumerate((("x", -axis[:, 1]), ("y", axis[:, 0]))):
+            line(axes[2], turned, values, 2 * index, f"about {name}", linestyle=("-", "--")[index])
+        axes[0].set_ylabel("across (µm)")
+        axes[1].set_ylabel("axial, z (µm)")
+        axes[2].set(ylabel="tilt (mrad)", xlabel=turns_label(one), xlim=(turned[0], turned[-1]))
+        for ax in (axes[0], axes[2]):
+            ax.legend(fontsize=8, loc="best", frameon=True, framealpha=0.85, edgecolor="none")
+    return figure
+
+
+def _known(result: AssemblyResult) -> Assembly:
+    if result.assembly is None:
+        raise InputError.of("assembly", None, "must be known, to say where the bearings sit")
+    return result.assembly
+
+
+def of_result(result: AssemblyResult) -> dict[str, Callable[[], Axes | Figure]]:
+    """The pictures of an assembly's run by name; those of each bearing are in `trbdyn.plot.PICTURES`."""
+    found: dict[str, Callable[[], Axes | Figure]] = {
+        "bearing_loads": lambda: bearing_loads(result),
+        "shaft_motion": lambda: shaft_motion(result),
+    }
+    if (assembly := result.assembly) is None:
+        return found
+    from trbdyn.statics.assembly import equilibrium
+    from trbdyn.statics.preload import preload_diagram as diagram_of
+
+    start = float(result.time[0])
+    return {
+        "shaft_drawing": lambda: shaft_drawing(assembly),
+        **found,
+        "shaft_orbits": lambda: shaft_orbits(result),
+        "load_zones": lambda: load_zones(equilibrium(assembly, time=start)),
+        "preload_diagram": lambda: preload_diagram(diagram_of(assembly, time=start)),
+    }

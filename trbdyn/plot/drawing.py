@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_STEEL, _ROLLER, _CAGE = "#DCE1E6", "#F1F3F5", "#E8CF9B"
+STEEL, ROLLER, _CAGE = "#DCE1E6", "#F1F3F5", "#E8CF9B"
 
 
 def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
@@ -47,27 +47,21 @@ def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
     >>> trb.plot.bearing_drawing(trb.cases.rig_30310()).get_ylabel()
     'radius (mm)'
     """
-    geometry, roller = bearing.geometry, bearing.roller
+    roller = bearing.roller
     with canvas(ax, (6.4, 5.6), f"{bearing.name}: section through the bearing") as ax:
         for outline in (cup_outline(bearing), cone_outline(bearing)):
             corners = 1e3 * np.array(outline)[:, ::-1]
-            ax.add_patch(Polygon(corners, facecolor=_STEEL, edgecolor="black", linewidth=0.9, hatch="///", alpha=0.9))
+            ax.add_patch(Polygon(corners, facecolor=STEEL, edgecolor="black", linewidth=0.9, hatch="///", alpha=0.9))
         half = 0.5 * roller.total_length
-        stations = np.linspace(-half, half, 41)
-        radius = (geometry.apex_to_mid + stations) * np.tan(geometry.roller_half_angle) - profile_drop(
-            bearing, stations
-        )
-        upper, lower = (np.stack([stations, side * radius], axis=1) for side in (1.0, -1.0))
-        inside = np.linspace(1.0, -1.0, 15)[1:-1] * radius[-1]
-        end = geometry.sphere_centre - geometry.apex_to_mid + np.sqrt(geometry.sphere_radius**2 - inside**2)
-        outline_of_roller = np.vstack([upper, np.stack([end, inside], axis=1), lower[::-1]])
         ax.add_patch(
-            Polygon(_placed(bearing, outline_of_roller), facecolor=_ROLLER, edgecolor="black", linewidth=1.0, zorder=3)
+            Polygon(
+                placed(bearing, roller_outline(bearing)), facecolor=ROLLER, edgecolor="black", linewidth=1.0, zorder=3
+            )
         )
         for low, high, near, far, _ in rail_bands(bearing):
             corners = np.array([(near, low), (far, low), (far, high), (near, high)])
-            ax.add_patch(Polygon(_placed(bearing, corners), facecolor=_CAGE, edgecolor=GREY, linestyle="--", zorder=2))
-        axis = _placed(bearing, np.array([(-1.35 * half, 0.0), (1.35 * half, 0.0)]))
+            ax.add_patch(Polygon(placed(bearing, corners), facecolor=_CAGE, edgecolor=GREY, linestyle="--", zorder=2))
+        axis = placed(bearing, np.array([(-1.35 * half, 0.0), (1.35 * half, 0.0)]))
         ax.plot(*axis.T, color=GREY, linewidth=0.8, linestyle=(0, (8, 2, 1, 2)), zorder=4)
         ax.axhline(0, color=GREY, linewidth=0.8, linestyle=(0, (8, 2, 1, 2)))
         _dimensions(bearing, ax)
@@ -80,7 +74,19 @@ def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _placed(bearing: Bearing, points: Array) -> Array:
+def roller_outline(bearing: Bearing) -> Array:
+    """Outline of a roller with its profile and its sphere end, as (along its axis, outward from it), shape (n, 2) (m)."""
+    geometry = bearing.geometry
+    half = 0.5 * bearing.roller.total_length
+    stations = np.linspace(-half, half, 41)
+    radius = (geometry.apex_to_mid + stations) * np.tan(geometry.roller_half_angle) - profile_drop(bearing, stations)
+    upper, lower = (np.stack([stations, side * radius], axis=1) for side in (1.0, -1.0))
+    inside = np.linspace(1.0, -1.0, 15)[1:-1] * radius[-1]
+    end = geometry.sphere_centre - geometry.apex_to_mid + np.sqrt(geometry.sphere_radius**2 - inside**2)
+    return np.vstack([upper, np.stack([end, inside], axis=1), lower[::-1]])
+
+
+def placed(bearing: Bearing, points: Array) -> Array:
     """Points (along the roller's axis, outward from it) as (z, r) in mm."""
     geometry = bearing.geometry
     cosine, sine = np.cos(geometry.roller_axis_angle), np.sin(geometry.roller_axis_angle)
@@ -93,7 +99,7 @@ def _placed(bearing: Bearing, points: Array) -> Array:
 def _dimensions(bearing: Bearing, ax: Axes) -> None:
     """Pitch diameter, roller diameter and length, angles."""
     geometry, roller = bearing.geometry, bearing.roller
-    mid = _placed(bearing, np.array([(0.0, 0.0)]))[0]
+    mid = placed(bearing, np.array([(0.0, 0.0)]))[0]
     half, size = 0.5 * roller.effective_length, 0.5 * roller.diameter
 
     box: dict[str, Any] = {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85}}
@@ -105,10 +111,10 @@ def _dimensions(bearing: Bearing, ax: Axes) -> None:
         middle = (0.5 * (start[0] + stop[0]), 0.5 * (start[1] + stop[1]))
         ax.annotate(words, middle, shift, textcoords="offset points", fontsize=9, zorder=7, ha=align, **box)
 
-    diameter = _placed(bearing, np.array([(0.0, -size), (0.0, size)]))
+    diameter = placed(bearing, np.array([(0.0, -size), (0.0, size)]))
     measure(diameter, f"Dwe {1e3 * roller.diameter:.4g}", (4, -3))
     above = 1.35 * size
-    length = _placed(bearing, np.array([(-half, above), (half, above)]))
+    length = placed(bearing, np.array([(-half, above), (half, above)]))
     measure(length, f"Lwe {1e3 * roller.effective_length:.4g}", (0, 7), "center")
     measure(np.array([[mid[0], 0.0], mid]), f"Dpw/2 {5e2 * bearing.pitch_diameter:.5g}", (5, -20))
     lines = [
@@ -157,7 +163,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         stations = np.linspace(-0.5, 0.5, 3) * roller.total_length
         radius = 1e3 * (geometry.apex_to_mid + stations) * np.tan(geometry.roller_half_angle)
         outline = np.concatenate([np.stack([1e3 * stations, radius], 1), np.stack([1e3 * stations, -radius], 1)[::-1]])
-        top.add_patch(Polygon(outline, facecolor=_ROLLER, edgecolor="black", linewidth=1.0))
+        top.add_patch(Polygon(outline, facecolor=ROLLER, edgecolor="black", linewidth=1.0))
         for index, face in enumerate(faces):
             corners = 1e3 * np.vstack([face.vertices, face.vertices[:1]])
             look = {"color": COLOURS[index % len(COLOURS)], "linewidth": 1.8}

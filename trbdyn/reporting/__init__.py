@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from trbdyn.errors import FileError, InputError, unknown_name
 
 if TYPE_CHECKING:
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
 __all__ = ["report", "save_pdf"]
@@ -21,7 +22,7 @@ CONVERTERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "chromi
 
 
 def report(
-    result: Result,
+    result: Result | AssemblyResult,
     path: str | os.PathLike[str],
     *,
     other: Result | None = None,
@@ -37,8 +38,8 @@ def report(
 
     Parameters
     ----------
-    result : Result
-        The run.
+    result : Result or AssemblyResult
+        The run. Of an assembly the page has the shaft first, and then each bearing.
     path : path-like
         HTML file to write.
     other : Result, optional
@@ -48,7 +49,8 @@ def report(
     title : str
         Title; by default the bearing's name.
     pictures : sequence of str, optional
-        Names of the pictures, of those in `trbdyn.plot.PICTURES`; by default all that the recorded groups allow.
+        Names of the pictures, of those in `trbdyn.plot.PICTURES` or of an assembly; by default all that the recorded groups
+        allow.
     pdf : bool
         Also write a PDF beside it; needs Chromium.
 
@@ -73,16 +75,24 @@ def report(
     True
     """
     from trbdyn.plot import PICTURES
-    from trbdyn.reporting.page import page
+    from trbdyn.plot.assembly import of_result
+    from trbdyn.reporting.page import page, page_of_assembly
+    from trbdyn.results.result import Result
 
+    known = {*PICTURES, *(() if isinstance(result, Result) else of_result(result))}
     for name in pictures or ():
-        if name not in PICTURES:
-            raise InputError.of("pictures", name, unknown_name(name, PICTURES))
+        if name not in known:
+            raise InputError.of("pictures", name, unknown_name(name, known))
     if len(names) != 2 or isinstance(names, str):
         raise InputError.of("names", names, "must be two names")
-    results = [result] if other is None else [result, other]
-    heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in results))}"
-    text = page(results, list(names[: len(results)]), heading, pictures)
+    if isinstance(result, Result):
+        results = [result] if other is None else [result, other]
+        heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in results))}"
+        text = page(results, list(names[: len(results)]), heading, pictures)
+    elif other is not None:
+        raise InputError.of("other", other, "must not be given: assemblies are reported one by one")
+    else:
+        text = page_of_assembly(result, title or f"Report: {', '.join(result)} on one shaft", pictures)
     target = Path(path)
     try:
         target.write_text(text, encoding="utf-8")

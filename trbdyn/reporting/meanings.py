@@ -117,7 +117,13 @@ CAPTIONS: Final[dict[str, str]] = {
     "pocket_polar": "Which pockets are hit, and how hard.",
     "poincare": "The cage's centre once a turn: one point is a steady whirl, a closed curve a second frequency, a cloud chaos.",
     "torque_sources": "Friction torque of the shaft over time, by source.",
-    "ring_orbit": "Path of the free inner ring's centre about its mean place.",
-    "ring_motion": "Radial and axial displacement and tilt of the free inner ring over time.",
+    "shaft_drawing": "The shaft with its bearings in section, to scale; the housing and the shaft's own outline are not known.",
+    "bearing_loads": "Axial and radial load of the shaft on each bearing.",
+    "shaft_motion": "Displacement of the shaft's centre of mass, and its tilt, over time.",
+    "shaft_orbits": "Path of the shaft's axis in the plane of each bearing's rollers, about its mean place.",
+    "load_zones": "Loads of the rollers of each bearing in the equilibrium in which the run began, without friction.",
+    "preload_diagram": "How the bearings share an axial force: their axial loads over the axial place of the shaft.",
+    "ring_orbit": "Path of the inner ring's centre about its mean place.",
+    "ring_motion": "Radial and axial displacement and tilt of the inner ring over time.",
 }
 """A sentence for each picture."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
 GRADES = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
@@ -28,6 +29,37 @@ GRADES = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
 
 def page(results: Sequence[Result], names: Sequence[str], title: str, pictures: Sequence[str] | None) -> str:
     """The HTML of the report of one run or of two."""
+    return _whole(title, _body(results, names, title, pictures))
+
+
+def page_of_assembly(result: AssemblyResult, title: str, pictures: Sequence[str] | None) -> str:
+    """The HTML of the report of bearings on a shaft: the shaft and what they share, then each bearing as in a report of its
+    own."""
+    from trbdyn.plot.assembly import of_result
+
+    own = of_result(result)
+    shown = result._shown()
+    heads = "".join(f"<th>{safe(word)}</th>" for word in ("quantity", *result))
+    rows = "".join(
+        f"<tr><td class='q'>{safe(row[0])}</td>"
+        + "".join(f"<td class='n number'>{safe(cell)}</td>" for cell in row[1:])
+        + "</tr>"
+        for row in shown.rows[1:]
+    )
+    notes = "".join(f"<li>{safe(note)}</li>" for note in shown.notes)
+    wanted = [name for name in own if pictures is None or name in pictures]
+    figures = "".join(_figure(own[name], CAPTIONS[name]) for name in wanted if len(result.time) > 1)
+    parts = [
+        f"<h1>{safe(title)}</h1>\n<p class='sub'>{safe(result.assembly.title if result.assembly else '')}</p>",
+        f"<h2>The bearings side by side</h2><table><tr class='heads'>{heads}</tr>{rows}</table><ul class='warnings'>{notes}</ul>",
+        f"<h2>The shaft</h2><div class='pictures'>{figures}</div>",
+    ]
+    of_bearings = None if pictures is None else [name for name in pictures if name not in own]
+    parts += [_body([one], [name], f"Bearing {name}", of_bearings) for name, one in result.items()]
+    return _whole(title, "\n".join(parts))
+
+
+def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures: Sequence[str] | None) -> str:
     numbers = [result.summary() for result in results]
     inputs = [rows(result.scene) for result in results]
     parts = [_head(results, names, title)]
@@ -40,7 +72,10 @@ def page(results: Sequence[Result], names: Sequence[str], title: str, pictures: 
     parts.append(tables.numbers(numbers, names, [biases(result) for result in results]))
     parts.append(ratings_section(results, names))
     parts.append(tables.inputs(inputs, names))
-    body = "\n".join(parts)
+    return "\n".join(parts)
+
+
+def _whole(title: str, body: str) -> str:
     style = files("trbdyn.reporting").joinpath("report.css").read_text(encoding="utf-8")
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'

@@ -142,8 +142,7 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         dict
             ``axial_load``, towards the small ends of its rollers, and ``radial_load``.
         """
-        force = self[name].ring_force
-        return {"axial_load": force[:, 2], "radial_load": np.hypot(force[:, 0], force[:, 1])}
+        return dict(zip(("axial_load", "radial_load"), self[name].ring_loads, strict=True))
 
     @property
     def _first(self) -> Result:
@@ -226,3 +225,14 @@ class AssemblyResult(Mapping[str, Result], Displayed):
                 if field.group == "energy" and result[field.name].ndim == 1:
                     terms[field.name] = terms.get(field.name, 0.0) + result[field.name]
         return energy_audit(terms)
+
+
+def load_any(path: str | os.PathLike[str]) -> Result | AssemblyResult:
+    """The result of a file, of one bearing or of an assembly.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, damaged, of another kind or of a later version.
+    """
+    return load(path) if description_in(path) is None else AssemblyResult.load(path)

@@ -291,6 +291,17 @@ class Result(Derived, Displayed):
         return tuple(self._fields.values())
 
     @property
+    def ring_loads(self) -> tuple[Array, Array]:
+        """Axial load towards the small ends of the rollers, and radial load, that the inner ring carries at each record (N)."""
+        force = self["ring_force"]
+        return force[:, 2], np.hypot(force[:, 0], force[:, 1])
+
+    @property
+    def ring_moves(self) -> bool:
+        """Whether the inner ring is a body that moves by itself, or with a shaft on several bearings."""
+        return "assembly" in self.meta or self.scene.ring_body is not None
+
+    @property
     def groups(self) -> tuple[str, ...]:
         """Names of the recorded groups."""
         return field_table.groups(self._fields.values())

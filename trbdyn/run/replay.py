@@ -47,8 +47,7 @@ class Replay:
 
     def __init__(self, result: Result) -> None:
         self._on_shaft = "assembly" in result.meta
-        moves = self._on_shaft or result.scene.ring_body is not None
-        for group in (*NEEDED, "ring") if moves else NEEDED:
+        for group in (*NEEDED, "ring") if result.ring_moves else NEEDED:
             if group not in result.groups:
                 raise InputError.of(
                     "result", f"groups {', '.join(result.groups)}", f"must have the recorded group {group!r}"

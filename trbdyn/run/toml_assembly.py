@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from trbdyn.base.own_files import file_path
 from trbdyn.base.shipped import DATA
-from trbdyn.errors import InputError
+from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, Shaft, ShaftBearing, ShaftLoad
 from trbdyn.run.options import RunOptions
 from trbdyn.run.toml_case import (
@@ -64,15 +64,24 @@ def load_assembly(path: str | Path) -> Assembly:
     'back to back'
     """
     file = file_path(path, "assembly")
-    file = file if file.exists() else find_assembly(str(path)) or file
+    if not file.exists() and str(path).removesuffix(".toml") in shipped_assemblies():
+        file = find_assembly(str(path))
     hint = f"; assemblies that ship with the package: {', '.join(shipped_assemblies())}"
     return assembly_from_dict(read_tables(file, hint))[0]
 
 
-def find_assembly(name: str) -> Path | None:
-    """The file of an assembly that ships with the package, by its name with or without ``.toml``; None where there is none."""
+def find_assembly(name: str) -> Path:
+    """The file of an assembly that ships with the package, by its name with or without ``.toml``.
+
+    Raises
+    ------
+    InputError
+        If there is no such assembly.
+    """
     stem = name.removesuffix(".toml")
-    return FOLDER / f"{stem}.toml" if stem in shipped_assemblies() else None
+    if stem not in shipped_assemblies():
+        raise InputError.of("assembly", name, unknown_name(stem, shipped_assemblies()))
+    return FOLDER / f"{stem}.toml"
 
 
 def assembly_from_dict(values: Mapping[str, Any]) -> tuple[Assembly, RunOptions]:

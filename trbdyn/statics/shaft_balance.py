@@ -85,8 +85,7 @@ class Balance:
     @property
     def sprung_follow(self) -> Array:
         """How the outer rings with a spring follow the shaft, shape (S, 5)."""
-        follow: Array = -np.linalg.solve(self.slopes[5:, 5:], self.slopes[5:, :5])
-        return follow
+        return np.asarray(-np.linalg.solve(self.slopes[5:, 5:], self.slopes[5:, :5]), dtype=float)
 
 
 class ShaftOnBearings:

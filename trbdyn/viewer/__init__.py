@@ -12,18 +12,20 @@ from __future__ import annotations
 import html as markup
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from trbdyn.errors import FileError, InputError
+from trbdyn.results.result import Result
 from trbdyn.viewer import data as data_of
 from trbdyn.viewer.gltf import save_gltf
 from trbdyn.viewer.page import page
 from trbdyn.viewer.shapes import shapes
+from trbdyn.viewer.together import together
 
 if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+    from trbdyn.results.assembly import AssemblyResult
 
 __all__ = ["MAX_SIZE_MB", "View", "save_gltf", "view"]
 
@@ -86,7 +88,7 @@ class View:
 
 
 def view(
-    result: Result,
+    result: Result | AssemblyResult,
     path: str | os.PathLike[str] | None = None,
     *,
     revolutions: float | None = 10.0,
@@ -104,8 +106,9 @@ def view(
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time, cage and rollers; colours and arrows come from contacts and pocket.
+    result : Result or AssemblyResult
+        Needs the groups time, cage and rollers; colours and arrows come from contacts and pocket. The bearings of an assembly
+        are shown beside each other at the same instant, each in its own axes.
     path : path-like, optional
         HTML file to write.
     revolutions : float or None
@@ -144,6 +147,17 @@ def view(
     >>> trb.view(result, max_frames=20).html.startswith("<!doctype html>")
     True
     """
+    if not isinstance(result, Result):
+        return _view_of_assembly(
+            result,
+            path,
+            title,
+            height,
+            revolutions=revolutions,
+            max_frames=max_frames,
+            max_size_mb=max_size_mb / len(result),
+            exaggeration=exaggeration,
+        )
     data_of.check(result, revolutions, max_frames)
     if exaggeration is not None and not 1.0 <= exaggeration <= 1e4:
         raise InputError.of("exaggeration", exaggeration, "must be from 1 to 10000 (1)")
@@ -155,6 +169,16 @@ def view(
     limit = frames_that_fit(result, max_size_mb, len(meshes.faces), stations.size)
     taken = data_of.frames(result, revolutions=revolutions, max_frames=min(max_frames, limit))
     made = View(page(result, meshes, taken, factor=exaggeration, title=title), height=height)
+    if path is not None:
+        made.save(path)
+    return made
+
+
+def _view_of_assembly(
+    result: AssemblyResult, path: str | os.PathLike[str] | None, title: str, height: int, **options: Any
+) -> View:
+    pages = {f"{name}: {one.scene.bearing.name}": view(one, **options).html for name, one in result.items()}
+    made = View(together(pages, title or f"{', '.join(result)} on one shaft"), height=height)
     if path is not None:
         made.save(path)
     return made

@@ -176,8 +176,10 @@ def _spin(result: Result) -> Array:
 
 
 def _ring_tilt(result: Result, index: NDArray[np.int64]) -> Array:
-    """Rotation of the inner ring about x and y (rad): prescribed, or from the equilibrium at the start."""
+    """Rotation of the inner ring about x and y (rad): as it moved, as prescribed, or from the equilibrium at the start."""
     scene = result.scene
+    if result.ring_moves and "ring_tilt" in result:
+        return result["ring_tilt"][index]
     if scene.moments != (None, None):
         return np.broadcast_to(Simulation(scene).equilibrium.displacement[3:5], (index.size, 2))
     turns = (scene.misalignment_x, scene.misalignment_y)
@@ -262,7 +264,10 @@ def facts(result: Result) -> dict[str, Any]:
     """Words and numbers for the head of the view."""
     scene = result.scene
     loads = []
-    for name, label in (("axial_load", "Fa"), ("radial_load", "Fr")):
+    on_shaft = "assembly" in result.meta and "ring" in result.groups
+    for label, load in zip(("mean Fa", "mean Fr"), result.ring_loads if on_shaft else (), strict=False):
+        loads.append(f"{label} {float(load.mean()):.4g} N")
+    for name, label in () if on_shaft else (("axial_load", "Fa"), ("radial_load", "Fr")):
         value = getattr(scene, name)
         if isinstance(value, int | float):
             loads.append(f"{label} {value:g} N")
