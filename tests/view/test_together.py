@@ -48,7 +48,9 @@ def test_the_report_has_the_shaft_and_each_bearing(pair: AssemblyResult, browser
 
 
 def test_pictures_go_into_a_folder_for_each_bearing(pair: AssemblyResult, tmp_path: Path) -> None:
-    written = trb.plot.all(pair, tmp_path, ["shaft_orbits", "load_zones", "preload_diagram", "shaft_motion", "ring_orbit"])
+    written = trb.plot.all(
+        pair, tmp_path, ["shaft_orbits", "load_zones", "preload_diagram", "shaft_motion", "ring_orbit"]
+    )
     assert sorted(str(path.relative_to(tmp_path)) for path in written) == [
         "left/ring_orbit.png",
         "load_zones.png",
