@@ -34,6 +34,9 @@ MEMORY: Final = 5e-3
 """Time over which vibrations add up before the damping of a lightly loaded contact takes them (s)."""
 SIZE: Final = 0.01
 """Energy that is missing in `MEMORY`, over the elastic energy, below which it is too little to change a load."""
+SIZE_UNDAMPED: Final = 2e-4
+"""The same where nothing damps: vibrations of rollers that carry hardly any load then change how long these roll in contact, and with
+that the rolling resistance, while the elastic energy lies in others."""
 LENGTH: Final = 20e-3
 """Bearing time of a probe at most (s)."""
 SHORTEST: Final = 1e-3
@@ -134,9 +137,9 @@ def taken(missing: float, damped: float, elastic: float, span: float) -> tuple[f
     return share, abs(missing) / max(span, 1e-300) * MEMORY / max(elastic, 1e-300)
 
 
-def matter(share: float, size: float) -> bool:
+def matter(share: float, size: float, *, damped: bool) -> bool:
     """Whether what the integration took may have changed loads and losses."""
-    return share > SHARE and size > SIZE
+    return share > SHARE and size > (SIZE if damped else SIZE_UNDAMPED)
 
 
 def tighter(options: RunOptions) -> RunOptions:

@@ -236,7 +236,7 @@ class Watch:
         """Keep the span in which the integration takes most from vibrations."""
         share, size = span.vibrating(now, time)
         account = self._account
-        if not (vibrations.matter(share, size) and time - span.since >= vibrations.SHORTEST):
+        if not (vibrations.matter(share, size, damped=self._damped(now)) and time - span.since >= vibrations.SHORTEST):
             return
         if account.suspect is None or size > account.suspect[0]:
             account.suspect = (size, span, share)
@@ -255,11 +255,12 @@ class Watch:
             account.probed = vibrations.probe(self._sim, span.since, span.state, most)
             account.probe_steps += account.probed.steps if account.probed is not None else most
             account.probed_size = size
-        damped = self._last.get("loss_damping", 0.0) > account.whole.first.get("loss_damping", 0.0)
-        # without damping vibrations go on growing: the piece must then show no difference at all
-        if account.probed is not None and not (account.probed.notable if damped else account.probed.visible):
+        damped = self._damped(now)
+        # without damping large vibrations go on growing: the piece must then show no difference at all
+        growing = not damped and size > vibrations.SIZE
+        if account.probed is not None and not (account.probed.visible if growing else account.probed.notable):
             return
-        took = f"takes {100.0 * share:.2g} % of the energy of these vibrations" + (
+        took = f"takes {100.0 * share:.3g} % of the energy of these vibrations" + (
             " in place of damping" if damped else ""
         )
         measured = "what that does could not be measured" if account.probed is None else account.probed.said()
@@ -270,6 +271,10 @@ class Watch:
             f"near {span.since:.6g} s rollers vibrate on their raceways, and the integration {took}: {measured}; {advice}",
             "vibrations",
         )
+
+    def _damped(self, now: dict[str, float]) -> bool:
+        """Whether contacts have damped anything since the simulation began."""
+        return now.get("loss_damping", 0.0) > self._account.whole.first.get("loss_damping", 0.0)
 
     def _look_at_steps(self) -> str | None:
         sim = self._sim
