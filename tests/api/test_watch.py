@@ -83,6 +83,7 @@ class _Sim:
     def __init__(self) -> None:
         self._core, self._model = _Core(), _Model()
         self.scene = SimpleNamespace(ring_body=None)
+        self.options = SimpleNamespace(tolerances=SimpleNamespace(rtol=1e-6))
 
 
 def _window(work: float, loss: float, kinetic: float, elastic: float, **options: Any) -> tuple[str | None, list[str]]:

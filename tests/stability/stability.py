@@ -12,6 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from hard_pairs import PAIRS, HardPair, judge_pair
 from hard_runs import Verdict, judge
 from hard_scenes import HARD
 
@@ -39,25 +40,35 @@ def main() -> int:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the table as JSON")
     parser.add_argument("--quick", action="store_true", help="leave out the slow scenes")
     options = parser.parse_args()
-    unknown = set(options.names) - {hard.name for hard in HARD}
+    unknown = set(options.names) - {hard.name for hard in (*HARD, *PAIRS)}
     if unknown:
         parser.error(f"no such scene: {', '.join(sorted(unknown))}")
-    chosen = [hard for hard in HARD if (not options.names or hard.name in options.names)]
-    chosen = [hard for hard in chosen if not (options.quick and hard.slow)]
+    of_one = [hard for hard in HARD if not (options.quick and hard.slow)]
+    of_pairs = [] if options.quick and not options.names else list(PAIRS)
+    chosen = [hard for hard in (*of_one, *of_pairs) if (not options.names or hard.name in options.names)]
     print(HEAD)
     verdicts = []
     for hard in chosen:
         began = time.perf_counter()
-        verdict = judge(hard)
+        verdict = judge_pair(hard) if isinstance(hard, HardPair) else judge(hard)
         verdicts.append((hard, verdict, time.perf_counter() - began))
         print(line(verdict), flush=True)
         for trouble in verdict.broken:
             print(f"    {trouble}", flush=True)
         if verdict.ratio > MANY:
-            print(f"    more than {MANY:g} times the steps: {hard.reason or 'NO REASON IS KNOWN'}", flush=True)
+            print(
+                f"    more than {MANY:g} times the steps: {getattr(hard, 'reason', '') or 'NO REASON IS KNOWN'}",
+                flush=True,
+            )
     if options.json:
         rows = [
-            {"why": hard.why, "reason": hard.reason, "duration_s": hard.duration, **asdict(verdict), "wall_s": wall}
+            {
+                "why": hard.why,
+                "reason": getattr(hard, "reason", ""),
+                "duration_s": hard.duration,
+                **asdict(verdict),
+                "wall_s": wall,
+            }
             for hard, verdict, wall in verdicts
         ]
         clean = [

@@ -11,6 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from hard_pairs import PAIRS, HardPair, judge_pair
 from hard_runs import judge
 from hard_scenes import HARD, Hard
 
@@ -25,8 +26,8 @@ def chosen() -> list[Hard]:
 
 def test_the_catalogue_is_whole() -> None:
     assert len(HARD) >= 30
-    assert len({hard.name for hard in HARD}) == len(HARD)
-    assert all(hard.why for hard in HARD)
+    assert len({hard.name for hard in (*HARD, *PAIRS)}) == len(HARD) + len(PAIRS)
+    assert all(hard.why for hard in (*HARD, *PAIRS))
 
 
 @pytest.mark.parametrize("hard", [hard for hard in HARD if hard.error and not hard.slow], ids=lambda hard: hard.name)
@@ -51,3 +52,18 @@ def test_hard_scenes_in_short(hard: Hard) -> None:
 def test_hard_scenes(hard: Hard) -> None:
     verdict = judge(hard)
     assert verdict.status != "failed", verdict.broken
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("hard", PAIRS, ids=lambda hard: hard.name)
+def test_hard_pairs(hard: HardPair) -> None:
+    verdict = judge_pair(hard)
+    assert verdict.status == "ok", verdict.broken
+
+
+@pytest.mark.parametrize("name", ["pair_reversing_load", "pair_unbalance_10000_rpm"])
+@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
+def test_hard_pairs_in_short(name: str) -> None:
+    hard = next(one for one in PAIRS if one.name == name)
+    verdict = judge_pair(replace(hard, duration=0.25 * hard.duration, closure=4.0 * hard.closure), quick=True)
+    assert verdict.status == "ok", verdict.broken

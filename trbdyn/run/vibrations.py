@@ -35,8 +35,8 @@ MEMORY: Final = 5e-3
 SIZE: Final = 0.01
 """Energy that is missing in `MEMORY`, over the elastic energy, below which it is too little to change a load."""
 SIZE_UNDAMPED: Final = 2e-4
-"""The same where nothing damps: vibrations of rollers that carry hardly any load then change how long these roll in contact, and with
-that the rolling resistance, while the elastic energy lies in others."""
+"""The same where nothing damps: vibrations of rollers that carry hardly any load then change how long these roll in contact, and
+with that the rolling resistance, while the elastic energy lies in others."""
 LENGTH: Final = 20e-3
 """Bearing time of a probe at most (s)."""
 SHORTEST: Final = 1e-3
@@ -150,7 +150,7 @@ def tighter(options: RunOptions) -> RunOptions:
     return options.replace(accuracy="reference", **values)
 
 
-def probe(sim: Simulation, time: float, vector: Array, most_steps: int) -> Probe | None:
+def probe(sim: Simulation, time: float, vector: Array, most_steps: int, length: float = LENGTH) -> Probe | None:
     """Repeat a piece of a run with its own tolerances and with tighter ones, which leaves the simulation as it is.
 
     Parameters
@@ -161,13 +161,15 @@ def probe(sim: Simulation, time: float, vector: Array, most_steps: int) -> Probe
         Where the piece begins (s), and the state there.
     most_steps : int
         Steps with the tighter tolerances.
+    length : float
+        Bearing time of the piece at most (s); never more than `LENGTH`.
 
     Returns
     -------
     Probe or None
         None where that many steps lead nowhere, or the tighter run fails.
     """
-    times = time + LENGTH * np.arange(ROWS + 1) / ROWS
+    times = time + min(length, LENGTH) * np.arange(ROWS + 1) / ROWS
     fine, steps = _run(sim, tighter(sim.options), times, vector, most_steps)
     rows = len(fine)
     if rows < 2 * BLOCKS + 1 or times[rows - 1] - time < SHORTEST:

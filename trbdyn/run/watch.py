@@ -50,6 +50,9 @@ SMALLEST_STEP: Final = 2e-8
 SMALL_STEPS_WARN: Final = 20_000
 SMALL_STEPS_STOP: Final = 200_000
 """Steps in a row with a mean below `SMALLEST_STEP` after which a run warns, and ends."""
+LEFT_OPEN: Final = 3.0
+"""Losses over the kinetic energy and over the relative tolerance, below which the losses are measured again: steps may change the
+kinetic energy of a roller by twice that tolerance."""
 RING_LOOSE: Final = 0.1
 """Way of a free ring from its place, over the diameter of a roller, from which on nothing seems to hold it."""
 RING_GONE: Final = 0.5
@@ -176,6 +179,8 @@ class Watch:
             if "energy" not in self._noted:
                 self._judge_losses(now, time)
             self._judge_vibrations(now, time)
+            if not self._noted & {"energy", "losses", "vibrations"}:
+                self._judge_small_losses(now, time)
         return None if self._going_on else reason
 
     def renew(self) -> None:
@@ -230,6 +235,28 @@ class Watch:
             f"{'took' if missing > 0.0 else 'made'} {abs(missing):.2g} J: where losses come from impacts or vibrations they "
             "may be wrong by as much; try accuracy='reference', or smaller tolerances",
             "losses",
+        )
+
+    def _judge_small_losses(self, now: dict[str, float], time: float) -> None:
+        """Measure losses that are smaller than what the tolerances leave open in the kinetic energy of rollers that turn fast."""
+        account, whole = self._account, self._account.whole
+        _, _, lost = _missing(whole.first, now)
+        kinetic = abs(now["kinetic_energy"])
+        least = max(LEAST_STORED_SHARE * kinetic, LEAST_ENERGY)
+        most = vibrations.STEPS - account.probe_steps
+        if not least < lost < LEFT_OPEN * self._sim.options.tolerances.rtol * kinetic or whole.state is None:
+            return
+        if time - whole.since < vibrations.SHORTEST or most < vibrations.LEAST_STEPS:
+            return
+        probe = vibrations.probe(self._sim, whole.since, whole.state, most, length=time - whole.since)
+        account.probe_steps += most if probe is None else probe.steps
+        if probe is not None and not probe.notable:
+            return
+        measured = "how right they are could not be measured" if probe is None else probe.said()
+        self._say(
+            f"from {whole.since:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, less than the tolerances leave open beside "
+            f"a kinetic energy of {kinetic:.2g} J: {measured}; try accuracy='reference', or smaller tolerances",
+            "small losses",
         )
 
     def _suspect(self, span: Span, now: dict[str, float], time: float) -> None:
