@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
+import pairs
 from numpy.typing import NDArray
 from random_scenes import ORDINARY, Table, make
 
@@ -99,6 +100,77 @@ class Verdict:
 
 
 def judge(table: Table) -> Verdict:
+    return _judge_pair(table) if "arrangement" in table else _judge_scene(table)
+
+
+def _judge_pair(table: Table) -> Verdict:
+    """Two bearings on a shaft."""
+    verdict = Verdict(table)
+    accuracy = (pairs.ORDINARY | table)["accuracy"]
+    try:
+        assembly = pairs.make(table)
+        trb.AssemblySimulation(assembly, accuracy=accuracy)
+    except trb.TrbError as error:
+        verdict.status, verdict.broken = "refused", [f"{type(error).__name__}: {str(error).splitlines()[0][:200]}"]
+        return verdict
+    duration = pairs.duration_of(table)
+    try:
+        found, _ = pairs.run(assembly, duration, accuracy=accuracy)
+    except trb.TrbError as error:
+        verdict.status, verdict.broken = "stopped", [str(error).splitlines()[0][:200]]
+        return verdict
+    verdict.run = Run(
+        **{name: found[name] for name in ("status", "message", "time", "steps", "cpu_s", "loss", "stored")},
+        warnings=tuple(found["warnings"]),
+    )
+    if found["status"] == "ended":
+        verdict.status, verdict.broken = "stopped", [found["message"]]
+        return verdict
+    if not found["closure"] <= CLOSURE:
+        verdict.broken.append(f"closure {found['closure']:.2g}")
+    try:
+        tight, _ = pairs.run(assembly, duration, **TIGHT, when_wrong="go_on")
+        scale = max(abs(found["loss"]), abs(tight["loss"]), 1e-6 * tight["stored"], 1e-9)
+        if _differ(found, tight, scale):
+            ours = [found, *(pairs.run(assembly, duration, **one)[0] for one in _near(accuracy))]
+            theirs = [tight, *(pairs.run(assembly, duration, **one, when_wrong="go_on")[0] for one in _near_tight())]
+            _compare_means(ours, theirs, scale, verdict)
+    except trb.TrbError as error:
+        if not verdict.broken:
+            verdict.status, verdict.broken = "unjudged", [f"tight run: {str(error).splitlines()[0][:200]}"]
+            return verdict
+    if verdict.broken:
+        verdict.status = "warned" if verdict.run.warnings else "wrong"
+    return verdict
+
+
+def _near(accuracy: str) -> list[dict[str, Any]]:
+    rtol = ACCURACY[accuracy].rtol
+    return [{"accuracy": accuracy, "rtol": factor * rtol} for factor in NEARBY]
+
+
+def _near_tight() -> list[dict[str, Any]]:
+    return [TIGHT | {"rtol": factor * TIGHT["rtol"]} for factor in NEARBY]
+
+
+def _differ(one: dict[str, Any], other: dict[str, Any], scale: float) -> bool:
+    off = np.abs(np.subtract(one["speeds"], other["speeds"])).max()
+    return bool(abs(one["loss"] - other["loss"]) > LOSS * scale or off > SLIP)
+
+
+def _compare_means(ours: list[dict[str, Any]], theirs: list[dict[str, Any]], scale: float, verdict: Verdict) -> None:
+    """Bodies that hit each other go their own ways: the means of runs that are as good are compared."""
+    quantities = {"loss": (LOSS * scale, lambda run: run["loss"])}
+    for number in range(len(ours[0]["speeds"])):
+        quantities[f"speed of the rollers of bearing {number + 1}"] = (SLIP, lambda run, k=number: run["speeds"][k])
+    for name, (allowed, value) in quantities.items():
+        first, second = (np.array([value(run) for run in runs]) for runs in (ours, theirs))
+        off = abs(first.mean() - second.mean()) - 2.0 * math.sqrt(_error_of_mean(first) + _error_of_mean(second))
+        if off > allowed:
+            verdict.broken.append(f"{name} off by {off / (scale if name == 'loss' else 1.0):.2g} in the mean")
+
+
+def _judge_scene(table: Table) -> Verdict:
     verdict = Verdict(table)
     try:
         scene = make(table)
@@ -149,9 +221,8 @@ def _compare(scene: trb.Scene, sim: trb.Simulation, run: Run, tight: Run, verdic
     scale = max(abs(run.loss), abs(tight_loss), 1e-3 * tight.turned_over, 1e-6 * tight.stored, 1e-9)
     if abs(run.loss - tight_loss) <= LOSS * scale and abs(run.roller_speed - tight_speed) <= SLIP:
         return
-    accuracy, rtol = sim.options.accuracy, sim.options.tolerances.rtol
-    options = [{"accuracy": accuracy, "rtol": factor * rtol} for factor in NEARBY]
-    tighter = [TIGHT | {"rtol": factor * TIGHT["rtol"]} for factor in NEARBY]
+    accuracy = sim.options.accuracy
+    options, tighter = _near(accuracy), _near_tight()
     judged = [(run.loss, run.roller_speed), *_asked_of(scene, options, run.time)]
     best = [tight.asked, *_asked_of(scene, tighter, run.time)]
     for place, (name, allowed) in enumerate((("loss", LOSS * scale), ("speed of the rollers", SLIP))):

@@ -36,6 +36,8 @@ FARTHEST: Final = 1.5e-3
 """Displacement (m) at which nothing holds the shaft any more."""
 CONTACT: Final = 1e9
 """Stiffness of a usual contact (N/m), the unit of the damping."""
+STIFFEST: Final = 1e4
+"""Largest damping: no step leads farther than a nanometre a kilonewton then."""
 TOUCH: Final = 1e-6
 """Load of a roller at the inner ring, over the heaviest of all, from which on it follows this ring in vibrations."""
 HELD: Final = 1e-6
@@ -323,7 +325,7 @@ class _Search:
             if off <= max(BALANCED_FORCE, BALANCED * self._largest(balance)):
                 return self._found(balance, off, step, time)
             better = None
-            while better is None and damping < 1e12:
+            while better is None and damping < STIFFEST:
                 better = self._stepped(balance, off, damping)
                 damping = 10.0 * max(damping, 1e-10) if better is None else damping
             if better is None:
