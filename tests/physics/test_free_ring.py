@@ -285,7 +285,7 @@ def test_pictures_of_a_ring(tmp_path: Path) -> None:
             trb.plot.ring_spectrum(result, **given)
     report = tmp_path / "report.html"
     trb.report(result, report, pictures=("ring_orbit", "ring_motion"))
-    assert "Path of the free inner ring" in report.read_text(encoding="utf-8")
+    assert "Path of the inner ring" in report.read_text(encoding="utf-8")
 
 
 def test_a_ring_that_leaves_its_bearing_is_said() -> None:
