@@ -22,13 +22,13 @@ typedef struct trb_equilibrium {
   double *angles;                          /* in: orbit angles of the rollers, rad */
   int     warm;                            /* in: 1 where displacement and rollers are a guess close to the solution */
   double *rollers;                         /* in: guess; out: n_rollers rows of (r, z, tilt, skew) offsets */
-  double *loads;      /* out: n_rollers rows of normal loads of the first three pairs (outer, inner, rib), N; NULL: not wanted */
-  double *stiffness;  /* out: of the ring with rollers in equilibrium, [force][displacement]; NULL: not wanted */
-  double *follow;     /* out, with stiffness: n_rollers blocks of [roller's coordinate][displacement of the ring] */
+  double *loads;     /* out: n_rollers rows of normal loads of the first three pairs (outer, inner, rib), N; NULL: not wanted */
+  double *stiffness; /* out: of the ring with rollers in equilibrium, [force][displacement]; NULL: not wanted */
+  double *follow;    /* out, with stiffness: n_rollers blocks of [roller's coordinate][displacement of the ring] */
   double  reaction[TRB_RING_FREEDOMS]; /* out: force, N, and moment about x, y, N m, that hold the ring against its rollers */
-  double  energy;     /* out: elastic energy with the potentials of the rollers' inertia, whose slope is the reaction, J */
-  double  residual;   /* out: largest unbalanced force, N */
-  int     iterations; /* out */
+  double  energy;                      /* out: elastic energy with the potentials of the rollers' inertia, whose slope is the reaction, J */
+  double  residual;                    /* out: largest unbalanced force, N */
+  int     iterations;                  /* out */
 } trb_equilibrium;
 
 trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, trb_message *message);

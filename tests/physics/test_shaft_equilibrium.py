@@ -58,6 +58,13 @@ CASES = {
     "tandem to the right": tandem("right", 4000.0),
 }
 with_cases = pytest.mark.parametrize("assembly", CASES.values(), ids=CASES)
+with_quick_cases = pytest.mark.parametrize(
+    "assembly",
+    [
+        pytest.param(one, id=name, marks=[pytest.mark.slow] * (name in ("end play", "two sizes")))
+        for name, one in CASES.items()
+    ],
+)
 
 
 def moments_about_origin(found: ShaftEquilibrium) -> np.ndarray:
@@ -81,7 +88,7 @@ def test_forces_and_moments_balance(assembly: Assembly) -> None:
     assert np.abs(total[3:5]).max() < 1e-4
 
 
-@with_cases
+@with_quick_cases
 def test_a_run_begins_in_equilibrium(assembly: Assembly) -> None:
     """The rings of the core stand where the equilibrium has them, with its forces; its rollers' friction hardly moves the
     shaft."""
@@ -141,7 +148,7 @@ def test_preload_diagram_is_that_of_two_single_bearings() -> None:
     assert np.all(np.diff(diagram.loads["left"]) > 0.0)
 
 
-@with_cases
+@with_quick_cases
 def test_stiffness_is_that_of_differences(assembly: Assembly) -> None:
     """Loads at a point that differ a little, and where the shaft then stands."""
     position = 0.04

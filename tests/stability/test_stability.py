@@ -61,7 +61,7 @@ def test_hard_pairs(hard: HardPair) -> None:
     assert verdict.status == "ok", verdict.broken
 
 
-@pytest.mark.parametrize("name", ["pair_reversing_load", "pair_unbalance_10000_rpm"])
+@pytest.mark.parametrize("name", ["pair_unbalance_10000_rpm"])
 @pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
 def test_hard_pairs_in_short(name: str) -> None:
     hard = next(one for one in PAIRS if one.name == name)

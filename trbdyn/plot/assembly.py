@@ -20,11 +20,12 @@ from trbdyn.model.outlines import cone_outline, cup_outline
 from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.drawing import ROLLER, STEEL, placed, roller_outline
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, sequence, styled
+from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
+from trbdyn.statics.preload import PreloadDiagram
+from trbdyn.statics.preload import preload_diagram as diagram_of
 
 if TYPE_CHECKING:
     from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.statics.assembly import ShaftEquilibrium
-    from trbdyn.statics.preload import PreloadDiagram
 
 Array = NDArray[np.float64]
 
@@ -298,9 +299,6 @@ def of_result(result: AssemblyResult) -> dict[str, Callable[[], Axes | Figure]]:
     }
     if (assembly := result.assembly) is None:
         return found
-    from trbdyn.statics.assembly import equilibrium
-    from trbdyn.statics.preload import preload_diagram as diagram_of
-
     start = float(result.time[0])
     return {
         "shaft_drawing": lambda: shaft_drawing(assembly),
