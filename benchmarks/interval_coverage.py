@@ -49,7 +49,7 @@ SCENES = {
 """Speed (rpm), axial and radial load (N), turns of the shaft of a run and of the long run."""
 RECORDS = 20
 """Records in a turn of the shaft."""
-GROUPS = ("cage", "rollers", "pocket", "torque", "energy")
+GROUPS = ("cage", "rollers", "pocket", "torque", "power", "energy")
 
 
 UNTIL = {"torque": 0.01}

@@ -43,6 +43,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The option of `api/test_seen.py`."""
+    parser.addoption(
+        "--keep-pictures", action="store_true", help="keep the descriptions of all pictures as they are now"
+    )
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Within a file the order stays."""
 

@@ -62,6 +62,9 @@ def test_spectrum_integrates_to_the_mean_square() -> None:
     f, p = obs.spectrum(t, x)
     assert np.trapezoid(p, f) == pytest.approx(4.5, rel=1e-3)
     assert obs.peak_frequency(f, p) == pytest.approx(50.0, abs=0.01)
+    late, power = obs.spectrum(t + 5.0, x)  # a record that begins late
+    np.testing.assert_allclose(late, f)
+    np.testing.assert_allclose(power, p, rtol=1e-6, atol=1e-12)
 
 
 def test_uneven_times_are_interpolated() -> None:
@@ -104,6 +107,9 @@ def test_classification_of_three_motions() -> None:
     velocity = rng.normal(size=(20000, 2))
     assert obs.speed_deviation_ratio(velocity) == pytest.approx(np.sqrt(4 / np.pi - 1), rel=0.02)
     assert obs.classify(rng.normal(0.0, 0.1e-3, (20000, 2)), velocity, PLAY).kind == "unstable"
+    for turned, kind in ((1.9, "unknown"), (2.1, "circling")):  # by the turns of the record, whatever came before it
+        angle = 100.0 + np.linspace(0.0, 2.0 * np.pi * turned, len(p))
+        assert obs.classify(p, v, PLAY, cage_angle=angle).kind == kind
 
 
 def test_whirl_coherence_of_ellipses_and_lines() -> None:

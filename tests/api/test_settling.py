@@ -111,6 +111,20 @@ def test_rollers_without_a_cage_are_judged_by_their_spacing() -> None:
     assert obs.motion_settling(t, CAGE * t, 0.3 + 0.4 * t).answer == "drifting"
 
 
+def test_a_radius_that_only_scatters_does_not_grow() -> None:
+    """A radius that jumps between hardly anything and half of the play: its logarithm ends higher by chance."""
+    from trbdyn.results.observables.drift import _moving
+
+    when = np.linspace(0.0, 4.0, 40)
+    grown = 0
+    for seed in range(40):
+        size = np.exp(np.random.default_rng(seed).normal(-3.0, 1.0, 40))
+        grown += bool(_moving(when, {"whirl amplitude": size}, {}, 10.0))
+    assert grown <= 3
+    assert _moving(when, {"whirl amplitude": np.exp(0.5 * when - 3.0)}, {}, 10.0)
+    assert not _moving(when, {"whirl amplitude": np.exp(0.02 * when - 3.0)}, {}, 10.0)  # by less than a tenth
+
+
 def test_drift_needs_turns() -> None:
     with pytest.raises(ValueError, match="at least 5"):
         obs.drift([0.0, 1.0], [0.0, 1.0])

@@ -14,6 +14,17 @@ import pytest
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
 
+ASKED_FOR = (
+    "torque",
+    "power_loss",
+    "orbit_radius_over_cpr",
+    "orbit_radius_over_cpr_p95",
+    "axis_distance_over_cpr",
+    "spacing_std_deg",
+)
+"""Averages that are asked for most: each is held on its own."""
+
+
 @pytest.mark.slow
 def test_intervals_hold_the_value_of_a_long_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of runs of a given length, and of those that `until` ended, which end when an interval is narrow."""
@@ -28,4 +39,7 @@ def test_intervals_hold_the_value_of_a_long_run(tmp_path: Path, monkeypatch: pyt
             given, held = (sum(row[key] for row in rows) for key in ("given", "held"))
             if end == "turns" or given >= 100:
                 assert held >= 0.9 * given > 0, (scene, end, held, given)
+        for row in report.results:
+            if (row["scene"], row["end"]) == (scene, "turns") and row["quantity"] in ASKED_FOR and row["given"] >= 30:
+                assert row["held"] >= 0.85 * row["given"], row  # an interval of 95 % is held less often in one of 300
     assert 0.9 <= report.summary["coverage"] <= 0.99

@@ -113,15 +113,18 @@ SCENES = {
         )
     },
     "rollers": {"effects": Effects.standard().replace(bodies="rollers"), "start": trb.Start.equal()},
+    "moving ring": {
+        "axial_load": 0.0,
+        "displacement": (0.0, trb.History.harmonic(0.0, 4e-6, frequency_hz=900.0), -3e-5),
+    },
 }
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_step_by_step(name: str) -> None:
     """Against records at the end of every step: of pockets to the last bit, of rings to what may be held."""
-    scene = paper_30310(
-        3000.0, 4930.0, **({"effects": Effects.standard(), "start": trb.Start.whirl(0.9)} | SCENES[name])
-    )
+    usual = {"axial_load": 4930.0, "effects": Effects.standard(), "start": trb.Start.whirl(0.9)}
+    scene = paper_30310(3000.0, **(usual | SCENES[name]))
     sim = Simulation(scene)
     sim._core.begin_peaks(0.0)
     rows = [sim.record()]

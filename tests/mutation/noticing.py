@@ -70,7 +70,16 @@ FIRST: dict[str, list[str]] = {
 """The area's own tests, quick ones: most faults end here."""
 
 NEAR: list[tuple[str, list[str]]] = [
-    ("csrc/laws", ["laws", "geometry/test_interference.py", "physics/test_looking.py", "api/test_laws_api.py"]),
+    (
+        "csrc/laws",
+        [
+            "laws",
+            "physics/test_land.py",
+            "geometry/test_interference.py",
+            "physics/test_looking.py",
+            "api/test_laws_api.py",
+        ],
+    ),
     ("csrc/surface/land", ["physics/test_land.py"]),
     ("csrc/surface", ["geometry", "physics/test_looking.py"]),
     ("csrc/contact/land", ["physics/test_land.py"]),
@@ -124,7 +133,16 @@ NEAR: list[tuple[str, list[str]]] = [
     ),
     ("trbdyn/statics", ["physics/test_ring_path.py", "geometry/test_equilibrium.py", "physics/test_start.py"]),
     ("trbdyn/results/observables/growth", ["paper/test_growth.py", "api/test_settling.py"]),
-    ("trbdyn/plot", ["api/test_drawn.py", "api/test_drawn_around.py", "api/test_plotting.py", "api/test_pictures.py"]),
+    (
+        "trbdyn/plot",
+        [
+            "api/test_seen.py",
+            "api/test_drawn.py",
+            "api/test_drawn_around.py",
+            "api/test_plotting.py",
+            "api/test_pictures.py",
+        ],
+    ),
     ("trbdyn/run/checkpoint", ["restart/test_checkpoints.py", "fuzz/test_files.py"]),
     (
         "trbdyn/run",

@@ -127,6 +127,18 @@ def test_axial_vibration() -> None:
     assert np.abs(place).max() == pytest.approx(2e-7, rel=0.1)
 
 
+def test_each_bearing_keeps_its_energy_while_the_shaft_vibrates() -> None:
+    """Without friction, what a bearing gains is what passes between it and the shaft, in each direction and at each instant."""
+    shaft = STILL + np.array([3e-6, -2e-6, 3e-7, 1e-5, 2e-5])
+    result = pair(effects=FRICTIONLESS, shaft=shaft, options=FINE).run(duration=5e-3, save_every=2e-5)
+    for name, one in result.items():
+        passed = np.abs(one.work_ring - one.work_ring[0]).max()
+        assert passed > 0.01, name
+        assert np.abs(one.energy_balance["residual"]).max() < 2e-3 * passed, name
+    moved = np.ptp(result.shaft_position[:, :2], axis=0)
+    assert moved.min() > 3e-6
+
+
 def test_a_heavy_shaft_stands_still() -> None:
     """Each bearing then does what it does alone with its ring held."""
     body = RingBody(mass=1e5, inertia_axial=1e3, inertia_transverse=1e4)

@@ -93,6 +93,32 @@ def test_knots_that_sample_a_smooth_curve_stop_no_step() -> None:
     assert np.count_nonzero(sim._motion.table[:, -1] == 0.0) < len(sim._motion.table) / 10
 
 
+@pytest.mark.parametrize("integrator", ["erk", "bdf"])
+def test_a_step_ends_at_every_knot(integrator: str) -> None:
+    """Where a load bends, whatever the method."""
+    knots = (0.0, 2.1e-4, 2.5e-4, 7.3e-4)
+    load = History.table(knots, (3000.0, 3000.0, 4000.0, 3500.0))
+    sim = Simulation(scene_of(axial_load=load, ring="follows"), integrator=integrator)
+    ends = [sim.time]
+    while sim.time < 8e-4:
+        sim.step()
+        ends.append(sim.time)
+    for knot in knots:
+        assert np.min(np.abs(np.array(ends) - knot)) < 1e-12, knot
+
+
+def test_a_load_that_turns_with_a_shaft_must_come_round_in_a_period() -> None:
+    """The period is from the first to the last time of the speed, whatever the speed does between them."""
+    speed = History.table((0.0, 0.1, 0.3, 0.4), (600.0, 1200.0, 1200.0, 600.0)).replace(repeats=True)
+    mean = 600.0 + 600.0 * 0.75
+    whole = 60.0 / (0.4 * mean)
+    about = {"speed_rpm": speed, "ring": "follows"}
+    scene = scene_of(**about, rotating_load=RotatingLoad(100.0, turns=3.0 * whole))
+    assert scene.period == pytest.approx(0.4)
+    with pytest.raises(trb.InputError, match="must turn a whole number of times in a period"):
+        scene_of(**about, rotating_load=RotatingLoad(100.0, turns=3.3 * whole)).period  # noqa: B018
+
+
 def test_a_history_with_slopes_at_its_ends_is_constant_outside() -> None:
     """Its kink was rounded off: between the start and its first time the curve dipped below its first value."""
     kinked = History(times=(1.0, 2.0), values=(0.0, 1.0), slopes=(1.0, 1.0))
