@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from trbdyn.model.motion import History
     from trbdyn.model.planet import planet
     from trbdyn.model.pocket import Face, OtherPocket, Pocket
-    from trbdyn.model.ring_body import RingBody
+    from trbdyn.model.ring_body import Housing, RingBody
     from trbdyn.model.scene import RotatingLoad, Scene, Start
     from trbdyn.plot import animation
     from trbdyn.reporting import report
@@ -79,6 +79,7 @@ _NAMES = {
     "Growth": "trbdyn.model.growth",
     "HeatPaths": "trbdyn.model.heat",
     "History": "trbdyn.model.motion",
+    "Housing": "trbdyn.model.ring_body",
     "InputError": "trbdyn.errors",
     "Land": "trbdyn.model.land",
     "LoadError": "trbdyn.errors",
@@ -138,6 +139,7 @@ __all__ = [
     "Growth",
     "HeatPaths",
     "History",
+    "Housing",
     "InputError",
     "Land",
     "LoadError",

@@ -23,7 +23,7 @@
 #define TRB_HUB_LOSSES(F, X) \
   F(X, land_film, TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "in the oil film between cage and land") \
   F(X, land,      TAKES, p->guidance != TRB_GUIDANCE_ROLLERS, "by friction of the cage on the land") \
-  F(X, support,   TAKES, p->ring_free > 0.0, "by damping between the free inner ring and the surroundings") \
+  F(X, support,   TAKES, p->ring_free > 0.0 || p->outer_free > 0.0, "by damping between free rings and the surroundings") \
   F(X, vibration, TAKES, p->cage_modes > 0.0, "by damping of the cage's own vibrations")
 
 #define TRB_LOSSES(F, X) TRB_ROLLER_LOSSES(F, X) TRB_HUB_LOSSES(F, X)

@@ -295,10 +295,13 @@ static int allocate(trb_model *m)
 
 static trb_status check_ring(const trb_params *p, trb_message *message)
 {
-  const double values[] = {p->ring_mass, p->ring_inertia_axial, p->ring_inertia_transverse};
-  const char  *names[] = {"ring_mass", "ring_inertia_axial", "ring_inertia_transverse"};
-  for (int i = 0; i < 3 && p->ring_free > 0.0; i++)
-    if (!(values[i] > 0.0)) return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be above 0 for a free ring", names[i], values[i]);
+  const double values[] = {p->ring_mass,  p->ring_inertia_axial,  p->ring_inertia_transverse,
+                           p->outer_mass, p->outer_inertia_axial, p->outer_inertia_transverse};
+  const char  *names[] = {"ring_mass",  "ring_inertia_axial",  "ring_inertia_transverse",
+                          "outer_mass", "outer_inertia_axial", "outer_inertia_transverse"};
+  for (int i = 0; i < 6; i++)
+    if ((i < 3 ? p->ring_free : p->outer_free) > 0.0 && !(values[i] > 0.0))
+      return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be above 0 for a free ring", names[i], values[i]);
   if (p->ring_carried > 0.0 && !(p->ring_free > 0.0))
     return trb_fail(message, TRB_ERR_INPUT, "ring_carried = %g: only a free ring can be part of a shaft", p->ring_carried);
   if (p->ring_turned > 0.0 && !(p->ring_carried > 0.0))
@@ -317,12 +320,48 @@ static trb_status check_elastic(const trb_params *p, trb_message *message)
   return TRB_OK;
 }
 
+static void make_rings(trb_model *m)
+{
+  const trb_params *p = &m->params;
+  const double      plane = m->geometry.centre_plane;
+  m->ring[TRB_RACE_INNER] = (trb_ring_body){.mass = p->ring_mass,
+                                            .inertia_axial = p->ring_inertia_axial,
+                                            .inertia_transverse = p->ring_inertia_transverse,
+                                            .reference = plane,
+                                            .offset = p->ring_offset,
+                                            .unbalance = p->ring_unbalance,
+                                            .unbalance_angle = p->ring_unbalance_angle,
+                                            .damping = p->ring_damping,
+                                            .damping_turns = p->ring_damping_turns,
+                                            .support_radial = p->ring_support_radial,
+                                            .support_axial = p->ring_support_axial,
+                                            .support_tilt = p->ring_support_tilt,
+                                            .support_position = p->ring_support_position,
+                                            .shift = p->ring_shift,
+                                            .sense = p->ring_turned > 0.0 ? -1.0 : 1.0,
+                                            .keeps_speed = p->ring_free < 2.0};
+  m->ring[TRB_RACE_OUTER] = (trb_ring_body){.mass = p->outer_mass,
+                                            .inertia_axial = p->outer_inertia_axial,
+                                            .inertia_transverse = p->outer_inertia_transverse,
+                                            .offset = plane + p->outer_offset,
+                                            .damping = p->outer_damping,
+                                            .damping_turns = p->outer_damping_turns,
+                                            .support_radial = p->outer_support_radial,
+                                            .support_axial = p->outer_support_axial,
+                                            .support_tilt = p->outer_support_tilt,
+                                            .support_position = plane + p->outer_support_position,
+                                            .sense = 1.0,
+                                            .keeps_speed = 1,
+                                            .is_outer = 1};
+}
+
 static trb_status fill(trb_model *m, const double *deviation, const trb_face *faces, int n_faces, trb_message *message)
 {
   trb_status status = trb_geometry_derive(&m->params, &m->geometry, message);
   if (status == TRB_OK) status = check_ring(&m->params, message);
   if (status == TRB_OK) status = check_elastic(&m->params, message);
   if (status != TRB_OK) return status;
+  make_rings(m);
   trb_surfaces_build(&m->params, &m->geometry, &m->surfaces);
   if ((status = check_front_rib(m, message)) != TRB_OK) return status;
   m->n_rollers = (int)m->params.n_rollers;

@@ -59,6 +59,22 @@ typedef struct trb_guide {
   int    inside; /* 1: the cage runs inside the land */
 } trb_guide;
 
+/* A ring with coordinates, with all that moves with it. Forces act at its reference point, which contacts read, too. */
+typedef struct trb_ring_body {
+  double mass, inertia_axial, inertia_transverse;
+  double reference;              /* nominal axial place of the reference point, m */
+  double offset;                 /* of the centre of mass from there, m */
+  double unbalance;              /* kg m */
+  double unbalance_angle;        /* from the x axis where the ring has not turned, rad */
+  double damping, damping_turns; /* to the surroundings */
+  double support_radial, support_axial, support_tilt;
+  double support_position; /* of the support from the reference point, m */
+  double shift;            /* of the bearing's ring where its coordinates are zero, m */
+  double sense;            /* of y and z of the bearing in the axes of the coordinates: 1, or -1 where it is turned */
+  int    keeps_speed;      /* 1: its drive keeps the prescribed speed with whatever torque that takes */
+  int    is_outer;
+} trb_ring_body;
+
 typedef struct trb_pocket_face {
   trb_polygon surface;          /* in the frame of its pocket; its normal points towards the roller */
   double      stiffness_factor; /* of the contact's stiffness */
@@ -83,28 +99,29 @@ typedef struct trb_model {
   trb_pocket_face *faces;      /* all faces, grouped by pocket */
   int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
   /* constants of the laws */
-  double     log_modulus;            /* ln E' */
-  double     log_palmgren;           /* ln of the load per length of roller and ring at d = 1 m */
-  double     pocket_palmgren;        /* load per length of roller and cage at d = 1 m */
-  double     wall_stiffness;         /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
-  double     axis_sine, axis_cosine; /* of the roller axis' angle */
-  double     log_g;                  /* ln G */
-  double     log_viscosity;          /* ln eta0 */
-  double     log_thermal;            /* ln(eta0 beta/k') */
-  trb_rib    back_rib;
-  trb_guide  guide[TRB_N_RACES];            /* lands, by the raceway of their ring */
-  trb_frame *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
-  trb_vec3  *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
-  double     land_station[TRB_LAND_STRIPS]; /* of the guiding surface's strips, from its middle, m */
-  double     land_weight[TRB_LAND_STRIPS];  /* their widths, m */
-  double     land_place;                    /* middle of the guiding surface from the cage's centre of mass, m */
-  double     land_palmgren;                 /* load per length of cage and land at d = 1 m */
-  int        land_film;                     /* the land has an oil film */
-  int        friction;                      /* any friction at raceways and ribs at all */
-  int        pocket_friction;               /* any friction in the pockets */
-  int        film;                          /* films are needed */
-  trb_modes  modes;                         /* of an elastic cage */
-  int        n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
+  double        log_modulus;            /* ln E' */
+  double        log_palmgren;           /* ln of the load per length of roller and ring at d = 1 m */
+  double        pocket_palmgren;        /* load per length of roller and cage at d = 1 m */
+  double        wall_stiffness;         /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
+  double        axis_sine, axis_cosine; /* of the roller axis' angle */
+  double        log_g;                  /* ln G */
+  double        log_viscosity;          /* ln eta0 */
+  double        log_thermal;            /* ln(eta0 beta/k') */
+  trb_rib       back_rib;
+  trb_ring_body ring[TRB_N_RACES];             /* rings, by their raceway, where they have coordinates */
+  trb_guide     guide[TRB_N_RACES];            /* lands, by the raceway of their ring */
+  trb_frame    *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
+  trb_vec3     *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
+  double        land_station[TRB_LAND_STRIPS]; /* of the guiding surface's strips, from its middle, m */
+  double        land_weight[TRB_LAND_STRIPS];  /* their widths, m */
+  double        land_place;                    /* middle of the guiding surface from the cage's centre of mass, m */
+  double        land_palmgren;                 /* load per length of cage and land at d = 1 m */
+  int           land_film;                     /* the land has an oil film */
+  int           friction;                      /* any friction at raceways and ribs at all */
+  int           pocket_friction;               /* any friction in the pockets */
+  int           film;                          /* films are needed */
+  trb_modes     modes;                         /* of an elastic cage */
+  int           n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
 } trb_model;
 
 /* Distance of the farthest sphere of the flank from the centre of mass of its roller, m. */

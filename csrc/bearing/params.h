@@ -59,6 +59,18 @@
   X(land_clearance,           "m",      1e-7,   0.1,    "radial clearance between cage and land") \
   X(land_contact_film,        "m",      1e-9,   1e-2,   "film height below which cage and land touch") \
   X(land_fill,                "1",      0,      1,      "share of the guiding surface's width that is filled with oil") \
+  /* outer ring with its housing, where both are free to move */ \
+  X(outer_free,               "choice",      0,      1,      "1: the outer ring moves with its housing") \
+  X(outer_mass,               "kg",     0,      1e5,    "mass of the outer ring and its housing") \
+  X(outer_inertia_axial,      "kg m2",  0,      1e6,    "their moment of inertia about the axis") \
+  X(outer_inertia_transverse, "kg m2",  0,      1e6,    "their moment of inertia about a transverse axis through the centre of mass") \
+  X(outer_offset,             "m",      -10,    10,     "axial position of their centre of mass from the roller-centre plane") \
+  X(outer_damping,            "N s/m",  0,      1e9,    "damping between them and the surroundings, of translations") \
+  X(outer_damping_turns,      "N m s",  0,      1e9,    "damping between them and the surroundings, of turns about transverse axes") \
+  X(outer_support_radial,     "N/m",    0,      1e13,   "stiffness of their support, across the axis") \
+  X(outer_support_axial,      "N/m",    0,      1e13,   "stiffness of the support along the axis") \
+  X(outer_support_tilt,       "N m",    0,      1e12,   "stiffness of the support against tilt, per radian") \
+  X(outer_support_position,   "m",      -100,   100,    "axial position of the support from the roller-centre plane") \
   X(outer_turns,              "choice",      0,      1,      "1: the outer ring turns at a prescribed speed") \
   /* inner ring, where it is free to move */ \
   X(ring_free,                "choice",      0,      2,      "inner ring: 0 as prescribed, 1 free at a prescribed speed, 2 free, turned by a torque") \
@@ -165,7 +177,7 @@ typedef struct trb_face {
 
 enum { TRB_N_FACE_COLUMNS = (int)(sizeof(trb_face) / sizeof(double)) };
 
-/* Loads on a free inner ring, at the roller-centre plane on its axis. No contact depends on them directly. */
+/* Loads on a free inner ring, at the roller-centre plane on its axis. No contact depends on loads directly. */
 #define TRB_LOAD_CHANNELS(X) \
   X(force_x,        "N",     "free inner ring, load along x") \
   X(force_y,        "N",     "free inner ring, load along y") \
@@ -173,6 +185,14 @@ enum { TRB_N_FACE_COLUMNS = (int)(sizeof(trb_face) / sizeof(double)) };
   X(moment_x,       "N m",   "free inner ring, moment about x") \
   X(moment_y,       "N m",   "free inner ring, moment about y") \
   X(torque,         "N m",   "free inner ring whose speed is not prescribed, torque about its axis")
+
+/* Loads on an outer ring that is free with its housing, at the apex: what its support carries at the start. */
+#define TRB_HOUSING_LOAD_CHANNELS(X) \
+  X(housing_force_x,  "N",     "free outer ring, load along x") \
+  X(housing_force_y,  "N",     "free outer ring, load along y") \
+  X(housing_force_z,  "N",     "free outer ring, load along z") \
+  X(housing_moment_x, "N m",   "free outer ring, moment about x through the apex") \
+  X(housing_moment_y, "N m",   "free outer ring, moment about y through the apex")
 
 /* Prescribed motion: channels given as value and slope at knots, cubic Hermite between them, constant outside. */
 #define TRB_MOTION_CHANNELS(X) \
@@ -186,7 +206,8 @@ enum { TRB_N_FACE_COLUMNS = (int)(sizeof(trb_face) / sizeof(double)) };
   X(gravity_y,      "m/s2",  "acceleration of gravity along y") \
   X(gravity_z,      "m/s2",  "acceleration of gravity along z") \
   X(outer_speed,    "rad/s", "outer ring, speed of rotation about the bearing's axis") \
-  TRB_LOAD_CHANNELS(X)
+  TRB_LOAD_CHANNELS(X) \
+  TRB_HOUSING_LOAD_CHANNELS(X)
 
 enum {
 #define TRB_CHANNEL_ENUM(name, unit, text) TRB_CHANNEL_##name,

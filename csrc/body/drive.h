@@ -32,7 +32,8 @@ typedef struct trb_drive {
   trb_vec3      displacement;  /* of that ring, m */
   trb_vec3      ring_omega;    /* its angular velocity without the shaft's turn, rad/s */
   trb_vec3      gravity;       /* m/s2 */
-  trb_wrench    load;          /* on a ring with coordinates, about its centre */
+  trb_wrench    load;          /* on an inner ring with coordinates, about its centre */
+  trb_wrench    housing_load;  /* the same on an outer ring */
   double        torque;        /* about its axis, of a ring whose speed is not prescribed, N m */
 } trb_drive;
 

@@ -1,5 +1,6 @@
-/* The inner ring as a rigid body, with what turns with it: six degrees of freedom under its load, its unbalance, its weight and dampers to
- * the surroundings (docs/theory/motion.md#a-free-ring). Its coordinates are inertial, so that they stand still under a constant load. */
+/* A ring as a rigid body, the inner one with what turns with it, the outer one with its housing: six degrees of freedom under its load, its
+ * unbalance, its weight, supports and dampers to the surroundings (docs/theory/motion.md#a-free-ring). Its coordinates are inertial, so that
+ * they stand still under a constant load. */
 #ifndef TRB_BODY_FREE_RING_H
 #define TRB_BODY_FREE_RING_H
 
@@ -28,6 +29,6 @@ enum {
 };
 _Static_assert((int)TRB_FREE_RING_SIZE <= (int)TRB_MOST_CARRIED, "room for what a carried ring adds to the rates of the shaft");
 
-extern const trb_body_kind trb_ring_free;
+extern const trb_body_kind trb_ring_free, trb_ring_housed;
 
 #endif

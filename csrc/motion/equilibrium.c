@@ -378,6 +378,23 @@ static trb_status read_loads(solver *s, trb_message *message)
   return TRB_OK;
 }
 
+/* What rollers do to the ring that is not driven at the solution. */
+static void read_other(solver *s)
+{
+  double *sum = s->e->on_other;
+  memset(sum, 0, sizeof s->e->on_other);
+  place(s, s->e->rollers, s->e->displacement);
+  const trb_instant at = trb_dynamics_instant(s->d);
+  trb_contact_slow(s->m, &at, s->d->work, s->d->loads, NULL);
+  for (int b = 0; b < s->d->system->n_bodies; b++)
+    for (int j = 0; j < s->m->n_rollers && b != s->d->system->driven && trb_is_ring(s->d->system->bodies[b].kind); j++) {
+      const trb_wrench      *on = &s->d->loads[j].on[b];
+      const trb_roller_pose *r = &s->d->rollers[j];
+      const trb_vec3         force = trb_turn_z(on->force, r->cosine, r->sine), moment = trb_turn_z(on->moment, r->cosine, r->sine);
+      sum[0] += force.x, sum[1] += force.y, sum[2] += force.z, sum[3] += moment.x, sum[4] += moment.y;
+    }
+}
+
 /* What holds the ring at the solution, and the potential without that of its load. */
 static void read_reaction(const solver *s)
 {
@@ -442,6 +459,7 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
   }
   status = iterate(&s, at, step_ring, message);
   read_reaction(&s);
+  read_other(&s);
   if (status == TRB_OK && e->loads != NULL) status = read_loads(&s, message);
   if (status == TRB_OK && e->stiffness != NULL) status = condense(&s, message);
   free(block);

@@ -26,6 +26,8 @@ typedef struct trb_equilibrium {
   double *stiffness; /* out: of the ring with rollers in equilibrium, [force][displacement]; NULL: not wanted */
   double *follow;    /* out, with stiffness: n_rollers blocks of [roller's coordinate][displacement of the ring] */
   double  reaction[TRB_RING_FREEDOMS]; /* out: force, N, and moment about x, y, N m, that hold the ring against its rollers */
+  double  on_other[TRB_RING_FREEDOMS]; /* out: of the rollers on the ring that is not driven: force, N, and moment about x, y through its
+                                          reference point, N m */
   double  energy;                      /* out: elastic energy with the potentials of the rollers' inertia, whose slope is the reaction, J */
   double  residual;                    /* out: largest unbalanced force, N */
   int     iterations;                  /* out */

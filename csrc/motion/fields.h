@@ -91,12 +91,18 @@ typedef enum trb_field_kind {
   X(ring_angular_velocity,       ring,     VEC3,        "rad/s", "angular velocity of the inner ring") \
   X(ring_force,                  ring,     VEC3,        "N",     "force of rollers and cage on the inner ring") \
   X(ring_moment,                 ring,     VEC3,        "N m",   "moment of rollers and cage on the inner ring, about the roller-centre plane") \
+  X(housing_position,            housing,  VEC3,        "m",     "displacement of the outer ring with its housing, in the roller-centre plane") \
+  X(housing_tilt,                housing,  VEC2,        "rad",   "small rotations of the outer ring's axis about x and y") \
+  X(housing_velocity,            housing,  VEC3,        "m/s",   "velocity of the outer ring in the roller-centre plane") \
+  X(housing_angular_velocity,    housing,  VEC3,        "rad/s", "angular velocity of the outer ring") \
+  X(housing_force,               housing,  VEC3,        "N",     "force of rollers and cage on the outer ring") \
+  X(housing_moment,              housing,  VEC3,        "N m",   "moment of rollers and cage on the outer ring, about the roller-centre plane") \
   X(inner_torque,                torque,   SCALAR,      "N m",   "friction torque that the shaft overcomes") \
   X(outer_torque,                torque,   SCALAR,      "N m",   "friction torque on the outer ring, in the direction of the shaft's speed") \
   TRB_TORQUES(TRB_FIELD_OF_TORQUE, X) \
   X(power_loss,                  power,    SCALAR,      "W",     "sum of all losses") \
   TRB_LOSSES(TRB_FIELD_OF_POWER, X) \
-  X(kinetic_energy,              energy,   SCALAR,      "J",     "kinetic energy of rollers, cage and a free inner ring") \
+  X(kinetic_energy,              energy,   SCALAR,      "J",     "kinetic energy of rollers, cage and free rings") \
   X(elastic_energy,              energy,   SCALAR,      "J",     "elastic energy of all contacts, and of a cage that deforms") \
   TRB_WORKS(TRB_FIELD_OF_WORK, X) \
   TRB_LOSSES(TRB_FIELD_OF_LOSS, X)

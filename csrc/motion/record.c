@@ -199,50 +199,66 @@ static const int quadrature_fields[] = {TRB_QUADRATURES(QUADRATURE)};
 #undef POWER
 #undef QUADRATURE
 
-static void put_ring_place(writer *w)
+/* Where fields of a ring go. */
+typedef struct ring_fields {
+  int position, tilt, velocity, omega, force, moment;
+} ring_fields;
+
+static const ring_fields of_inner = {TRB_FIELD_AT_ring_position,         TRB_FIELD_AT_ring_tilt,  TRB_FIELD_AT_ring_velocity,
+                                     TRB_FIELD_AT_ring_angular_velocity, TRB_FIELD_AT_ring_force, TRB_FIELD_AT_ring_moment};
+static const ring_fields of_outer = {TRB_FIELD_AT_housing_position,         TRB_FIELD_AT_housing_tilt,  TRB_FIELD_AT_housing_velocity,
+                                     TRB_FIELD_AT_housing_angular_velocity, TRB_FIELD_AT_housing_force, TRB_FIELD_AT_housing_moment};
+
+/* A ring's displacement and motion in the roller-centre plane, and its loads about that point; `along` leads there on its axis. */
+static void put_ring_fields(writer *w, const ring_fields *at, const trb_ring_pose *ring, double along, const trb_wrench *load)
 {
-  const trb_dynamics  *d = w->d;
-  const trb_ring_pose *ring = &d->bodies[d->system->driven].ring;
-  const int            free = d->system->bodies[d->system->driven].size > 0;
-  const trb_vec3       nominal = trb_v(0, 0, d->model->geometry.centre_plane);
-  put3(&PUT(ring_position, 0), free ? trb_sub(ring->centre, nominal) : d->drive.displacement);
-  put3(&PUT(ring_velocity, 0), ring->velocity);
-  put3(&PUT(ring_angular_velocity, 0), ring->omega);
+  const trb_vec3 arm = trb_scale(along, ring->axis);
+  const trb_vec3 nominal = trb_v(0, 0, w->d->model->geometry.centre_plane);
+  put3(w->at[at->position], trb_sub(trb_add(ring->centre, arm), nominal));
+  put3(w->at[at->velocity], trb_add(ring->velocity, trb_cross(ring->omega, arm)));
+  put3(w->at[at->omega], ring->omega);
   /* small rotations that take z to the axis */
-  PUT(ring_tilt, 0) = -atan2(ring->axis.y, ring->axis.z);
-  PUT(ring_tilt, 1) = atan2(ring->axis.x, ring->axis.z);
+  w->at[at->tilt][0] = -atan2(ring->axis.y, ring->axis.z);
+  w->at[at->tilt][1] = atan2(ring->axis.x, ring->axis.z);
+  put3(w->at[at->force], load->force);
+  put3(w->at[at->moment], trb_sub(load->moment, trb_cross(arm, load->force)));
 }
 
-static void put_ring(writer *w)
+/* What rollers and cage do to a ring, about its reference point; friction: the moment about its axis. */
+static trb_wrench load_on_ring(const trb_dynamics *d, int body, double *friction)
+{
+  trb_wrench sum = {{0, 0, 0}, {0, 0, 0}};
+  *friction = 0.0;
+  for (int j = 0; j < d->model->n_rollers; j++) {
+    const trb_wrench *on = &d->loads[j].on[body];
+    sum.force = trb_add(sum.force, from_orbit(&d->drive, &d->rollers[j], on->force));
+    sum.moment = trb_add(sum.moment, from_orbit(&d->drive, &d->rollers[j], on->moment));
+    *friction += trb_dot(on->moment, d->bodies[body].in_frame[j].axis);
+  }
+  if (d->work->n_hub == 0) return sum;
+  const trb_wrench *on = &d->hub.on[body];
+  const trb_vec3    moment = from_r(&d->drive, on->moment);
+  sum.force = trb_add(sum.force, from_r(&d->drive, on->force));
+  sum.moment = trb_add(sum.moment, moment);
+  *friction += trb_dot(moment, d->bodies[body].ring.axis);
+  return sum;
+}
+
+static void put_rings(writer *w)
 {
   const trb_dynamics *d = w->d;
   const trb_model    *m = d->model;
-  trb_vec3            force = {0, 0, 0}, moment = {0, 0, 0};
-  double              torque[TRB_N_TORQUES] = {0}, outer = 0.0, all = 0.0;
-  for (int j = 0; j < m->n_rollers; j++) {
-    const trb_loads  *l = &d->loads[j];
-    const trb_wrench *on_ring = &l->on[TRB_BODY_INNER_RING];
-    force = trb_add(force, from_orbit(&d->drive, &d->rollers[j], on_ring->force));
-    moment = trb_add(moment, from_orbit(&d->drive, &d->rollers[j], on_ring->moment));
-    all += trb_dot(on_ring->moment, d->bodies[TRB_BODY_INNER_RING].in_frame[j].axis);
-    outer += l->on[TRB_BODY_OUTER_RING].moment.z;
-    for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += l->torque[k];
-  }
-  if (d->work->n_hub > 0) {
-    const trb_wrench *on_ring = &d->hub.on[TRB_BODY_INNER_RING];
-    const trb_vec3    hub_moment = from_r(&d->drive, on_ring->moment);
-    force = trb_add(force, from_r(&d->drive, on_ring->force));
-    moment = trb_add(moment, hub_moment);
-    all += trb_dot(hub_moment, d->bodies[TRB_BODY_INNER_RING].ring.axis);
-    outer += d->hub.on[TRB_BODY_OUTER_RING].moment.z;
-    for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += d->hub.torque[k];
-  }
+  double              torque[TRB_N_TORQUES] = {0}, on_inner, on_outer;
+  const trb_wrench    inner = load_on_ring(d, TRB_BODY_INNER_RING, &on_inner), outer = load_on_ring(d, TRB_BODY_OUTER_RING, &on_outer);
+  put_ring_fields(w, &of_inner, &d->bodies[TRB_BODY_INNER_RING].ring, 0.0, &inner);
+  if (d->system->bodies[TRB_BODY_INNER_RING].size == 0) put3(&PUT(ring_position, 0), d->drive.displacement);
+  put_ring_fields(w, &of_outer, &d->bodies[TRB_BODY_OUTER_RING].ring, m->geometry.centre_plane, &outer);
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int k = 0; k < TRB_N_TORQUES; k++) torque[k] += d->loads[j].torque[k];
+  for (int k = 0; k < TRB_N_TORQUES && d->work->n_hub > 0; k++) torque[k] += d->hub.torque[k];
   const double sign = d->drive.rolling_speed < 0.0 ? -1.0 : 1.0;
-  put_ring_place(w);
-  put3(&PUT(ring_force, 0), force);
-  put3(&PUT(ring_moment, 0), moment);
-  PUT(inner_torque, 0) = -sign * all;
-  PUT(outer_torque, 0) = sign * outer;
+  PUT(inner_torque, 0) = -sign * on_inner;
+  PUT(outer_torque, 0) = sign * on_outer;
   for (int k = 0; k < TRB_N_TORQUES; k++) w->at[torque_fields[k]][0] = -sign * torque[k];
 }
 
@@ -300,6 +316,6 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
   }
   memcpy(&PUT(pocket_force, 0), it.seen.pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
   memcpy(&PUT(pocket_friction, 0), it.seen.pocket_friction, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));
-  put_ring(w);
+  put_rings(w);
   put_energy(w, y + d->quadrature);
 }

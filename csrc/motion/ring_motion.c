@@ -287,6 +287,9 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
   drive->load.force = trb_v(c[TRB_CHANNEL_force_x].value, c[TRB_CHANNEL_force_y].value, c[TRB_CHANNEL_force_z].value);
   drive->load.moment = trb_v(c[TRB_CHANNEL_moment_x].value, c[TRB_CHANNEL_moment_y].value, 0.0);
   drive->torque = c[TRB_CHANNEL_torque].value;
+  drive->housing_load.force =
+      trb_v(c[TRB_CHANNEL_housing_force_x].value, c[TRB_CHANNEL_housing_force_y].value, c[TRB_CHANNEL_housing_force_z].value);
+  drive->housing_load.moment = trb_v(c[TRB_CHANNEL_housing_moment_x].value, c[TRB_CHANNEL_housing_moment_y].value, 0.0);
   drive->gravity = trb_v(c[TRB_CHANNEL_gravity_x].value, c[TRB_CHANNEL_gravity_y].value, c[TRB_CHANNEL_gravity_z].value);
   const double rotation[2] = {c[TRB_CHANNEL_rotation_x].value, c[TRB_CHANNEL_rotation_y].value};
   const double rate[2] = {c[TRB_CHANNEL_rotation_x].rate, c[TRB_CHANNEL_rotation_y].rate};

@@ -265,9 +265,9 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
     Py_END_ALLOW_THREADS
     if (status != TRB_OK) (void)trb_raise(status, &message);
     else
-      out = Py_BuildValue("{s:N,s:N,s:d,s:N,s:N,s:d,s:i,s:N,s:N}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS),
-                          "reaction", trb_vector(e.reaction, TRB_RING_FREEDOMS), "energy", e.energy, "rollers",
-                          columns(e.rollers, m->n_rollers, TRB_ROLLER_FREEDOMS), "loads",
+      out = Py_BuildValue("{s:N,s:N,s:N,s:d,s:N,s:N,s:d,s:i,s:N,s:N}", "displacement", trb_vector(e.displacement, TRB_RING_FREEDOMS),
+                          "reaction", trb_vector(e.reaction, TRB_RING_FREEDOMS), "on_other", trb_vector(e.on_other, TRB_RING_FREEDOMS),
+                          "energy", e.energy, "rollers", columns(e.rollers, m->n_rollers, TRB_ROLLER_FREEDOMS), "loads",
                           columns(loads, m->n_rollers, TRB_EQUILIBRIUM_LOADS), "residual", e.residual, "iterations", e.iterations,
                           "stiffness", columns(stiffness, TRB_RING_FREEDOMS, TRB_RING_FREEDOMS), "follow",
                           columns(follow, m->n_rollers, TRB_ROLLER_FREEDOMS * TRB_RING_FREEDOMS));

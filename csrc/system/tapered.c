@@ -30,10 +30,16 @@ static void add_bodies(trb_system *s)
   s->driven = TRB_BODY_INNER_RING;
   const trb_body_kind *outer = s->model->params.outer_turns > 0.0 ? &trb_ring_turning : &trb_ring_at_rest;
   s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = outer, .name = "outer ring"};
+  if (s->model->params.outer_free > 0.0)
+    s->bodies[TRB_BODY_OUTER_RING] = (trb_body){
+        .kind = &trb_ring_housed, .name = "outer ring", .own = &s->model->ring[TRB_RACE_OUTER], .loss = TRB_BOOK(TRB_LOSS_support)};
   s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_prescribed, .name = "inner ring"};
   if (s->model->params.ring_free > 0.0)
-    s->bodies[TRB_BODY_INNER_RING] = (trb_body){
-        .kind = &trb_ring_free, .name = "inner ring", .loss = TRB_BOOK(TRB_LOSS_support), .carried = s->model->params.ring_carried > 0.0};
+    s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_free,
+                                                .name = "inner ring",
+                                                .own = &s->model->ring[TRB_RACE_INNER],
+                                                .loss = TRB_BOOK(TRB_LOSS_support),
+                                                .carried = s->model->params.ring_carried > 0.0};
   s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = &trb_body_cage, .name = "cage"};
   if (s->model->modes.n > 0) {
     s->bodies[TRB_BODY_CAGE] = trb_elastic_cage_of(&s->model->modes, "cage");

@@ -1,6 +1,7 @@
 /* Bounds of contacts: arms reach as far as what they stand for, and what several coordinates do is added up. */
 #include "check.h"
 #include "contact/pair.h"
+#include "motion/dynamics.h"
 #include "motion/hold.h"
 #include "rig.h"
 
@@ -81,6 +82,25 @@ static void test_arms_of_pockets(const trb_model *m)
   }
 }
 
+/* Whatever meets a ring that stands aside and leans, to either side, lies no further across than the bound of its place says. */
+static void test_place_of_a_ring(const trb_system *system)
+{
+  static const double turns[][2] = {{2e-3, 0.0}, {-2e-3, 0.0}, {1e-3, -3e-3}}, still[2] = {0.0, 0.0};
+  trb_dynamics       *d;
+  if (!CHECK(trb_dynamics_create(system, NULL, "scalar", &d, NULL) == TRB_OK)) return;
+  for (size_t i = 0; i < sizeof turns / sizeof turns[0]; i++) {
+    trb_drive_place(system->model, trb_v(3e-6, -5e-6, 0.0), trb_v(0, 0, 0), turns[i], still, 0.0, &d->drive);
+    trb_dynamics_place(d);
+    const trb_hold_ring  bound = trb_hold_ring_of(system, d->bodies);
+    const trb_ring_pose *ring = &d->bodies[system->driven].ring;
+    for (int sign = -1; sign <= 1; sign++) {
+      const trb_vec3 point = trb_axpy(ring->centre, sign * bound.far, ring->axis);
+      CHECK(bound.place >= hypot(point.x, point.y));
+    }
+  }
+  trb_dynamics_free(d);
+}
+
 int main(void)
 {
   const trb_params p = rig_params();
@@ -89,6 +109,7 @@ int main(void)
   test_skew_to_the_other_side();
   test_arm_of_the_small_end(system);
   test_arms_of_pockets(system->model);
+  test_place_of_a_ring(system);
   rig_free(system);
   return check_report();
 }

@@ -71,6 +71,11 @@ ORDINARY: Table = {
     "ring_damping": 0.0,
     "moment_share": 0.0,
     "torque": None,
+    "housing_mass": None,
+    "housing_length": 1.0,
+    "housing_offset": 0.0,
+    "housing_stiffness": 3e8,
+    "housing_damping": 0.0,
 }
 """What a table that says nothing means; shrinking a failure leads back to these."""
 
@@ -241,7 +246,27 @@ def outer(rng: np.random.Generator) -> Table:
     return table
 
 
+def housed(rng: np.random.Generator) -> Table:
+    """An outer ring that moves with its housing: light or heavy, on soft or stiff springs, beside a ring that is held or free."""
+    table = _one_of(rng, usual, light, guided, free, outer)(rng)
+    if "ring_mass" not in table:
+        for name in ("end_axial_load", "rotating_share"):
+            table.pop(name, None)
+    table |= {"speed_rpm": _log(rng, 10.0, 1e4), "housing_mass": _log(rng, 0.2, 300.0)}
+    options: dict[str, Any] = {
+        "housing_stiffness": lambda: _log(rng, 1e6, 1e10),
+        "housing_length": lambda: _log(rng, 0.3, 5.0),
+        "housing_offset": lambda: float(rng.uniform(-0.1, 0.1)),
+        "housing_damping": lambda: _log(rng, 1.0, 1e5),
+    }
+    for name, draw in options.items():
+        if rng.random() < 0.5:
+            table[name] = draw()
+    return table
+
+
 KINDS = {
+    "housed": housed,
     "outer": outer,
     "free": free,
     "usual": usual,
@@ -300,6 +325,8 @@ def make(table: Table) -> trb.Scene:
             fields["ring"] = "follows"
         if t["ring_mass"] is not None:
             fields |= _free_ring(t, bearing)
+    if t["housing_mass"] is not None:
+        fields["housing"] = _housing(t, bearing)
     return trb.Scene(bearing, start=_start_of(t), **fields)
 
 
@@ -317,6 +344,26 @@ def _free_ring(t: Table, bearing: trb.Bearing) -> Table:
     moment = t["moment_share"] * t["axial_load"] * 0.1 * pitch
     torque = None if t["torque"] is None else t["torque"] * 5e-3 * t["axial_load"] * pitch
     return {"ring": "free", "ring_body": body, "moment_x": moment, "moment_y": 0.0, "torque": torque}
+
+
+def _housing(t: Table, bearing: trb.Bearing) -> trb.Housing:
+    """A block around the outer ring; its mass, its springs and its damper go with the size of the bearing."""
+    pitch = bearing.pitch_diameter
+    size = pitch / 0.08
+    mass, stiffness = t["housing_mass"] * size**3, t["housing_stiffness"] * size
+    block = trb.Housing.hollow_cylinder(
+        mass=mass,
+        inner_diameter=1.3 * pitch,
+        outer_diameter=2.0 * pitch,
+        length=t["housing_length"] * pitch,
+        mass_offset=t["housing_offset"] * size,
+    )
+    springs = {
+        "support_radial": stiffness,
+        "support_axial": 0.5 * stiffness,
+        "support_tilt": stiffness * (0.5 * pitch) ** 2,
+    }
+    return block.replace(damping=t["housing_damping"] * size**2, **springs)
 
 
 def _bearing(t: Table) -> trb.Bearing:

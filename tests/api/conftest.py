@@ -154,7 +154,7 @@ class StubScene:
         roller=SimpleNamespace(effective_length=19.8e-3),
         cage=SimpleNamespace(play_radial=RADIAL_PLAY, play_circumferential=0.12e-3, play_axial=AXIAL_PLAY),
     )
-    ring_body = elastic_cage = None
+    ring_body = housing = elastic_cage = None
     effects = SimpleNamespace(
         bodies="rollers_and_cage",
         films=True,

@@ -165,7 +165,7 @@ class TestFlatten:
 
     def test_held_ring(self, scene: Scene) -> None:
         table = flatten.motion_table(scene, [1e-6, 2e-6, -3e-6, 9.0, 9.0])
-        assert table.shape == (1, 34)
+        assert table.shape == (1, 44)
         values = dict(zip([name for name, _, _ in _core.motion_table()], table[0, 1:-1:2], strict=True))
         assert (values["displacement_x"], values["displacement_y"], values["displacement_z"]) == (1e-6, 2e-6, -3e-6)
         assert (values["rotation_x"], values["rotation_y"]) == (0.0, 0.0)

@@ -21,7 +21,14 @@ from trbdyn import _core
 from trbdyn.base.validation import Model
 from trbdyn.cli import case
 from trbdyn.model.core_table import PARAMETERS, SETTINGS
-from trbdyn.model.flatten import bearing_entries, effects_entries, elastic_entries, lubricant_entries, ring_entries
+from trbdyn.model.flatten import (
+    bearing_entries,
+    effects_entries,
+    elastic_entries,
+    housing_entries,
+    lubricant_entries,
+    ring_entries,
+)
 from trbdyn.run.options import ACCURACY, RunOptions, Tolerances
 from trbdyn.run.simulation import Simulation
 
@@ -90,16 +97,19 @@ def test_help_comes_without_numpy_and_pydantic() -> None:
 def test_every_parameter_of_the_core_has_an_input() -> None:
     given = {**bearing_entries(trb.cases.rig_30310()), **lubricant_entries(trb.lubricants.vg100())}
     given |= effects_entries(trb.Effects())
-    given |= ring_entries(trb.cases.paper_30310()) | elastic_entries(trb.cases.paper_30310())
+    of_housing = housing_entries(trb.cases.paper_30310())
+    given |= ring_entries(trb.cases.paper_30310()) | elastic_entries(trb.cases.paper_30310()) | of_housing
     named = {
         extra["parameter"]
         for model in kinds_of(Model)
         for field in model.model_fields.values()
         if isinstance(extra := field.json_schema_extra, dict) and "parameter" in extra
     }
+    # a housing has the parameters of a free ring, by another name
+    assert {name.replace("outer_", "ring_", 1) for name in of_housing} <= {*named, "ring_free"}
     numbers = {name for name, row in PARAMETERS.items() if row.unit != "choice"}
     of_other_bodies = {f"{body}_{name}" for body in ("roller", "cage") for name in ("youngs_modulus", "poisson_ratio")}
-    assert named == numbers - of_other_bodies - {
+    assert named == numbers - of_other_bodies - set(of_housing) - {
         "cup_half_angle",
         "ring_unbalance_angle",
         "ring_shift",

@@ -99,9 +99,9 @@ def test_the_map_shows_the_orbit(build: Callable[..., tuple[Any, Result]]) -> No
     assert "not known to have settled" in ax.get_legend().get_texts()[2].get_text()
 
 
-NEED_A_SCENE = ("pressure_map", "film_map", "ring_orbit", "ring_motion")
-"""Records are evaluated again for them, or belong to a free ring, so a stub of a scene does not do;
-tests/api/test_pictures.py and tests/physics/test_free_ring.py draw them."""
+NEED_A_SCENE = ("pressure_map", "film_map", "ring_orbit", "ring_motion", "housing_orbit", "housing_motion")
+"""Records are evaluated again for them, or belong to free rings, so a stub of a scene does not do; tests/api/test_pictures.py,
+tests/physics/test_free_ring.py and tests/physics/test_housing.py draw them."""
 
 WHOLE = ("pocket_forces", "attitude", "load_zone", "pocket_polar", *NEED_A_SCENE)
 """Pictures that are a figure of their own, or need polar axes."""

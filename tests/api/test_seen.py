@@ -29,6 +29,7 @@ import pytest
 import xarray
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 from numpy.typing import NDArray
 
 import trbdyn as trb
@@ -88,7 +89,8 @@ def lines_of(ax: Any) -> Iterator[str]:
     for one in ax.images:
         yield f"image {numbers(one.get_array())} from {one.get_clim()}"
     for one in ax.texts:
-        yield f"text {one.get_text()!r} at {numbers(one.get_position())}"
+        of = f" of {numbers(one.xy)}" if isinstance(one, Annotation) else ""
+        yield f"text {one.get_text()!r} at {numbers(one.get_position())}{of}"
 
 
 def described(figure: Figure) -> list[str]:
@@ -150,6 +152,8 @@ def in_small(synthetic: Any) -> Any:
     way = np.concatenate([np.sin(900.0 * t), 0.7 * np.cos(900.0 * t), 0.2 * np.sin(1800.0 * t)], axis=1)
     synthetic.column("ring_position")[...] = 1e-6 * way
     synthetic.column("ring_velocity")[...] = 1e-3 * way[:, [1, 0, 2]]
+    synthetic.column("housing_position")[...] = 3e-7 * way[:, [2, 0, 1]]
+    synthetic.column("housing_velocity")[...] = 2e-4 * way[:, [0, 2, 1]]
     synthetic.column("pocket_force")[:, :, 3] = 0.0
     for name in ("pocket_force_peak", "pocket_force_peak_time"):
         if any(name == one for one, _, _ in synthetic.layout):
@@ -182,17 +186,23 @@ class Pictures:
 
         class Free(type(whirling.scene)):  # type: ignore[misc]
             ring_body = trb.RingBody(mass=1.0, inertia_axial=1e-3, inertia_transverse=1e-3)
+            housing = trb.Housing(mass=1.0, inertia_axial=1e-3, inertia_transverse=1e-3)
             bearing = trb.cases.rig_30310()
 
+        seat = {"shift": 2e-6, "mass_offset": -0.05, "turned": False}
+        meta = {"assembly": {"bearing": "left", "bearings": ["left", "right"], "seat": seat}}
         self.free = Result.from_records(records, synthetic.layout, scene=Free(), **about)
+        self.seated = Result.from_records(records, synthetic.layout, scene=Free(), meta=meta, **about)
 
     def of_result(self) -> Iterator[tuple[str, Any]]:
-        skipped = ("pressure_map", "film_map", "pocket_polar", "ring_orbit", "ring_motion")
+        of_rings = ("ring_orbit", "ring_motion", "housing_orbit", "housing_motion")
+        skipped = ("pressure_map", "film_map", "pocket_polar", *of_rings)
         for name, (draw, _) in plot.PICTURES.items():
             if name not in skipped:
                 yield name, draw(self.result)
-        for name in ("ring_orbit", "ring_motion"):
+        for name in of_rings:
             yield name, plot.PICTURES[name][0](self.free)
+        yield "ring_spectrum of the housing", plot.ring_spectrum(self.free, ring="outer", along="y")
         for of in ("displacement", "velocity"):
             yield f"ring_spectrum of {of}", plot.ring_spectrum(self.free, of=of, segments=2)  # type: ignore[arg-type]
         yield "pocket_forces of two pockets", plot.pocket_forces(self.result, pockets=[0, 3], last=0.3)
@@ -281,10 +291,16 @@ class Pictures:
             if len(temperatures) > 1:
                 yield f"draw_map {name}, one temperature", draw_map(data, temperature=1)
 
-    @staticmethod
-    def of_assembly() -> Iterator[tuple[str, Any]]:
+    def of_assembly(self) -> Iterator[tuple[str, Any]]:
         pair = trb.load_assembly("pair_30310")
         yield "shaft_drawing", plot.shaft_drawing(pair)
+        left, right = pair.bearings
+        larger = right.replace(bearing=trb.cases.bearing_32216(), position=right.position + 0.05)
+        yield "shaft_drawing of two sizes", plot.shaft_drawing(pair.replace(bearings=(left, larger)))
+        result = trb.AssemblyResult({"left": self.seated, "right": self.seated}, pair)
+        yield "bearing_loads", plot.bearing_loads(result)
+        yield "shaft_motion", plot.shaft_motion(result)
+        yield "shaft_orbits", plot.shaft_orbits(result)
         yield "load_zones", plot.load_zones(trb.equilibrium(pair))
         span = trb.preload_diagram(pair, displacements=np.linspace(-3e-5, 3e-5, 5))
         yield "preload_diagram", plot.preload_diagram(span)

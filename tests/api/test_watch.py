@@ -82,7 +82,7 @@ class _Model:
 class _Sim:
     def __init__(self) -> None:
         self._core, self._model = _Core(), _Model()
-        self.scene = SimpleNamespace(ring_body=None)
+        self.scene = SimpleNamespace(ring_body=None, housing=None)
         self.options = SimpleNamespace(tolerances=SimpleNamespace(rtol=1e-6))
 
 

@@ -110,10 +110,13 @@ FULL = full_scene().to_dict()
 FREE = SCENE | {
     "ring": "free",
     "ring_body": trb.RingBody.hollow_cylinder(mass=2.0, outer_diameter=0.06, length=0.1).to_dict(),
+    "housing": trb.Housing.hollow_cylinder(mass=4.0, inner_diameter=0.11, outer_diameter=0.16, length=0.05)
+    .replace(support_radial=2e8, support_axial=1e8)
+    .to_dict(),
     "torque": 1.0,
 }
 PLACES = leaves(SCENE)[1:]
-FREE_PLACES = [place for place in leaves(FREE)[1:] if place[0] in ("ring", "ring_body", "torque")]
+FREE_PLACES = [place for place in leaves(FREE)[1:] if place[0] in ("ring", "ring_body", "housing", "torque")]
 FULL_PLACES = leaves(FULL)[1:]
 CASES = {name: tomllib.loads(find_case(name).read_text(encoding="utf-8")) for name in shipped_cases()}
 CASE_PLACES = [(name, place) for name, case in CASES.items() for place in leaves(case)[1:]]

@@ -117,7 +117,10 @@ NEAR: list[tuple[str, list[str]]] = [
         ],
     ),
     ("csrc", ["geometry/test_pocket.py", "api/test_pockets.py", "api/test_models.py", "geometry/test_derived.py"]),
-    ("trbdyn/model/lubricants", ["api/test_lubricants.py", "api/test_laws_api.py"]),
+    (
+        "trbdyn/model/lubricants",
+        ["api/test_lubricants.py", "api/test_laws_api.py", "benchmarks/test_validation.py::test_replenishment"],
+    ),
     (
         "trbdyn/model",
         [
@@ -131,7 +134,12 @@ NEAR: list[tuple[str, list[str]]] = [
             "physics/test_histories.py",
         ],
     ),
+    (
+        "trbdyn/statics/ring_motion",
+        ["physics/test_ring_path.py", "physics/test_housing.py", "physics/test_outer_ring.py"],
+    ),
     ("trbdyn/statics", ["physics/test_ring_path.py", "geometry/test_equilibrium.py", "physics/test_start.py"]),
+    ("trbdyn/results/derived", ["api/test_by_hand.py", "physics/test_outer_ring.py", "api/test_results.py"]),
     ("trbdyn/results/observables/growth", ["paper/test_growth.py", "api/test_settling.py"]),
     (
         "trbdyn/plot",
@@ -151,6 +159,7 @@ NEAR: list[tuple[str, list[str]]] = [
             "api/test_simulation.py",
             "api/test_confidence.py",
             "api/test_keeping.py",
+            "api/test_implausible.py",
             "restart/test_checkpoints.py",
         ],
     ),

@@ -140,8 +140,9 @@ def test_explicit_method_agrees(kit: SimpleNamespace, kind: str) -> None:
     bearing = trb.cases.rig_30310() if kind == "rectangles" else triangles(kit)
     drift = {rtol: drift_of_impacts(kit, bearing, 3, 3e-3, rtol, integrator="erk")[0] for rtol in (1e-5, 1e-6)}
     assert drift[1e-5] < REFERENCE_LOSS / 5.0
-    assert drift[1e-6] < REFERENCE_LOSS / 10.0
-    assert drift[1e-6] < 0.6 * drift[1e-5]
+    assert drift[1e-6] < REFERENCE_LOSS / 50.0
+    # a fifth in most builds; which way so violent a motion takes, and with it the drift, hangs on the last bits
+    assert drift[1e-6] < 0.9 * drift[1e-5]
 
 
 def test_violent_impacts_keep_angular_momentum(kit: SimpleNamespace) -> None:

@@ -390,7 +390,16 @@ def test_nothing_is_forgotten() -> None:
         "pocket_ends",
         "pocket_edges",
     }
-    switches |= {"profile", "viscosity_law", "n_rollers", "n_slices", "ring_free", "outer_turns", "cage_modes"}
+    switches |= {
+        "profile",
+        "viscosity_law",
+        "n_rollers",
+        "n_slices",
+        "ring_free",
+        "outer_free",
+        "outer_turns",
+        "cage_modes",
+    }
     here |= OF_FREE_RINGS
     assert here | switches | set(TRACTION) | set(RIBS) | set(PROFILES) >= set(scene_entries(trb.cases.paper_30310()))
 
@@ -402,7 +411,11 @@ OF_FREE_RINGS |= {"ring_unbalance", "ring_unbalance_angle"}
 # of bearings that share a shaft: tests/physics/test_assembly.py, csrc/tests/test_assembly.c
 OF_FREE_RINGS |= {"ring_carried", "ring_turned", "ring_shift"}
 OF_FREE_RINGS |= {f"ring_support_{name}" for name in ("radial", "axial", "tilt", "position")}
-"""Numbers of a free ring: tests/physics/test_free_ring.py."""
+OF_FREE_RINGS |= {
+    f"outer_{name}" for name in ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
+}
+OF_FREE_RINGS |= {f"outer_support_{name}" for name in ("radial", "axial", "tilt", "position")}
+"""Numbers of free rings: tests/physics/test_free_ring.py, tests/physics/test_housing.py."""
 
 TRACTION = {
     "eyring_stress": 4e6,

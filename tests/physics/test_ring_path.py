@@ -65,6 +65,7 @@ def offsets(sim: Simulation, times: np.ndarray) -> np.ndarray:
     for time in times:
         expected = solver.solve(float(time)).displacement
         place = sim.record(sim.state.vector, time=float(time))["ring_position"]
+        assert sim._motion.displacement(float(time))[:3] == pytest.approx(place, abs=1e-15)  # as states keep it
         found.append(float(np.abs(place - expected[:3]).max()))
         if turn is not None and time < table[-1, 0]:
             found.append(arm * float(np.abs(turn(time) - expected[3:]).max()))

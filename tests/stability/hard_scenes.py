@@ -231,6 +231,12 @@ def free_ring(
     )
 
 
+def housing(mass: float, stiffness: float) -> trb.Housing:
+    """A housing on a support of a radial stiffness."""
+    block = trb.Housing.hollow_cylinder(mass=mass, inner_diameter=0.11, outer_diameter=0.15, length=0.04)
+    return block.replace(support_radial=stiffness, support_axial=0.5 * stiffness, support_tilt=1e-3 * stiffness)
+
+
 def elastic_cage(material: trb.Material, speed_rpm: float) -> trb.Scene:
     """A cage with 20 modes, damped by a hundredth of the critical damping, that begins near its rollers."""
     plays = {"play_radial": 0.25e-3, "play_circumferential": 0.12e-3}
@@ -784,6 +790,25 @@ HARD: tuple[Hard, ...] = (
         "free_ring_on_a_rotor",
         "a rotor of 300 kg, whose centre of mass lies 20 mm from the rollers' plane, tilts them under its weight",
         lambda: free_ring(300.0, mass_offset=0.02, axial_load=20000.0),
+    ),
+    Hard(
+        "housing_as_light_as_its_ring",
+        "an outer ring of 0.3 kg on springs a hundred times softer than the bearing, beside a free inner ring",
+        lambda: free_ring(0.7, radial_load=2000.0, housing=housing(0.3, 1e7)),
+    ),
+    Hard(
+        "housing_on_a_shaker",
+        "a housing of 40 kg under 20 g at 400 Hz, near its frequency on the support, without any damping of the support",
+        lambda: free_ring(
+            6.0,
+            housing=housing(40.0, 2.5e8),
+            gravity=(0.0, trb.History.harmonic(-9.80665, 200.0, frequency_hz=400.0), 0.0),
+        ),
+    ),
+    Hard(
+        "hub_in_its_housing",
+        "an outer ring of 3 kg that turns at 6000 rpm against the shaft and wobbles on a soft support",
+        lambda: free_ring(2.0, outer_speed_rpm=-6000.0, moment_x=20.0, moment_y=0.0, housing=housing(3.0, 3e7)),
     ),
     Hard(
         "elastic_cage_of_plastic",

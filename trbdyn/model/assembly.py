@@ -20,7 +20,7 @@ from trbdyn.model.flatten import scaled
 from trbdyn.model.growth import Growth
 from trbdyn.model.lubricants import Lubricant, vg100
 from trbdyn.model.motion import Quantity, is_constant, value_at, values_of
-from trbdyn.model.ring_body import RingBody, check_inertias
+from trbdyn.model.ring_body import Housing, RingBody, check_inertias
 from trbdyn.model.scene import MAX_SPEED_RPM, Scene, oil_by_name
 from trbdyn.model.start import Start
 
@@ -166,6 +166,9 @@ class ShaftBearing(Model):
         Temperatures of the parts, as in a `Scene`; they change the plays of the pockets, not the end play.
     elastic_cage : ElasticCage, optional
         Deform the cage in runs, as in a `Scene`.
+    housing : Housing, optional
+        Let the outer ring move with a housing of its own in runs, as in a `Scene`. One housing around several bearings is not
+        modelled.
     """
 
     _root: ClassVar[str | None] = "bearings"
@@ -181,6 +184,7 @@ class ShaftBearing(Model):
     start: Start = Start()
     growth: Growth | None = None
     elastic_cage: ElasticCage | None = None
+    housing: Housing | None = None
 
     def __init__(self, bearing: Any = None, **fields: Any) -> None:
         super().__init__(**fields if bearing is None else {"bearing": bearing, **fields})
@@ -477,6 +481,7 @@ class Assembly(Model):
             start=one.start,
             growth=one.growth,
             elastic_cage=one.elastic_cage,
+            housing=one.housing,
             gravity=(x, scaled(y, turned), scaled(z, turned)),
         )
 
@@ -491,6 +496,7 @@ class Assembly(Model):
         self._check_names()
         self._check_places()
         self._check_held()
+        self._check_housings()
         return self
 
     def _check_names(self) -> None:
@@ -515,6 +521,16 @@ class Assembly(Model):
                     "(load centre, m)"
                 )
                 raise InputError.of(("bearings", other, "position"), self.bearings[other].position, limit)
+
+    def _check_housings(self) -> None:
+        """One outer ring at least has a place along and across the shaft, or all that moves would leave it."""
+        for name in ("support_radial", "support_axial"):
+            stiffnesses = [math.inf if one.housing is None else getattr(one.housing, name) for one in self.bearings]
+            if not max(stiffnesses) > 0.0:
+                limit = (
+                    "must be > 0 in one bearing at least: nothing else holds shaft and housings in their place (N/m)"
+                )
+                raise InputError.of(("bearings", 0, "housing", name), 0.0, limit)
 
     def _check_held(self) -> None:
         """Axial forces that never hold the shaft, as far as it can be told without an equilibrium."""

@@ -24,6 +24,7 @@ from trbdyn.model.geometry import Geometry
 from trbdyn.model.growth import running_clearance, running_pockets
 from trbdyn.model.lubricants import Dicke, Lubricant
 from trbdyn.model.motion import History, common_period, joint_times, knot_table, settled_time, value_at
+from trbdyn.model.ring_body import Housing
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing, Material
@@ -60,6 +61,9 @@ class Entry:
 
 
 Entries = dict[str, Entry]
+
+HOUSING_LOADS = ("housing_force_x", "housing_force_y", "housing_force_z", "housing_moment_x", "housing_moment_y")
+"""Channels of the force (N) and the moment through the apex (N m) by which the support of a housing holds it at the start."""
 
 
 def named_entries(model: Model, *path: str) -> Entries:
@@ -204,6 +208,7 @@ def scene_entries(scene: Scene) -> Entries:
         **prefixed("effects", effects_entries(scene.effects)),
         "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **ring_entries(scene),
+        **housing_entries(scene),
         **elastic_entries(scene),
     }
 
@@ -219,6 +224,21 @@ def ring_entries(scene: Scene) -> Entries:
         **prefixed("ring_body", named_entries(body)),
         "ring_free": Entry(("ring",), 1.0 if scene.torque is None else 2.0),
         "ring_unbalance_angle": Entry(("ring_body", "unbalance_angle_deg"), math.radians(body.unbalance_angle_deg)),
+    }
+
+
+def housing_entries(scene: Scene) -> Entries:
+    """Numbers of an outer ring with its housing, by their names in the core's table; zero where it is held."""
+    # its fields name the parameters of an inner ring; the core has the same ones for both
+    names = {
+        str(extra["parameter"]).replace("ring_", "outer_", 1): name
+        for name, field in Housing.model_fields.items()
+        if isinstance(extra := field.json_schema_extra, dict) and "parameter" in extra
+    }
+    body = scene.housing
+    return {
+        "outer_free": Entry(("housing",), float(body is not None)),
+        **{key: Entry(("housing", name), 0.0 if body is None else getattr(body, name)) for key, name in names.items()},
     }
 
 
@@ -352,7 +372,7 @@ def motion_table(
 
     Returns
     -------
-    ndarray, shape (K, 34)
+    ndarray, shape (K, 44)
         Knot time, value and slope of each channel of `_core.motion_table()`, and 1 where a step need not end; the last
         `scene.period` repeats.
     """
@@ -374,6 +394,7 @@ def motion_table(
         "gravity_y": gravity[1],
         "gravity_z": gravity[2],
         **_loads_on_free_ring(scene),
+        **dict.fromkeys(HOUSING_LOADS, 0.0),
     }
     names = [name for name, _, _ in _core.motion_table()]
     if set(names) != set(channels):

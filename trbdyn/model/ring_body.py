@@ -1,4 +1,4 @@
-"""The inner ring as a body that moves, with the shaft that turns with it."""
+"""Rings as bodies that move: the inner one with the shaft that turns with it, the outer one with its housing."""
 
 from __future__ import annotations
 
@@ -16,7 +16,69 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 
-class RingBody(Model):
+class MovingBody(Model):
+    """A rigid body of revolution on springs and dampers to the surroundings: what `RingBody` and `Housing` have in common."""
+
+    mass: Annotated[Number, parameter("ring_mass", gt=0.0)]
+    inertia_axial: Annotated[Number, parameter("ring_inertia_axial", gt=0.0)]
+    inertia_transverse: Annotated[Number, parameter("ring_inertia_transverse", gt=0.0)]
+    mass_offset: Annotated[Number, parameter("ring_offset")] = 0.0
+    damping: Annotated[Number, parameter("ring_damping")] = 0.0
+    damping_turns: Annotated[Number, parameter("ring_damping_turns")] = 0.0
+    support_radial: Annotated[Number, parameter("ring_support_radial")] = 0.0
+    support_axial: Annotated[Number, parameter("ring_support_axial")] = 0.0
+    support_tilt: Annotated[Number, parameter("ring_support_tilt")] = 0.0
+    support_position: Annotated[Number, parameter("ring_support_position")] = 0.0
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        check_inertias(self.inertia_axial, self.inertia_transverse)
+        return self
+
+    @property
+    def is_supported(self) -> bool:
+        """Whether a spring holds it."""
+        return self.support_radial > 0.0 or self.support_axial > 0.0 or self.support_tilt > 0.0
+
+    @classmethod
+    def hollow_cylinder(
+        cls, *, mass: float, inner_diameter: float = 0.0, outer_diameter: float, length: float, mass_offset: float = 0.0
+    ) -> Self:
+        """A hollow or solid cylinder.
+
+        Parameters
+        ----------
+        mass : float
+            Mass (kg).
+        inner_diameter, outer_diameter : float
+            Its diameters (m).
+        length : float
+            Its length (m).
+        mass_offset : float
+            Axial position of its middle from the roller-centre plane (m).
+
+        Raises
+        ------
+        InputError
+            If a dimension is not allowed.
+        """
+        if not outer_diameter > 0.0:
+            raise InputError.of("outer_diameter", outer_diameter, "must be > 0 (m)")
+        if not 0.0 <= inner_diameter < outer_diameter:
+            limit = f"must be from 0 to less than outer_diameter = {outer_diameter:g} (m)"
+            raise InputError.of("inner_diameter", inner_diameter, limit)
+        if not length > 0.0:
+            raise InputError.of("length", length, "must be > 0 (m)")
+        squares = 0.25 * (math.pow(inner_diameter, 2) + math.pow(outer_diameter, 2))
+        return cls(
+            mass=mass,
+            inertia_axial=0.5 * mass * squares,
+            inertia_transverse=mass * (0.25 * squares + length**2 / 12.0),
+            mass_offset=mass_offset,
+        )
+
+
+class RingBody(MovingBody):
     """What moves with a free inner ring (``Scene(ring="free")``): the ring, and the shaft or rotor that is fixed to it.
 
     Parameters
@@ -60,60 +122,51 @@ class RingBody(Model):
 
     _root: ClassVar[str | None] = "ring_body"
 
-    mass: Annotated[Number, parameter("ring_mass", gt=0.0)]
-    inertia_axial: Annotated[Number, parameter("ring_inertia_axial", gt=0.0)]
-    inertia_transverse: Annotated[Number, parameter("ring_inertia_transverse", gt=0.0)]
-    mass_offset: Annotated[Number, parameter("ring_offset")] = 0.0
     unbalance: Annotated[Number, parameter("ring_unbalance")] = 0.0
     unbalance_angle_deg: Annotated[Number, unit("deg", ge=-360.0, le=360.0)] = 0.0
-    damping: Annotated[Number, parameter("ring_damping")] = 0.0
-    damping_turns: Annotated[Number, parameter("ring_damping_turns")] = 0.0
-    support_radial: Annotated[Number, parameter("ring_support_radial")] = 0.0
-    support_axial: Annotated[Number, parameter("ring_support_axial")] = 0.0
-    support_tilt: Annotated[Number, parameter("ring_support_tilt")] = 0.0
-    support_position: Annotated[Number, parameter("ring_support_position")] = 0.0
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        check_inertias(self.inertia_axial, self.inertia_transverse)
-        return self
 
-    @classmethod
-    def hollow_cylinder(
-        cls, *, mass: float, inner_diameter: float = 0.0, outer_diameter: float, length: float, mass_offset: float = 0.0
-    ) -> Self:
-        """A hollow or solid cylinder.
+class Housing(MovingBody):
+    """What moves with an outer ring that is not held in space (``Scene(housing=...)``): the ring, and the housing around it.
 
-        Parameters
-        ----------
-        mass : float
-            Mass (kg).
-        inner_diameter, outer_diameter : float
-            Its diameters (m).
-        length : float
-            Its length (m).
-        mass_offset : float
-            Axial position of its middle from the roller-centre plane (m).
+    At the start the outer ring stands at its nominal place, and its support carries the load of the bearing and the weight of the
+    housing. From there on the springs act on what moves the ring, and the dampers on its velocity.
 
-        Raises
-        ------
-        InputError
-            If a dimension is not allowed.
-        """
-        if not outer_diameter > 0.0:
-            raise InputError.of("outer_diameter", outer_diameter, "must be > 0 (m)")
-        if not 0.0 <= inner_diameter < outer_diameter:
-            limit = f"must be from 0 to less than outer_diameter = {outer_diameter:g} (m)"
-            raise InputError.of("inner_diameter", inner_diameter, limit)
-        if not length > 0.0:
-            raise InputError.of("length", length, "must be > 0 (m)")
-        squares = 0.25 * (math.pow(inner_diameter, 2) + math.pow(outer_diameter, 2))
-        return cls(
-            mass=mass,
-            inertia_axial=0.5 * mass * squares,
-            inertia_transverse=mass * (0.25 * squares + length**2 / 12.0),
-            mass_offset=mass_offset,
-        )
+    Parameters
+    ----------
+    mass : float
+        Mass (kg).
+    inertia_axial, inertia_transverse : float
+        Moments of inertia about the axis, and about a transverse axis through the centre of mass (kg m2).
+    mass_offset : float
+        Axial position of the centre of mass from the roller-centre plane, positive towards the rollers' large ends (m).
+    damping : float
+        Damping between the housing and the surroundings, of translations (N s/m).
+    damping_turns : float
+        The same of turns about transverse axes (N m s).
+    support_radial, support_axial : float
+        Stiffness of the support across and along the axis (N/m). Without stiffness the support keeps the force that it has at the
+        start, as a long spring does.
+    support_tilt : float
+        Its stiffness against tilt (N m/rad).
+    support_position : float
+        Axial position of the support from the roller-centre plane, positive towards the large ends (m).
+
+    Raises
+    ------
+    InputError
+        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> housing = trb.Housing.hollow_cylinder(mass=4.0, inner_diameter=0.11, outer_diameter=0.16, length=0.05)
+    >>> housing = housing.replace(support_radial=2e8, support_axial=1e8, support_tilt=2e5)
+    >>> round(1e3 * housing.inertia_axial, 2)
+    18.85
+    """
+
+    _root: ClassVar[str | None] = "housing"
 
 
 def check_inertias(axial: float, transverse: float) -> None:
@@ -145,8 +198,7 @@ def check_free_ring(scene: Scene) -> None:
         return
     if scene.ring_body is None:
         raise InputError.of("ring_body", MISSING, "must be given where ring = 'free': its mass and moments of inertia")
-    supported = scene.ring_body.support_radial or scene.ring_body.support_axial or scene.ring_body.support_tilt
-    if supported and scene.start.kind == "state" and scene.start.displacement is None:
+    if scene.ring_body.is_supported and scene.start.kind == "state" and scene.start.displacement is None:
         limit = (
             "must be given with a support of ring_body, which is without force there: Start.state(simulation.state) (m)"
         )
@@ -180,3 +232,28 @@ def check_free_ring(scene: Scene) -> None:
         if by_shaft and (scene.torque is not None or not is_constant(scene.speed_rpm)):
             limit = "must be 0 where the speed changes; use frequency_hz, or ring_body.unbalance without torque (N)"
             raise InputError.of(("rotating_load", "load"), scene.rotating_load.load, limit)
+
+
+def check_housing(scene: Scene) -> None:
+    """Refuse what does not go together with an outer ring that moves with its housing.
+
+    Raises
+    ------
+    InputError
+        If a scene has such a field.
+    """
+    if scene.housing is None:
+        return
+    if scene.ring == "follows":
+        limit = "must be 'held' or 'free' with a housing: under a load that changes both rings move, so the ring must be 'free'"
+        raise InputError.of("ring", scene.ring, limit)
+    if scene.start.kind == "state" and scene.start.displacement is None:
+        limit = "must be given with a housing, whose support carries the load of the bearing there: Start.state(sim.state) (m)"
+        raise InputError.of(("start", "displacement"), None, limit)
+    if scene.ring_body is None:
+        return
+    for name in ("support_radial", "support_axial"):
+        stiffness = getattr(scene.housing, name)
+        if not stiffness > 0.0 and not getattr(scene.ring_body, name) > 0.0:
+            limit = f"must be > 0 where ring = 'free', or ring_body.{name}: nothing else holds both rings in their place (N/m)"
+            raise InputError.of(("housing", name), stiffness, limit)

@@ -28,7 +28,7 @@ from trbdyn.model.motion import (
     value_at,
     values_of,
 )
-from trbdyn.model.ring_body import RingBody, check_free_ring
+from trbdyn.model.ring_body import Housing, RingBody, check_free_ring, check_housing
 from trbdyn.model.rotating_load import RotatingLoad, check_sign
 from trbdyn.model.shaft import angle_turned, turns
 from trbdyn.model.start import Start
@@ -105,6 +105,8 @@ class Scene(Model):
         equilibrium of the loads at the start, and no load needs to hold it later.
     ring_body : RingBody, optional
         Mass, inertia and unbalance of a free ring; needed with ``ring = 'free'``.
+    housing : Housing, optional
+        Mass, inertia and support of an outer ring that moves with its housing; without it the outer ring is held in space.
     torque : float or History, optional
         Torque on a free ring about its axis (N m), in place of a prescribed speed: `speed_rpm` is then its speed at the start.
     growth : Growth, optional
@@ -141,6 +143,7 @@ class Scene(Model):
     start: Start = Start()
     ring: Literal["held", "follows", "free"] = "held"
     ring_body: RingBody | None = None
+    housing: Housing | None = None
     torque: Annotated[Quantity | None, unit("N m")] = None
     growth: Growth | None = None
     elastic_cage: ElasticCage | None = None
@@ -335,6 +338,7 @@ class Scene(Model):
     def _check(self) -> Self:
         self._check_motion()
         check_free_ring(self)
+        check_housing(self)
         check_elastic_cage(self)
         self._check_load()
         self._check_planar()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -119,6 +120,8 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
     "torque_sources": (torque_sources, ("torque",)),
     "ring_orbit": (ring_orbit, ("ring",)),
     "ring_motion": (ring_motion, ("ring",)),
+    "housing_orbit": (partial(ring_orbit, ring="outer"), ("housing",)),
+    "housing_motion": (partial(ring_motion, ring="outer"), ("housing",)),
 }
 """Pictures of one result, by name, and the groups that each needs; those of the group ring, a ring that moves by itself."""
 
@@ -245,6 +248,8 @@ def drawable(result: Result) -> tuple[str, ...]:
     there = set(result.groups) - (set() if result.has_cage else {"pocket"})
     if not result.ring_moves:
         there -= {"ring"}
+    if not result.housing_moves:
+        there -= {"housing"}
     names = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
     return tuple(name for name in names if result.has_cage or name in _OF_ROLLERS or "cage" not in PICTURES[name][1])
 

@@ -1,4 +1,4 @@
-"""Pictures of an inner ring that moves: its path, its motion in time, and its spectrum with the bearing's orders."""
+"""Pictures of a ring that moves: its path, its motion in time, and its spectrum with the bearing's orders."""
 
 from __future__ import annotations
 
@@ -17,29 +17,51 @@ from trbdyn.results import observables
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
+Ring = Literal["inner", "outer"]
+
 __all__ = ["ring_motion", "ring_orbit", "ring_orders", "ring_spectrum"]
 
 
-def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> Axes:
-    """Path of the inner ring's centre in the plane of the rollers' centres, seen from the large ends, about its mean place.
+def _ring_of(ring: Ring) -> tuple[str, str]:
+    """Group of fields of a ring, and its name in titles.
+
+    Raises
+    ------
+    InputError
+        If there is no such ring.
+    """
+    known: dict[str, tuple[str, str]] = {
+        "inner": ("ring", "inner ring"),
+        "outer": ("housing", "outer ring with its housing"),
+    }
+    if ring not in known:
+        raise InputError.of("ring", ring, "must be 'inner' or 'outer'")
+    return known[ring]
+
+
+def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0, *, ring: Ring = "inner") -> Axes:
+    """Path of a ring's centre in the plane of the rollers' centres, seen from the large ends, about its mean place.
 
     Parameters
     ----------
     result : Result
-        Needs the groups time and ring.
+        Needs the groups time and ring, or housing for the outer ring.
     ax : Axes, optional
         Axes to draw into.
     last : float or None
         Number of last shaft revolutions to show; None shows all.
+    ring : {'inner', 'outer'}
+        Which ring: the outer one where it moves with a housing.
 
     Returns
     -------
     Axes
     """
+    group, name = _ring_of(ring)
     shown = last_turns(result, last)
-    place = 1e6 * shown["ring_position"][:, :2]
+    place = 1e6 * shown[f"{group}_position"][:, :2]
     mean, turned = place.mean(axis=0), revolutions(shown)
-    with canvas(ax, (5.2, 4.4), "Path of the inner ring's centre") as ax:
+    with canvas(ax, (5.2, 4.4), f"Path of the centre of the {name}") as ax:
         path = place - mean
         points = ax.scatter(path[:, 0], path[:, 1], c=turned, s=3, cmap=sequence(), linewidths=0)
         ax.plot(path[:, 0], path[:, 1], color=GREY, linewidth=0.4, zorder=0)
@@ -55,25 +77,28 @@ def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0
     return ax
 
 
-def ring_motion(result: Result, last: float | None = None) -> Figure:
-    """Displacement and tilt of the inner ring over the turns of the shaft.
+def ring_motion(result: Result, last: float | None = None, *, ring: Ring = "inner") -> Figure:
+    """Displacement and tilt of a ring over the turns of the shaft.
 
     Parameters
     ----------
     result : Result
-        Needs the groups time and ring.
+        Needs the groups time and ring, or housing for the outer ring.
     last : float or None
         Number of last shaft revolutions to show; None shows all.
+    ring : {'inner', 'outer'}
+        Which ring: the outer one where it moves with a housing.
 
     Returns
     -------
     Figure
     """
+    group, title = _ring_of(ring)
     shown = last_turns(result, last)
-    turned, place, tilt = revolutions(shown), 1e6 * shown["ring_position"], 1e3 * shown["ring_tilt"]
+    turned, place, tilt = revolutions(shown), 1e6 * shown[f"{group}_position"], 1e3 * shown[f"{group}_tilt"]
     with styled():
         figure, axes = plt.subplots(3, 1, figsize=(6.4, 5.6), sharex=True)
-        figure.suptitle("Motion of the inner ring", fontsize=11)
+        figure.suptitle(f"Motion of the {title}", fontsize=11)
         for index, name in enumerate("xy"):
             line(axes[0], turned, place[:, index], 2 * index, name, linestyle=("-", "--")[index])
             line(axes[2], turned, tilt[:, index], 2 * index, f"about {name}", linestyle=("-", "--")[index])
@@ -122,14 +147,15 @@ def ring_spectrum(
     along: Literal["x", "y", "z"] = "x",
     orders: float = 20.0,
     segments: int = 1,
+    ring: Ring = "inner",
 ) -> Axes:
-    """Spectrum of the inner ring's vibration over the order of the shaft, with the bearing's orders marked.
+    """Spectrum of a ring's vibration over the order of the shaft, with the bearing's orders marked.
 
     Parameters
     ----------
     result : Result
-        Needs the groups time and ring; best after settling, at constant speed. Vibrations faster than half of the records are
-        folded to lower orders: save often enough.
+        Needs the groups time and ring, or housing for the outer ring; best after settling, at constant speed. Vibrations
+        faster than half of the records are folded to lower orders: save often enough.
     ax : Axes, optional
         Axes to draw into.
     of : {'displacement', 'velocity', 'acceleration'}
@@ -140,6 +166,8 @@ def ring_spectrum(
         Highest order to show.
     segments : int
         Number of segments to average.
+    ring : {'inner', 'outer'}
+        Which ring: the outer one where it moves with a housing.
 
     Returns
     -------
@@ -155,13 +183,16 @@ def ring_spectrum(
         raise InputError.of("of", of, f"must be one of {', '.join(map(repr, powers))}")
     if along not in ("x", "y", "z"):
         raise InputError.of("along", along, "must be 'x', 'y' or 'z'")
-    frequency, density = observables.spectrum(result["time"], result["ring_velocity"][:, "xyz".index(along)], segments)
+    group, title = _ring_of(ring)
+    frequency, density = observables.spectrum(
+        result["time"], result[f"{group}_velocity"][:, "xyz".index(along)], segments
+    )
     shaft = abs(float(result.turning_speed.mean())) / (2.0 * np.pi)
     kept = (frequency > 0.0) & (frequency <= orders * shaft)
     scale = (2.0 * np.pi * frequency[kept]) ** powers[of]
     amplitude = np.sqrt(density[kept]) * scale
     unit = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s$^2$"}[of]
-    with canvas(ax, (6.4, 3.6), f"Vibration of the inner ring along {along}: {of}") as ax:
+    with canvas(ax, (6.4, 3.6), f"Vibration of the {title} along {along}: {of}") as ax:
         ax.semilogy(frequency[kept] / shaft, amplitude, color=COLOURS[0], linewidth=0.9)
         for index, (name, order) in enumerate(ring_orders(result).items()):
             if order <= orders:

@@ -125,5 +125,7 @@ CAPTIONS: Final[dict[str, str]] = {
     "preload_diagram": "How the bearings share an axial force: their axial loads over the axial place of the shaft.",
     "ring_orbit": "Path of the inner ring's centre about its mean place.",
     "ring_motion": "Radial and axial displacement and tilt of the inner ring over time.",
+    "housing_orbit": "Path of the outer ring's centre about its mean place: it moves with its housing.",
+    "housing_motion": "Radial and axial displacement and tilt of the outer ring with its housing over time.",
 }
 """A sentence for each picture."""

@@ -69,7 +69,7 @@ PEAKS = "peaks"
 SINGLE = ("contacts", "pocket", "torque", "power", "peaks")
 """Groups that are kept as float32, to 7 digits. Motion and energies, from which the others can be found again, are not."""
 
-DIGITS = {"cage": 12, "rollers": 12, "ring": 12, "peaks": 9}
+DIGITS = {"cage": 12, "rollers": 12, "ring": 12, "housing": 12, "peaks": 9}
 """Digits of the float64 numbers of a group, where it is not all: the bits of the others are zero, which packs better. A roller's
 place to 12 digits is exact to less than a ten-thousandth of a nanometre; peaks keep nothing but times as float64."""
 

@@ -302,6 +302,11 @@ class Result(Derived, Displayed):
         return "assembly" in self.meta or self.scene.ring_body is not None
 
     @property
+    def housing_moves(self) -> bool:
+        """Whether the outer ring is a body that moves with a housing."""
+        return self.scene.housing is not None
+
+    @property
     def groups(self) -> tuple[str, ...]:
         """Names of the recorded groups."""
         return field_table.groups(self._fields.values())

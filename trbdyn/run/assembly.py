@@ -39,6 +39,7 @@ from trbdyn.run.watch import RING_GONE, Account, Watch
 from trbdyn.statics.plausible import UnusualInput, dented
 from trbdyn.statics.seat import Seat, Seated, Seating, seat_all
 from trbdyn.statics.seating import seating_of
+from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
 Layout = list[tuple[str, int, tuple[int, ...]]]
@@ -71,8 +72,12 @@ class _Seen:
         layout = [(name, at + before, shape) for name, at, shape in models[number].record_layout()]
         self.sim, self.options, self.scene = sim, sim.options, list(sim.seats.values())[number].scene
         self._account: Account | None = None
+        self._number = number
         self._model = SimpleNamespace(record_layout=lambda: layout)
         self._motion = SimpleNamespace(open=lambda _, *given: sim._seated.open(*given))
+
+    def view(self, vector: Array) -> StateView:
+        return self.sim._seated.view(self._number, vector)
 
     @property
     def _core(self) -> _core.Simulation:
@@ -235,7 +240,9 @@ class AssemblySimulation:
         speed = self._first.turning_rpm
         options = self.options.replace(revolutions=revolutions, duration=duration)
         end = options.end_time(speed, self._reached)
-        options = options.replace(**keeping.kept_by_default(end - self._reached, speed, save_every, save_groups))  # type: ignore[arg-type]
+        housing = any(seat.scene.housing is not None for seat in self.seats.values())
+        kept = keeping.kept_by_default(end - self._reached, speed, save_every, save_groups, housing=housing)  # type: ignore[arg-type]
+        options = options.replace(**kept)
         assert options.save_every is not None
         times = output_times(self._reached, end, options.save_every)
         path = None if output is None else output_path(output, overwrite=overwrite)

@@ -28,6 +28,9 @@ MANY: Final = 20_000
 """Records beyond which the groups `DETAILS` are left out by default."""
 DETAILS: Final[tuple[Group, ...]] = ("contacts", "pocket")
 
+HOUSING: Final[Group] = "housing"
+"""Group that is kept by default where the outer ring moves with a housing."""
+
 
 def interval(length: float, speed_rpm: float | History) -> float:
     """Default interval of records (s) of a run of some length (s): a 32nd of a turn, or a half, a quarter and so on of that."""
@@ -39,7 +42,12 @@ def interval(length: float, speed_rpm: float | History) -> float:
 
 
 def kept_by_default(
-    length: float, speed_rpm: float | History, save_every: float | None, save_groups: Sequence[Group] | None
+    length: float,
+    speed_rpm: float | History,
+    save_every: float | None,
+    save_groups: Sequence[Group] | None,
+    *,
+    housing: bool = False,
 ) -> dict[str, Any]:
     """``save_every`` and ``save_groups`` of a run, by default where they are not given.
 
@@ -53,6 +61,8 @@ def kept_by_default(
         Time between records (s), as given.
     save_groups : sequence of str, optional
         Groups of quantities, as given.
+    housing : bool
+        Whether the outer ring moves with a housing: else there is nothing to keep of it.
     """
     every = interval(length, speed_rpm) if save_every is None else save_every
     if save_groups is not None:
@@ -60,11 +70,12 @@ def kept_by_default(
         groups = tuple(save_groups) if isinstance(save_groups, Iterable) else save_groups
         return {"save_every": every, "save_groups": groups}
     many = save_every is None and length / every > MANY * (1.0 + 1e-9)
-    return {"save_every": every, "save_groups": tuple(group for group in GROUPS if not (many and group in DETAILS))}
+    left = (*(DETAILS if many else ()), *(() if housing else (HOUSING,)))
+    return {"save_every": every, "save_groups": tuple(group for group in GROUPS if group not in left)}
 
 
 def said(save_every: float, groups: Sequence[str]) -> str:
     """What is kept, in words; what is left out is named."""
-    left = [group for group in GROUPS if group not in groups and group != "time"]
+    left = [group for group in GROUPS if group not in groups and group not in ("time", HOUSING)]
     words = f"a record every {1e3 * save_every:.4g} ms of bearing time"
     return words + (f", without the groups {', '.join(left)}" if left else ", all groups")

@@ -12,7 +12,9 @@ from trbdyn.model.core_table import SETTINGS, setting
 from trbdyn.model.motion import MAX_TIME, History
 from trbdyn.model.shaft import time_to_turn
 
-Group = Literal["time", "cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy", "peaks"]
+Group = Literal[
+    "time", "cage", "rollers", "contacts", "pocket", "ring", "housing", "torque", "power", "energy", "peaks"
+]
 GROUPS: Final[tuple[Group, ...]] = (
     "time",
     "cage",
@@ -20,6 +22,7 @@ GROUPS: Final[tuple[Group, ...]] = (
     "contacts",
     "pocket",
     "ring",
+    "housing",
     "torque",
     "power",
     "energy",

@@ -23,6 +23,7 @@ from trbdyn.statics.ring_motion import RingMotion
 from trbdyn.statics.state_view import StateView
 
 if TYPE_CHECKING:
+    from trbdyn.model.ring_body import MovingBody
     from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
@@ -37,7 +38,8 @@ class Replay:
     Parameters
     ----------
     result : Result
-        Needs the groups time, cage and rollers, and the group ring where the ring is free or sits on a shaft with other bearings.
+        Needs the groups time, cage and rollers, the group ring where the ring is free or sits on a shaft with other bearings,
+        and the group housing where the outer ring moves with a housing.
 
     Raises
     ------
@@ -47,7 +49,8 @@ class Replay:
 
     def __init__(self, result: Result) -> None:
         self._on_shaft = "assembly" in result.meta
-        for group in (*NEEDED, "ring") if result.ring_moves else NEEDED:
+        moving = (*(("ring",) if result.ring_moves else ()), *(("housing",) if result.housing_moves else ()))
+        for group in (*NEEDED, *moving):
             if group not in result.groups:
                 raise InputError.of(
                     "result", f"groups {', '.join(result.groups)}", f"must have the recorded group {group!r}"
@@ -103,7 +106,11 @@ class Replay:
         if result.has_cage:
             self._put_cage(view, index, frame, orbit)
         if result.scene.ring_body is not None:
-            self._put_ring(view, index)
+            angle, speed = self._prescribed(index)
+            self._put_ring(view, index, result.scene.ring_body, "inner_ring", "ring", speed)
+            view["inner_ring_psi"] = float(result["shaft_angle"][index]) - angle
+        if result.scene.housing is not None:
+            self._put_ring(view, index, result.scene.housing, "outer_ring", "housing", outer_speed)
         return vector
 
     def _put_cage(self, view: object, index: int, frame: float, orbit: float) -> None:
@@ -134,21 +141,19 @@ class Replay:
             for mode, (amplitude, rate) in enumerate(zip(result["cage_mode"][index], rates, strict=True)):
                 view[f"cage_q{mode}"], view[f"cage_p{mode}"] = speeds.max() * amplitude, rate  # type: ignore[index]
 
-    def _put_ring(self, view: StateView, index: int) -> None:
-        result, body = self.result, self.result.scene.ring_body
-        assert body is not None
-        turn_x, turn_y = result["ring_tilt"][index]
+    def _put_ring(self, view: StateView, index: int, body: MovingBody, ring: str, group: str, speed: float) -> None:
+        """Put a ring that moves, from its group of the result; speed: what is prescribed about its axis (rad/s)."""
+        result = self.result
+        turn_x, turn_y = result[f"{group}_tilt"][index]
         axis = np.array([np.tan(turn_y), -np.tan(turn_x), 1.0])
         axis /= np.linalg.norm(axis)
-        put_axis(view, result["ring_position"][index], axis, body.mass_offset)
-        spin, arm = result["ring_angular_velocity"][index], body.mass_offset * axis
-        for name, value in zip("xyz", result["ring_velocity"][index] + np.cross(spin, arm), strict=True):
-            view[f"inner_ring_v_{name}"] = value
-        own = _in_frame(spin[None, :], *(np.array([float(view[f"inner_ring_{name}"])]) for name in ("skew", "tilt")))[0]
-        angle, speed = self._prescribed(index)
-        values = (*own[:2], own[2] - speed, float(result["shaft_angle"][index]) - angle)
-        for name, value in zip(("omega_n", "omega_t", "omega_a", "psi"), values, strict=True):
-            view[f"inner_ring_{name}"] = value
+        put_axis(view, result[f"{group}_position"][index], axis, body.mass_offset, ring)
+        spin, arm = result[f"{group}_angular_velocity"][index], body.mass_offset * axis
+        for name, value in zip("xyz", result[f"{group}_velocity"][index] + np.cross(spin, arm), strict=True):
+            view[f"{ring}_v_{name}"] = value
+        own = _in_frame(spin[None, :], *(np.array([float(view[f"{ring}_{name}"])]) for name in ("skew", "tilt")))[0]
+        for name, value in zip(("omega_n", "omega_t", "omega_a"), (*own[:2], own[2] - speed), strict=True):
+            view[f"{ring}_{name}"] = value
 
     def _prescribed(self, index: int) -> tuple[float, float]:
         """Angle (rad) and speed (rad/s) that count as pure rolling: those of the shaft, unless a torque turns it."""

@@ -82,7 +82,13 @@ def resume(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint belongs to another run than {output}"
             )
         sim, options = _revive(output, found, instruction_set, tell)
-        kept = kept_by_default(found.end - found.start, sim.scene.turning_rpm, options.save_every, options.save_groups)
+        kept = kept_by_default(
+            found.end - found.start,
+            sim.scene.turning_rpm,
+            options.save_every,
+            options.save_groups,
+            housing=sim.scene.housing is not None,
+        )
         times = output_times(found.start, found.end, kept["save_every"])
         if found.done >= times.size:
             raise FileError(

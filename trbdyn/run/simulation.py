@@ -378,7 +378,13 @@ class Simulation(Displayed):
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
         end = options.end_time(self.scene.turning_rpm, self._reached)
-        kept = kept_by_default(end - self._reached, self.scene.turning_rpm, save_every, save_groups)
+        kept = kept_by_default(
+            end - self._reached,
+            self.scene.turning_rpm,
+            save_every,
+            save_groups,
+            housing=self.scene.housing is not None,
+        )
         options = options.replace(**kept)
         times = output_times(self._reached, end, kept["save_every"])
         run = Run(self, options, times, callback)

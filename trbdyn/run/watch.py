@@ -341,23 +341,24 @@ class Watch:
     def _look_at_ring(self) -> str | None:
         """A free ring that nothing holds any more leaves its bearing: what follows means nothing."""
         sim = self._sim
-        if sim.scene.ring_body is None:
+        free = {"inner": sim.scene.ring_body, "outer": sim.scene.housing}
+        rings = [ring for ring, body in free.items() if body is not None]
+        if not rings:
             return None
         state, diameter = sim.view(sim._core.state()), sim.scene.bearing.roller.diameter
-        moved = max(abs(float(state[f"inner_ring_{name}"])) for name in "xyz")
+        moved, ring = max((abs(float(state[f"{ring}_ring_{name}"])), ring) for ring in rings for name in "xyz")
         if not moved > RING_LOOSE * diameter:
             return None
         text = (
-            f"at {sim._core.time:.6g} s the free inner ring stands {1e3 * moved:.3g} mm from its place, more than a tenth of a "
+            f"at {sim._core.time:.6g} s the free {ring} ring stands {1e3 * moved:.3g} mm from its place, more than a tenth of a "
             "roller's diameter: nothing holds it there"
         )
         if "ring" not in self._noted:
             self._say(text, "ring")
-        return (
-            None
-            if moved <= RING_GONE * diameter
-            else f"ended: {text}. Look for an axial load that holds it, a support of ring_body, or effects.back_rib"
-        )
+        if moved <= RING_GONE * diameter:
+            return None
+        body = "ring_body" if ring == "inner" else "housing"
+        return f"ended: {text}. Look for an axial load that holds it, a support of {body}, or effects.back_rib"
 
     def _say(self, text: str, kind: str) -> None:
         """Keep a warning with the result, and show the first of its kind on the screen."""

@@ -50,6 +50,8 @@ class Equilibrium:
         Offsets of each roller: radius, axial position (m), tilt, skew (rad).
     outer_load, inner_load, rib_load : ndarray, shape (Z,)
         Normal loads (N).
+    on_outer : ndarray, shape (5,)
+        What the rollers do to the outer ring: force (N), and moment about x, y through the apex (N m).
     residual : float
         Largest force left unbalanced (N).
     iterations : int
@@ -62,6 +64,7 @@ class Equilibrium:
     outer_load: Array
     inner_load: Array
     rib_load: Array
+    on_outer: Array
     residual: float
     iterations: int
 
@@ -183,6 +186,7 @@ class EquilibriumSolver:
             outer_load=outer,
             inner_load=inner,
             rib_load=rib,
+            on_outer=found["on_other"],
             residual=found["residual"],
             iterations=found["iterations"],
         )

@@ -43,9 +43,9 @@ def place_ring(state: StateView, displacement: Array, offset: float) -> None:
     put_axis(state, displacement[:3], axis_of(displacement[3:]), offset)
 
 
-def put_axis(state: StateView, place: Array, axis: Array, offset: float) -> None:
+def put_axis(state: StateView, place: Array, axis: Array, offset: float, ring: str = "inner_ring") -> None:
     """Put a free ring by the place of its roller-centre plane (m), shape (3,), and by its axis, shape (3,)."""
     for name, value in zip("xyz", place + offset * (axis - _ALONG), strict=True):
-        state[f"inner_ring_{name}"] = value
-    state["inner_ring_skew"] = math.asin(min(max(axis[1], -1.0), 1.0))
-    state["inner_ring_tilt"] = math.atan2(axis[0], axis[2])
+        state[f"{ring}_{name}"] = value
+    state[f"{ring}_skew"] = math.asin(min(max(axis[1], -1.0), 1.0))
+    state[f"{ring}_tilt"] = math.atan2(axis[0], axis[2])

@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from trbdyn import _core
 from trbdyn.errors import InputError, LoadError
-from trbdyn.model.flatten import motion_table, ring_load
+from trbdyn.model.flatten import HOUSING_LOADS, motion_table, ring_load
 from trbdyn.model.motion import History, is_constant
 from trbdyn.model.shaft import angle_turned
 from trbdyn.statics.core_model import normal_contacts
@@ -52,7 +52,7 @@ class RingMotion:
 
     Attributes
     ----------
-    table : ndarray, shape (K, 34)
+    table : ndarray, shape (K, 44)
         As of `trbdyn.model.flatten.motion_table`.
     period : float
         After the last knot the last part of the table, this long, repeats (s); 0: everything stays.
@@ -140,6 +140,20 @@ def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
     )
 
 
+def housing_hold(scene: Scene, equilibrium: Equilibrium) -> dict[str, float]:
+    """What the support of a housing carries at the start, by the names of the core's channels (N, N m).
+
+    It is the load of the bearing in its equilibrium, and the weight of the housing; nothing without a housing.
+    """
+    if scene.housing is None:
+        return {}
+    weight = scene.housing.mass * ring_load(scene, scene.start.time).gravity
+    arm = scene.bearing.geometry.centre_plane + scene.housing.mass_offset
+    turning = arm * np.array([-weight[1], weight[0]])
+    held = -equilibrium.on_outer - np.concatenate([weight, turning])
+    return dict(zip(HOUSING_LOADS, held.tolist(), strict=True))
+
+
 def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibrium]:
     """Prescribed motion of the ring as the core takes it, and the equilibrium at the start.
 
@@ -164,7 +178,7 @@ def ring_motion(model: _core.Model, scene: Scene) -> tuple[RingMotion, Equilibri
     joints: Array | None = None
     if scene.ring == "follows":
         path, joints = find_path(scene, EquilibriumSolver(normal_contacts(scene), scene, even), at_start)
-    table = motion_table(scene, path, joints)
+    table = motion_table(scene, path, joints, housing_hold(scene, at_start))
     moves = len(table) > 1
     # a saved state of a shaft at constant speed: its angle is counted from t = 0, without any rounding
     from_zero = not moves and scene.start.kind == "state" and scene.start.shaft_angle is None

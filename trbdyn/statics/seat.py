@@ -39,7 +39,7 @@ from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium
 from trbdyn.statics.free_ring import axis_of, put_axis, turn_of
 from trbdyn.statics.plausible import unusual
-from trbdyn.statics.ring_motion import RingMotion, ring_motion
+from trbdyn.statics.ring_motion import RingMotion, housing_hold, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
 
@@ -196,7 +196,7 @@ def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
     held = [build_model(seat.scene, instruction_set) for seat in placed]
     found = [ring_motion(model, seat.scene) for model, seat in zip(held, placed, strict=True)]
     motions = [motion for motion, _ in found]
-    motions[0] = _with_loads(motions[0], placed[0].scene, loads)
+    motions[0] = _with_loads(motions[0], placed[0].scene, {**loads, **housing_hold(placed[0].scene, found[0][1])})
     free = 2.0 if "torque" in loads else 1.0
     models = tuple(_model(seat, body, number, free, instruction_set) for number, seat in enumerate(placed))
     size, layouts = _core.state_layouts(models)
