@@ -242,6 +242,28 @@ def test_housings_on_one_shaft(tmp_path: Path) -> None:
         made.replace(bearings=loose)
 
 
+def test_an_outer_ring_on_a_spring_slides_to_the_next_equilibrium() -> None:
+    """The gear pushes the shaft away from the sprung bearing: the spring's ring follows by what the equilibria say."""
+    shaft = Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    load = ShaftLoad(position=0.02, force=(0.0, 500.0, History.ramp(0.004, 0.012, 0.0, -1500.0)))
+    made = Assembly.pair(
+        trb.cases.rig_30310(), "back to back", spread=0.15, shaft=shaft, speed_rpm=3000.0, loads=[load]
+    )
+    left, right = made.bearings
+    sliding = Housing.hollow_cylinder(mass=0.5, inner_diameter=0.08, outer_diameter=0.11, length=0.023)
+    sliding = sliding.replace(support_radial=1e9, support_axial=2e7, support_tilt=1e6, damping=2e3)
+    right = right.replace(spring=trb.PreloadSpring(force=2000.0, stiffness=2e7), housing=sliding)
+    sprung = made.replace(bearings=(left, right))
+    result = trb.AssemblySimulation(sprung).run(duration=0.03)
+    way = np.diff([trb.equilibrium(sprung, time=time).outer_ring_places[1] for time in (0.0, 0.03)])[0]
+    assert abs(way) > 5e-6
+    found = result["right"]["housing_position"][-len(result.time) // 5 :, 2].mean()
+    assert found == pytest.approx(-way, rel=0.06)  # friction of the rollers takes a few newtons
+    assert max(one.energy_closure for one in result.values()) < 1e-3
+    with pytest.raises(InputError, match=r"housing\.support_axial .*must be 2e\+07, the stiffness of the spring"):
+        right.replace(housing=sliding.replace(support_axial=1e7))
+
+
 def test_pictures(tmp_path: Path) -> None:
     result = Simulation(scene_of(HOUSING, ROTOR), accuracy="fast").run(revolutions=2, save_every=1e-4)
     written = trb.plot.all(result, tmp_path, only=("housing_orbit", "housing_motion"))

@@ -167,8 +167,8 @@ class ShaftBearing(Model):
     elastic_cage : ElasticCage, optional
         Deform the cage in runs, as in a `Scene`.
     housing : Housing, optional
-        Let the outer ring move with a housing of its own in runs, as in a `Scene`. One housing around several bearings is not
-        modelled.
+        Let the outer ring move with a housing of its own in runs, as in a `Scene`; with a `spring`, whose stiffness is then its
+        `support_axial`, what slides. One housing around several bearings is not modelled.
     """
 
     _root: ClassVar[str | None] = "bearings"
@@ -199,6 +199,13 @@ class ShaftBearing(Model):
         if self.spring is not None and self.end_play != 0.0:
             limit = "must be 0 with a spring, which moves the outer ring to the rollers (m)"
             raise InputError.of("end_play", self.end_play, limit)
+        if self.spring is not None and self.housing is not None:
+            stiffness = self.spring.stiffness
+            if not math.isclose(self.housing.support_axial, stiffness, rel_tol=1e-9):
+                limit = (
+                    f"must be {stiffness:g}, the stiffness of the spring that holds the outer ring along the axis (N/m)"
+                )
+                raise InputError.of(("housing", "support_axial"), self.housing.support_axial, limit)
         return self
 
     @property
