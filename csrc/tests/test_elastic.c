@@ -209,6 +209,31 @@ static void test_clearance(void)
   take_down(&b);
 }
 
+/* No vertex of a face moves by more, for a unit of a mode's amplitude, than the bound of its kind of gap says. */
+static void test_ways(void)
+{
+  const trb_params p = params_of(4);
+  trb_system      *system = rig_system(&p);
+  const trb_model *m = system->model;
+  const trb_modes *modes = &m->modes;
+  double           ways[4 * TRB_N_GAPS];
+  for (int j = 0; j < m->n_rollers; j++) {
+    trb_pair_pocket.ways(m, j, ways);
+    for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
+      const trb_polygon *face = &m->faces[f].surface;
+      const int          gap = m->faces[f].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
+      const double      *shape = trb_shapes_of(modes, f);
+      for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE)
+        for (int k = 0; k < face->n; k++) {
+          const trb_vec3 from = trb_sub(trb_polygon_vertex(face, k), modes->middle[f]);
+          const trb_vec3 turned = trb_cross(trb_v(shape[3], shape[4], shape[5]), from);
+          CHECK(ways[i * TRB_N_GAPS + gap] >= trb_norm(trb_add(trb_v(shape[0], shape[1], shape[2]), turned)));
+        }
+    }
+  }
+  rig_free(system);
+}
+
 static double balance(const bench *b, double time, const double *y)
 {
   const double *q = y + trb_state_quadrature(b->system);
@@ -254,6 +279,7 @@ int main(void)
   test_jacobian(4, 1e-5, 20.0, 0.05);
   test_jacobian(4, 1e-5, INFINITY, 0.1);
   test_clearance();
+  test_ways();
   test_steps("bdf");
   test_steps("erk");
   return check_report();

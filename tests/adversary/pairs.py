@@ -90,6 +90,13 @@ def pair(rng: np.random.Generator) -> Table:
             table[name] = draw()
     if table.get("torque") is not None:
         table.pop("unbalance_share", None)
+    for side in ("left", "right"):
+        if rng.random() < 0.25:
+            table[side] |= {
+                "housing_mass": scenes._log(rng, 0.2, 100.0),
+                "housing_stiffness": scenes._log(rng, 1e7, 1e10),
+                "housing_damping": scenes._log(rng, 1.0, 1e5),
+            }
     return table
 
 
@@ -107,9 +114,13 @@ def make(table: Table) -> trb.Assembly:
     for name, sign, small in zip(("left", "right"), (-1.0, 1.0), ends, strict=True):
         own = scenes.ORDINARY | {"seed": t["seed"]} | t[name]
         sprung = t["spring"] is not None and name == "right"
+        bearing = scenes._bearing(own)
+        housing = None if own["housing_mass"] is None else scenes._housing(own, bearing)
+        if housing is not None and sprung:
+            housing = housing.replace(support_axial=0.0)  # the spring's force does not change
         bearings.append(
             trb.ShaftBearing(
-                scenes._bearing(own),
+                bearing,
                 name=name,
                 position=0.5 * sign * t["spread"],
                 small_ends=small,
@@ -118,6 +129,7 @@ def make(table: Table) -> trb.Assembly:
                 lubricant=trb.lubricants.vg100(own["temperature_c"]),
                 effects=scenes._effects(own),
                 start=scenes._start_of(own),
+                housing=housing,
             )
         )
     mass, speed = t["shaft_mass"], abs(t["speed_rpm"]) * math.pi / 30.0

@@ -132,6 +132,12 @@ def test_own_numbers_have_no_law_of_another_oil() -> None:
     assert float(contact_viscosity(own, np.array(1e9))) == pytest.approx(own.viscosity * math.exp(float(found)))
 
 
+def test_an_oil_gives_its_own_stress_and_conductivity() -> None:
+    oil = Oil(name="own", nu40=68.0, nu100=8.7, eyring_stress=7e6, conductivity=0.2)
+    for lubricant in (oil.at(80.0), Lubricant(oil=oil, temperature_c=60.0)):
+        assert (lubricant.eyring_stress, lubricant.conductivity) == (7e6, 0.2)
+
+
 @pytest.mark.parametrize(
     ("make", "field", "says"),
     [

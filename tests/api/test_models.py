@@ -114,6 +114,15 @@ class TestLubricant:
             vg100().replace(viscosity=5e-5, pressure_law="roelands")
 
 
+@pytest.mark.parametrize(
+    ("values", "place"),
+    [((0.0, 1.0, 1e308, 0.0), 2), ((0.0, 1e-3, 2e-3, 1.7e308), 3), ((-1.7e308, 1.7e308, 0.0, 0.0), 1)],
+)
+def test_a_curve_that_overflows_names_its_steepest_step(values: tuple[float, ...], place: int) -> None:
+    with pytest.raises(InputError, match=rf"history\.values\[{place}\] .*the curve overflows"):
+        History(times=(0.0, 1e-5, 2e-5, 3e-5), values=values)
+
+
 class TestScene:
     def test_round_trip_is_exact(self, rig: Bearing) -> None:
         awkward = 0.1 + 0.2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -246,6 +247,13 @@ def test_another_instruction_set_is_said_and_can_be_forced(broken: Path) -> None
         result = trb.resume(broken, instruction_set="scalar")
     assert result.success
     assert result.meta["instruction_set"] == "scalar"
+
+
+def test_the_same_instruction_set_by_name_says_nothing(broken: Path, reference: trb.Result) -> None:
+    named = checkpoint.read(checkpoint_path(broken)).instruction_set
+    with warnings.catch_warnings():
+        warnings.filterwarnings("error", message="going on with instruction set")
+        same(trb.resume(broken, instruction_set=named), reference)
 
 
 def test_an_instruction_set_that_this_machine_lacks(broken: Path) -> None:
