@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 import trbdyn as trb
 from trbdyn import Assembly, Effects, History, Housing, InputError, RingBody, Scene, Shaft, ShaftLoad, Simulation, Start
 from trbdyn.run.replay import Replay
+from trbdyn.study.planning.probes import carried_over
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,10 @@ FRICTIONLESS = Effects.standard().replace(
     rolling_resistance=False,
     rolling_pressure_force=False,
 )
+
+
+class Cut(BaseException):
+    """In place of a kill."""
 
 
 def scene_of(housing: Housing | None = HOUSING, rotor: RingBody | None = None, **given: Any) -> Scene:
@@ -175,6 +180,37 @@ def test_a_run_from_a_state_goes_on_and_records_are_found_again(rotor: RingBody 
         assert record[name] == pytest.approx(result[name][-1], rel=1e-5, abs=2e-4), name
     with pytest.raises(InputError, match="must have the recorded group 'housing'"):
         Replay(result.select(("cage", "rollers", "ring")))
+
+
+def test_states_are_handed_on_with_where_the_ring_stood(tmp_path: Path) -> None:
+    """By checkpoints, and by plans, which go on from a state with other switches."""
+    scene = scene_of(HOUSING.replace(damping=300.0), start=Start.whirl(0.7))
+    whole = Simulation(scene).run(duration=0.012, save_every=1e-3, checkpoint_every=0.004, output=tmp_path / "whole.h5")
+
+    def cut(simulation: Simulation) -> None:
+        if simulation.time > 0.007:
+            raise Cut
+
+    path = tmp_path / "cut.h5"
+    with pytest.raises(Cut):
+        Simulation(scene).run(duration=0.012, save_every=1e-3, checkpoint_every=0.004, output=path, callback=cut)
+    again = trb.resume(path)
+    assert np.array_equal(again["housing_position"], whole["housing_position"])
+    simulation = Simulation(scene)
+    simulation.run(duration=0.004)
+    bare = scene.replace(effects=scene.effects.replace(bodies="rollers"), start=Start.equal())
+    there = carried_over(bare, Start.state(simulation.state), scene)
+    assert there.start.displacement == pytest.approx(simulation.state.displacement)
+    assert Simulation(there).record()["housing_position"] == pytest.approx(
+        simulation.record()["housing_position"], abs=1e-15
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rotor", [None, ROTOR.replace(support_radial=1e8)])
+def test_a_plan_knows_springs(rotor: RingBody | None) -> None:
+    plan = trb.plan(scene_of(HOUSING, rotor), want={"torque": 0.05}, effort=10.0)
+    assert plan.promised["torque"] < 0.05
 
 
 def test_every_number_of_the_housing_acts() -> None:

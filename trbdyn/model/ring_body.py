@@ -234,6 +234,11 @@ def check_free_ring(scene: Scene) -> None:
             raise InputError.of(("rotating_load", "load"), scene.rotating_load.load, limit)
 
 
+def counts_from_the_start(scene: Scene) -> bool:
+    """Whether forces count from where the inner ring stood at the start: of a supported shaft, or of a housing's support."""
+    return scene.housing is not None or (scene.ring_body is not None and scene.ring_body.is_supported)
+
+
 def check_housing(scene: Scene) -> None:
     """Refuse what does not go together with an outer ring that moves with its housing.
 

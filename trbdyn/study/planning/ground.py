@@ -13,9 +13,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
+from trbdyn.model.ring_body import counts_from_the_start
 from trbdyn.model.scene import Scene, Start
 from trbdyn.results.confidence import confidence
 from trbdyn.results.summary import averages
+from trbdyn.statics.core_model import build_model
+from trbdyn.statics.ring_motion import ring_motion
 from trbdyn.study.planning.candidates import USUAL_ACCURACY
 from trbdyn.study.planning.probes import BATCHES, TOO_LONG, Array, Length, in_batches, run_quietly
 from trbdyn.study.planning.sizes import least_size, size_of
@@ -128,7 +131,11 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     drift = np.zeros(len(names)) if settling.settled else _drift(result, names, size, settling)
     assert result.final_state is not None
     angle = scene.start_shaft_angle + scene.shaft_turn(result.final_time)
-    state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle)
+    stood = None
+    if counts_from_the_start(scene):
+        motion, _ = ring_motion(build_model(scene), scene)
+        stood = motion.displacement(result.final_time)
+    state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle, displacement=stood)
     return Ground(state, value, size, scatter, drift, end - settled_from, settling.creep_time, spent, tuple(notes))
 
 

@@ -157,7 +157,8 @@ def carried_over(scene: Scene, state: Start, of: Scene) -> Scene:
     for name in set(old.names) & set(new.names):
         if old[name].shape == new[name].shape:
             new[name] = old[name]
-    return scene.replace(start=Start.state(vector, time=state.time, shaft_angle=state.shaft_angle))
+    start = Start.state(vector, time=state.time, shaft_angle=state.shaft_angle, displacement=state.displacement)
+    return scene.replace(start=start)
 
 
 def in_batches(result: Result, names: Sequence[str], transient: float, number: int = BATCHES) -> dict[str, Array]:
