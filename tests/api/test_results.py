@@ -298,6 +298,7 @@ def test_xarray_opens_a_file(tmp_path: Path, synthetic: Any, stub_scene: Any, wh
     write(path, synthetic, stub_scene)
     wanted = load(path).to_xarray()
     with xarray.open_dataset(path, engine="h5netcdf") as data:
+        assert len(load(path)) == data.sizes["time"]  # while it is open there, with locks of its own
         assert dict(data.sizes) == dict(wanted.sizes)
         for name, variable in wanted.variables.items():
             assert data[name].dims == variable.dims
