@@ -91,6 +91,24 @@ def rows_of(scene: Scene, turns: float) -> Iterable[tuple[str, dict[str, Any]]]:
 GROUPS = ("cage", "rollers", "contacts", "pocket", "ring", "torque", "power", "energy", "peaks")
 
 
+def by_point(rows: Sequence[Mapping[str, Any]]) -> str:
+    """The table of the page: a line for each point, with what the rings have side by side."""
+    points: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}
+    for row in rows:
+        points.setdefault((row["effects"], row["point"].replace("_", " ")), {})[row["ring"]] = row
+    shown = {
+        "orbit": ("orbit", list(RINGS)),
+        "torque (N m)": ("torque", [name for name in RINGS if "start" not in name]),
+        "radial motion of the ring (um)": ("ring_radial", [name for name in RINGS if name.startswith("free")]),
+    }
+    columns = {f"{words}: {name}": (key, name) for words, (key, names) in shown.items() for name in names}
+    lines = [
+        {"effects": used, "point": point} | {title: of[name][key] for title, (key, name) in columns.items()}
+        for (used, point), of in points.items()
+    ]
+    return common.table(lines, lines[0])
+
+
 def largest(rows: Sequence[Mapping[str, Any]], wanted: Iterable[str]) -> float:
     """Largest change of the orbit from that of the held ring."""
     held = {(row["effects"], row["point"]): row["orbit"] for row in rows if row["ring"] == "held"}
@@ -112,6 +130,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     report.summary["largest_change"] = largest(report.results, ["free, 0.7 kg", "free, 20 kg, damped"])
     report.summary["largest_scatter"] = largest(report.results, ["held, other start"])
     print("\n" + common.table(report.results, SHOWN))
+    report.readme = by_point(report.results)
     report.finish()
     return report
 
