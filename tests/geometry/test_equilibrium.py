@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import brentq, fsolve
 
-from trbdyn import Effects, LoadError, Scene, Simulation, cases
+from trbdyn import Effects, LoadError, RingBody, Scene, Simulation, cases
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.statics.equilibrium import most_radial_load
@@ -231,6 +231,24 @@ class TestMoments:
 
 
 class TestTooMuch:
+    def test_a_balance_far_away_is_none(self) -> None:
+        """Rollers that cannot skew hold a ring that tilts by 40 mrad under a radial load; the run began with a blow of 50 kJ."""
+        body = RingBody.hollow_cylinder(mass=17.0, outer_diameter=0.055, length=0.11, mass_offset=0.108)
+        scene = Scene(
+            cases.bearing_32216(),
+            speed_rpm=473.0,
+            axial_load=3679.0,
+            radial_load=9197.0,
+            radial_direction_deg=-114.8,
+            effects=Effects.standard().replace(planar=True, front_rib=False),
+            ring="free",
+            ring_body=body,
+            moment_x=0.0,
+            moment_y=0.0,
+        )
+        with pytest.raises(LoadError, match=r"more than a tenth of a roller's diameter"):
+            Simulation(scene)
+
     def test_radial_load_that_lifts_the_ring(self, rig: Bearing) -> None:
         limit = 4930.0 / math.tan(CUP)
         with pytest.raises(InputError, match="radial_load"):

@@ -32,6 +32,9 @@ RAISED_BY: Final = 0.25
 RAISED_LEAST: Final = 1e-3
 """Least step of the same: as well is the largest load known that the error names."""
 
+FAR_SHARE: Final = 0.1
+"""Way of a free ring at the pitch circle, over a roller's diameter, beyond which it is loose; usual ones are below 0.03."""
+
 NEAR_SHARE: Final = 0.8
 """Share of the largest radial load from which a load that was not balanced is said to be too close to it."""
 
@@ -178,6 +181,8 @@ class EquilibriumSolver:
                 found, largest = self._raised(load)
             if found is None:
                 raise LoadError(_why_not(self.scene, time, str(error), largest)) from None
+        if displacement is None and self.scene.ring == "free":
+            self._check_place(load, found["displacement"], time)
         outer, inner, rib = np.asarray(found["loads"]).T
         return Equilibrium(
             displacement=found["displacement"],
@@ -190,6 +195,18 @@ class EquilibriumSolver:
             residual=found["residual"],
             iterations=found["iterations"],
         )
+
+    def _check_place(self, load: RingLoad, place: Array, time: float) -> None:
+        """Refuse a balance so far away that the watch over a run would call a free ring loose there."""
+        arm = 0.5 * self.scene.bearing.pitch_diameter
+        moved = np.abs(place - load.displacement) * np.array([1.0, 1.0, 1.0, arm, arm]) * (load.fixed == 0.0)
+        farthest = float(moved.max())
+        if farthest > FAR_SHARE * self.scene.bearing.roller.diameter:
+            said = (
+                f"a balance was found where the ring stands {1e3 * farthest:.3g} mm away, more than a tenth of a roller's "
+                "diameter: nothing holds it there"
+            )
+            raise LoadError(_why_not(self.scene, time, said, 0.0))
 
     def _balanced(
         self, load: RingLoad, force: Array, fixed: Array, place: Array, rollers: Array | None, with_loads: bool = False
