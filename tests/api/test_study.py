@@ -551,7 +551,7 @@ class TestCommand:
         words = [sys.executable, "-P", "-m", "trbdyn", "sweep", str(file), "-o", str(out), "--workers", "2", "--quiet"]
         with subprocess.Popen(words, start_new_session=True, stderr=subprocess.PIPE) as process:
             for _ in range(600):
-                if (out / INDEX).is_file():
+                if (out / INDEX).is_file() and (out / INDEX).read_text(encoding="utf-8").endswith("\n"):
                     break
                 time.sleep(0.1)
             os.killpg(process.pid, signal.SIGINT)

@@ -211,9 +211,8 @@ def open_to_read(path: Path) -> h5py.File:
         try:
             return h5py.File(path, "r", locking=False)
         except OSError as error:
-            if "flag values don't match" in str(
-                error
-            ):  # open in this process by others, such as xarray, with locks of their own
+            # open in this process by others, such as xarray, with locks of their own
+            if "flag values don't match" in str(error):
                 return h5py.File(path, "r")
             if "already open for" not in str(error):
                 raise
