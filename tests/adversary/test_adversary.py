@@ -21,7 +21,14 @@ FOUND = sorted((HERE / "found").glob("*.json"))
 
 def _seeds() -> list[Any]:
     """Five scenes of each kind; of those that take longer the quickest, and the others among the slow tests."""
-    quick = {"light": (0,), "pair": (0, 3), "pieces": (0,), "repeating": (2, 3)}
+    quick = {"light": (0,), "pair": (3,), "pieces": (0,), "repeating": (2,)}
+    quick |= {
+        "free": (0, 1, 3, 4),
+        "guided": (0, 1, 2),
+        "outer": (0, 1, 3, 4),
+        "usual": (1, 2, 3, 4),
+        "wide": (0, 1, 2, 3),
+    }
     return [
         pytest.param(kind, seed, marks=[] if seed in quick.get(kind, range(5)) else [pytest.mark.slow])
         for kind in sorted(KINDS)

@@ -71,6 +71,7 @@ def dropped(accuracy: str, seed: int) -> trb.Result:
         return trb.Simulation(scene, accuracy=accuracy).run(duration=0.06)
 
 
+@pytest.mark.slow
 def test_the_peak_after_a_load_drop_is_a_band_that_holds_other_accuracies():
     """Peaks of 8.9 to 25.1 N, by damping and accuracy, were told as numbers without a band."""
     runs = {accuracy: dropped(accuracy, seed=1) for accuracy in ("fast", "standard")}

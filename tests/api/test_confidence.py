@@ -260,6 +260,7 @@ def test_a_run_ends_when_averages_are_known_as_well_as_was_asked_for(enough: trb
     assert any(widths.get(name, math.inf) > share * abs(earlier[name]) for name, share in UNTIL.items())
 
 
+@pytest.mark.slow
 def test_files_and_resuming_change_nothing(enough: trb.Result, tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     groups = ("cage", "rollers", "torque", "energy")

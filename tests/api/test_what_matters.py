@@ -45,6 +45,7 @@ def test_what_is_below_the_tolerances_is_never_told_apart() -> None:
     assert table(1, 1e-7, 0.0) == 0
 
 
+@pytest.mark.slow
 def test_bands_of_a_billionth(monkeypatch: pytest.MonkeyPatch) -> None:
     """A colliding cage: none of the inputs, though the orbit differs from run to run."""
     page = {"bore": 0.050, "outside": 0.110, "width": 0.02925, "C": 125e3, "e": 0.35, "name": "30310"}

@@ -147,6 +147,7 @@ def resident() -> int:
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
+@pytest.mark.slow
 def test_no_leaks_over_ten_thousand_cycles() -> None:
     """Create, step, look, fail, free: what 10 000 leave behind is less than 100 bytes each."""
     base = trb.Simulation(scene(0))

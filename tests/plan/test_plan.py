@@ -134,6 +134,7 @@ def test_the_promise_holds(proposal: Plan) -> None:
     assert abs(proposal.value["torque"] / true - 1.0) < 0.02
 
 
+@pytest.mark.slow
 def test_the_promise_holds_where_the_simplified_model_would_go_elsewhere_from_the_start() -> None:
     """The cage begins in the middle, which is not stable: gravity alone moves it away. Without gravity it stays there."""
     scene = rolling(guidance="outer_land", oil_fill=0.2).replace(speed_rpm=6000.0)

@@ -16,6 +16,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -67,6 +68,7 @@ SHORTER = {  # options that the page or the command itself names
     ".venv/bin/python benchmarks/validation": " --quick",
     "python benchmarks/paper": " --help",
 }
+SLOWER = ("python -m trbdyn plan ", "python -m trbdyn torque ", "python benchmarks/torque.py")
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
 PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"
 
@@ -187,7 +189,14 @@ def different() -> list[str]:
     return list(first.values())
 
 
-@pytest.mark.parametrize("command", different())
+def with_marks(command: str) -> Any:
+    """The command, among the slow tests if it takes many seconds and has tests of its own."""
+    return pytest.param(
+        command, marks=[pytest.mark.slow] if command.removeprefix(".venv/bin/").startswith(SLOWER) else []
+    )
+
+
+@pytest.mark.parametrize("command", map(with_marks, different()))
 def test_commands(command: str, root: Path) -> None:
     if command in WHOLE:
         if command.startswith("make "):
