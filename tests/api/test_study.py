@@ -205,6 +205,7 @@ class TestExecutors:
             deterministic = [name for name in data.data_vars if not str(name).startswith("wall")]
             assert other[deterministic].identical(data[deterministic])
 
+    @pytest.mark.slow
     def test_a_dask_cluster_equals_serial(self, serial: tuple[Any, Path], tmp_path: Path) -> None:
         distributed = pytest.importorskip("dask.distributed")
         with (

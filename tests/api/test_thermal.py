@@ -178,6 +178,7 @@ def test_reference_conditions_of_iso_15312() -> None:
     assert whole * 50.0 == pytest.approx(0.016e6 * np.pi * 0.02925 * (0.050 + 0.110), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = str(tmp_path / "heat.png")
     words = ["thermal", "rig_30310", "--heat", "oil_flow=20", "--heat", "oil_inlet_c=40", "-o", picture]

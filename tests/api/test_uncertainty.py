@@ -45,6 +45,7 @@ def test_too_few_draws_have_straight_lines_or_no_shares() -> None:
     assert first_order(draws, np.ones(16))[0].size == 0
 
 
+@pytest.mark.slow
 def test_a_band_is_that_of_its_draws(tmp_path: Path) -> None:
     scene = trb.cases.scene_32216(2000.0)
     found = uncertainty(scene, BANDS, samples=12, seed=3, options=SHORT, folder=tmp_path / "draws")

@@ -114,6 +114,7 @@ def test_the_page_shows_these_rows(kept: dict[str, Any]) -> None:
     assert re.search(rf"`inside` {kept['summary']['inside']:.3g}", part)
 
 
+@pytest.mark.slow
 def test_the_command(tmp_path: Path, kept: dict[str, Any]) -> None:
     """Its predictions are those that were kept, with fewer draws."""
     path = tmp_path / "found.json"

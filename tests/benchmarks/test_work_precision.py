@@ -52,12 +52,14 @@ def work_precision(tmp_path_factory: pytest.TempPathFactory, made_table: Path) -
     return smoke("work_precision", tmp_path_factory.mktemp("work_precision"), "--make-table", str(made_table))
 
 
+@pytest.mark.slow
 def test_every_entry_is_described(work_precision: dict[str, Any]) -> None:
     assert work_precision["schema"] == "trbdyn-benchmark-1"
     for row in [*work_precision["results"], work_precision["summary"]]:
         assert set(row) <= set(work_precision["columns"])
 
 
+@pytest.mark.slow
 def test_presets_have_their_figures(work_precision: dict[str, Any]) -> None:
     presets = work_precision["summary"]["presets"]
     assert set(presets) == set(ACCURACY)
@@ -66,12 +68,14 @@ def test_presets_have_their_figures(work_precision: dict[str, Any]) -> None:
         assert all(np.isfinite(figures[name]) and figures[name] > 0.0 for name in PRESET_FIGURES)
 
 
+@pytest.mark.slow
 def test_tighter_presets_are_more_accurate(work_precision: dict[str, Any]) -> None:
     presets = work_precision["summary"]["presets"]
     assert presets["reference"]["error_cage_over_cpr"] < 1e-3
     assert presets["reference"]["error_cage_over_cpr"] < presets["fast"]["error_cage_over_cpr"]
 
 
+@pytest.mark.slow
 def test_stored_windows_are_long_enough(work_precision: dict[str, Any]) -> None:
     for window in work_precision["summary"]["windows"]["collision"]:
         assert window["window_s"] >= 4e-3
@@ -96,6 +100,7 @@ def test_stored_scenes() -> None:
     assert points >= {(speed, load, False) for speed, load in wanted}
 
 
+@pytest.mark.slow
 def test_biases_of_presets_are_measured(work_precision: dict[str, Any]) -> None:
     rows = [row for row in work_precision["results"] if row["sweep"] == "statistics"]
     assert {row["name"] for row in rows} == {"tight", *ACCURACY}
@@ -112,6 +117,7 @@ def test_biases_of_presets_are_measured(work_precision: dict[str, Any]) -> None:
     )
 
 
+@pytest.mark.slow
 def test_short_table_has_every_scene_and_preset(work_precision: dict[str, Any]) -> None:
     found = {(row["case"], row["preset"]) for row in work_precision["results"] if row["sweep"] == "presets"}
     assert found == {(case, preset) for case in work_precision["summary"]["scenes"] for preset in ACCURACY}
@@ -137,6 +143,7 @@ def test_ratios_of_a_users_run_are_those_within_a_repeat(monkeypatch: pytest.Mon
     assert found["file_over_bare"] == pytest.approx(1.3)
 
 
+@pytest.mark.slow
 def test_what_was_measured_is_written_when_it_ends_early(tmp_path: Path) -> None:
     path = tmp_path / "early.json"
     code = (
@@ -154,6 +161,7 @@ def test_what_was_measured_is_written_when_it_ends_early(tmp_path: Path) -> None
     assert any(row["sweep"] == "presets" for row in found["results"])
 
 
+@pytest.mark.slow
 def test_makes_the_table_of_estimates(
     work_precision: dict[str, Any], made_table: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

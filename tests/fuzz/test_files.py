@@ -425,6 +425,7 @@ def test_a_forked_child_leaves_the_file_alone(tmp_path: Path, how: str) -> None:
 RESUME = "import sys, trbdyn as trb\nprint('ready', flush=True)\nsys.stdin.readline()\ntrb.resume(sys.argv[1])\nprint('done')"
 
 
+@pytest.mark.slow
 def test_of_two_that_resume_a_lost_result_one_goes_on(tmp_path: Path) -> None:
     """The other one is told at once, and what the one gives is whole from the checkpoint on."""
     path = tmp_path / "run.h5"

@@ -35,6 +35,7 @@ print(json.dumps([[notice.test, notice.kind] for notice in outcome.failed]), out
 """
 
 
+@pytest.mark.slow
 def test_a_seed_gives_the_same_faults_again() -> None:
     first = faults.draw(1)
     again = faults.draw.__wrapped__(1)

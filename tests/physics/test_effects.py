@@ -108,7 +108,7 @@ def test_looking_does_not_count(kit: SimpleNamespace) -> None:
     assert sim.counters == before
 
 
-@pytest.mark.parametrize("friction", [False, True])
+@pytest.mark.parametrize("friction", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_planar_freezes_and_conserves(kit: SimpleNamespace, friction: bool) -> None:
     """Axial positions and tilts stay; without friction energy stays with them."""
     effects = (PAPER if friction else Effects.frictionless()).replace(planar=True)

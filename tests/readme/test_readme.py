@@ -68,7 +68,12 @@ SHORTER = {  # options that the page or the command itself names
     ".venv/bin/python benchmarks/validation": " --quick",
     "python benchmarks/paper": " --help",
 }
-SLOWER = ("python -m trbdyn plan ", "python -m trbdyn torque ", "python benchmarks/torque.py")
+SLOWER = (
+    "python -m trbdyn plan ",
+    "python -m trbdyn torque ",
+    "python -m trbdyn sweep cage_mass -o study",
+    "python benchmarks/torque.py",
+)
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
 PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"
 
@@ -196,7 +201,7 @@ def with_marks(command: str) -> Any:
     )
 
 
-@pytest.mark.parametrize("command", map(with_marks, different()))
+@pytest.mark.parametrize("command", [with_marks(command) for command in different()])
 def test_commands(command: str, root: Path) -> None:
     if command in WHOLE:
         if command.startswith("make "):
