@@ -49,13 +49,14 @@ def strongest(values: Array, step: float, near: float) -> float:
     return float(frequencies[inside][np.argmax(spectrum[inside])])
 
 
-def test_vibrations_have_the_frequencies_of_springs_and_bearing() -> None:
+@pytest.mark.parametrize(("times", "tolerance"), [(7.0, 4e-3), (1.0, 1.6e-2)])
+def test_vibrations_have_the_frequencies_of_springs_and_bearing(times: float, tolerance: float) -> None:
     """A housing vibrates as a shaft of its mass on the same springs would: the bearing knows how far its rings are apart.
 
-    The rollers, 0.3 kg, go with the shaft more than with the housing; beside 63 kg that is 0.25 %.
+    The rollers, 0.3 kg, go with the shaft more than with the housing; beside 63 kg that is 0.25 %, beside 9 kg 1.5 %.
     """
     heavy = HOUSING.replace(
-        **{name: 7.0 * getattr(HOUSING, name) for name in ("mass", "inertia_axial", "inertia_transverse")}
+        **{name: times * getattr(HOUSING, name) for name in ("mass", "inertia_axial", "inertia_transverse")}
     )
     scene = scene_of(heavy, effects=FRICTIONLESS, moment_x=0.0, moment_y=0.0)
     numbers = {name: getattr(heavy, name) for name in Housing.model_fields}
@@ -68,9 +69,9 @@ def test_vibrations_have_the_frequencies_of_springs_and_bearing() -> None:
     step = 1.0 / modes.frequencies[-1] / 8.0
     result = simulation.run(duration=60.0 / modes.frequencies[0], save_every=step)
     axial = float(modes.frequencies[np.argmax(np.abs(modes.shapes[:, 2]))])
-    assert strongest(result["housing_position"][:, 2], step, axial) == pytest.approx(axial, rel=4e-3)
+    assert strongest(result["housing_position"][:, 2], step, axial) == pytest.approx(axial, rel=tolerance)
     sideways = float(modes.frequencies[np.argmax(np.abs(modes.shapes[:, 0]))])
-    assert strongest(result["housing_position"][:, 0], step, sideways) == pytest.approx(sideways, rel=4e-3)
+    assert strongest(result["housing_position"][:, 0], step, sideways) == pytest.approx(sideways, rel=tolerance)
 
 
 def test_the_support_carries_the_load_of_the_start_and_its_springs_what_comes() -> None:
@@ -340,6 +341,20 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         r"housing\.support_axial .*must be > 0",
     ),
 }
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"gravity": (0.0, History.harmonic(-9.8, 300.0, frequency_hz=50.0), 0.0)}, r"gravity\[1\]"),
+        ({"speed_rpm": History.ramp(0.0, 0.01, 500.0, 3000.0)}, "speed_rpm"),
+    ],
+)
+def test_a_state_does_not_know_what_the_support_carried_first(changes: dict[str, Any], field: str) -> None:
+    """Such a run went on with 300 m/s2 of the housing that were not there before."""
+    scene = scene_of(HOUSING, ROTOR, **changes)
+    with pytest.raises(InputError, match=rf"{field} .*must be constant in a run from a state with a housing"):
+        scene.replace(start=Start.state(Simulation(scene).state))
 
 
 @pytest.mark.parametrize("name", REFUSED)

@@ -255,6 +255,8 @@ def check_housing(scene: Scene) -> None:
     if scene.start.kind == "state" and scene.start.displacement is None:
         limit = "must be given with a housing, whose support carries the load of the bearing there: Start.state(sim.state) (m)"
         raise InputError.of(("start", "displacement"), None, limit)
+    if scene.start.kind == "state":
+        _check_hold(scene)
     if scene.ring_body is None:
         return
     for name in ("support_radial", "support_axial"):
@@ -262,3 +264,17 @@ def check_housing(scene: Scene) -> None:
         if not stiffness > 0.0 and not getattr(scene.ring_body, name) > 0.0:
             limit = f"must be > 0 where ring = 'free', or ring_body.{name}: nothing else holds both rings in their place (N/m)"
             raise InputError.of(("housing", name), stiffness, limit)
+
+
+def _check_hold(scene: Scene) -> None:
+    """Refuse changes in time of what the support's force follows from: that of the first start, which a state does not know."""
+    limit = (
+        "must be constant in a run from a state with a housing: what its support carries counts from the first start"
+    )
+    for path, quantity in (
+        (("speed_rpm",), scene.speed_rpm),
+        (("outer_speed_rpm",), scene.outer_speed_rpm),
+        *((("gravity", place), part) for place, part in enumerate(scene.gravity)),
+    ):
+        if not is_constant(quantity):
+            raise InputError.of(path, quantity, limit)
