@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from trbdyn.model import cases, lubricants, pocket_shapes
     from trbdyn.model.assembly import Assembly, PreloadSpring, Shaft, ShaftBearing, ShaftLoad
     from trbdyn.model.bearing import Bearing, Cage, CageBody, Material, Profile, Ribs, Roller, Roughness, Scatter
+    from trbdyn.model.defects import DepthMap, Pit, Waviness
     from trbdyn.model.effects import Effects
     from trbdyn.model.growth import Growth
     from trbdyn.model.heat import HeatPaths
@@ -72,6 +73,7 @@ _NAMES = {
     "Bearing": "trbdyn.model.bearing",
     "Cage": "trbdyn.model.bearing",
     "CageBody": "trbdyn.model.bearing",
+    "DepthMap": "trbdyn.model.defects",
     "Effects": "trbdyn.model.effects",
     "ElasticCage": "trbdyn.model.elastic_cage",
     "Face": "trbdyn.model.pocket",
@@ -87,6 +89,7 @@ _NAMES = {
     "Material": "trbdyn.model.bearing",
     "Oil": "trbdyn.model.lubricants",
     "OtherPocket": "trbdyn.model.pocket",
+    "Pit": "trbdyn.model.defects",
     "Pocket": "trbdyn.model.pocket",
     "PreloadSpring": "trbdyn.model.assembly",
     "Profile": "trbdyn.model.bearing",
@@ -108,6 +111,7 @@ _NAMES = {
     "Start": "trbdyn.model.scene",
     "StepError": "trbdyn.errors",
     "TrbError": "trbdyn.errors",
+    "Waviness": "trbdyn.model.defects",
     "__version__": "trbdyn.base.version",
     "equilibrium": "trbdyn.statics.assembly",
     "load": "trbdyn.results.result",
@@ -133,6 +137,7 @@ __all__ = [
     "Bearing",
     "Cage",
     "CageBody",
+    "DepthMap",
     "Effects",
     "Face",
     "FileError",
@@ -147,6 +152,7 @@ __all__ = [
     "Material",
     "Oil",
     "OtherPocket",
+    "Pit",
     "Pocket",
     "PreloadSpring",
     "Profile",
@@ -167,6 +173,7 @@ __all__ = [
     "Start",
     "StepError",
     "TrbError",
+    "Waviness",
     "__version__",
     "animation",
     "cases",

@@ -67,7 +67,13 @@ class Model:
     """One bearing with its lubricant and effects; immutable."""
 
     def __init__(
-        self, params: Array, diameter_deviation: Array, faces: Array, instruction_set: str = "", modes: Array = ...
+        self,
+        params: Array,
+        diameter_deviation: Array,
+        faces: Array,
+        instruction_set: str = "",
+        modes: Array = ...,
+        form: Array = ...,
     ) -> None: ...
     n_rollers: int
     n_slots: int

@@ -421,6 +421,7 @@ void trb_model_free(trb_model *model)
   free(model->faces);
   free(model->first_face);
   trb_modes_free(&model->modes);
+  trb_form_free(&model->form);
   free(model);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "base/vec3.h"
+#include "bearing/form.h"
 #include "bearing/geometry.h"
 #include "bearing/modes.h"
 #include "bearing/params.h"
@@ -121,6 +122,7 @@ typedef struct trb_model {
   int           pocket_friction;               /* any friction in the pockets */
   int           film;                          /* films are needed */
   trb_modes     modes;                         /* of an elastic cage */
+  trb_form      form;                          /* of surfaces off their true form */
   int           n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
 } trb_model;
 
@@ -133,6 +135,9 @@ trb_status trb_model_create(const trb_params *params, const double *deviation, i
 /* Gives a new model, whose params.cage_modes says how many, the modes of its cage: as many rows of TRB_MODE_shapes + 6 n_rollers n_slots
  * numbers. */
 trb_status trb_model_set_modes(trb_model *model, const double *rows, int n_modes, int n_columns, trb_message *message);
+/* Gives a new model the form of its surfaces: rows of TRB_FORM_depth + 2 n_nodes numbers (bearing/form.h); none: all surfaces have their true
+ * form. */
+trb_status trb_model_set_form(trb_model *model, const double *rows, int n_rows, int n_columns, trb_message *message);
 void       trb_model_free(trb_model *model);
 
 #endif

@@ -16,5 +16,6 @@ void trb_drive_place(const trb_model *m, trb_vec3 displacement, trb_vec3 velocit
   drive->ring.axis = axis;
   drive->ring.centre = trb_add(displacement, centre);
   drive->ring.velocity = velocity;
+  drive->ring.angle = drive->shaft_angle;
   drive->ring.omega = trb_axpy(drive->ring_omega, shaft_speed, axis);
 }

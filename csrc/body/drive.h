@@ -12,6 +12,7 @@ typedef struct trb_ring_pose {
   trb_vec3 centre;   /* reference point, on the axis: of the motion, of moments and of the ring's surfaces, m */
   trb_vec3 velocity; /* of the centre, m/s */
   trb_vec3 omega;    /* angular velocity, rad/s */
+  double   angle;    /* that it has turned by about its axis, rad */
 } trb_ring_pose;
 
 /* In inertial coordinates. */
@@ -20,8 +21,10 @@ typedef struct trb_drive {
   double        shaft_angle;   /* rad */
   double        shaft_speed;   /* rad/s */
   double        shaft_rate;    /* rad/s2 */
+  double        carried_angle; /* rad */
   double        carried_speed; /* of the outer ring, with which all turns, rad/s */
   double        carried_rate;  /* rad/s2 */
+  double        rolling_angle; /* of the shaft relative to the outer ring, rad */
   double        rolling_speed; /* of the shaft relative to the outer ring: rollers' coordinates count from pure rolling at it, rad/s */
   double        rolling_rate;  /* its rate, rad/s2 */
   double        frame_angle;   /* angle of R: that of the kinematic orbit, rad */
@@ -49,7 +52,7 @@ typedef struct trb_drive_power {
 static inline trb_ring_pose trb_ring_pose_in_frame(const trb_ring_pose *ring, double cosine, double sine)
 {
   return (trb_ring_pose){trb_turn_z(ring->axis, cosine, -sine), trb_turn_z(ring->centre, cosine, -sine),
-                         trb_turn_z(ring->velocity, cosine, -sine), trb_turn_z(ring->omega, cosine, -sine)};
+                         trb_turn_z(ring->velocity, cosine, -sine), trb_turn_z(ring->omega, cosine, -sine), ring->angle};
 }
 
 static inline int trb_has_gravity(const trb_drive *drive)

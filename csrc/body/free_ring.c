@@ -12,7 +12,7 @@ typedef struct turning {
 
 static turning turning_of(const trb_ring_body *own, const trb_drive *drive)
 {
-  if (own->is_outer) return (turning){0.0, drive->carried_speed, drive->carried_rate};
+  if (own->is_outer) return (turning){drive->carried_angle, drive->carried_speed, drive->carried_rate};
   return (turning){own->sense * drive->shaft_angle, own->sense * drive->shaft_speed, own->sense * drive->shaft_rate};
 }
 
@@ -61,6 +61,7 @@ static void ring_of(const trb_model *m, const trb_body *body, const trb_drive *d
   ring->axis = other_axes(own, trb_scale(own->sense, f.a));
   ring->centre = trb_v(place.x + arm.x, place.y + arm.y, own->reference + (place.z + (own->offset + arm.z)));
   ring->omega = other_axes(own, omega);
+  ring->angle = own->sense * (turning_of(own, drive).angle + y[TRB_FREE_RING_psi]);
   ring->velocity = other_axes(own, trb_add(velocity_of(y), trb_cross(omega, along)));
 }
 

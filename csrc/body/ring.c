@@ -18,7 +18,7 @@ static void place_as_prescribed(const trb_model *m, const trb_drive *drive, trb_
 static void place_turning(const trb_model *m, const trb_drive *drive, trb_ring_pose *pose)
 {
   (void)m;
-  *pose = (trb_ring_pose){.axis = {0, 0, 1}, .omega = {0, 0, drive->carried_speed}};
+  *pose = (trb_ring_pose){.axis = {0, 0, 1}, .omega = {0, 0, drive->carried_speed}, .angle = drive->carried_angle};
 }
 
 static trb_drive_power power_of_turning(const trb_ring_pose *ring, const trb_drive *drive, const trb_wrench *on_ring)

@@ -79,6 +79,7 @@ void trb_workspace_free(trb_workspace *work)
 {
   if (work == NULL) return;
   free(work->lanes);
+  free(work->uneven);
   free(work);
 }
 

@@ -29,6 +29,7 @@ enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6, TRB_MOST_MOVING_RINGS = 2 };
   X(rolling_nodes,        "nodes whose rolling resistance was evaluated") \
   X(pressure_force_nodes, "nodes whose rolling pressure force was evaluated") \
   X(damping_nodes,        "nodes whose normal damping was evaluated") \
+  X(uneven_contacts,      "raceway contacts with a surface off its true form") \
   X(rib_contacts,         "large ends in contact with the back-face rib") \
   X(rib_tests,            "large ends tested against the back-face rib") \
   X(front_rib_contacts,   "edges of the front rib in contact with a small end") \
@@ -87,6 +88,7 @@ typedef struct trb_instant {
   const trb_body_at     *bodies;  /* of the system */
   const int             *chosen;  /* rollers to evaluate, ascending */
   int                    n;       /* how many */
+  const double          *spin;    /* n_rollers: angle that each has turned by about its axis; NULL: surfaces count as of true form */
   const unsigned        *apart;   /* n_rollers: bits of the pairs that are proven not to touch; NULL: none is */
 } trb_instant;
 

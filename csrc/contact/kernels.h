@@ -70,6 +70,8 @@ static inline const double *trb_detail_lane(const trb_model *m, const trb_detail
   return detail->lanes + (((size_t)field * TRB_N_RACES + (size_t)race) * rollers + (size_t)roller) * lanes;
 }
 
+typedef struct trb_uneven trb_uneven;
+
 /* One contact of a roller with a race. Without interference it uses no lanes: the next contact gets them. */
 typedef struct trb_race_input {
   const trb_roller_pose *roller;
@@ -78,6 +80,8 @@ typedef struct trb_race_input {
   const double          *centre; /* spheres of this roller, per lane */
   const double          *sphere;
   const trb_race_nodes  *nodes;
+  const trb_uneven      *uneven; /* NULL: both surfaces have their true form there */
+  int                    lane;   /* the first of its lanes in `uneven` */
 } trb_race_input;
 
 typedef struct trb_race_output {

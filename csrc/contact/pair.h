@@ -38,16 +38,18 @@ typedef struct trb_batch {
 } trb_batch;
 
 struct trb_lanes;
+struct trb_uneven;
 
 /* Scratch of one thread, and the pairs that are on. */
 typedef struct trb_workspace {
-  struct trb_lanes *lanes;                   /* scratch of the raceway kernel */
-  int               variant;                 /* kernel variant, index into trb_kernel_variants */
-  trb_batch         batches[TRB_MOST_PAIRS]; /* pairs with a roller that are on */
-  int               n_batches;
-  trb_batch         hub[TRB_MOST_PAIRS]; /* pairs without a roller that are on, each for itself */
-  int               n_hub;
-  trb_counters      counters; /* of this workspace */
+  struct trb_lanes  *lanes;                   /* scratch of the raceway kernel */
+  struct trb_uneven *uneven;                  /* and of surfaces off their true form; NULL: the bearing has none */
+  int                variant;                 /* kernel variant, index into trb_kernel_variants */
+  trb_batch          batches[TRB_MOST_PAIRS]; /* pairs with a roller that are on */
+  int                n_batches;
+  trb_batch          hub[TRB_MOST_PAIRS]; /* pairs without a roller that are on, each for itself */
+  int                n_hub;
+  trb_counters       counters; /* of this workspace */
 } trb_workspace;
 
 /* A roller's contact as peaks see it, and how far it holds. */
@@ -110,6 +112,12 @@ typedef struct trb_pair_kind {
   trb_hold_arms (*hold)(const trb_model *m, const trb_pair *pair);
   trb_pair_look *look;
   trb_pair_view *view;
+  /* whether surfaces may be off their true form where a roller is; azimuth: of the roller, turned: of the ring, spin: of the roller, rad; NULL:
+   * they never are */
+  int (*uneven)(const trb_model *m, const trb_pair *pair, int roller, double azimuth, double turned, double spin);
+  double (*change)(const trb_model *m, const trb_pair *pair,
+                   double speed); /* shortest time in which they change, at a speed of the ring against the
+                                                                              rollers in rad/s, s */
   /* of fast pairs */
   trb_pair_touch *touch;
   int (*surfaces)(const trb_model *m, int roller);                       /* that it tests for a roller; 0: they never touch */

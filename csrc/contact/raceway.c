@@ -4,18 +4,34 @@
 
 #include "contact/kernels.h"
 #include "contact/pair.h"
+#include "contact/uneven.h"
 #include "laws/line_contact.h"
 
 static const trb_race_nodes *nodes_of(const trb_pair *pair) { return pair->own; }
 
-static trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair)
+/* first: of its lanes in a tile, if a surface is off its true form there. */
+static trb_race_input race_input(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, int first,
+                                 trb_workspace *work)
 {
-  return (trb_race_input){&at->rollers[roller],
-                          &trb_pair_ring(pair, at)[roller],
-                          nodes_of(pair)->cone,
-                          m->centre + (size_t)roller * (size_t)m->n_lanes,
-                          m->sphere + (size_t)roller * (size_t)m->n_lanes,
-                          nodes_of(pair)};
+  trb_race_input in = {.roller = &at->rollers[roller],
+                       .ring = &trb_pair_ring(pair, at)[roller],
+                       .cone = nodes_of(pair)->cone,
+                       .centre = m->centre + (size_t)roller * (size_t)m->n_lanes,
+                       .sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes,
+                       .nodes = nodes_of(pair)};
+  if (at->spin == NULL) return in;
+  const double azimuth = at->drive->frame_angle + at->rollers[roller].angle, spin = at->spin[roller];
+  if (!trb_uneven_is_near(m, in.nodes->race, roller, azimuth, in.ring->angle, spin)) return in;
+  trb_uneven_fill(m, &in, roller, azimuth, spin, first, work->uneven);
+  work->counters.uneven_contacts++;
+  in.uneven = work->uneven;
+  in.lane = first;
+  return in;
+}
+
+static int is_uneven(const trb_model *m, const trb_pair *pair, int roller, double azimuth, double turned, double spin)
+{
+  return trb_uneven_is_near(m, nodes_of(pair)->race, roller, azimuth, turned, spin);
 }
 
 static void add_output(const trb_race_output *out, const trb_pair *pair, int row, trb_loads *loads)
@@ -29,8 +45,17 @@ static void add_output(const trb_race_output *out, const trb_pair *pair, int row
 static void raceway_of(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work,
                        trb_race_output *output)
 {
-  const trb_race_input input = race_input(m, at, roller, pair);
+  const trb_race_input input = race_input(m, at, roller, pair, 0, work);
   trb_kernel_variants[work->variant].raceway(m, &input, 1, work->lanes, &work->counters, output);
+}
+
+/* A ring passes a roller as fast as the roller's surface turns. */
+static double change_of(const trb_model *m, const trb_pair *pair, double speed)
+{
+  const int            race = nodes_of(pair)->race;
+  const trb_form_scale scale = trb_form_scale_of(&m->form, race);
+  const double         rolling = nodes_of(pair)->cone->radius / (0.5 * m->params.roller_diameter) * speed;
+  return fmin(scale.race / speed, scale.roller / rolling);
 }
 
 /* A contact of a roller with a race. */
@@ -102,7 +127,7 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
     for (int c = 0; c < n; c++) {
       const int side = (first + c) % batch->n;
       contacts[c] = (contact){at->chosen[(first + c) / batch->n], batch->index[side], batch->pairs[side]};
-      inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].pair);
+      inputs[c] = race_input(m, at, contacts[c].roller, contacts[c].pair, c * m->n_lanes, work);
     }
     /* who looks at lanes sees zeros where a law was not asked, and not what another contact has left there */
     if (detail != NULL && detail->lanes != NULL) memset(work->lanes, 0, sizeof *work->lanes);
@@ -178,4 +203,6 @@ const trb_pair_kind trb_pair_raceway = {.name = "flank on a raceway",
                                         .margin = margin_of,
                                         .hold = hold_of,
                                         .look = look_at_races,
-                                        .view = view_of};
+                                        .view = view_of,
+                                        .uneven = is_uneven,
+                                        .change = change_of};

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "contact/passes.h"
+#include "contact/uneven.h"
 #include "laws/rolling_resistance.h"
 #include "surface/sphere.h"
 
@@ -50,6 +51,18 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
     l->log_radius[at] = in->nodes->log_radius[i];
     l->roller_share[at] = in->nodes->roller_share[i];
     largest = trb_max(largest, d);
+  }
+  return largest;
+}
+
+/* What depths of surfaces off their true form leave of the interference; gives the largest. */
+static double pass_uneven(const trb_race_input *in, int n, trb_lanes *l, int first)
+{
+  double largest = -INFINITY;
+  for (int i = 0; i < n; i++) {
+    l->interference[first + i] -= in->uneven->depth[in->lane + i];
+    l->approach[first + i] -= in->uneven->rate[in->lane + i];
+    largest = trb_max(largest, l->interference[first + i]);
   }
   return largest;
 }
@@ -160,6 +173,21 @@ static void sum_contact(const trb_race_input *in, int first, int n, const trb_la
   out->power_traction = lost;
 }
 
+/* Forces along such surfaces. */
+static void sum_uneven(const trb_race_input *in, int first, int n, const trb_lanes *l, trb_race_output *out)
+{
+  const trb_uneven *u = in->uneven;
+  for (int i = 0; i < n; i++) {
+    const double   q = l->load[first + i];
+    const int      k = in->lane + i;
+    const trb_vec3 force = trb_v(u->fx[k], u->fy[k], u->fz[k]);
+    out->force = trb_axpy(out->force, q, force);
+    out->moment = trb_axpy(out->moment, q, trb_v(u->mx[k], u->my[k], u->mz[k]));
+    out->ring_force = trb_axpy(out->ring_force, -q, force);
+    out->ring_moment = trb_axpy(out->ring_moment, q, trb_v(u->hx[k], u->hy[k], u->hz[k]));
+  }
+}
+
 /* Rolling resistance drags both surfaces alike. */
 static void sum_rolling(const trb_race_input *in, int first, int n, const trb_lanes *l, trb_race_output *out)
 {
@@ -220,6 +248,7 @@ static void sum_outputs(const trb_model *m, const trb_race_input *inputs, const 
     trb_race_output      *out = &outputs[loaded[c]];
     out->loaded = 1;
     sum_contact(in, c * n, n, l, out);
+    if (in->uneven != NULL) sum_uneven(in, c * n, n, l, out);
     if (!rolling) continue;
     sum_rolling(in, c * n, n, l, out);
     if (m->params.rolling_pressure_force > 0.0) {
@@ -238,6 +267,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
     outputs[c] = (trb_race_output){0};
     /* a contact without interference leaves its lanes to the next */
     outputs[c].depth = pass_geometry(&inputs[c], n, l, n_loaded * n);
+    if (inputs[c].uneven != NULL) outputs[c].depth = pass_uneven(&inputs[c], n, l, n_loaded * n);
     if (outputs[c].depth > 0.0) loaded[n_loaded++] = c;
     else counters->raceway_culled++;
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "contact/uneven.h"
 
 /* What a fast pair with a body that deforms keeps of its modes. */
 static int add_modes(const trb_dynamics *d, trb_fast_pair *fast)
@@ -100,6 +101,13 @@ static int make_bodies(trb_dynamics *d)
   return 1;
 }
 
+static int make_uneven(trb_dynamics *d)
+{
+  d->spin = trb_zeros((size_t)d->model->n_rollers, sizeof *d->spin);
+  d->work->uneven = trb_zeros(1, sizeof *d->work->uneven);
+  return d->spin != NULL && d->work->uneven != NULL;
+}
+
 trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_dynamics **dynamics,
                                trb_message *message)
 {
@@ -111,7 +119,7 @@ trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motio
   d->system = system;
   d->model = m;
   d->motion = motion;
-  d->spin = trb_state_spin(system);
+  d->spin_at = trb_state_spin(system);
   d->quadrature = trb_state_quadrature(system);
   d->rollers = calloc(n, sizeof *d->rollers);
   d->loads = calloc(n, sizeof *d->loads);
@@ -120,13 +128,15 @@ trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motio
   d->reactions = calloc(n * (size_t)system->n_moving + 1, sizeof *d->reactions);
   d->exact = calloc(n, sizeof *d->exact);
   d->near = calloc(n, sizeof *d->near);
+  d->uneven = calloc(n, sizeof *d->uneven);
   trb_status status = TRB_OK;
   if (!make_bodies(d) || d->rollers == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
-      d->near == NULL || d->reactions == NULL) {
+      d->near == NULL || d->uneven == NULL || d->reactions == NULL) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   } else {
     for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
     status = trb_workspace_create(system->pairs, system->n_pairs, variant, &d->work, message);
+    if (status == TRB_OK && m->form.n > 0 && !make_uneven(d)) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
     if (status == TRB_OK && !choose_fast(d)) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   }
   if (status != TRB_OK) {
@@ -157,7 +167,9 @@ void trb_dynamics_free(trb_dynamics *d)
   free(d->flows);
   free(d->reactions);
   free(d->exact);
+  free(d->spin);
   free(d->near);
+  free(d->uneven);
   free(d);
 }
 
@@ -171,6 +183,37 @@ void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y)
     trb_body_at *body = &d->bodies[b];
     if (body->in_frame != NULL && !body->rests) body->in_frame[roller] = trb_ring_pose_in_frame(&body->ring, cosine, sine);
   }
+}
+
+int trb_dynamics_spin_roller(trb_dynamics *d, int roller, const double *y)
+{
+  const trb_model *m = d->model;
+  if (d->spin == NULL) return 0;
+  d->spin[roller] = y[d->spin_at + roller] - m->geometry.roller_spin_ratio * d->drive.rolling_angle;
+  const double azimuth = d->drive.frame_angle + trb_nominal_angle(m, roller) + y[trb_state_roller(d->system, roller) + TRB_ROLLER_psi];
+  for (int i = 0; i < d->work->n_batches; i++)
+    for (int k = 0; k < d->work->batches[i].n; k++) {
+      const trb_pair *pair = d->work->batches[i].pairs[k];
+      if (pair->kind->uneven != NULL && pair->kind->uneven(m, pair, roller, azimuth, d->bodies[pair->b].ring.angle, d->spin[roller]))
+        return 1;
+    }
+  return 0;
+}
+
+/* Steps over the shortest length in which a depth changes. */
+enum { STEPS_A_CHANGE = 8 };
+
+double trb_dynamics_longest_step(const trb_dynamics *d)
+{
+  double shortest = INFINITY;
+  for (int i = 0; d->spin != NULL && i < d->work->n_batches; i++)
+    for (int k = 0; k < d->work->batches[i].n; k++) {
+      const trb_pair      *pair = d->work->batches[i].pairs[k];
+      const trb_ring_pose *ring = &d->bodies[pair->b].ring;
+      if (pair->kind->uneven == NULL) continue;
+      shortest = fmin(shortest, pair->kind->change(d->model, pair, fabs(trb_dot(ring->omega, ring->axis) - d->drive.frame_speed)));
+    }
+  return shortest / STEPS_A_CHANGE;
 }
 
 void trb_dynamics_drive(trb_dynamics *d, double time)
@@ -194,12 +237,15 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 {
   trb_dynamics_drive(d, time);
   trb_dynamics_pose_hub(d, y);
-  for (int j = 0; j < d->model->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(d->system, j));
+  for (int j = 0; j < d->model->n_rollers; j++) {
+    trb_dynamics_pose_roller(d, j, y + trb_state_roller(d->system, j));
+    (void)trb_dynamics_spin_roller(d, j, y);
+  }
 }
 
 trb_instant trb_dynamics_instant(const trb_dynamics *d)
 {
-  return (trb_instant){&d->drive, d->rollers, d->bodies, d->everyone, d->model->n_rollers, NULL};
+  return (trb_instant){&d->drive, d->rollers, d->bodies, d->everyone, d->model->n_rollers, NULL, NULL};
 }
 
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail) { trb_dynamics_loads_of(d, NULL, detail); }
@@ -208,6 +254,7 @@ void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *d
 {
   trb_instant at = trb_dynamics_instant(d);
   at.apart = apart;
+  at.spin = d->spin;
   clear_forces(d);
   trb_contact_all(d->model, &at, d->work, d->loads, detail);
   trb_contact_hub(d->model, &at, d->work, &d->hub, detail);
@@ -320,7 +367,7 @@ void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, dou
   const int all = trb_n_quadratures(d->system), n = all < TRB_FLOW_N_QUADRATURES ? all : TRB_FLOW_N_QUADRATURES;
   double   *q = rates + d->quadrature;
   memcpy(rates + trb_state_roller(d->system, roller), flow, TRB_ROLLER_SIZE * sizeof *flow);
-  rates[d->spin + roller] = flow[TRB_FLOW_spin];
+  rates[d->spin_at + roller] = flow[TRB_FLOW_spin];
   for (int k = 0; k < n; k++) q[k] += flow[TRB_FLOW_quadrature + k];
 }
 

@@ -39,7 +39,7 @@ typedef struct trb_dynamics {
   trb_roller_pose  *rollers;                  /* at the last state evaluated */
   trb_body_at       bodies[TRB_MOST_BODIES];  /* of the system, at the last time and state evaluated */
   trb_wrench        on_body[TRB_MOST_BODIES]; /* load of the right-hand side under way on each of them, in R */
-  int               spin, quadrature;         /* where the tail of the state begins, and its quadratures */
+  int               spin_at, quadrature;      /* where the tail of the state begins, and its quadratures */
   trb_loads        *loads;                    /* of every roller */
   trb_loads         hub;                      /* of pairs without a roller, in R; zero where there are none */
   int              *everyone;                 /* 0, 1, ...: all rollers */
@@ -48,6 +48,8 @@ typedef struct trb_dynamics {
   double (*flows)[TRB_FLOW_ROOM]; /* of every roller */
   trb_wrench *reactions;          /* of every roller: on each ring that has coordinates, in R */
   int        *exact;              /* rollers to evaluate exactly */
+  int        *uneven;             /* of every roller: 1: surfaces may be off their true form where it is */
+  double     *spin;               /* angle that each roller has turned by, rad; NULL: all surfaces have their true form */
   unsigned   *near;               /* of every roller: bit by fast pair, those that may touch */
 } trb_dynamics;
 
@@ -66,6 +68,11 @@ void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
 void trb_dynamics_pose_hub(trb_dynamics *d, const double *y);
 /* Pose of one body of the hub only, from its part of a state. */
 void trb_dynamics_pose_body(trb_dynamics *d, int body, const double *y_body);
+/* The angle that a roller has turned by about its axis, out of a state, is kept, where surfaces are off their true form; gives whether one of
+ * them may be where the roller is. Rings stand where they were put. */
+int trb_dynamics_spin_roller(trb_dynamics *d, int roller, const double *y);
+/* The longest step that steps over no part of such a surface, at the speeds that are kept, s. */
+double trb_dynamics_longest_step(const trb_dynamics *d);
 /* Pose of one roller only, from its part of a state; rings stand where they were put. */
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
 /* All loads at the poses kept; detail may be NULL. */
@@ -75,7 +82,7 @@ void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *d
 /* What is proven of a state y near those that were evaluated last: of every roller, bits of the pairs in which it touches
  * nothing. */
 void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart);
-/* What the contacts read. */
+/* What the contacts read, all surfaces of true form. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
 void trb_dynamics_roller_flow(const trb_dynamics *d, int roller, const trb_loads *loads, double *flow);

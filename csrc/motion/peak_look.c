@@ -162,19 +162,26 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
 
   const trb_hold_ring ring = trb_hold_ring_of(d->system, d->bodies);
   at.chosen = chosen;
+  at.spin = d->spin;
   for (int i = 0; i < d->work->n_batches; i++) {
     const trb_batch *batch = &d->work->batches[i];
     if (batch->pairs[0]->kind->look == NULL) continue;
     at.n = 0;
     for (int j = 0; j < z; j++) {
-      if (trb_hold_holds(&p->holds[i * z + j], &p->arms[i], &ring, y + trb_state_roller(p->d->system, j), turn_of(p, j, y))) continue;
+      /* what is known of a contact knows no change of the surfaces */
+      if (!d->uneven[j] &&
+          trb_hold_holds(&p->holds[i * z + j], &p->arms[i], &ring, y + trb_state_roller(p->d->system, j), turn_of(p, j, y)))
+        continue;
       pose(p, j, y);
       memset(&d->loads[j], 0, sizeof d->loads[j]);
       chosen[at.n++] = j;
     }
     if (at.n == 0) continue;
     batch->pairs[0]->kind->look(m, &at, batch, d->work, d->loads, p->detail, TRB_PEAK_SHARE, looks);
-    for (int k = 0; k < at.n; k++) put(p, &ring, i, chosen[k], &looks[k * batch->n], y, values);
+    for (int k = 0; k < at.n; k++) {
+      put(p, &ring, i, chosen[k], &looks[k * batch->n], y, values);
+      if (d->uneven[chosen[k]]) p->holds[i * z + chosen[k]].way = -1.0;
+    }
   }
 }
 
@@ -226,6 +233,7 @@ void trb_peak_look_at(trb_peak_look *look, double time, const double *y, double 
     if (look->system.bodies[b].size == 0 && !ring_rests(&before[b].ring, &look->d->bodies[b].ring)) trb_peak_look_forget(look);
   memset(look->posed, 0, (size_t)look->normal.n_rollers * sizeof *look->posed);
   trb_dynamics_pose_hub(look->d, y);
+  for (int j = 0; j < look->normal.n_rollers; j++) look->d->uneven[j] = trb_dynamics_spin_roller(look->d, j, y);
   look_at_fast(look, y, values);
   look_at_hub(look, values);
   look_at_slow(look, y, values);

@@ -144,7 +144,7 @@ static void put_roller(writer *w, int j, const double *y, double spin_offset)
   const trb_dynamics    *d = w->d;
   const trb_drive       *drive = &d->drive;
   const trb_roller_pose *r = &d->rollers[j];
-  const double           kinematic = -d->model->geometry.roller_spin_ratio * drive->shaft_angle;
+  const double           kinematic = -d->model->geometry.roller_spin_ratio * drive->rolling_angle;
   const trb_frame        spinning = spun(&r->frame, kinematic + spin_offset);
   const trb_frame        body = {from_orbit(drive, r, spinning.n), from_orbit(drive, r, spinning.t), from_orbit(drive, r, spinning.a)};
   put3(&PUT(roller_position, 3 * j), from_orbit(drive, r, r->x));
@@ -311,7 +311,7 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
   put_modes(w);
   put_land(w);
   for (int j = 0; j < m->n_rollers; j++) {
-    put_roller(w, j, y + trb_state_roller(d->system, j), y[d->spin + j]);
+    put_roller(w, j, y + trb_state_roller(d->system, j), y[d->spin_at + j]);
     put_contacts(w, j);
   }
   memcpy(&PUT(pocket_force, 0), it.seen.pocket_force, (size_t)(m->n_rollers * m->n_slots) * sizeof(double));

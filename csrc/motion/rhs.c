@@ -1,5 +1,8 @@
 #include "motion/rhs.h"
 
+/* What approximates a roller's forces knows surfaces of true form: it stands aside where a roller may be on one that is not, and learns
+ * nothing there. */
+
 /* Poses of the bodies, but for rollers whose forces are approximated and that touch nothing: they need none. Gives how many rollers are to
  * be evaluated exactly; they are d->exact, and d->near says which fast pairs of a roller may touch. */
 static int place(trb_dynamics *d, const trb_approximation *instead, double time, const double *y)
@@ -12,7 +15,9 @@ static int place(trb_dynamics *d, const trb_approximation *instead, double time,
   for (int j = 0; j < m->n_rollers; j++) {
     const double *own = y + trb_state_roller(d->system, j);
     d->near[j] = trb_dynamics_near(d, j, y);
-    const int follows = instead != NULL && instead->follow(instead->self, d, j, own, d->flows[j], trb_dynamics_reactions(d, j));
+    d->uneven[j] = trb_dynamics_spin_roller(d, j, y);
+    const int follows =
+        instead != NULL && !d->uneven[j] && instead->follow(instead->self, d, j, own, d->flows[j], trb_dynamics_reactions(d, j));
     if (!follows) d->exact[n_exact++] = j;
     if (!follows || d->near[j] != 0) trb_dynamics_pose_roller(d, j, own);
   }
@@ -25,6 +30,7 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
 {
   trb_instant at = trb_dynamics_instant(d);
   at.chosen = d->exact;
+  at.spin = d->spin;
   at.n = n_exact;
   if (n_exact == 0) return;
   trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
@@ -33,7 +39,7 @@ static void evaluate_slow(trb_dynamics *d, const trb_approximation *instead, int
     trb_wrench *const reactions = trb_dynamics_reactions(d, j);
     trb_dynamics_roller_flow(d, j, &d->loads[j], d->flows[j]);
     trb_dynamics_roller_reactions(d, j, &d->loads[j], reactions);
-    if (instead != NULL) instead->learn(instead->self, d, j, y + trb_state_roller(d->system, j), d->flows[j], reactions);
+    if (instead != NULL && !d->uneven[j]) instead->learn(instead->self, d, j, y + trb_state_roller(d->system, j), d->flows[j], reactions);
   }
 }
 

@@ -272,6 +272,8 @@ void trb_motion_at(const trb_motion *motion, const trb_model *m, double time, tr
   const double  ratio = m->geometry.cage_speed_ratio;
   const hermite carried = c[TRB_CHANNEL_outer_speed];
   drive->shaft_angle = angle[0];
+  drive->carried_angle = angle[1];
+  drive->rolling_angle = angle[0] - angle[1];
   drive->time = time;
   drive->shaft_speed = c[TRB_CHANNEL_shaft_speed].value;
   drive->shaft_rate = c[TRB_CHANNEL_shaft_speed].rate;

@@ -68,7 +68,8 @@ double trb_integrator_longest_step(const trb_integrator *it)
 {
   double longest = it->settings.max_step;
   for (int k = 0; k < it->assembly->n; k++)
-    longest = fmin(longest, trb_motion_longest_step(it->members[k].motion, it->time, it->settings.max_step));
+    longest = fmin(longest, fmin(trb_motion_longest_step(it->members[k].motion, it->time, it->settings.max_step),
+                                 trb_dynamics_longest_step(it->members[k].dynamics)));
   return longest;
 }
 

@@ -102,10 +102,8 @@ static trb_status erk_step(trb_integrator *it, trb_message *message)
 {
   erk        *self = it->self;
   sunrealtype reached = it->time, step = 0.0;
-  if (trb_integrator_is_driven(it)) {
-    CHECK(TRB_ARK(SetStopTime)(self->memory, trb_integrator_stop(it)));
-    CHECK(TRB_ARK(SetMaxStep)(self->memory, trb_integrator_longest_step(it)));
-  }
+  if (trb_integrator_is_driven(it)) CHECK(TRB_ARK(SetStopTime)(self->memory, trb_integrator_stop(it)));
+  CHECK(TRB_ARK(SetMaxStep)(self->memory, trb_integrator_longest_step(it)));
   const int flag = TRB_ARK(Evolve)(self->memory, it->time + 1.0, self->y, &reached, ARK_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "ARKODE stopped (%d): %s", flag, self->sundials.text);
   CHECK(TRB_ARK(GetLastStep)(self->memory, &step));

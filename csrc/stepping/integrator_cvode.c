@@ -205,11 +205,9 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
 {
   bdf        *self = it->self;
   sunrealtype reached = it->time, step = 0.0;
-  /* set at every step; far away where the prescribed motion changes no more */
-  if (trb_integrator_is_driven(it)) {
-    CHECK(CVodeSetStopTime(self->memory, trb_integrator_stop(it)));
-    CHECK(CVodeSetMaxStep(self->memory, trb_integrator_longest_step(it)));
-  }
+  /* set at every step; the end is far away where the prescribed motion changes no more */
+  if (trb_integrator_is_driven(it)) CHECK(CVodeSetStopTime(self->memory, trb_integrator_stop(it)));
+  CHECK(CVodeSetMaxStep(self->memory, trb_integrator_longest_step(it)));
   CHECK(CVodeGetCurrentStep(self->memory, &step));
   const trb_impact_measure measure = {.share = it->settings.impact_share,
                                       .least = it->settings.impact_least,

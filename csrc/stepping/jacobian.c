@@ -144,7 +144,8 @@ static unsigned parts_of(const trb_dynamics *d, int body)
 static trb_ring_pose difference_of(const trb_ring_pose *to, const trb_ring_pose *from, double per)
 {
   return (trb_ring_pose){trb_scale(per, trb_sub(to->axis, from->axis)), trb_scale(per, trb_sub(to->centre, from->centre)),
-                         trb_scale(per, trb_sub(to->velocity, from->velocity)), trb_scale(per, trb_sub(to->omega, from->omega))};
+                         trb_scale(per, trb_sub(to->velocity, from->velocity)), trb_scale(per, trb_sub(to->omega, from->omega)),
+                         per * (to->angle - from->angle)};
 }
 
 /* Of each ring with coordinates: what a wrench does to its rates, which is linear, and what its coordinates do to its pose. */

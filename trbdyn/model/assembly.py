@@ -14,6 +14,7 @@ from trbdyn.base.validation import Model, Number, unit
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.core_table import parameter
+from trbdyn.model.defects import Defect
 from trbdyn.model.effects import Effects
 from trbdyn.model.elastic_cage import ElasticCage
 from trbdyn.model.flatten import scaled
@@ -169,6 +170,8 @@ class ShaftBearing(Model):
     housing : Housing, optional
         Let the outer ring move with a housing of its own in runs, as in a `Scene`; with a `spring`, whose stiffness is then its
         `support_axial`, what slides. One housing around several bearings is not modelled.
+    defects : tuple of Pit, DepthMap or Waviness
+        Where raceways and rollers are off their true form, as in a `Scene`.
     """
 
     _root: ClassVar[str | None] = "bearings"
@@ -185,6 +188,7 @@ class ShaftBearing(Model):
     growth: Growth | None = None
     elastic_cage: ElasticCage | None = None
     housing: Housing | None = None
+    defects: tuple[Defect, ...] = ()
 
     def __init__(self, bearing: Any = None, **fields: Any) -> None:
         super().__init__(**fields if bearing is None else {"bearing": bearing, **fields})
@@ -489,6 +493,7 @@ class Assembly(Model):
             growth=one.growth,
             elastic_cage=one.elastic_cage,
             housing=one.housing,
+            defects=one.defects,
             gravity=(x, scaled(y, turned), scaled(z, turned)),
         )
 

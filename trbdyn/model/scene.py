@@ -13,6 +13,8 @@ from trbdyn.base.shown import Shown, field_rows
 from trbdyn.base.validation import Model, unit
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.bearing import Bearing
+from trbdyn.model.defect_rows import form_rows
+from trbdyn.model.defects import Defect
 from trbdyn.model.effects import Effects
 from trbdyn.model.elastic_cage import ElasticCage, check_elastic_cage
 from trbdyn.model.flatten import parameter_block
@@ -114,6 +116,8 @@ class Scene(Model):
         all dimensions are as given.
     elastic_cage : ElasticCage, optional
         Natural modes by which the cage deforms; without it the cage is rigid.
+    defects : tuple of Pit, DepthMap or Waviness
+        Where raceways and rollers are off their true form; by default nowhere. The equilibrium at the start does not know them.
     gravity : tuple of float or History, shape (3,)
         Acceleration of gravity (m/s2), each part from -1e7 to 1e7; acts if `effects.gravity`.
 
@@ -147,6 +151,7 @@ class Scene(Model):
     torque: Annotated[Quantity | None, unit("N m")] = None
     growth: Growth | None = None
     elastic_cage: ElasticCage | None = None
+    defects: tuple[Defect, ...] = ()
     gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
 
     def __init__(self, bearing: Any = MISSING, **fields: Any) -> None:
@@ -356,6 +361,7 @@ class Scene(Model):
                 "must be > 0 for rolling resistance; or switch that off (1/Pa)",
             )
         parameter_block(self)
+        form_rows(self)
         return self
 
     def _check_motion(self) -> None:

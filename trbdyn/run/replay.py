@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.cage.simulated import cage_modes
 from trbdyn.errors import InputError
+from trbdyn.model import contact_line
 from trbdyn.model.motion import value_at
 from trbdyn.model.shaft import angle_turned
 from trbdyn.run.simulation import Simulation
@@ -65,14 +66,10 @@ class Replay:
     @property
     def stations(self) -> Array:
         """Places of the nodes along the effective length, from its middle towards the large end (m), shape (n,)."""
-        effects, length = self.result.scene.effects, self.result.scene.bearing.roller.effective_length
-        if effects.quadrature == "gauss":
-            return 0.5 * length * np.polynomial.legendre.leggauss(effects.n_slices)[0]
-        return length * ((np.arange(effects.n_slices) + 0.5) / effects.n_slices - 0.5)
+        return contact_line.stations(self.result.scene)
 
     def state(self, index: int) -> Array:
-        """The core's state vector at a record, shape (n_state,); spin angles and energies are zero, nothing depends on
-        them.
+        """The core's state vector at a record, shape (n_state,); energies are zero, nothing depends on them.
 
         Parameters
         ----------
@@ -103,6 +100,9 @@ class Replay:
         view["roller_omega_a"] = spin[:, 2] - (
             orbit * np.cos(nominal) - geometry.roller_spin_ratio * (shaft_speed - outer_speed)
         )
+        own = _in_frame(_in_orbit(_first_axes(result["roller_orientation"][index]), angle), skew, nominal + tilt)
+        kinematic = -geometry.roller_spin_ratio * (shaft_angle - outer_angle)
+        view["spin_angle"] = np.arctan2(own[:, 1], own[:, 0]) - kinematic
         if result.has_cage:
             self._put_cage(view, index, frame, orbit)
         if result.scene.ring_body is not None:
@@ -224,6 +224,12 @@ def _in_frame(vectors: Array, skew: Array, tilt: Array) -> Array:
     zero = np.zeros_like(ct)
     axes = np.array([[ct, zero, -st], [-ss * st, cs + zero, -ss * ct], [cs * st, ss + zero, cs * ct]])
     return np.einsum("ijn,nj->ni", axes, vectors)
+
+
+def _first_axes(quaternions: Array) -> Array:
+    """The x axis turned by quaternions (w, x, y, z), shape (n, 4); shape (n, 3)."""
+    w, x, y, z = quaternions.T
+    return np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=-1)
 
 
 def _third_axis(quaternion: Array) -> Array:

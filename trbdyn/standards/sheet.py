@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError
+from trbdyn.model.contact_line import stations
 from trbdyn.model.motion import value_at
 from trbdyn.model.ratings import rating_iso76, rating_iso281
 from trbdyn.standards import iso281, lamina
@@ -234,14 +235,6 @@ class Loading:
     weights: Array | None
     largest_pressure: float
     source: str
-
-
-def stations(scene: Scene) -> Array:
-    """Places of the nodes along the effective length, from its middle towards the large end (m), shape (n,)."""
-    effects, length = scene.effects, scene.bearing.roller.effective_length
-    if effects.quadrature == "gauss":
-        return np.asarray(0.5 * length * np.polynomial.legendre.leggauss(effects.n_slices)[0])
-    return np.asarray(length * ((np.arange(effects.n_slices) + 0.5) / effects.n_slices - 0.5))
 
 
 def lamina_loads(scene: Scene, contacts: dict[str, Array]) -> Array:

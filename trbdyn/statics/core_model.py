@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from trbdyn import _core
 from trbdyn.cage.simulated import mode_rows
+from trbdyn.model.defect_rows import form_rows
 from trbdyn.model.flatten import (
     block_of,
     diameter_deviation,
@@ -29,11 +33,16 @@ def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
         If the scene's numbers do not fit together.
     """
     try:
-        return _core.Model(
-            parameter_block(scene), diameter_deviation(scene), face_rows(scene), instruction_set, mode_rows(scene)
-        )
+        return model_of(scene, parameter_block(scene), instruction_set)
     except _core.CoreInputError as error:
         raise input_error_of_core(error, scene_entries(scene)) from None
+
+
+def model_of(scene: Scene, block: NDArray[np.float64], instruction_set: str = "") -> _core.Model:
+    """The core's model of a scene with a parameter block of its own."""
+    return _core.Model(
+        block, diameter_deviation(scene), face_rows(scene), instruction_set, mode_rows(scene), form_rows(scene)
+    )
 
 
 def normal_contacts(scene: Scene) -> _core.Model:

@@ -16,14 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
-from trbdyn.cage.simulated import mode_rows
 from trbdyn.errors import InputError
 from trbdyn.model.flatten import (
     Entry,
     Load,
     block_of,
-    diameter_deviation,
-    face_rows,
     load_channels,
     loads_period,
     motion_table,
@@ -35,7 +32,7 @@ from trbdyn.model.motion import History
 from trbdyn.model.ring_body import RingBody
 from trbdyn.model.scene import Scene
 from trbdyn.statics.cage_start import pressed_rollers
-from trbdyn.statics.core_model import build_model
+from trbdyn.statics.core_model import build_model, model_of
 from trbdyn.statics.equilibrium import Equilibrium
 from trbdyn.statics.free_ring import axis_of, put_axis, turn_of
 from trbdyn.statics.plausible import unusual
@@ -264,6 +261,4 @@ def _model(seat: Seat, body: RingBody, number: int, free: float, instruction_set
         | named_entries(body)
         | {name: Entry(("shaft",), value) for name, value in own.items()}
     )
-    return _core.Model(
-        block_of(entries), diameter_deviation(seat.scene), face_rows(seat.scene), instruction_set, mode_rows(seat.scene)
-    )
+    return model_of(seat.scene, block_of(entries), instruction_set)
