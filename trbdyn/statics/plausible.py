@@ -11,6 +11,7 @@ import numpy as np
 from trbdyn.model.cage_body import Wall, cage_mass
 from trbdyn.model.cage_space import CageSpace
 from trbdyn.model.catalogue_rollers import FILL
+from trbdyn.model.defects import Pit
 from trbdyn.model.motion import value_at, values_of
 from trbdyn.statics.equilibrium import Equilibrium
 
@@ -46,21 +47,43 @@ def unusual(scene: Scene, equilibrium: Equilibrium) -> tuple[str, ...]:
             _fill(scene),
             _gravity(scene),
             _planar(scene),
+            *_defects(scene, equilibrium),
         )
         if text
     )
 
 
-def _pressure(scene: Scene, equilibrium: Equilibrium) -> str:
-    """Hertz pressure of the most loaded roller at mid length, its load spread over its effective length."""
+def _pressures(scene: Scene, equilibrium: Equilibrium) -> dict[str, float]:
+    """Hertz pressure (Pa) of the most loaded roller on each raceway at mid length, its load spread over its effective length."""
     geometry, roller = scene.bearing.geometry, scene.bearing.roller
-    worst = 0.0
-    for load, radius in (
-        (equilibrium.outer_load, geometry.outer_equivalent_radius),
-        (equilibrium.inner_load, geometry.inner_equivalent_radius),
-    ):
-        line = max(float(np.max(load)), 0.0) / roller.effective_length
-        worst = max(worst, math.sqrt(line * geometry.effective_modulus / (2.0 * math.pi * radius)))
+    radii = {"outer": geometry.outer_equivalent_radius, "inner": geometry.inner_equivalent_radius}
+    loads = {"outer": equilibrium.outer_load, "inner": equilibrium.inner_load}
+    lines = {race: max(float(np.max(load)), 0.0) / roller.effective_length for race, load in loads.items()}
+    return {
+        race: math.sqrt(line * geometry.effective_modulus / (2.0 * math.pi * radii[race]))
+        for race, line in lines.items()
+    }
+
+
+def _defects(scene: Scene, equilibrium: Equilibrium) -> list[str]:
+    """Pits that are shorter than the contact: rollers roll over them on their whole width."""
+    geometry, pressures = scene.bearing.geometry, _pressures(scene, equilibrium)
+    radii = {"outer": geometry.outer_equivalent_radius, "inner": geometry.inner_equivalent_radius}
+    widths = {race: 8.0 * radii[race] * pressure / geometry.effective_modulus for race, pressure in pressures.items()}
+    found = []
+    for place, defect in enumerate(scene.defects):
+        length = defect.length if isinstance(defect, Pit) else math.inf
+        width = max(widths.values()) if defect.on == "roller" else widths[defect.on]
+        if length < width:
+            found.append(
+                f"defects[{place}].length = {length:g} m is less than the width of the most loaded contact, {width:.2g} m: a contact "
+                "is a line here, which sinks in further than one that bears on both sides of the pit"
+            )
+    return found
+
+
+def _pressure(scene: Scene, equilibrium: Equilibrium) -> str:
+    worst = max(_pressures(scene, equilibrium).values())
     if worst <= PERMISSIBLE_PRESSURE:
         return ""
     loads = f"axial_load = {value_at(scene.axial_load, scene.start.time):g} N, radial_load = "
