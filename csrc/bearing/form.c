@@ -25,7 +25,7 @@ int trb_form_at(const trb_form *form, int surface, double angle, int node, doubl
     const trb_patch *p = &form->patches[i];
     if (p->surface != surface) continue;
     const double at = past(p, angle);
-    if (!(at < p->length)) continue;
+    if (!(at <= p->length)) continue;
     const int     k = (int)fmin(at / p->step, p->n - 2);
     const double  h = p->step, s = at / h - k, s2 = s * s, s3 = s2 * s;
     const double *a = p->rows + (size_t)k * row + node, *b = a + row;
@@ -42,7 +42,7 @@ int trb_form_is_near(const trb_form *form, int surface, double angle, double mar
 {
   for (int i = 0; i < form->n; i++) {
     const trb_patch *p = &form->patches[i];
-    if (p->surface == surface && past(p, angle + margin) < p->length + 2.0 * margin) return 1;
+    if (p->surface == surface && past(p, angle + margin) <= p->length + 2.0 * margin) return 1;
   }
   return 0;
 }
@@ -102,6 +102,8 @@ static trb_status read_patch(trb_form *form, const double *rows, int first, int 
                    .scale = row[TRB_FORM_scale],
                    .n = n,
                    .rows = form->rows + (size_t)first * 2 * (size_t)form->n_nodes};
+  /* all round: by rounding no angle lies beyond its end */
+  if (fabs(p->length - 2.0 * TRB_PI) < TRB_EVEN) p->length = 2.0 * TRB_PI;
   p->step = p->length / (n - 1);
   for (int i = 0; i < n; i++) {
     const double *from = row + (size_t)i * (size_t)n_columns;

@@ -130,6 +130,7 @@ def make(table: Table) -> trb.Assembly:
                 effects=scenes._effects(own),
                 start=scenes._start_of(own),
                 housing=housing,
+                defects=scenes._defects(own, bearing),
             )
         )
     mass, speed = t["shaft_mass"], abs(t["speed_rpm"]) * math.pi / 30.0

@@ -76,6 +76,13 @@ ORDINARY: Table = {
     "housing_offset": 0.0,
     "housing_stiffness": 3e8,
     "housing_damping": 0.0,
+    "pit_on": None,
+    "pit_length": 2e-3,
+    "pit_depth": 30e-6,
+    "pit_angle_deg": 0.0,
+    "waves_on": None,
+    "waves": 12,
+    "wave_height": 3e-7,
 }
 """What a table that says nothing means; shrinking a failure leads back to these."""
 
@@ -265,7 +272,28 @@ def housed(rng: np.random.Generator) -> Table:
     return table
 
 
+def pitted(rng: np.random.Generator) -> Table:
+    """Surfaces off their true form: a pit, short or long, shallow or deep, waves, or both, whatever the rings do."""
+    table = _one_of(rng, usual, light, wide, guided, free, outer, housed)(rng)
+    what = _one_of(rng, "pit", "pit", "waves", "both")
+    if what != "waves":
+        table |= {
+            "pit_on": _one_of(rng, "outer", "inner", "roller"),
+            "pit_length": _log(rng, 3e-4, 1e-2),
+            "pit_depth": _log(rng, 1e-6, 3e-4),
+            "pit_angle_deg": float(rng.uniform(0.0, 360.0)),
+        }
+    if what != "pit":
+        table |= {
+            "waves_on": _one_of(rng, "outer", "inner", "roller"),
+            "waves": int(_log(rng, 1.0, 60.0)),
+            "wave_height": _log(rng, 1e-8, 3e-6),
+        }
+    return table
+
+
 KINDS = {
+    "pitted": pitted,
     "housed": housed,
     "outer": outer,
     "free": free,
@@ -327,6 +355,7 @@ def make(table: Table) -> trb.Scene:
             fields |= _free_ring(t, bearing)
     if t["housing_mass"] is not None:
         fields["housing"] = _housing(t, bearing)
+    fields["defects"] = _defects(t, bearing)
     return trb.Scene(bearing, start=_start_of(t), **fields)
 
 
@@ -364,6 +393,23 @@ def _housing(t: Table, bearing: trb.Bearing) -> trb.Housing:
         "support_tilt": stiffness * (0.5 * pitch) ** 2,
     }
     return block.replace(damping=t["housing_damping"] * size**2, **springs)
+
+
+def _defects(t: Table, bearing: trb.Bearing) -> tuple[trb.Pit | trb.Waviness, ...]:
+    """A pit over half of a roller's length, and waves as high as rollers of the bearing can follow; both go with its size."""
+    size, found = bearing.pitch_diameter / 0.08, []
+    if t["pit_on"] is not None:
+        width = 0.5 * bearing.roller.effective_length
+        place = {"on": t["pit_on"], "angle_deg": t["pit_angle_deg"]}
+        found.append(
+            trb.Pit(length=t["pit_length"] * size, width=width, depth=min(t["pit_depth"] * size, 1e-3), **place)
+        )
+    if t["waves_on"] is not None:
+        steepest = 0.05 * (bearing.roller.diameter if t["waves_on"] == "roller" else bearing.pitch_diameter)
+        height = min(t["wave_height"], steepest / t["waves"] ** 2)
+        waves = trb.Waviness(on=t["waves_on"], orders=(t["waves"],), amplitudes=(height,), seed=t["seed"])
+        return (*found, waves)
+    return tuple(found)
 
 
 def _bearing(t: Table) -> trb.Bearing:

@@ -549,6 +549,35 @@ HARD: tuple[Hard, ...] = (
         tolerances=0.2,
     ),
     Hard(
+        "deep_pits_at_6000_rpm",
+        "each roller that passes loses its load and meets the far edge, on either ring; a roller has a pit, too; damped",
+        lambda: S(
+            6000.0,
+            radial_load=2000.0,
+            effects=effects(damping="hunt_crossley"),
+            defects=tuple(trb.Pit(on=on, length=3e-3, width=12e-3, depth=1e-4) for on in ("outer", "inner", "roller")),
+        ),
+        duration=0.01,
+        steps=60.0,
+        tolerances=0.2,
+    ),
+    Hard(
+        "waves_on_everything",
+        "30 waves of 2 um on either ring and 9 on the rollers: loads of rollers from zero to twice their mean; damped",
+        lambda: S(
+            1000.0,
+            effects=effects(damping="hunt_crossley"),
+            defects=(
+                trb.Waviness(on="outer", orders=(30,), amplitudes=(2e-6,)),
+                trb.Waviness(on="inner", orders=(30,), amplitudes=(2e-6,)),
+                trb.Waviness(on="roller", orders=(9,), amplitudes=(2e-6,)),
+            ),
+        ),
+        duration=0.005,
+        steps=60.0,
+        tolerances=0.2,
+    ),
+    Hard(
         "missing_bar",
         "one roller without a bar before it",
         lambda: S(bearing=with_pocket(one_sided_pocket(rig_30310()), 3)),

@@ -76,8 +76,8 @@ def _defects(scene: Scene, equilibrium: Equilibrium) -> list[str]:
         width = max(widths.values()) if defect.on == "roller" else widths[defect.on]
         if length < width:
             found.append(
-                f"defects[{place}].length = {length:g} m is less than the width of the most loaded contact, {width:.2g} m: a contact "
-                "is a line here, which sinks in further than one that bears on both sides of the pit"
+                f"defects[{place}].length = {length:g} m is less than the width of the most loaded contact, {width:.2g} m: a "
+                "contact is a line here, which sinks in further than one that bears on both sides of the pit"
             )
     return found
 
