@@ -239,6 +239,8 @@ static void fill_constants(trb_model *m)
   m->axis_cosine = cos(g->roller_axis_angle);
   m->log_g = log(trb_max(p->pressure_coefficient, 1e-30) * g->effective_modulus);
   m->log_viscosity = log(p->viscosity);
+  /* mean speed of the surfaces in pure rolling for a unit of the rings' relative speed */
+  m->replenishment = p->replenishment / (g->outer_race_radius * g->cage_speed_ratio);
   m->log_thermal = log(p->viscosity * trb_max(p->temperature_coefficient, 1e-30) / p->conductivity);
   m->back_rib = (trb_rib){.face = m->surfaces.rib,
                           .race = m->surfaces.race[TRB_RACE_INNER],
@@ -250,8 +252,9 @@ static void fill_constants(trb_model *m)
                           .semi_axis_rolling = g->rib_semi_axis_rolling,
                           .semi_axis_across = g->rib_semi_axis_across,
                           .rx = g->rib_rx,
-                          .film_shape = trb_film_point_shape(g->rib_ry / g->rib_rx),
-                          .film_rigid = trb_film_point_rigid_factor(g->rib_ry / g->rib_rx),
+                          .film_shape = p->rib_film == TRB_RIB_FILM_NEEDLE ? trb_film_needle_shape(g->rib_ry / g->rib_rx)
+                                                                           : trb_film_point_shape(g->rib_ry / g->rib_rx),
+                          .film_rigid = p->rib_film > 0.0 ? 0.0 : trb_film_point_rigid_factor(g->rib_ry / g->rib_rx),
                           .roughness = p->roughness_rib};
   const int dry = p->lubrication == TRB_LUBRICATION_DRY, full = p->lubrication == TRB_LUBRICATION_FULL;
   m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);

@@ -14,6 +14,8 @@
 
 enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };
 enum { TRB_LUBRICATION_DRY = 0, TRB_LUBRICATION_BOUNDARY = 1, TRB_LUBRICATION_MIXED = 2, TRB_LUBRICATION_FULL = 3 };
+enum { TRB_THERMAL_OFF = 0, TRB_THERMAL_GUPTA = 1, TRB_THERMAL_AIHARA = 2 };
+enum { TRB_RIB_FILM_MAX = 0, TRB_RIB_FILM_PE = 1, TRB_RIB_FILM_NEEDLE = 2 };
 enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMURA = 2 };
 
 enum { TRB_GUIDANCE_ROLLERS = 0, TRB_GUIDANCE_INNER_LAND = 1, TRB_GUIDANCE_OUTER_LAND = 2 };
@@ -50,7 +52,7 @@ typedef struct trb_rib {
   double     semi_axis_across;  /* m/N^(1/3) */
   double     rx;                /* equivalent radius along rolling, m */
   double     film_shape;        /* factor of eq. 12 */
-  double     film_rigid;        /* factor of eq. 13 */
+  double     film_rigid;        /* factor of eq. 13; 0: it has no part */
   double     roughness;         /* composite rms, m */
 } trb_rib;
 
@@ -108,6 +110,7 @@ typedef struct trb_model {
   double        log_g;                  /* ln G */
   double        log_viscosity;          /* ln eta0 */
   double        log_thermal;            /* ln(eta0 beta/k') */
+  double        replenishment;          /* decline of the film's supply at a raceway with its mean speed, s/m */
   trb_rib       back_rib;
   trb_ring_body ring[TRB_N_RACES];             /* rings, by their raceway, where they have coordinates */
   trb_guide     guide[TRB_N_RACES];            /* lands, by the raceway of their ring */

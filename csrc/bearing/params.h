@@ -105,9 +105,14 @@
   X(shear_modulus_floor,      "Pa",     1,      1e10,   "smallest limiting shear modulus Ginf") \
   X(oil_density,              "kg/m3",  1,      3000,   "density of the oil") \
   X(starvation_factor,        "1",      1e-4,   1,      "factor of every film thickness and of rolling resistance") \
+  X(replenishment,            "s/rad",  0,      1,      "decline of the film's supply with the speed of the rings: factor exp(-c speed) of films and rolling resistance on raceways") \
   /* friction */ \
   X(lambda_boundary,          "1",      0,      100,    "film parameter below which friction is boundary") \
   X(lambda_full,              "1",      1e-3,   100,    "film parameter above which friction is full film") \
+  X(asperity_factor,          "1",      0,      1000,   "B of exp(-B Lambda^C) at raceways") \
+  X(asperity_exponent,        "1",      0.01,   10,     "C of exp(-B Lambda^C) at raceways") \
+  X(rib_asperity_factor,      "1",      0,      1000,   "B of exp(-B Lambda^C) at ribs") \
+  X(rib_asperity_exponent,    "1",      0.01,   10,     "C of exp(-B Lambda^C) at ribs") \
   X(boundary_limit,           "1",      0,      10,     "boundary friction at large slip (0.1)") \
   X(boundary_slope,           "1",      0,      1e4,    "slope term of boundary friction (22.28)") \
   X(boundary_decay,           "1",      1e-3,   1e5,    "decay of boundary friction (181.46)") \
@@ -126,12 +131,14 @@
   X(planar,                   "choice",      0,      1,      "1: axial positions and tilts are frozen") \
   X(lubrication,              "choice",      0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
   X(traction,                 "choice",      0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
-  X(thermal,                  "choice",      0,      1,      "thermal reduction of films") \
+  X(thermal,                  "choice",      0,      2,      "thermal reduction of films: 0 off, 1 Gupta, 2 Aihara") \
+  X(mixed_law,                "choice",      0,      1,      "share of boundary friction: 0 the sixth power (2), 1 exp(-B Lambda^C)") \
   X(rolling_resistance,       "choice",      0,      5,      "EHL rolling resistance: 0 off, 1 Zhou-Hoeprich, 2 Goksem-Hargreaves, 3 Aihara, 4 Matsuyama, 5 Biboulet-Houpert") \
   X(rolling_pressure_force,   "choice",      0,      1,      "pressure force of the rolling film on the roller") \
   X(back_rib,                 "choice",      0,      1,      "large end against the back-face rib") \
   X(front_rib,                "choice",      0,      1,      "small end against the front rib") \
-  X(rib_film,                 "choice",      0,      1,      "film at the rib: 0 the thicker of PE and IR, 1 PE") \
+  X(rib_film,                 "choice",      0,      2,      "film at the rib: 0 the thicker of PE and IR, 1 PE, 2 PE of a needle") \
+  X(rib_turning,              "choice",      0,      1,      "1: sliding at the ribs turns within the contact") \
   X(pocket_bars,              "choice",      0,      1,      "flank against the pocket's faces") \
   X(pocket_ends,              "choice",      0,      1,      "roller ends against the pocket's faces") \
   X(pocket_edges,             "choice",      0,      1,      "faces end at their outline (0: faces are unbounded planes)") \

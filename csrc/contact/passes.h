@@ -35,6 +35,8 @@
 typedef struct trb_pass_kind {
   double mean_pressure; /* mean Hertz pressure over the largest */
   double roughness;     /* composite rms, m */
+  double replenishment; /* decline of the film's supply with the mean speed, s/m */
+  double asperity_factor, asperity_exponent;
 } trb_pass_kind;
 
 /* Mean and sliding speed, slide-roll ratio; smooth at zero. */
@@ -58,8 +60,21 @@ static inline void pass_thermal(const trb_model *m, int n, trb_lanes *l)
 {
   const double base = m->log_thermal, modulus = m->geometry.effective_modulus, floor = m->params.thermal_floor;
   TRB_PADDED(n);
+  if (m->params.thermal == TRB_THERMAL_AIHARA) {
+    TRB_LANES for (int i = 0; i < n; i++) l->thermal_factor[i] = trb_film_thermal_aihara(base + 2.0 * l->log_u[i]);
+    return;
+  }
   TRB_LANES for (int i = 0; i < n; i++) l->thermal_factor[i] =
       trb_film_thermal(l->pressure[i] / modulus, base + 2.0 * l->log_u[i], log(l->slide_roll[i]), floor);
+}
+
+/* What fast rollers push aside does not flow back in time (SKF's factor of replenishment, which takes the inlet's supply): on films and
+ * rolling resistance like the thermal factor. */
+static inline void pass_replenishment(const trb_pass_kind *kind, int n, trb_lanes *l)
+{
+  const double decline = kind->replenishment;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++) l->thermal_factor[i] *= exp(-decline * l->mean_speed[i]);
 }
 
 /* (3), and (11) at the rib, with a starvation factor. */
@@ -130,15 +145,23 @@ static inline double thinnest(int n, const trb_lanes *l)
   return least;
 }
 
-/* (2) mixed friction. */
-static inline void pass_mix(const trb_model *m, int n, trb_lanes *l)
+/* The loop of mixed friction once per law. */
+#define TRB_MIX_LOOP(law) \
+  TRB_PADDED(n); \
+  TRB_LANES for (int i = 0; i < n; i++) \
+  { \
+    const double share = (law); \
+    l->friction_coefficient[i] = l->traction_coefficient[i] + share * (l->boundary_coefficient[i] - l->traction_coefficient[i]); \
+  }
+
+/* (2) mixed friction, or with an exponential share of the asperities. */
+static inline void pass_mix(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
-  const double low = m->params.lambda_boundary, high = m->params.lambda_full;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++)
-  {
-    const double share = trb_boundary_share(l->film_parameter[i], low, high);
-    l->friction_coefficient[i] = l->traction_coefficient[i] + share * (l->boundary_coefficient[i] - l->traction_coefficient[i]);
+  const double low = m->params.lambda_boundary, high = m->params.lambda_full, b = kind->asperity_factor, c = kind->asperity_exponent;
+  if (m->params.mixed_law > 0.0) {
+    TRB_MIX_LOOP(trb_asperity_share(l->film_parameter[i], b, c))
+  } else {
+    TRB_MIX_LOOP(trb_boundary_share(l->film_parameter[i], low, high))
   }
 }
 
@@ -172,10 +195,10 @@ static inline void pass_friction(const trb_model *m, const trb_pass_kind *kind, 
     for (int i = 0; i < n; i++) l->traction_coefficient[i] = 0.0;
   }
   /* boundary friction only where some film is thin enough to share it */
-  if (p->lubrication == TRB_LUBRICATION_MIXED && thinnest(n, l) < p->lambda_full) {
+  if (p->lubrication == TRB_LUBRICATION_MIXED && (p->mixed_law > 0.0 || thinnest(n, l) < p->lambda_full)) {
     pass_boundary(m, n, l);
     counters->boundary_nodes += n;
-    pass_mix(m, n, l);
+    pass_mix(m, kind, n, l);
   } else {
     copy_lanes(n, l->traction_coefficient, l->friction_coefficient);
   }

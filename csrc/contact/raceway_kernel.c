@@ -272,7 +272,11 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
     else counters->raceway_culled++;
   }
   const int           all = n_loaded * n;
-  const trb_pass_kind kind = {TRB_LINE_MEAN_PRESSURE, m->params.roughness_raceway};
+  const trb_pass_kind kind = {.mean_pressure = TRB_LINE_MEAN_PRESSURE,
+                              .roughness = m->params.roughness_raceway,
+                              .replenishment = m->replenishment,
+                              .asperity_factor = m->params.asperity_factor,
+                              .asperity_exponent = m->params.asperity_exponent};
   if (all == 0) return;
   counters->raceway_nodes += all;
   pass_load(m, all, l);
@@ -292,6 +296,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
       pass_thermal(m, all, l);
       counters->thermal_nodes += all;
     }
+    if (kind.replenishment > 0.0) pass_replenishment(&kind, all, l);
     pass_film_parameter(m, &kind, all, l);
   }
   if (m->friction) pass_friction(m, &kind, all, l, counters);

@@ -6,8 +6,8 @@
 
 #define TRB_KERNEL_NAME TRB_JOIN(trb_rib_kernel_, TRB_KERNEL_VARIANT)
 
-/* Deepest point of the end's sphere in the rib's cone, and the velocities there. */
-static void pass_geometry(const trb_rib *rib, const trb_instant *at, const trb_ring_pose *rings, trb_lanes *l)
+/* Deepest point of the end's sphere in the rib's cone, and the velocities there; turning: of roller against ring about the normal, rad/s. */
+static void pass_geometry(const trb_rib *rib, const trb_instant *at, const trb_ring_pose *rings, double *turning, trb_lanes *l)
 {
   const trb_cone   face = rib->face;
   const trb_sphere end = rib->end;
@@ -24,6 +24,7 @@ static void pass_geometry(const trb_rib *rib, const trb_instant *at, const trb_r
     const trb_vec3         middle = trb_sub(trb_scale(0.5, trb_add(v1, v2)), orbit);
     const double           rate = trb_dot(relative, normal);
     const trb_vec3         sliding = trb_axpy(relative, -rate, normal), mean = trb_axpy(middle, -trb_dot(middle, normal), normal);
+    turning[j] = trb_dot(trb_sub(r->omega, ring->omega), normal);
     l->interference[j] = d;
     l->approach[j] = rate;
     l->nx[j] = normal.x, l->ny[j] = normal.y, l->nz[j] = normal.z;
@@ -63,7 +64,7 @@ static void pass_film(const trb_model *m, const trb_rib *rib, int n, trb_lanes *
 {
   const double log_rx = log(rib->rx), rx = rib->rx, log_g = m->log_g, shape = rib->film_shape;
   const double base_w = log(rib->stiffness) - m->log_modulus - 2.0 * log_rx, base_u = m->log_viscosity - m->log_modulus - log_rx;
-  const double rigid = m->params.rib_film > 0.0 ? 0.0 : rx * rib->film_rigid;
+  const double rigid = rx * rib->film_rigid;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
@@ -72,6 +73,31 @@ static void pass_film(const trb_model *m, const trb_rib *rib, int n, trb_lanes *
     l->film_rigid[i] = rigid * exp(2.0 * (log_u - log_w));
     l->thermal_factor[i] = 1.0;
   }
+}
+
+/* Sliding that turns within the ellipse. With the semi-axes a and b and Hertz's pressure the load has the second moment Q (a^2 + b^2)/5 about the
+ * normal, so the mean square of the sliding speed is v^2 + w^2 (a^2 + b^2)/5 for the speed v in the middle and the turning w. Friction that has
+ * everywhere the direction of sliding, over this speed, has the force mu Q v/S and the moment mu Q w (a^2 + b^2)/(5 S): S = w e sqrt(1 + 0.2 (b/e)^2) where
+ * it turns about a point at the distance e beside a narrow ellipse, for which Houpert (2002) gives 0.18. arm2: (a^2 + b^2)/5. */
+static void pass_turning(const trb_rib *rib, const double *turning, int n, int padded, double *arm2, trb_lanes *l)
+{
+  const double across = rib->semi_axis_across / rib->semi_axis_rolling, round = 0.2 * (1.0 + across * across);
+  for (int i = 0; i < padded; i++) {
+    const double w = turning[i < n ? i : n - 1];
+    arm2[i] = round * l->half_width[i] * l->half_width[i];
+    l->sliding_speed[i] = sqrt(l->sliding_speed[i] * l->sliding_speed[i] + w * w * arm2[i]);
+    l->slide_roll[i] = l->sliding_speed[i] / l->mean_speed[i];
+  }
+}
+
+/* The moment of such sliding about the normal. */
+static void add_turning(double turning, double arm2, int j, const trb_lanes *l, trb_race_output *out)
+{
+  const trb_vec3 normal = trb_v(l->nx[j], l->ny[j], l->nz[j]);
+  const double   load = -trb_dot(out->force, normal), moment = load * l->friction_coefficient[j] * turning * arm2 / l->sliding_speed[j];
+  out->moment = trb_axpy(out->moment, -moment, normal);
+  out->ring_moment = trb_axpy(out->ring_moment, moment, normal);
+  out->power_traction += moment * turning;
 }
 
 static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int j, const trb_lanes *l,
@@ -99,9 +125,13 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *
                      trb_counters *counters, trb_race_output *outputs)
 {
   const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
-  const trb_pass_kind kind = {TRB_POINT_MEAN_PRESSURE, rib->roughness};
+  const trb_pass_kind kind = {.mean_pressure = TRB_POINT_MEAN_PRESSURE,
+                              .roughness = rib->roughness,
+                              .asperity_factor = m->params.rib_asperity_factor,
+                              .asperity_exponent = m->params.rib_asperity_exponent};
+  double              turning[TRB_TILE_LANES], arm2[TRB_TILE_LANES];
   if (n == 0) return;
-  pass_geometry(rib, at, rings, l);
+  pass_geometry(rib, at, rings, turning, l);
   pad(n, all, l);
   counters->rib_tests += n;
   int touching = 0;
@@ -111,6 +141,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *
   counters->rib_contacts += touching;
   pass_load(rib, all, l);
   pass_speeds(m, all, l);
+  if (m->params.rib_turning > 0.0) pass_turning(rib, turning, n, all, arm2, l);
   if (m->film) {
     pass_film(m, rib, all, l);
     counters->film_nodes += all;
@@ -122,6 +153,12 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *
   }
   if (m->friction) pass_friction(m, &kind, all, l, counters);
   if (m->params.damping > 0.0) counters->damping_nodes += touching;
-  for (int j = 0; j < n; j++)
-    if (l->interference[j] > 0.0) sum_roller(m, &at->rollers[at->chosen[j]], &rings[at->chosen[j]], j, l, &outputs[j]);
+  for (int j = 0; j < n; j++) {
+    const trb_ring_pose *ring = &rings[at->chosen[j]];
+    if (!(l->interference[j] > 0.0)) continue;
+    sum_roller(m, &at->rollers[at->chosen[j]], ring, j, l, &outputs[j]);
+    if (m->params.rib_turning <= 0.0) continue;
+    add_turning(turning[j], arm2[j], j, l, &outputs[j]);
+    outputs[j].torque_traction = trb_dot(outputs[j].ring_moment, ring->axis);
+  }
 }

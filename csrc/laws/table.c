@@ -36,6 +36,10 @@
     trb_film_point_rigid_factor(x[2]) * (x[1] / x[0]) * (x[1] / x[0])) \
   X(film_thermal, 4, "pressure_over_modulus thermal_loading slide_roll floor", "Gupta et al. 1991: thermal film factor, with a smooth floor", \
     trb_film_thermal(x[0], log(x[1]), log(x[2]), x[3])) \
+  X(film_point_needle, 4, "W U G radius_ratio", "Aihara 1987: hc/Rx, piezoviscous-elastic ellipse along rolling, radius_ratio = Ry/Rx", \
+    trb_film_point_elastic(log(x[0]), log(x[1]), log(x[2]), trb_film_needle_shape(x[3]))) \
+  X(film_thermal_aihara, 1, "thermal_loading", "Aihara 1987: thermal film factor", trb_film_thermal_aihara(log(x[0]))) \
+  X(asperity_share, 3, "film_parameter factor exponent", "exp(-B Lambda^C): share of the load on asperities", trb_asperity_share(x[0], x[1], x[2])) \
   X(viscosity_dicke, 6, "pressure temperature a b c d", "Dicke: ln(eta/eta0), pressure in Pa, temperature in C, p in bar inside", \
     trb_viscosity_dicke(x[0], x[2] + x[3] * x[1], x[4] + x[5] * x[1])) \
   X(viscosity_roelands, 4, "pressure pressure_coefficient viscosity cap", "Roelands: ln(eta/eta0), capped", \

@@ -34,6 +34,12 @@ static inline double trb_boundary_share(double film_parameter, double lambda_bou
   return t2 * t2 * t2;
 }
 
+/* Share of the load that asperities carry: exp(-B Lambda^C) (Zhou & Hoeprich 1991, with B and C of the surfaces). */
+static inline double trb_asperity_share(double film_parameter, double factor, double exponent)
+{
+  return exp(-factor * exp(exponent * log(trb_max(film_parameter, 1e-300))));
+}
+
 /* Slide-roll ratio of surfaces that do not roll (cage): s = |Du|/sqrt(|Du|^2/4 + ue^2). */
 static inline double trb_slide_roll_cage(double sliding, double entrainment)
 {

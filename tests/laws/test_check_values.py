@@ -30,6 +30,21 @@ def given(value: float) -> object:
     return pytest.approx(value, rel=0.0, abs=printed(value))
 
 
+def test_choices_of_films_and_asperities() -> None:
+    """Aihara's inlet heating and film of a needle, and the share of asperities, by hand."""
+    assert laws.film_thermal_aihara(1.0) == pytest.approx(1.0 / 1.29, rel=1e-14)
+    assert laws.film_thermal_aihara(0.0) == 1.0
+    assert laws.film_thermal_aihara(2.0) == pytest.approx(1.0 / (1.0 + 0.29 * 2.0**0.78), rel=1e-14)
+    w, u, g, ratio = mpmath.mpf("2e-7"), mpmath.mpf("3e-11"), mpmath.mpf(4500), mpmath.mpf("0.3")
+    k = mpmath.mpf("1.03") * ratio ** mpmath.mpf("0.64")
+    film = mpmath.mpf("4.5375") * u ** mpmath.mpf("0.68") * g ** mpmath.mpf("0.49") * w ** mpmath.mpf("-0.073")
+    film *= 1 - mpmath.exp(-mpmath.mpf("0.68") * k)
+    assert laws.film_point_needle(2e-7, 3e-11, 4500.0, 0.3) == pytest.approx(float(film), rel=1e-13)
+    assert laws.asperity_share(1.0, 2.32, 0.97) == pytest.approx(math.exp(-2.32), rel=1e-14)
+    assert laws.asperity_share(0.0, 2.32, 0.97) == 1.0
+    assert laws.asperity_share(4.0, 1.9, 0.99) == pytest.approx(math.exp(-1.9 * 4.0**0.99), rel=1e-13)
+
+
 @dataclass(frozen=True)
 class Oil:
     """Numbers of an oil."""

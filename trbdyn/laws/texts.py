@@ -25,6 +25,8 @@ ARGUMENTS: Final[dict[str, tuple[str, str]]] = {
         "speed that stands for rolling where surfaces do not roll, `Friction.cage_entrainment_speed`",
     ),
     "film_parameter": ("1", "Lambda: film thickness over composite rms roughness"),
+    "exponent": ("1", "C of the share of asperities, `Friction.asperity_exponent`"),
+    "factor": ("1", "B of the share of asperities, `Friction.asperity_factor`"),
     "floor": ("1", "smallest value that the law gives, reached smoothly"),
     "G": ("1", "material group alpha0 E'"),
     "half_width": ("1", "half width of the change"),

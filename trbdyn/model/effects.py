@@ -19,6 +19,11 @@ class Friction(Model):
     ----------
     lambda_boundary, lambda_full : float
         Film parameters below which friction is boundary, and above which the film carries all (1).
+    asperity_factor, asperity_exponent : float
+        B and C of the share exp(-B Lambda^C) of the load that asperities carry on raceways, with ``mixed_law = 'exponential'``
+        (1). They belong to the surfaces: measured were 2.32 and 0.97 for a 32216, 2.1 and 0.85 for a 32208.
+    rib_asperity_factor, rib_asperity_exponent : float
+        The same at the back-face rib (1).
     boundary_limit, boundary_slope, boundary_decay : float
         mu_bd = (-limit + slope s) exp(-decay s) + limit of the slide-roll ratio s (1).
     dry_friction : float
@@ -36,11 +41,16 @@ class Friction(Model):
 
     Notes
     -----
-    Sources: Sakaguchi and Harada 2006, eqs. 2, 6 and 10; docs/theory/lubrication.md#mixed-friction.
+    Sources: Sakaguchi and Harada 2006, eqs. 2, 6 and 10; Wingertszahn et al. 2023, table 4 (asperities, with 0.2 for
+    `boundary_limit`); docs/theory/lubrication.md#mixed-friction.
     """
 
     lambda_boundary: Annotated[Number, parameter("lambda_boundary")] = 0.01
     lambda_full: Annotated[Number, parameter("lambda_full")] = 1.5
+    asperity_factor: Annotated[Number, parameter("asperity_factor")] = 2.32
+    asperity_exponent: Annotated[Number, parameter("asperity_exponent")] = 0.97
+    rib_asperity_factor: Annotated[Number, parameter("rib_asperity_factor")] = 1.90
+    rib_asperity_exponent: Annotated[Number, parameter("rib_asperity_exponent")] = 0.99
     boundary_limit: Annotated[Number, parameter("boundary_limit")] = 0.1
     boundary_slope: Annotated[Number, parameter("boundary_slope")] = 22.28
     boundary_decay: Annotated[Number, parameter("boundary_decay")] = 181.46
@@ -85,6 +95,15 @@ class Effects(Model):
         Friction of films; acts where lubrication is mixed or full film.
     thermal : bool
         Thermal reduction of films; acts where there are films.
+    thermal_law : {'gupta', 'aihara'}
+        Its law: with pressure and slip, or by the speed alone.
+    mixed_law : {'power', 'exponential'}
+        Share of boundary friction in mixed lubrication: the sixth power of the paper (eq. 2), which ends at a film parameter of
+        1.5, or the share exp(-B Lambda^C) of the load that asperities carry, with the constants of `friction`.
+    replenishment : float
+        Decline of the films and the rolling resistance on raceways with speed, exp(-c |speed|), as fast rollers do not leave
+        enough oil to those that follow; c in seconds, of the speed of the rings against each other in rad/s. 0: none;
+        `trbdyn.lubricants.replenishment_decline` gives SKF's.
     rolling_resistance : bool
         EHL rolling resistance; acts where there are films.
     rolling_law : {'zhou_hoeprich', 'goksem_hargreaves', 'aihara', 'matsuyama', 'biboulet_houpert'}
@@ -97,8 +116,11 @@ class Effects(Model):
         Factor of every film thickness, and of rolling resistance (1).
     back_rib, front_rib : bool
         Roller ends against the ribs of the inner ring.
-    rib_film : {'max', 'pe'}
-        Film at the back-face rib: the thicker of piezoviscous-elastic and isoviscous-rigid, or the former.
+    rib_film : {'max', 'pe', 'needle'}
+        Film at the back-face rib: the thicker of piezoviscous-elastic and isoviscous-rigid, or the former, or that of a contact
+        that is long along rolling (Aihara).
+    rib_turning : bool
+        Sliding at the back-face rib turns within the contact: friction has a moment about the normal.
     pocket_bars, pocket_ends : bool
         Flank, and ends, of the rollers against the faces of their pockets.
     pocket_edges : bool
@@ -132,6 +154,9 @@ class Effects(Model):
     lubrication: Literal["mixed", "full_film", "boundary", "dry"] = "mixed"
     traction: Literal["muraki_kimura", "coulomb", "none"] = "muraki_kimura"
     thermal: Flag = True
+    thermal_law: Literal["gupta", "aihara"] = "gupta"
+    mixed_law: Literal["power", "exponential"] = "power"
+    replenishment: Annotated[Number, parameter("replenishment")] = 0.0
     rolling_resistance: Flag = True
     rolling_law: Literal["zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert"] = (
         "biboulet_houpert"
@@ -140,7 +165,8 @@ class Effects(Model):
     starvation_factor: Annotated[Number, parameter("starvation_factor")] = 1.0
     back_rib: Flag = True
     front_rib: Flag = True
-    rib_film: Literal["max", "pe"] = "pe"
+    rib_film: Literal["max", "pe", "needle"] = "pe"
+    rib_turning: Flag = False
     pocket_bars: Flag = True
     pocket_ends: Flag = True
     pocket_edges: Flag = True

@@ -39,7 +39,9 @@ PRESSURE_LAWS = {"dicke": 0, "roelands": 1, "barus": 2}
 LUBRICATION = {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3}
 TRACTION = {"none": 0, "coulomb": 1, "muraki_kimura": 2}
 ROLLING_LAWS = {"zhou_hoeprich": 1, "goksem_hargreaves": 2, "aihara": 3, "matsuyama": 4, "biboulet_houpert": 5}
-RIB_FILMS = {"max": 0, "pe": 1}
+RIB_FILMS = {"max": 0, "pe": 1, "needle": 2}
+THERMAL_LAWS = {"gupta": 1, "aihara": 2}
+MIXED_LAWS = {"power": 0, "exponential": 1}
 GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
 PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
 
@@ -125,7 +127,9 @@ def effects_entries(effects: Effects) -> Entries:
         "planar": Entry(("planar",), float(effects.planar)),
         "lubrication": Entry(("lubrication",), LUBRICATION[effects.lubrication]),
         "traction": Entry(("traction",), TRACTION[effects.traction]),
-        "thermal": Entry(("thermal",), float(effects.films and effects.thermal)),
+        "thermal": Entry(("thermal",), float(effects.films and effects.thermal and THERMAL_LAWS[effects.thermal_law])),
+        "mixed_law": Entry(("mixed_law",), MIXED_LAWS[effects.mixed_law]),
+        "rib_turning": Entry(("rib_turning",), float(effects.rib_turning)),
         "rolling_resistance": Entry(("rolling_resistance",), float(rolling and ROLLING_LAWS[effects.rolling_law])),
         "rolling_pressure_force": Entry(("rolling_pressure_force",), float(rolling and effects.rolling_pressure_force)),
         "back_rib": Entry(("back_rib",), float(effects.back_rib)),

@@ -35,7 +35,14 @@ from trbdyn.model.lubricants.shipped import (
     vg320,
     vg460,
 )
-from trbdyn.model.lubricants.supply import OIL_SUPPLIES, OilSupply, bath_fill, replenishment, supply_of
+from trbdyn.model.lubricants.supply import (
+    OIL_SUPPLIES,
+    OilSupply,
+    bath_fill,
+    replenishment,
+    replenishment_decline,
+    supply_of,
+)
 from trbdyn.model.lubricants.viscosity import Dicke, Vogel, astm_d341, wooster
 
 __all__ = [
@@ -63,6 +70,7 @@ __all__ = [
     "gear_80w90",
     "iso_vg",
     "replenishment",
+    "replenishment_decline",
     "supply_of",
     "vg32",
     "vg46",

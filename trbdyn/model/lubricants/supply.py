@@ -89,18 +89,17 @@ def bath_fill(bearing: Bearing, level: float) -> float:
     return below / (math.pi * (outer**2 - inner**2))
 
 
-def replenishment(
-    lubricant: Lubricant, speed_rpm: float, *, bore: float, outside: float, supply: str = "low_bath"
-) -> float:
-    """How much of the oil that rollers push aside is back when the next one comes: SKF's kinematic replenishment of a tapered
-    roller bearing. SKF multiplies rolling resistance by it; given as `Effects.starvation_factor` it thins the films as well.
+def replenishment_decline(lubricant: Lubricant, *, bore: float, outside: float, supply: str = "low_bath") -> float:
+    """How fast the supply of the contacts declines with speed, by SKF's kinematic replenishment of a tapered roller bearing: for
+    `Effects.replenishment`.
+
+    Oil that rollers push aside is not all back when the next one comes. SKF multiplies rolling resistance by a factor for that;
+    the simulation thins the films of the raceways by it as well.
 
     Parameters
     ----------
     lubricant : Lubricant
         The oil at its temperature.
-    speed_rpm : float
-        Speed of the shaft (rpm).
     bore, outside : float
         Bore d and outside diameter D of the bearing (m).
     supply : {'low_bath', 'oil_air'}
@@ -109,7 +108,8 @@ def replenishment(
     Returns
     -------
     float
-        exp(-K_rs nu n (d + D) sqrt(K_Z/(2 (D - d)))) with K_Z = 6, nu in mm2/s, n in rpm, d and D in mm (1).
+        c of the factor exp(-c speed) (s): K_rs nu n (d + D) sqrt(K_Z/(2 (D - d))) over the speed in rad/s, with K_Z = 6, nu in
+        mm2/s, n in rpm, d and D in mm.
 
     Raises
     ------
@@ -123,17 +123,51 @@ def replenishment(
     Examples
     --------
     >>> import trbdyn as trb
-    >>> round(trb.lubricants.replenishment(trb.lubricants.vg100(50.0), 4000.0, bore=0.080, outside=0.140), 3)
-    0.699
+    >>> oil = trb.lubricants.vg100(50.0)
+    >>> decline = trb.lubricants.replenishment_decline(oil, bore=0.080, outside=0.140)
+    >>> effects = trb.Effects.standard().replace(replenishment=decline)
+    >>> round(decline, 6)
+    0.000855
     """
     if supply not in REPLENISHMENT:
         raise InputError.of("supply", supply, unknown_name(supply, REPLENISHMENT))
     if not 0.0 < number_of("bore", bore) < number_of("outside", outside) < 10.0:
         raise InputError.of("bore", bore, f"must be above 0 and below outside, {outside:g}, below 10 (m)")
     d, outer = 1e3 * bore, 1e3 * outside
-    viscosity = 1e6 * lubricant.viscosity / lubricant.density
-    speed = abs(number_of("speed_rpm", speed_rpm))
-    return math.exp(-REPLENISHMENT[supply] * viscosity * speed * (d + outer) * math.sqrt(6.0 / (2.0 * (outer - d))))
+    viscosity, turns = 1e6 * lubricant.viscosity / lubricant.density, 30.0 / math.pi
+    return REPLENISHMENT[supply] * viscosity * turns * (d + outer) * math.sqrt(6.0 / (2.0 * (outer - d)))
+
+
+def replenishment(
+    lubricant: Lubricant, speed_rpm: float, *, bore: float, outside: float, supply: str = "low_bath"
+) -> float:
+    """The factor of `replenishment_decline` at one speed: for `Effects.starvation_factor`, which thins every film.
+
+    Parameters
+    ----------
+    lubricant, bore, outside, supply
+        As of `replenishment_decline`.
+    speed_rpm : float
+        Speed of the shaft (rpm).
+
+    Returns
+    -------
+    float
+        exp(-c speed) (1).
+
+    Raises
+    ------
+    InputError
+        If the supply is unknown, or the diameters are no bearing's.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> round(trb.lubricants.replenishment(trb.lubricants.vg100(50.0), 4000.0, bore=0.080, outside=0.140), 3)
+    0.699
+    """
+    speed = abs(number_of("speed_rpm", speed_rpm)) * math.pi / 30.0
+    return math.exp(-replenishment_decline(lubricant, bore=bore, outside=outside, supply=supply) * speed)
 
 
 def _segment(radius: float, height: float) -> float:
