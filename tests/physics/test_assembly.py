@@ -292,7 +292,7 @@ def test_refused() -> None:
     with pytest.raises(InputError, match=r"unbalance.*torque"):
         pair({"torque": 1.0}, body=SHAFT.replace(unbalance=1e-5))
     with pytest.raises(InputError, match="checkpoint_every"):
-        AssemblySimulation(Seating({"left": seat()}, SHAFT, STILL), checkpoint_every=0.1)
+        AssemblySimulation(Seating({"left": seat()}, SHAFT, STILL), checkpoint_every=0.1).run(duration=1e-4)
     with pytest.raises(InputError, match="must be one of left"):
         pair().run(duration=1e-4)["middle"]
     with pytest.raises(InputError, match=r"revolutions"):

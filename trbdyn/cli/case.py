@@ -138,8 +138,4 @@ def simulate(
     }
     how |= {"revolutions": run.revolutions, "duration": run.duration, "progress": not quiet}
     how |= {"output": output, "overwrite": overwrite}
-    if isinstance(simulation, Simulation):
-        return simulation.run(until=run.until, **how)
-    if run.until:
-        raise InputError.of(("run", "until"), run.until, "must not be given for an assembly yet")
-    return simulation.run(**how)
+    return simulation.run(until=run.until, **how)

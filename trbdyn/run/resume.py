@@ -12,10 +12,12 @@ from trbdyn.base.locks import take_lock
 from trbdyn.base.own_files import file_path, set_aside
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.scene import Scene
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.file_format import reason
 from trbdyn.results.result import Result, load
 from trbdyn.results.sources import FileSource
 from trbdyn.run import checkpoint
+from trbdyn.run.assembly_resume import is_of_assembly, resume_assembly
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.keeping import kept_by_default
 from trbdyn.run.options import OF_ONE_RUN, RunOptions
@@ -29,7 +31,7 @@ def resume(
     instruction_set: str | None = None,
     progress: bool = False,
     callback: Callback | None = None,
-) -> Result:
+) -> Result | AssemblyResult:
     """Go on with a run that was cut off, from its last checkpoint.
 
     It takes the steps that the uninterrupted run would have taken: records and final state are bit-identical, on the
@@ -45,11 +47,11 @@ def resume(
     progress : bool
         Show a progress bar.
     callback : callable, optional
-        As in `Simulation.run`.
+        As in `Simulation.run`; not for bearings on a shaft.
 
     Returns
     -------
-    Result
+    Result or AssemblyResult
         The whole run. If it was complete already, nothing is done.
 
     Raises
@@ -74,6 +76,11 @@ def resume(
     def tell(note: str) -> None:
         notes.append(note)
         warnings.warn(note, UserWarning, stacklevel=3)
+
+    if is_of_assembly(output):
+        if callback is not None:
+            raise InputError.of("callback", callback, "must not be given for an assembly")
+        return resume_assembly(output, instruction_set=instruction_set, progress=progress, tell=tell)
 
     def run_on(older: FileSource | None) -> Result:
         found = checkpoint.read_last_good(output, tell)

@@ -307,7 +307,7 @@ class Simulation(Displayed):
     @property
     def statistics(self) -> dict[str, float]:
         """What the integrator did."""
-        return _merged(self._totals, self._core.statistics())
+        return merged(self._totals, self._core.statistics())
 
     def run(
         self,
@@ -422,7 +422,7 @@ def _numbers(values: ArrayLike) -> Array:
 _COUNTED_ONCE = ("last_step", "last_order")
 
 
-def _merged(before: dict[str, float], now: dict[str, float]) -> dict[str, float]:
+def merged(before: dict[str, float], now: dict[str, float]) -> dict[str, float]:
     """Statistics of one integrator added to those of the ones before it."""
     if not before:
         return now

@@ -1,0 +1,143 @@
+"""Runs of bearings on a shaft that were cut off go on from their checkpoints, and `until` looks at every bearing."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn.cli import main
+from trbdyn.errors import FileError, InputError
+from trbdyn.results.assembly_file import part_path
+from trbdyn.run.checkpoint import checkpoint_path
+
+
+def simulation(**options: object) -> trb.AssemblySimulation:
+    return trb.AssemblySimulation(trb.load_assembly("pair_30310"), accuracy="fast", **options)
+
+
+class Cut(BaseException):
+    """In place of a kill."""
+
+
+def cut_off(path: Path, after: float, monkeypatch: pytest.MonkeyPatch, **how: object) -> None:
+    """A run of 0.5 turns that ends at a time as if it were killed: nothing is written after that."""
+    from trbdyn.run.assembly_run import AssemblyRun
+
+    sim = simulation(checkpoint_every=2e-3)
+    keep = AssemblyRun._keep
+
+    def watched(self: AssemblyRun, records: np.ndarray) -> None:
+        keep(self, records)
+        if self.sim.time >= after:
+            raise Cut
+
+    with monkeypatch.context() as patch:
+        patch.setattr(AssemblyRun, "_keep", watched)
+        with pytest.raises(Cut):
+            sim.run(revolutions=0.5, save_every=1e-4, output=path, **how)
+
+
+def test_a_pair_goes_on_to_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = simulation(checkpoint_every=2e-3).run(revolutions=0.5, save_every=1e-4, output=tmp_path / "whole.h5")
+    path = tmp_path / "pair.h5"
+    cut_off(path, 7e-3, monkeypatch)
+    assert not path.exists()
+    assert checkpoint_path(path).exists()
+    resumed = trb.resume(path)
+    assert isinstance(resumed, trb.AssemblyResult)
+    assert resumed.success
+    assert resumed.assembly == whole.assembly
+    assert not checkpoint_path(path).exists()
+    assert sorted(place.name for place in tmp_path.iterdir()) == ["pair.h5", "whole.h5"]
+    for name in whole:
+        one, other = whole[name], resumed[name]
+        assert len(one) == len(other) == 101
+        for field in one.fields:
+            assert np.array_equal(one[field.name], other[field.name], equal_nan=True), field.name
+        assert one.summary()["steps"] == other.summary()["steps"]
+        assert one.summary()["pocket_force_peak"] == other.summary()["pocket_force_peak"]
+    again = trb.resume(path)
+    assert isinstance(again, trb.AssemblyResult)
+    assert again.success
+
+
+def test_what_a_cut_off_pair_needs_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "pair.h5"
+    cut_off(path, 5e-3, monkeypatch)
+    with pytest.raises(FileError, match=r"another run|overwrite"):
+        simulation().run(revolutions=0.1, output=path, checkpoint_every=1e-3)
+    with pytest.raises(InputError, match="callback"):
+        trb.resume(path, callback=lambda sim: False)
+    kept = part_path(path, "right").read_bytes()
+    part_path(path, "right").unlink()
+    with pytest.raises(FileError, match=r"pair\.right\.h5"):
+        trb.resume(path)
+    part_path(path, "right").write_bytes(kept[: len(kept) // 2])
+    with pytest.raises(FileError, match=r"pair\.right\.h5"):
+        trb.resume(path)
+    part_path(path, "right").write_bytes(kept)
+    assert trb.resume(path).success
+    with pytest.raises(FileError, match="no such file"):
+        trb.resume(tmp_path / "other.h5")
+
+
+def test_a_killed_command_is_resumed(tmp_path: Path) -> None:
+    words = ["run", "pair_30310", "-o", "pair.h5", "--revolutions", "4", "--checkpoint-every", "1e-3", "--quiet"]
+    process = subprocess.Popen([sys.executable, "-m", "trbdyn", *words], cwd=tmp_path)
+    path = tmp_path / "pair.h5"
+    begun = time.monotonic()
+    while not checkpoint_path(path).exists() and time.monotonic() - begun < 60.0:
+        time.sleep(0.01)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert not path.exists()
+    done = subprocess.run(
+        [sys.executable, "-m", "trbdyn", "resume", "pair.h5"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert "radial load, mean, N" in done.stdout
+    result = trb.AssemblyResult.load(path)
+    assert result.success
+    times = result["left"]["time"]
+    assert times[0] == 0.0
+    assert np.ptp(np.diff(times)) < 1e-9
+    assert trb.AssemblyResult.load(path)["right"].message == f"reached {times[-1]:.6g} s"
+    assert os.listdir(tmp_path) == ["pair.h5"]
+
+
+def test_ctrl_c_leaves_what_can_be_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from trbdyn.run.assembly_run import AssemblyRun
+
+    look = AssemblyRun._is_enough
+
+    def interrupt(self: AssemblyRun) -> bool:
+        if self.sim.time > 3e-3:
+            signal.raise_signal(signal.SIGINT)
+        return look(self)
+
+    path = tmp_path / "pair.h5"
+    with monkeypatch.context() as patch:
+        patch.setattr(AssemblyRun, "_is_enough", interrupt)
+        ended = simulation().run(revolutions=0.5, save_every=1e-4, output=path, checkpoint_every=1e-3)
+    assert not ended.success
+    assert "stopped by the user" in ended["left"].message
+    assert len(ended["left"]) > 20
+    assert trb.resume(path).success
+    assert main(["info", str(path)]) == 0
+
+
+def test_until_waits_for_every_bearing() -> None:
+    """A run that is too short warns for each; one that is long enough ends before its end."""
+    with pytest.warns(trb.RunWarning, match="left: the run has reached its end without"):
+        short = simulation().run(revolutions=1.0, until={"torque": 1e-3})
+    assert all(any("without the confidence" in text for text in short[name].warnings) for name in short)
+    with pytest.raises(InputError, match="until"):
+        simulation().run(revolutions=1.0, until={"orbit": 1e-3})
