@@ -62,6 +62,11 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="skip points that are done, go on with those that had not settled or were stopped",
     )
+    paper.add_argument(
+        "--early",
+        metavar="FOLDER",
+        help="folder of points that were run with --min-time 0.5 --max-time 0.5, as far as the paper could: a column beside",
+    )
     paper.add_argument("--report", action="store_true", help="run nothing: figures and table of what is there")
     paper.add_argument("--workers", type=int, metavar="N", help="worker processes (default, and at most: the cores)")
     paper.add_argument("--quiet", action="store_true", help="no progress bar, no table")
@@ -94,7 +99,8 @@ def run_paper(options: argparse.Namespace) -> int:
     if not runs.all:
         why = next(iter(failures.values()), "").partition("\n")[0]
         raise FileError(f"{folder}: holds no points to report on{f'; the first that failed: {why}' if why else ''}")
-    text = report(runs, folder, plan, failures)
+    early = None if options.early is None else read_runs(folder_path(options.early, "early"))
+    text = report(runs, folder, plan, failures, early)
     if not options.quiet:
         print(text)
         print(f"points, figures, {NUMBERS} and {TABLE} in {folder}")
@@ -198,7 +204,7 @@ def read_runs(folder: Path) -> Runs:
     return Runs([run for run in found if run is not None])
 
 
-def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str]) -> str:
+def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str], early: Runs | None = None) -> str:
     """Write figures, ``paper.json`` and the table of statements; gives the table.
 
     Raises
@@ -210,7 +216,8 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str]) -> st
     limits = movable_limits(runs)
     judged = judge_all(runs, limits)
     draw_all(runs, pictures, limits)
-    table = markdown(judged)
+    then = [] if early is None else judge_all(early)
+    table = markdown(judged, then)
     movable = {
         name: {"min": float(found.distance.min()), "max": float(found.distance.max())}
         for name, found in (("equal", limits.equal), ("free", limits.free))
@@ -225,6 +232,7 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str]) -> st
         "failed": failures,
         "movable_over_cpr": movable,
         "statements": [entry.to_dict() for entry in judged],
+        "statements_from_half_a_second_to_one": [entry.to_dict() for entry in then],
     }
     write_json(folder / NUMBERS, json.loads(json.dumps(clean(values))))
     try:

@@ -1,6 +1,8 @@
 """Numbers of a point, from its file: what the table of statements and ``paper.json`` are made of.
 
-Standard errors are those of means over single turns of the cage.
+Standard errors within the time of the statistics are those of means over single turns of the cage. They see nothing that is
+slower. That of the orbit is at least what the turns of the whole settled history tell, with what is slow in them
+(`trbdyn.observables.mean_error`).
 """
 
 from __future__ import annotations
@@ -23,6 +25,11 @@ from trbdyn.results.result import Result, load
 from trbdyn.results.summary import clean
 
 Array = NDArray[np.float64]
+
+LEAST_TURNS = 16
+"""Turns of the cage that tell an error."""
+STUDENT = 1.96
+"""Half width of a 95 % interval over the standard error."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +89,22 @@ def standard_error(values: Array, angle: Array) -> float:
     return float(np.std([part.mean() for part in parts], ddof=1) / math.sqrt(turns))
 
 
+def settled_error(history: History, since: float | None, clearance: float, turns_of_mean: float) -> float:
+    """Standard error of the orbit over Cpr in a mean over some turns of the cage, from all turns since the motion settled; nan
+    where it has not, or drifts.
+    """
+    if since is None:
+        return math.nan
+    kept = history["time"] >= since
+    angle, position = history["cage_angle"][kept], history["cage_position"][kept]
+    turns = int(abs(angle[-1] - angle[0]) / (2.0 * math.pi)) if angle.size else 0
+    if turns < LEAST_TURNS:
+        return math.nan
+    orbit = observables.orbit_radius(position) / clearance
+    means = np.array([part.mean() for part in np.array_split(orbit, turns)])
+    return observables.mean_error(means).half_width / STUDENT * math.sqrt(turns / max(turns_of_mean, 1.0))
+
+
 def order_share(values: Array, angle: Array, order: int = 1) -> float:
     """Share of a signal's variance that lies at an order of an angle, over its whole turns; nan for less than one turn."""
     turned = np.abs(angle - angle[0])
@@ -118,6 +141,9 @@ def numbers_of(result: Result, history: History, about: dict[str, Any]) -> dict[
     started = observables.spacing_std(history["roller_orbit_angle"][:1])[0]
     lean = observables.lean(position, tilt)
     growth = growth_of_history(history, result.clearances.radial)
+    since = about["settled_since"] if about["settled"] else None
+    within = standard_error(observables.orbit_radius(position) / result.clearances.radial, angle)
+    slow = settled_error(history, since, result.clearances.radial, abs(angle[-1] - angle[0]) / (2.0 * math.pi))
     out: dict[str, Any] = {
         "whirl_radius_over_cpr": {"mean": radius.mean(), "p5": low, "p95": high},
         "whirl_ratio": result.whirl_ratio,
@@ -140,7 +166,7 @@ def numbers_of(result: Result, history: History, about: dict[str, Any]) -> dict[
         "growth_rate_error": growth.rate_error,
         "whirl_grows": growth.growing,
         "time_to_full_whirl": growth.time_to_full,
-        "orbit_standard_error": standard_error(observables.orbit_radius(position) / result.clearances.radial, angle),
+        "orbit_standard_error": np.fmax(within, slow),
         "cage_motion": motion.kind,
         "whirl_coherence": observables.whirl_coherence(position, result["cage_velocity"]),
         "centre_over_cpr": list(position[:, :2].mean(axis=0) / result.clearances.radial),

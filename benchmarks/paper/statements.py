@@ -139,7 +139,11 @@ def _listed(names: Sequence[str], values: Sequence[tuple[float, float]], digits:
 
 
 def _with_error(value: float, error: float, digits: int = 2) -> str:
-    return f"{value:.{digits}f} ± {f'{error:.{digits}f}' if math.isfinite(error) else '?'}"
+    if not math.isfinite(error):
+        return f"{value:.{digits}f} ± ?"
+    # as many digits as the error needs to show
+    shown = max(digits, math.ceil(-math.log10(error)) if error > 0.0 else digits)
+    return f"{value:.{shown}f} ± {error:.{shown}f}"
 
 
 def _rpm(conditions: Sequence[Condition]) -> list[str]:
@@ -437,15 +441,30 @@ def judge_statement(runs: Runs, statement: Statement) -> Judged:
     return Judged(statement, findings, {start: names for start, names in unsettled.items() if names}, verdict)
 
 
-def markdown(judged: Sequence[Judged]) -> str:
-    """The table of statements."""
-    lines = ["| Fig. | statement of the paper | verdict | start | what we find | agrees |", "|" + " --- |" * 6]
+def markdown(judged: Sequence[Judged], early: Sequence[Judged] = ()) -> str:
+    """The table of statements.
+
+    Parameters
+    ----------
+    judged : sequence of Judged
+        By the settled runs.
+    early : sequence of Judged
+        By runs whose statistics end after a second, as the paper's did; they have columns of their own.
+    """
+    names = ["Fig.", "statement of the paper", "verdict", "start", "what we find", "agrees"]
+    names += ["from 0.5 to 1 s", "agrees then"] if early else []
+    lines = [f"| {' | '.join(names)} |", "|" + " --- |" * len(names)]
     words = {True: "yes", False: "no", None: "–"}
+    then = {entry.statement.key: entry.findings for entry in early}
     for entry in judged:
         mark = STAR if entry.unsettled else ""
         head = f"| {entry.statement.figure} | {entry.statement.text} | **{entry.verdict}**{mark} "
         for start, (text, agrees) in (entry.findings or {"–": NOT_RUN}).items():
-            lines.append(f"{head}| {start}{STAR if start in entry.unsettled else ''} | {text} | {words[agrees]} |")
+            row = f"{head}| {start}{STAR if start in entry.unsettled else ''} | {text} | {words[agrees]} |"
+            if early:
+                said, so = then.get(entry.statement.key, {}).get(start, ("–", None))
+                row += f" {said} | {words[so]} |"
+            lines.append(row)
             head = "| | | "
     if any(entry.unsettled for entry in judged):
         lines += ["", f"{STAR} with points that had not settled when their statistics began."]

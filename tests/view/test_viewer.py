@@ -194,6 +194,24 @@ def test_another_bearing(browser: Any, tmp_path: Path) -> None:
     assert (np.abs(seen - seen[0, 0]).max(axis=-1) > 0.03).mean() > 0.2
 
 
+def test_the_cup_moves_with_its_housing(browser: Any, tmp_path: Path) -> None:
+    housing = trb.Housing.hollow_cylinder(mass=4.0, inner_diameter=0.11, outer_diameter=0.16, length=0.05)
+    housing = housing.replace(support_radial=2e7, support_axial=2e7, support_tilt=1e5, damping=500.0)
+    scene = trb.Scene(trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0, radial_load=1000.0, housing=housing)
+    result = trb.Simulation(scene).run(revolutions=0.3, save_every=1e-4)
+    trb.view(result, tmp_path / "v.html")
+    browser.open(tmp_path / "v.html", READY)
+    browser.frame()
+    browser.js("trbView.setFactor(100); trbView.setPlace(40); trbView.draw()")
+    browser.frame()
+    shown = np.array(browser.js("trbView.cup()"))
+    place = result["housing_position"][40]
+    assert np.abs(place).max() > 1e-10
+    assert shown == pytest.approx(browser.js("trbView.state.factor") * 1e3 * place, rel=1e-3, abs=1e-7)
+    assert browser.errors == []
+    trb.viewer.save_gltf(result, tmp_path / "v.glb")
+
+
 def test_no_cage(browser: Any, tmp_path: Path) -> None:
     effects = trb.Effects.paper().replace(bodies="rollers")
     result = trb.Simulation(trb.cases.scene_30310(1000.0, 3000.0, effects=effects)).run(revolutions=0.3)

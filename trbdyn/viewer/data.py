@@ -69,7 +69,8 @@ class Frames:
         Time (s) and turns of the shaft.
     pose : dict of str to ndarray
         Scalars, shape (n,): shaft, cage_angle (rad), cage_x, cage_y, cage_z (m), cage_tilt_x, cage_tilt_y (rad),
-        ring_x, ring_y, ring_z (m), ring_tilt_x, ring_tilt_y (rad); of the rollers, shape (n, Z): psi (rad, against
+        ring_x, ring_y, ring_z (m), ring_tilt_x, ring_tilt_y (rad), cup_x and so on of the outer ring; of the
+        rollers, shape (n, Z): psi (rad, against
         their place in an even spacing that turns with the cage), r, z (m, against nominal), skew, tilt, spin (rad).
     quantities : tuple of Quantity
         What can be coloured and plotted.
@@ -151,6 +152,9 @@ def _pose(result: Result, index: NDArray[np.int64]) -> dict[str, Array]:
         place, tilt = np.zeros((index.size, 3)), np.zeros((index.size, 2))
     ring = result["ring_position"][index] if "ring_position" in result else np.zeros((index.size, 3))
     turned = _ring_tilt(result, index)
+    moves = result.housing_moves and "housing_position" in result
+    cup = result["housing_position"][index] if moves else np.zeros((index.size, 3))
+    cup_turned = result["housing_tilt"][index] if moves else np.zeros((index.size, 2))
     pose = {
         "shaft": result["shaft_angle"][index],
         "cage_angle": angle,
@@ -158,6 +162,8 @@ def _pose(result: Result, index: NDArray[np.int64]) -> dict[str, Array]:
         **{f"cage_tilt_{axis}": tilt[:, k] for k, axis in enumerate("xy")},
         **{f"ring_{axis}": ring[:, k] for k, axis in enumerate("xyz")},
         **{f"ring_tilt_{axis}": turned[:, k] for k, axis in enumerate("xy")},
+        **{f"cup_{axis}": cup[:, k] for k, axis in enumerate("xyz")},
+        **{f"cup_tilt_{axis}": cup_turned[:, k] for k, axis in enumerate("xy")},
         "psi": orbit - angle[:, None] - even,
         "r": np.hypot(position[..., 0], position[..., 1]) - geometry.roller_centre_radius,
         "z": position[..., 2] - geometry.roller_centre_height,

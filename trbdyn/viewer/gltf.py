@@ -174,8 +174,10 @@ class _Document:
 
         meshes, count = self.meshes, self.bearing.n_rollers
         time, pose = _keys(taken, seconds_per_turn, count)
-        self._node("cup", self._mesh("cup", self._primitive(meshes.outer, "cup")))
+        cup = self._node("cup", self._mesh("cup", self._primitive(meshes.outer, "cup")))
         self._time = self._accessor(time.reshape(-1, 1), "SCALAR")
+        if any(np.any(pose[f"cup_{axis}"]) for axis in "xyz"):
+            self._move(cup, *self._cup(pose))
         cone = self._node("cone", self._mesh("cone", self._primitive(meshes.inner, "cone")))
         self._move(cone, *self._ring(pose))
         if meshes.land is not None:
@@ -222,6 +224,9 @@ class _Document:
     def _ring(self, pose: dict[str, Array]) -> tuple[Array, Rotation]:
         place = self.factor * np.stack([pose[f"ring_{axis}"] for axis in "xyz"], axis=1)
         return place, self._tilted(pose, "ring") * _about("z", pose["shaft"])
+
+    def _cup(self, pose: dict[str, Array]) -> tuple[Array, Rotation]:
+        return self.factor * np.stack([pose[f"cup_{axis}"] for axis in "xyz"], axis=1), self._tilted(pose, "cup")
 
     def _cage(self, pose: dict[str, Array]) -> tuple[Array, Rotation]:
         place = self.factor * np.stack([pose[f"cage_{axis}"] for axis in "xyz"], axis=1)

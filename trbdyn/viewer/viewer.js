@@ -81,7 +81,8 @@
   const material = (options) => new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, ...options });
   const ringMaterial = material({ color: 0xaab4be }), innerMaterial = material({ color: 0x9aa8b5 });
   const outer = new THREE.Mesh(geometryOf(head.meshes.outer), ringMaterial);
-  const innerGroup = new THREE.Group();
+  const outerGroup = new THREE.Group(), innerGroup = new THREE.Group();
+  outerGroup.add(outer);
   innerGroup.add(new THREE.Mesh(geometryOf(head.meshes.inner), innerMaterial));
   // a mark on the cone's end face, so that its turn is seen
   const boreMark = new THREE.Mesh(new THREE.BoxGeometry(size * 0.02, size * 0.1, size * 0.012), material({ color: 0xd55e00 }));
@@ -89,7 +90,7 @@
     for (let i = 0; i < p.length; i += 3) { z = Math.max(z, p[i + 2]); r = Math.min(r, Math.hypot(p[i], p[i + 1])); }
     boreMark.position.set(0, r * MM + size * 0.06, z * MM); }
   innerGroup.add(boreMark);
-  world.add(outer, innerGroup);
+  world.add(outerGroup, innerGroup);
 
   const rollerGeometry = geometryOf(head.meshes.roller), markGeometry = geometryOf(head.meshes.mark);
   const rollers = [];
@@ -123,7 +124,7 @@
   // lands: that of the ring stands with the ring, the cage's guiding surface moves with the cage
   const landMaterial = material({ color: 0x5f7d95 });
   const land = head.meshes.land ? new THREE.Mesh(geometryOf(head.meshes.land), landMaterial) : null;
-  if (land) (head.guidance === "inner_land" ? innerGroup : world).add(land);
+  if (land) (head.guidance === "inner_land" ? innerGroup : outerGroup).add(land);
   if (head.meshes.guide) cage.add(new THREE.Mesh(geometryOf(head.meshes.guide), material({ color: 0xb0862f })));
 
   // ---- orbit of the cage: the trail of its centre, with its radial play as a circle, in the bore and on a scale of its own ----
@@ -199,6 +200,8 @@
     innerGroup.position.set(e * MM * scalar("ring_x", b), e * MM * scalar("ring_y", b), e * MM * scalar("ring_z", b));
     small(e * scalar("ring_tilt_x", b), e * scalar("ring_tilt_y", b), tilted).multiply(work.makeRotationZ(scalar("shaft", b)));
     innerGroup.quaternion.setFromRotationMatrix(tilted);
+    outerGroup.position.set(e * MM * scalar("cup_x", b), e * MM * scalar("cup_y", b), e * MM * scalar("cup_z", b));
+    outerGroup.quaternion.setFromRotationMatrix(small(e * scalar("cup_tilt_x", b), e * scalar("cup_tilt_y", b), tilted));
     if (head.has_cage) {
       small(e * scalar("cage_tilt_x", b), e * scalar("cage_tilt_y", b), tilted).multiply(work.makeRotationZ(cageAngle));
       tilted.setPosition(e * MM * scalar("cage_x", b), e * MM * scalar("cage_y", b), e * MM * scalar("cage_z", b));
@@ -525,7 +528,7 @@
   draw();
   const onScreen = (vector) => { const v = vector.clone().project(camera), box = canvas.getBoundingClientRect();
     return [box.left + ((v.x + 1) / 2) * box.width, box.top + ((1 - v.y) / 2) * box.height]; };
-  window.trbView = { state, head, setPlace, setFactor, setCamera, setSwitch, pick, draw, drawn: () => drawn,
+  window.trbView = { state, head, setPlace, setFactor, setCamera, setSwitch, pick, draw, drawn: () => drawn, cup: () => outerGroup.position.toArray(),
     whereIsRoller: (i) => onScreen(new THREE.Vector3().setFromMatrixPosition(rollers[i].group.matrix).applyMatrix4(world.matrixWorld)) };
   requestAnimationFrame(tick);
 })();
