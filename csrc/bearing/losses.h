@@ -17,7 +17,7 @@
   F(X, front_rib,        TAKES,  1, "at the front rib") \
   F(X, pocket,           TAKES,  1, "by friction in the pockets") \
   F(X, damping,          TAKES,  1, "by normal damping") \
-  F(X, drag,             TAKES,  p->oil_fill > 0.0, "by drag of the oil on rollers")
+  F(X, drag,             TAKES,  p->oil_fill > 0.0, "by drag of the oil on rollers and cage")
 
 /* Of pairs without one. */
 #define TRB_HUB_LOSSES(F, X) \

@@ -50,6 +50,8 @@
   X(cage_inertia_transverse,  "kg m2",  1e-12,  1e6,    "moment of inertia about a transverse axis through the cage's centre of mass") \
   X(cage_offset,              "m",      -1,     1,      "axial position of the cage's centre of mass from the roller-centre plane") \
   X(cage_rail_offset,         "m",      -1,     1,      "axial position of the large-end rail (where the sensors look) from the roller-centre plane") \
+  X(cage_face_inner,          "m",      0,      10.0,   "inner radius of the cage's end faces") \
+  X(cage_face_outer,          "m",      0,      10.0,   "outer radius of the cage's end faces") \
   X(cage_modes,               "count",      0,      100,    "number of natural modes by which the cage deforms; 0: it is rigid") \
   /* land that guides the cage */ \
   X(land_offset,              "m",      -1,     1,      "axial position of the middle of the cage's guiding surface from the roller-centre plane") \

@@ -38,6 +38,7 @@ enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6, TRB_MOST_MOVING_RINGS = 2 };
   X(pocket_culled,        "pocket faces proven not to touch") \
   X(pocket_nodes,         "nodes and points in contact with pocket faces") \
   X(drag_rollers,         "rollers whose drag in the oil was evaluated") \
+  X(drag_cages,           "cages whose drag in the oil was evaluated") \
   X(land_films,           "strips of the cage's guiding surface whose film was evaluated") \
   X(land_contacts,        "strips of the cage's guiding surface in contact with the land") \
   X(gravity_bodies,       "bodies on which gravity was evaluated")

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "laws/drag.h"
 #include "laws/film.h"
 #include "laws/hertz.h"
 #include "laws/journal.h"
@@ -40,6 +41,8 @@
     trb_film_point_elastic(log(x[0]), log(x[1]), log(x[2]), trb_film_needle_shape(x[3]))) \
   X(film_thermal_aihara, 1, "thermal_loading", "Aihara 1987: thermal film factor", trb_film_thermal_aihara(log(x[0]))) \
   X(asperity_share, 3, "film_parameter factor exponent", "exp(-B Lambda^C): share of the load on asperities", trb_asperity_share(x[0], x[1], x[2])) \
+  X(disc_torque, 4, "density kinematic_viscosity radius speed", "Schlichting: torque of a disc that turns in a fluid, both sides, N m", \
+    x[3] * trb_disc_over_speed(x[0], x[1], x[2], fabs(x[3]))) \
   X(viscosity_dicke, 6, "pressure temperature a b c d", "Dicke: ln(eta/eta0), pressure in Pa, temperature in C, p in bar inside", \
     trb_viscosity_dicke(x[0], x[2] + x[3] * x[1], x[4] + x[5] * x[1])) \
   X(viscosity_roelands, 4, "pressure pressure_coefficient viscosity cap", "Roelands: ln(eta/eta0), capped", \

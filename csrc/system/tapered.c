@@ -21,6 +21,7 @@ enum {
   GUIDED,
   INNER_LAND,
   OUTER_LAND,
+  WHOLE_CAGE,
   N_SURFACES
 };
 
@@ -65,6 +66,7 @@ static void add_surfaces(trb_system *s)
   s->surfaces[GUIDED] = (trb_surface){"guiding surface", TRB_BODY_CAGE, TRB_SHAPE_CYLINDER, m};
   s->surfaces[INNER_LAND] = (trb_surface){"land of the inner ring", TRB_BODY_INNER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_INNER]};
   s->surfaces[OUTER_LAND] = (trb_surface){"land of the outer ring", TRB_BODY_OUTER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_OUTER]};
+  s->surfaces[WHOLE_CAGE] = (trb_surface){"cage", TRB_BODY_CAGE, TRB_SHAPE_NONE, NULL};
 }
 
 #define SLIDES(name) {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_##name), [TRB_BY_DAMPING] = TRB_BOOK(TRB_LOSS_damping)}
@@ -80,41 +82,46 @@ static void add_surfaces(trb_system *s)
 #define TURNS(name) {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_##name)}
 
 /* Names, and whether a pair is on, are put in by add_pairs; bodies and parameters follow from the surfaces (trb_system_finish). */
-static const trb_pair rows[TRB_N_PAIRS] = {
-    [TRB_PAIR_outer] = {.kind = &trb_pair_raceway,
-                        .text = "roller on the outer raceway",
-                        .surface = {FLANK, OUTER_RACE},
-                        .books = {.loss = ROLLS(traction_outer)}},
-    [TRB_PAIR_inner] = {.kind = &trb_pair_raceway,
-                        .text = "roller on the inner raceway",
-                        .surface = {FLANK, INNER_RACE},
-                        .books = {.loss = ROLLS(traction_inner),
-                                  .torque = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_traction),
-                                             [TRB_BY_ROLLING] = TRB_BOOK(TRB_TORQUE_rolling)}}},
-    [TRB_PAIR_rib] = {.kind = &trb_pair_rib,
-                      .text = "roller's large end on the back-face rib",
-                      .surface = {LARGE_END, BACK_FACE},
-                      .books = {.loss = SLIDES(rib), .torque = TURNS(rib)}},
-    [TRB_PAIR_front_rib] = {.kind = &trb_pair_front_rib,
-                            .text = "roller's small end on the front rib",
-                            .surface = {SMALL_END, FRONT_FACE},
-                            .books = {.loss = SLIDES(front_rib), .torque = TURNS(front_rib)}},
-    [TRB_PAIR_drag] = {.kind = &trb_pair_drag,
-                       .text = "roller in the mixture of oil and air",
-                       .surface = {ROLLER, OIL},
-                       .books = {.loss = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_drag)}}},
-    [TRB_PAIR_pocket] = {.kind = &trb_pair_pocket,
-                         .text = "roller in its pocket of the cage",
-                         .surface = {ROLLER, POCKETS},
-                         .books = {.loss = SLIDES(pocket)}},
-    [TRB_PAIR_inner_land] = {.kind = &trb_pair_land,
-                             .text = "cage on a land of the inner ring",
-                             .surface = {GUIDED, INNER_LAND},
-                             .books = {.loss = FLOATS,
-                                       .torque = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_land),
-                                                  [TRB_BY_FILM] = TRB_BOOK(TRB_TORQUE_land)}}},
-    [TRB_PAIR_outer_land] = {
-        .kind = &trb_pair_land, .text = "cage in a land of the outer ring", .surface = {GUIDED, OUTER_LAND}, .books = {.loss = FLOATS}}};
+static const trb_pair rows[TRB_N_PAIRS] = {[TRB_PAIR_outer] = {.kind = &trb_pair_raceway,
+                                                               .text = "roller on the outer raceway",
+                                                               .surface = {FLANK, OUTER_RACE},
+                                                               .books = {.loss = ROLLS(traction_outer)}},
+                                           [TRB_PAIR_inner] = {.kind = &trb_pair_raceway,
+                                                               .text = "roller on the inner raceway",
+                                                               .surface = {FLANK, INNER_RACE},
+                                                               .books = {.loss = ROLLS(traction_inner),
+                                                                         .torque = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_traction),
+                                                                                    [TRB_BY_ROLLING] = TRB_BOOK(TRB_TORQUE_rolling)}}},
+                                           [TRB_PAIR_rib] = {.kind = &trb_pair_rib,
+                                                             .text = "roller's large end on the back-face rib",
+                                                             .surface = {LARGE_END, BACK_FACE},
+                                                             .books = {.loss = SLIDES(rib), .torque = TURNS(rib)}},
+                                           [TRB_PAIR_front_rib] = {.kind = &trb_pair_front_rib,
+                                                                   .text = "roller's small end on the front rib",
+                                                                   .surface = {SMALL_END, FRONT_FACE},
+                                                                   .books = {.loss = SLIDES(front_rib), .torque = TURNS(front_rib)}},
+                                           [TRB_PAIR_drag] = {.kind = &trb_pair_drag,
+                                                              .text = "roller in the mixture of oil and air",
+                                                              .surface = {ROLLER, OIL},
+                                                              .books = {.loss = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_drag)}}},
+                                           [TRB_PAIR_pocket] = {.kind = &trb_pair_pocket,
+                                                                .text = "roller in its pocket of the cage",
+                                                                .surface = {ROLLER, POCKETS},
+                                                                .books = {.loss = SLIDES(pocket)}},
+                                           [TRB_PAIR_inner_land] = {.kind = &trb_pair_land,
+                                                                    .text = "cage on a land of the inner ring",
+                                                                    .surface = {GUIDED, INNER_LAND},
+                                                                    .books = {.loss = FLOATS,
+                                                                              .torque = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_TORQUE_land),
+                                                                                         [TRB_BY_FILM] = TRB_BOOK(TRB_TORQUE_land)}}},
+                                           [TRB_PAIR_outer_land] = {.kind = &trb_pair_land,
+                                                                    .text = "cage in a land of the outer ring",
+                                                                    .surface = {GUIDED, OUTER_LAND},
+                                                                    .books = {.loss = FLOATS}},
+                                           [TRB_PAIR_cage_drag] = {.kind = &trb_pair_cage_drag,
+                                                                   .text = "end faces of the cage in the mixture of oil and air",
+                                                                   .surface = {WHOLE_CAGE, OIL},
+                                                                   .books = {.loss = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_drag)}}}};
 
 /* Which pairs the effects of the scene leave on. */
 static int is_on(const trb_model *m, int pair)
@@ -127,6 +134,7 @@ static int is_on(const trb_model *m, int pair)
   case TRB_PAIR_pocket: return m->first_face[m->n_rollers] > 0;
   case TRB_PAIR_inner_land: return p->with_cage > 0.0 && p->guidance == TRB_GUIDANCE_INNER_LAND;
   case TRB_PAIR_outer_land: return p->with_cage > 0.0 && p->guidance == TRB_GUIDANCE_OUTER_LAND;
+  case TRB_PAIR_cage_drag: return p->with_cage > 0.0 && p->oil_fill > 0.0 && p->cage_face_outer > p->cage_face_inner;
   default: return 1;
   }
 }

@@ -8,7 +8,7 @@
 enum { TRB_BODY_OUTER_RING, TRB_BODY_CAGE, TRB_BODY_INNER_RING, TRB_BODY_OIL, TRB_N_BODIES };
 
 /* Pairs, in the order in which they are evaluated: X(name). */
-#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket) X(inner_land) X(outer_land)
+#define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket) X(inner_land) X(outer_land) X(cage_drag)
 
 enum {
 #define TRB_PAIR_ENUM(name) TRB_PAIR_##name,

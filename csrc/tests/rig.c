@@ -27,6 +27,7 @@ trb_params rig_params(void)
   p.lambda_boundary = 0.01, p.lambda_full = 1.5, p.boundary_limit = 0.1, p.boundary_slope = 22.28, p.boundary_decay = 181.46;
   p.dry_friction = 0.1, p.coulomb_speed = 0.01, p.cage_entrainment_speed = 0.05, p.speed_floor = 1e-3, p.thermal_floor = 0.05;
   p.oil_density = 860.6, p.drag_coefficient = 1;
+  p.asperity_factor = 2.32, p.asperity_exponent = 0.97, p.rib_asperity_factor = 1.90, p.rib_asperity_exponent = 0.99;
   p.land_offset = 12e-3, p.land_inner_radius = 39.5e-3, p.land_outer_radius = 50.5e-3, p.land_width = 3e-3;
   p.land_clearance = 0.1e-3, p.land_contact_film = 1e-6, p.land_fill = 1;
   p.rolling_blend = 0.1, p.damping_race = 0.1, p.damping_cage = 0.5;

@@ -45,6 +45,22 @@ def test_choices_of_films_and_asperities() -> None:
     assert laws.asperity_share(4.0, 1.9, 0.99) == pytest.approx(math.exp(-1.9 * 4.0**0.99), rel=1e-13)
 
 
+def test_torque_of_a_disc() -> None:
+    """2 M = 0.616 pi rho R^4 sqrt(nu w^3) laminar, 0.073 rho w^2 R^5 Re^-0.2 turbulent; one law goes over into the other."""
+    rho, nu, radius = 860.0, 4e-5, 0.05
+    for speed in (10.0, 500.0):
+        laminar = 0.616 * math.pi * rho * radius**4 * math.sqrt(nu * speed**3)
+        assert laws.disc_torque(rho, nu, radius, speed) == pytest.approx(laminar, rel=1e-3)
+    fast = 2e4
+    turbulent = 0.073 * rho * fast**2 * radius**5 * (nu / (radius**2 * fast)) ** 0.2
+    assert laws.disc_torque(rho, nu, radius, fast) == pytest.approx(turbulent, rel=1e-3)
+    meets = 5.5e4 * nu / radius**2
+    around = laws.disc_torque(rho, nu, radius, meets * np.linspace(0.9, 1.1, 201))
+    assert np.diff(around).max() < 0.003 * around[0]
+    assert laws.disc_torque(rho, nu, radius, 0.0) == 0.0
+    assert laws.disc_torque(rho, nu, radius, -10.0) == -laws.disc_torque(rho, nu, radius, 10.0)
+
+
 @dataclass(frozen=True)
 class Oil:
     """Numbers of an oil."""

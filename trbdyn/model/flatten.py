@@ -77,6 +77,13 @@ def named_entries(model: Model, *path: str) -> Entries:
     }
 
 
+def _cage_faces(bearing: Bearing) -> Entries:
+    """Radii of the cage's end faces: those of its wall, in the middle between both ends."""
+    pitch, cosine = 0.5 * bearing.pitch_diameter, math.cos(math.radians(bearing.cup_half_angle_deg))
+    names = {"cage_face_inner": "wall_inner", "cage_face_outer": "wall_outer"}
+    return {key: Entry(("cage", name), pitch + cosine * getattr(bearing.cage, name)) for key, name in names.items()}
+
+
 def bearing_entries(bearing: Bearing) -> Entries:
     """Numbers of a bearing, by their names in the core's table; paths start at the bearing."""
     roller, cage = bearing.roller, bearing.cage
@@ -86,6 +93,7 @@ def bearing_entries(bearing: Bearing) -> Entries:
         **named_entries(roller.profile, "roller", "profile"),
         **named_entries(bearing.ribs, "ribs"),
         **named_entries(cage, "cage"),
+        **_cage_faces(bearing),
         **named_entries(bearing.roughness, "roughness"),
         **named_entries(bearing.land, "land"),
         "cup_half_angle": Entry(("cup_half_angle_deg",), math.radians(bearing.cup_half_angle_deg)),
