@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
     from trbdyn.run.toml_assembly import load_assembly
     from trbdyn.run.toml_case import load_case
+    from trbdyn.run.wear import wear
     from trbdyn.statics.assembly import equilibrium
     from trbdyn.statics.preload import preload_diagram
     from trbdyn.statics.stiffness import stiffness
@@ -128,6 +129,7 @@ _NAMES = {
     "torque_map": "trbdyn.study.torque_map",
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
+    "wear": "trbdyn.run.wear",
 }
 
 __all__ = [
@@ -200,6 +202,7 @@ __all__ = [
     "torque_map",
     "uncertainty",
     "view",
+    "wear",
 ]
 
 

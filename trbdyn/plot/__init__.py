@@ -36,6 +36,7 @@ from trbdyn.plot.energy import energy_audit, power_split, torque_split
 from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
 from trbdyn.plot.style import SAVE_DPI, STYLE, styled
+from trbdyn.plot.wearing import wear_map
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
 from trbdyn.results.result import Result
 
@@ -86,6 +87,7 @@ __all__ = [
     "torque_sources",
     "torque_split",
     "waterfall",
+    "wear_map",
     "whirl_map",
     "whirl_radius",
 ]
