@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from trbdyn.study.torque_map import torque_map
     from trbdyn.study.uncertainty import uncertainty
     from trbdyn.study.what_matters import sensitivity
+    from trbdyn.study.whirl import whirl_onset
     from trbdyn.viewer import view
 
 _MODULES = {
@@ -130,6 +131,7 @@ _NAMES = {
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
     "wear": "trbdyn.run.wear",
+    "whirl_onset": "trbdyn.study.whirl",
 }
 
 __all__ = [
@@ -203,6 +205,7 @@ __all__ = [
     "uncertainty",
     "view",
     "wear",
+    "whirl_onset",
 ]
 
 

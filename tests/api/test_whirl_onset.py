@@ -1,0 +1,78 @@
+"""The speed from which on a cage whirls: classes from two starts, the search between speeds, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import InputError
+from trbdyn.study.whirl import WhirlOnset, whirl_onset
+
+SCENE = trb.cases.scene_30310(2000.0, 3080.0)
+
+
+@pytest.fixture(scope="module")
+def found() -> WhirlOnset:
+    return whirl_onset(SCENE, [4000.0, 1000.0], resolution=1500.0, longest=40.0)
+
+
+def test_what_a_cage_does_depends_on_speed_and_start(found: WhirlOnset) -> None:
+    data = found.data
+    assert list(data.speed_rpm.values) == [1000.0, 2500.0, 4000.0]
+    assert str(data.kind.sel(start="equal", speed_rpm=1000.0).values) == "stable"
+    assert str(data.kind.sel(start="equal", speed_rpm=2500.0).values) != "circling"
+    assert str(data.kind.sel(start="whirl", speed_rpm=4000.0).values) == "circling"
+    assert str(data.kind.sel(start="equal", speed_rpm=4000.0).values) == "circling"
+    assert float(data.orbit.sel(start="whirl", speed_rpm=4000.0)) > 0.7
+    assert found.onset("equal") == (2500.0, 4000.0)
+    low, high = found.onset("whirl")
+    assert high <= 2500.0
+    assert low < high
+
+
+def test_it_prints_a_table(found: WhirlOnset) -> None:
+    text = str(found)
+    assert "from the start 'equal' it begins to whirl between 2500 and 4000 rpm" in text
+    assert "circling" in text
+    assert "rpm" in found._repr_html_()
+    with pytest.raises(InputError, match="start"):
+        found.onset("unequal")  # type: ignore[arg-type]
+
+
+def test_no_whirl_and_files(tmp_path: Path) -> None:
+    """Against the other sense of rotation, kept in files and taken from there."""
+    light = trb.cases.scene_30310(-3000.0, 1230.0)
+    once = whirl_onset(light, [-3000.0], starts=["equal"], longest=40.0, folder=tmp_path)
+    assert once.onset() == (3000.0, np.inf)
+    assert "whirls at none of these speeds" in str(once)
+    again = whirl_onset(light, [-3000.0], starts=["equal"], longest=40.0, folder=tmp_path)
+    assert again.data.equals(once.data)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "given", "words"),
+    [
+        ([], {}, "speeds"),
+        ([0.0, 1000.0], {}, "speeds"),
+        ([-1000.0, 1000.0], {}, "speeds"),
+        ("1000", {}, "speeds"),
+        ([1000.0], {"starts": ["unequal"]}, "starts"),
+        ([1000.0], {"resolution": 0.0}, "resolution"),
+        ([1000.0], {"longest": 3.0}, "longest"),
+    ],
+)
+def test_what_cannot_be_used_is_refused(speeds: Any, given: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        whirl_onset(SCENE, speeds, **given)
+
+
+def test_a_speed_that_fails_is_said() -> None:
+    """A scene without a cage has no whirl; one that cannot be built at a speed says so in its row."""
+    with pytest.raises(InputError, match="bodies"):
+        whirl_onset(SCENE.replace(effects=SCENE.effects.replace(bodies="rollers")), [1000.0])
+    found = whirl_onset(SCENE, [2e6], starts=["equal"], longest=40.0)
+    assert "1e+06" in str(found.data.message.values[0, 0])

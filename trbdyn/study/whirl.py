@@ -1,0 +1,303 @@
+"""From which speed on a cage whirls: runs over speeds from two starts, longer where their motion is not decided, and a search
+between the speeds where it changes.
+
+What a cage does may depend on how it began. A run is decided when the third and the last quarter of it have the same class
+(`trbdyn.observables.classify`) and an orbit of nearly the same size; one that is not is made again, four times as long. The class
+of a cage that creeps towards a whirl over thousands of turns is that of its last quarter, and it stands there as not decided.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.validation import number_of
+from trbdyn.errors import InputError
+from trbdyn.model.scene import Scene
+from trbdyn.model.start import Start
+from trbdyn.results.result import Result
+from trbdyn.run.options import RunOptions
+from trbdyn.study.definition import Base, Case, Study
+from trbdyn.study.runner import run as run_study
+
+if TYPE_CHECKING:
+    import xarray
+
+KINDS: Final = ("unknown", "stable", "rocking", "circling", "unstable")
+"""Classes, as `trbdyn.observables.classify` names them."""
+TURNS: Final = (40.0, 160.0, 640.0)
+"""Turns of the cage after which a run is judged; the next number where it is not decided."""
+STEADY: Final = 0.1
+"""Largest change of the orbit between the last two quarters of a decided run, over the radial play."""
+RECORDS_A_TURN: Final = 32
+GROUPS: Final = ("cage", "rollers")
+STARTS: Final = {"equal": Start.equal(), "whirl": Start.whirl(0.9)}
+WHIRLS: Final = "circling"
+
+
+def _quarter(result: Result, number: int) -> Result:
+    start, end = float(result["time"][0]), float(result["time"][-1])
+    step = 0.25 * (end - start)
+    return result.window(start + number * step, start + (number + 1) * step)
+
+
+def kind_before(result: Result) -> float:
+    """Class of the motion in the third quarter of a run, as a place in `KINDS`."""
+    return float(KINDS.index(_quarter(result, 2).cage_motion.kind))
+
+
+def kind_at_end(result: Result) -> float:
+    """Class of the motion in the last quarter, as a place in `KINDS`."""
+    return float(KINDS.index(_quarter(result, 3).cage_motion.kind))
+
+
+def orbit_before(result: Result) -> float:
+    """Orbit of the cage in the third quarter over the radial play (1)."""
+    return float(_quarter(result, 2).cage_motion.orbit_over_play)
+
+
+def orbit_at_end(result: Result) -> float:
+    """Orbit of the cage in the last quarter over the radial play (1)."""
+    return float(_quarter(result, 3).cage_motion.orbit_over_play)
+
+
+OBSERVED: Final = {function.__name__: function for function in (kind_before, kind_at_end, orbit_before, orbit_at_end)}
+
+
+@dataclass(frozen=True, repr=False)
+class WhirlOnset(Displayed):
+    """What a cage does over speed; print it for a table.
+
+    Attributes
+    ----------
+    data : xarray.Dataset
+        Dimensions start and speed_rpm, ascending in size. Variables: kind (text), orbit (over the radial play), decided, turns
+        (of the cage), message.
+    """
+
+    data: xarray.Dataset
+
+    def onset(self, start: Literal["equal", "whirl"] = "equal") -> tuple[float, float]:
+        """Between which speeds (rpm) the cage begins to whirl: the fastest one below the whirl, and the slowest with it.
+
+        Parameters
+        ----------
+        start : {'equal', 'whirl'}
+            From which start.
+
+        Returns
+        -------
+        tuple of float
+            The first is 0 where the cage whirls at every speed, the second infinite where it never does.
+
+        Raises
+        ------
+        InputError
+            If the start was not run.
+        """
+        if start not in self.data["start"].values:
+            raise InputError.of("start", start, f"must be one of {', '.join(map(str, self.data['start'].values))}")
+        line = self.data.sel(start=start)
+        speeds = np.abs(line["speed_rpm"].values)
+        whirls = line["kind"].values == WHIRLS
+        first = int(np.argmax(whirls)) if whirls.any() else len(speeds)
+        return (float(speeds[first - 1]) if first else 0.0, float(speeds[first]) if whirls.any() else np.inf)
+
+    def __str__(self) -> str:
+        shown = self._shown()
+        return Shown(shown.title, (shown.head, *shown.rows), shown.head, shown.notes).text()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _shown(self) -> Shown:
+        rows = []
+        for name in self.data["start"].values:
+            for speed in self.data["speed_rpm"].values:
+                at = self.data.sel(start=name, speed_rpm=speed)
+                said = str(at["message"].values) or ("yes" if bool(at["decided"]) else "no")
+                turns = f"{float(at['turns']):g}"
+                rows.append((str(name), f"{speed:g}", str(at["kind"].values), f"{float(at['orbit']):.3f}", turns, said))
+        head = ("start", "speed (rpm)", "motion", "orbit / Cpr", "turns of the cage", "decided")
+        notes = tuple(self._words(str(name)) for name in self.data["start"].values)
+        return Shown("Motion of the cage over speed", tuple(rows), head, notes)
+
+    def _words(self, start: Any) -> str:
+        low, high = self.onset(start)
+        if low == 0.0:
+            return f"from the start {start!r} the cage whirls at every speed that was run"
+        if np.isinf(high):
+            return f"from the start {start!r} it whirls at none of these speeds"
+        return f"from the start {start!r} it begins to whirl between {low:g} and {high:g} rpm"
+
+
+def whirl_onset(
+    scene: Scene,
+    speeds: Sequence[float],
+    *,
+    starts: Sequence[Literal["equal", "whirl"]] = ("equal", "whirl"),
+    resolution: float | None = None,
+    longest: float = TURNS[-1],
+    options: RunOptions | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    executor: Any = "threads",
+    workers: int | None = None,
+    progress: bool = False,
+) -> WhirlOnset:
+    """What the cage of a scene does at some speeds, and between which of them it begins to whirl.
+
+    Every speed is run from each start: from rest in the middle between even rollers, and from a large whirl, which tells whether
+    a whirl lasts. A run has 40 turns of the cage; where its motion is not decided it is made again over 160, and then 640.
+
+    Parameters
+    ----------
+    scene : Scene
+        Gives all but speed and start.
+    speeds : sequence of float
+        Speeds of the shaft (rpm), all of one sign, none 0.
+    starts : sequence of {'equal', 'whirl'}
+        Starts.
+    resolution : float, optional
+        Search on between the speeds where the whirl begins, from each start, until they lie this near (rpm).
+    longest : float
+        Turns of the cage of the longest runs (1).
+    options : RunOptions, optional
+        Accuracy and settings of each run, not its length; 'fast' by default.
+    folder : path-like, optional
+        Keep runs in files there, and take what is there already.
+    executor, workers
+        As in `trbdyn.study.run`.
+    progress : bool
+        Show a progress bar.
+
+    Returns
+    -------
+    WhirlOnset
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used.
+
+    Notes
+    -----
+    A whirl that grows over tens of seconds, as under high loads, is not seen in 640 turns of the cage: such a run is not decided,
+    or its orbit is small and looks steady. So look at both starts.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> scene = trb.cases.scene_30310(2000.0, 1230.0)
+    >>> found = trb.whirl_onset(scene, [1000.0], starts=["equal"], longest=40.0)
+    >>> str(found.data.kind.values[0, 0])
+    'stable'
+    """
+    wanted = _speeds(speeds)
+    for name in starts:
+        if name not in STARTS:
+            raise InputError.of("starts", name, f"must be one of {', '.join(STARTS)}")
+    if scene.effects.bodies == "rollers":
+        raise InputError.of(("effects", "bodies"), "rollers", "must be 'rollers_and_cage'")
+    if resolution is not None and not 0.0 < number_of("resolution", resolution) < np.inf:
+        raise InputError.of("resolution", resolution, "must be > 0 (rpm)")
+    if not TURNS[0] <= number_of("longest", longest):
+        raise InputError.of("longest", longest, f"must be >= {TURNS[0]:g} (1)")
+    how = {"folder": folder, "executor": executor, "workers": workers, "progress": progress}
+    search = _Search(scene, RunOptions(accuracy="fast") if options is None else options, float(longest), how)
+    names = list(dict.fromkeys(starts))
+    search.add([(name, speed) for name in names for speed in wanted])
+    while resolution is not None and (points := search.between(names, resolution)):
+        search.add([(name, speed) for speed in points for name in names])
+    return search.gathered(names)
+
+
+def _speeds(speeds: Any) -> list[float]:
+    if isinstance(speeds, str) or not isinstance(speeds, Sequence | np.ndarray) or not len(speeds):
+        raise InputError.of("speeds", speeds, "must be a sequence of at least one number (rpm)")
+    found = sorted({number_of("speeds", speed) for speed in speeds}, key=abs)
+    if not all(np.isfinite(found)) or found[0] * found[-1] <= 0.0 or min(found) * max(found) <= 0.0:
+        raise InputError.of("speeds", speeds, "must be finite, of one sign and not 0 (rpm)")
+    return found
+
+
+class _Search:
+    """Runs that were made, by start and speed."""
+
+    def __init__(self, scene: Scene, options: RunOptions, longest: float, how: dict[str, Any]) -> None:
+        self.scene, self.options, self.longest, self.how = scene, options, longest, how
+        self.rows: dict[tuple[str, float], dict[str, Any]] = {}
+
+    def add(self, points: Sequence[tuple[str, float]]) -> None:
+        """Run points until they are decided."""
+        waiting = [point for point in points if point not in self.rows]
+        for turns in (*(turns for turns in TURNS if turns < self.longest), self.longest):
+            if not waiting:
+                return
+            cases = [self._case(*point, turns) for point in waiting]
+            data = run_study(Study(tuple(cases), (), "whirl_onset"), observables=OBSERVED, **self.how)
+            for k, point in enumerate(waiting):
+                self.rows[point] = _row(data.isel(case=k), turns)
+            waiting = [
+                point for point in waiting if not self.rows[point]["decided"] and not self.rows[point]["message"]
+            ]
+
+    def _case(self, start: str, speed: float, turns: float) -> Case:
+        parameters = {"start": start, "speed_rpm": speed}
+        try:
+            scene = self.scene.replace(start=STARTS[start])
+            base = Base.of(Base.of(scene).build({"scene.speed_rpm": speed})[0])
+        except InputError as error:
+            return Case(parameters, None, self.options, str(error).splitlines()[0])
+        built = base.build({})[0]
+        length = turns * 2.0 * np.pi / abs(built.orbit_speed(built.start.time))
+        save_every = length / (turns * RECORDS_A_TURN)
+        own = self.options.replace(revolutions=None, duration=length, save_every=save_every, save_groups=GROUPS)
+        return Case(parameters, built, own)
+
+    def between(self, starts: Sequence[str], resolution: float) -> list[float]:
+        """Speeds in the middle of where the whirl begins, as far as the speeds beside it are not near enough."""
+        found = set()
+        for name in starts:
+            low, high = self.gathered(starts).onset(name)  # type: ignore[arg-type]
+            if low > 0.0 and np.isfinite(high) and high - low > resolution:
+                sign = np.sign(next(iter(self.rows))[1])
+                found.add(float(sign * 0.5 * (low + high)))
+        return sorted(found)
+
+    def gathered(self, starts: Sequence[str]) -> WhirlOnset:
+        import xarray
+
+        speeds = sorted({speed for _, speed in self.rows}, key=abs)
+        # a speed that was asked of one start only has a row for each
+        rows = [[self.rows[name, speed] for speed in speeds] for name in starts]
+
+        def column(name: str, kind: Any = None) -> Any:
+            return np.array([[row[name] for row in line] for line in rows], dtype=kind)
+
+        dims = ("start", "speed_rpm")
+        variables: dict[str, Any] = {
+            "kind": (dims, column("kind", object), {"long_name": "class of the cage's motion"}),
+            "orbit": (dims, column("orbit"), {"long_name": "orbit of the cage over the radial play", "units": "1"}),
+            "decided": (dims, column("decided", bool)),
+            "turns": (dims, column("turns"), {"long_name": "turns of the cage", "units": "1"}),
+            "message": (dims, column("message", object)),
+        }
+        places = {"start": list(starts), "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"})}
+        return WhirlOnset(xarray.Dataset(variables, places, {"bearing": self.scene.bearing.name}))
+
+
+def _row(found: xarray.Dataset, turns: float) -> dict[str, Any]:
+    """What is kept of a run."""
+    done = str(found["status"].values) == "done"
+    if not done:
+        text = str(found["message"].values).splitlines()[0]
+        return {"kind": "unknown", "orbit": np.nan, "decided": False, "turns": turns, "message": text}
+    before, last = (KINDS[int(found[name])] for name in ("kind_before", "kind_at_end"))
+    orbits = [float(found[name]) for name in ("orbit_before", "orbit_at_end")]
+    decided = before == last != "unknown" and abs(orbits[1] - orbits[0]) <= STEADY
+    return {"kind": last, "orbit": orbits[1], "decided": decided, "turns": turns, "message": ""}
