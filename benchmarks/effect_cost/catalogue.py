@@ -97,7 +97,7 @@ EFFECTS: Final = (
         ("boundary_nodes",),
         {
             "contact/passes.h": (
-                (r"\n  if \(p->lubrication == TRB_LUBRICATION_MIXED && thinnest.*?\} else \{(.*?)\n  \}\n", r"\1\n"),
+                (r"\n  if \(p->lubrication == TRB_LUBRICATION_MIXED && \(p->mixed.*?\} else \{(.*?)\n  \}\n", r"\1\n"),
             )
         },
     ),

@@ -130,7 +130,7 @@ trb_status trb_model_set_form(trb_model *m, const double *rows, int n_rows, int 
   for (int i = 0; i < n_rows; i += samples(rows, i, n_rows, n_columns)) n_patches++;
   trb_form_free(form);
   form->n_nodes = m->n_nodes;
-  form->patches = calloc((size_t)n_patches, sizeof *form->patches);
+  form->patches = trb_zeros((size_t)n_patches, sizeof *form->patches);
   form->rows = trb_zeros((size_t)n_rows * 2 * (size_t)m->n_nodes, sizeof *form->rows);
   if (form->patches == NULL || form->rows == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the form of surfaces");
   for (int i = 0; i < n_rows && status == TRB_OK;) {

@@ -124,7 +124,7 @@ static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_r
 void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *at, const trb_ring_pose *rings, trb_lanes *l,
                      trb_counters *counters, trb_race_output *outputs)
 {
-  const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD;
+  const int           n = at->n, all = (n + TRB_LANE_PAD - 1) / TRB_LANE_PAD * TRB_LANE_PAD, turns = m->params.rib_turning > 0.0;
   const trb_pass_kind kind = {.mean_pressure = TRB_POINT_MEAN_PRESSURE,
                               .roughness = rib->roughness,
                               .asperity_factor = m->params.rib_asperity_factor,
@@ -141,7 +141,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *
   counters->rib_contacts += touching;
   pass_load(rib, all, l);
   pass_speeds(m, all, l);
-  if (m->params.rib_turning > 0.0) pass_turning(rib, turning, n, all, arm2, l);
+  if (turns) pass_turning(rib, turning, n, all, arm2, l);
   if (m->film) {
     pass_film(m, rib, all, l);
     counters->film_nodes += all;
@@ -157,7 +157,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *
     const trb_ring_pose *ring = &rings[at->chosen[j]];
     if (!(l->interference[j] > 0.0)) continue;
     sum_roller(m, &at->rollers[at->chosen[j]], ring, j, l, &outputs[j]);
-    if (m->params.rib_turning <= 0.0) continue;
+    if (!turns) continue;
     add_turning(turning[j], arm2[j], j, l, &outputs[j]);
     outputs[j].torque_traction = trb_dot(outputs[j].ring_moment, ring->axis);
   }

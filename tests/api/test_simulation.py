@@ -388,5 +388,5 @@ def test_the_system_lists_what_is_simulated_and_what_is_off() -> None:
         effects=trb.Effects.standard().replace(oil_fill=0.1, back_rib=False, guidance="outer_land"),
     )
     system = Simulation(other).system
-    assert {pair.name for pair in system.pairs if pair.on} == on - {"rib"} | {"drag", "outer_land"}
+    assert {pair.name for pair in system.pairs if pair.on} == on - {"rib"} | {"drag", "cage_drag", "outer_land"}
     assert {body.name: body.coordinates for body in system.bodies}["inner ring"] == 12

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from trbdyn import Effects, Scene, Simulation, cases, laws
+from trbdyn.model.effects import Friction
 from trbdyn.model.lubricants import vg100
 
 STARVED = {"starvation_factor": 0.1}
@@ -19,7 +20,14 @@ SCENES: dict[str, dict[str, Any]] = {
     "full_film": {"lubrication": "full_film"},
     "no_thermal": {"thermal": False, "rolling_resistance": False},
     "film_coulomb": {"traction": "coulomb"},
-    "exponential": {"mixed_law": "exponential", "thermal_law": "aihara", **STARVED},
+    "exponential": {
+        "mixed_law": "exponential",
+        "thermal_law": "aihara",
+        "friction": Friction(
+            asperity_factor=1.5, asperity_exponent=0.8, rib_asperity_factor=1.2, rib_asperity_exponent=1.1
+        ),
+        **STARVED,
+    },
     "replenished": {"replenishment": 2e-3},
     "boundary": {"lubrication": "boundary"},
     "dry": {"lubrication": "dry"},
@@ -137,7 +145,7 @@ def friction_of(seen: SimpleNamespace, contact: Any, mean_pressure: Any, semi: A
         return film
     share = laws.boundary_share(contact.film_parameter, 0.01, 1.5)
     if effects.mixed_law == "exponential":
-        share = laws.asperity_share(contact.film_parameter, *((1.9, 0.99) if contact is seen.rib else (2.32, 0.97)))
+        share = laws.asperity_share(contact.film_parameter, *((1.2, 1.1) if contact is seen.rib else (1.5, 0.8)))
     return film + share * (boundary - film)
 
 

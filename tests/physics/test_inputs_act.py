@@ -139,7 +139,7 @@ LAWS: dict[str, Law] = {
     "cage_mass": Law(rate("cage_v_x"), power(-1.0), MOVING),
     "oil_fill": Law(drag, power(1.0), WET, 0.7),
     "oil_density": Law(drag, power(1.0), WET),
-    "drag_coefficient": Law(drag, power(1.0), WET),
+    "drag_coefficient": Law(drag, power(1.0), WET.replace(bodies="rollers")),
     "land_inner_radius": Law(land("torque"), power(3.0), INNER),
     "land_outer_radius": Law(land("torque"), power(3.0), OUTER),
     "land_width": Law(land("film_force"), power(3.0), OUTER),
@@ -379,12 +379,17 @@ def test_nothing_is_forgotten() -> None:
     }
     here |= {"damping", "conductivity", "temperature_coefficient", "damping_race", "damping_cage", "cage_inertia_axial"}
     here |= {"cage_inertia_transverse", "front_rib_clearance"}
+    # of laws: tests/laws/test_in_contacts.py, tests/physics/test_drag.py
+    here |= {"asperity_factor", "asperity_exponent", "rib_asperity_factor", "rib_asperity_exponent"}
+    here |= {"replenishment", "cage_face_inner", "cage_face_outer"}
     switches = {"quadrature", "with_cage", "planar", "lubrication", "traction", "thermal", "rolling_resistance"}
     switches |= {
         "rolling_pressure_force",
         "back_rib",
         "front_rib",
         "rib_film",
+        "rib_turning",
+        "mixed_law",
         "guidance",
         "pocket_bars",
         "pocket_ends",

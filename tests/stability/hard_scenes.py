@@ -590,9 +590,9 @@ HARD: tuple[Hard, ...] = (
         tolerances=0.2,
     ),
     Hard(
-        "cage_5_kg",
+        "cage_2_5_kg",
         "a cage that rollers can hardly move",
-        lambda: S(bearing=cage(mass=5.0, inertia_axial=9.75e-3, inertia_transverse=5.25e-3)),
+        lambda: S(bearing=cage(mass=2.5, inertia_axial=4.875e-3, inertia_transverse=2.625e-3)),
         tolerances=0.3,
     ),
     Hard(

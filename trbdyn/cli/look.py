@@ -109,6 +109,7 @@ def _describe(scene: Scene) -> str:
             f"speed {_amount(scene.speed_rpm)} rpm, axial load {_amount(scene.axial_load)} N, "
             f"radial load {_amount(scene.radial_load)} N, oil at {scene.lubricant.temperature_c:g} C, start {scene.start.kind}",
             "effects: " + ", ".join(f"{name} {value}" for name, value in effects.items()),
+            *(["defects: " + ", ".join(f"{one.kind} on {one.on}" for one in scene.defects)] if scene.defects else []),
         )
     )
 

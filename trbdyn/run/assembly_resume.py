@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,10 +22,10 @@ from trbdyn.run.running import output_times
 
 def is_of_assembly(output: Path) -> bool:
     """Whether a result file, or the checkpoint beside it, is that of bearings on a shaft."""
-    try:
-        return subject_of(checkpoint.read_last_good(output, lambda note: None)) is not None
-    except FileError:
-        pass
+    newest = checkpoint.checkpoint_path(output)
+    for path in (newest, checkpoint.previous_path(newest)):
+        with contextlib.suppress(FileError):
+            return subject_of(checkpoint.read(path)) is not None
     try:
         return output.exists() and description_in(output) is not None
     except FileError:
