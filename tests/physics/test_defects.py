@@ -220,8 +220,8 @@ def test_an_explicit_method_agrees_over_pits(on: On) -> None:
     ("on", "line"),
     [
         ("outer", "rollers over the outer ring"),
-        ("inner", "rollers over the inner ring"),
-        ("roller", "spin of a roller, twice"),
+        pytest.param("inner", "rollers over the inner ring", marks=pytest.mark.slow),
+        pytest.param("roller", "spin of a roller, twice", marks=pytest.mark.slow),
     ],
 )
 def test_a_pit_shows_at_its_order(on: On, line: str) -> None:

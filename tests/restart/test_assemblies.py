@@ -89,6 +89,7 @@ def test_what_a_cut_off_pair_needs_is_named(tmp_path: Path, monkeypatch: pytest.
         trb.resume(tmp_path / "other.h5")
 
 
+@pytest.mark.slow
 def test_a_killed_command_is_resumed(tmp_path: Path) -> None:
     words = ["run", "pair_30310", "-o", "pair.h5", "--revolutions", "4", "--checkpoint-every", "1e-3", "--quiet"]
     process = subprocess.Popen([sys.executable, "-m", "trbdyn", *words], cwd=tmp_path)
