@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from trbdyn.statics.preload import preload_diagram
     from trbdyn.statics.stiffness import stiffness
     from trbdyn.study.planning import plan
+    from trbdyn.study.surrogate import surrogate
     from trbdyn.study.thermal import thermal
     from trbdyn.study.torque_map import torque_map
     from trbdyn.study.uncertainty import uncertainty
@@ -128,6 +129,7 @@ _NAMES = {
     "stiffness": "trbdyn.statics.stiffness",
     "thermal": "trbdyn.study.thermal",
     "torque_map": "trbdyn.study.torque_map",
+    "surrogate": "trbdyn.study.surrogate",
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
     "wear": "trbdyn.run.wear",
@@ -200,6 +202,7 @@ __all__ = [
     "sensitivity",
     "stiffness",
     "study",
+    "surrogate",
     "thermal",
     "torque_map",
     "uncertainty",
