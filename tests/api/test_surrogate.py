@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import xarray
 
 import trbdyn as trb
+from trbdyn.cli import main
 from trbdyn.errors import InputError
 from trbdyn.study.surrogate import Surrogate, surrogate
 from trbdyn.study.uncertainty import Band, Spread, Uncertainty, unit_draws
@@ -113,3 +115,30 @@ def test_of_real_runs() -> None:
         fast({"lubricant.temperature_c": 44.0, "scene.axial_load": 6500.0, "bearing.roughness.rib": 1.5e-7})
     )
     assert predicted == pytest.approx(ran, abs=4.0 * fast.error)
+
+
+WORDS = ["ensemble", "rig_30310", "--band", "scene.speed_rpm=1000:6000", "--set", "run.revolutions=0.02"]
+
+
+@pytest.mark.slow
+def test_the_command_goes_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Another forty draws beside forty that are there: these are not run again."""
+    folder = tmp_path / "many"
+    words = [*WORDS, "--predict", "torque", "-o", str(folder)]
+    assert main([*words, "--designs", "40"]) == 0
+    assert "torque from 40 runs" in capsys.readouterr().out
+    before = {path: path.stat().st_mtime_ns for path in folder.glob("*.h5")}
+    assert len(before) == 41
+    assert main([*words, "--designs", "48"]) == 0
+    assert "torque from 48 runs" in capsys.readouterr().out
+    assert len(list(folder.glob("*.h5"))) == 49
+    assert all(path.stat().st_mtime_ns == at for path, at in before.items())
+
+
+def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for words, text in (
+        ([*WORDS, "--band", "scene.axial_load=3"], "must be PATH=LOW:HIGH"),
+        ([*WORDS, "--designs", "39"], "at least 40"),
+    ):
+        assert main([*words, "-o", str(tmp_path / "none")]) == 2
+        assert text in capsys.readouterr().err

@@ -69,6 +69,7 @@ SHORTER = {  # options that the page or the command itself names
     "python benchmarks/paper": " --help",
 }
 SLOWER = (
+    "python -m trbdyn ensemble ",
     "python -m trbdyn plan ",
     "python -m trbdyn torque ",
     "python -m trbdyn sweep cage_mass -o study",

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from trbdyn.base.version import __version__
 from trbdyn.cli.cases import add_case_parsers
 from trbdyn.cli.demo import add_demo_parser
+from trbdyn.cli.ensemble import add_ensemble_parser
 from trbdyn.cli.look import add_look_parsers
 from trbdyn.cli.outcome import BAD_INPUT, DONE, FAILED, FAULT, INTERRUPTED, Parser, let_any_name_be_printed, run_command
 from trbdyn.cli.plan import add_plan_parser
@@ -63,6 +64,7 @@ def make_parser() -> argparse.ArgumentParser:
     add_report_parser(commands, common)
     add_view_parser(commands, common)
     add_sweep_parser(commands, common)
+    add_ensemble_parser(commands, common)
     add_plan_parser(commands, common)
     add_torque_parser(commands, common)
     add_thermal_parser(commands, common)

@@ -1,0 +1,109 @@
+"""The command ``ensemble``: many designs drawn from bands, what decides among them, and how well others can be predicted."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from trbdyn.cli.called import command
+from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED
+from trbdyn.errors import InputError
+
+
+def add_ensemble_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
+    """Add the command ``ensemble``."""
+    ensemble = commands.add_parser(
+        "ensemble",
+        parents=[*parents],
+        help="run many designs that are drawn from bands",
+        description="Run many designs of a case that are drawn from bands, and tell for each observable its spread, which inputs "
+        "decide on it, and how well designs that were not run can be predicted. The same command goes on with a run that was "
+        "stopped.",
+    )
+    ensemble.add_argument("case", metavar="CASE", help="a TOML file, or the name of a shipped case")
+    ensemble.add_argument(
+        "--band",
+        action="append",
+        required=True,
+        metavar="PATH=LOW:HIGH",
+        help="an input and its ends, for instance bearing.cage.play_circumferential=6e-5:2e-4 (given several times)",
+    )
+    ensemble.add_argument("--designs", type=int, default=256, metavar="N", help="how many are drawn (default: 256)")
+    ensemble.add_argument("--seed", type=int, default=0, metavar="N", help="of the draws (default: 0)")
+    ensemble.add_argument(
+        "--predict",
+        nargs="+",
+        default=["torque", "orbit_radius_over_cpr"],
+        metavar="NAME",
+        help="observables of the summary (default: torque orbit_radius_over_cpr)",
+    )
+    ensemble.add_argument("--workers", type=int, metavar="N", help="runs at a time (default, and at most: the cores)")
+    ensemble.add_argument(
+        "-o", "--output", metavar="FOLDER", help="results and observables.nc (default: CASE_ensemble)"
+    )
+    ensemble.add_argument("--quiet", action="store_true", help="no progress bar, no tables")
+    add_set(ensemble)
+    ensemble.set_defaults(command=_ensemble)
+
+
+def _ensemble(options: argparse.Namespace) -> int:
+    from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
+    from trbdyn.study.uncertainty import uncertainty
+
+    scene, run = case_with_changes(options.case, options.changes)
+    bands = dict(_band(text) for text in options.band)
+    if options.designs < FEWEST_DRAWS:
+        raise InputError.of("--designs", options.designs, f"must be at least {FEWEST_DRAWS}")
+    folder = options.output or f"{Path(options.case).stem}_ensemble"
+    try:
+        found = uncertainty(
+            scene,
+            bands,
+            samples=options.designs,
+            seed=options.seed,
+            options=run,
+            quantities=options.predict,
+            folder=folder,
+            executor="processes",
+            workers=options.workers,
+            progress=not options.quiet,
+        )
+    except KeyboardInterrupt:
+        print(
+            f"trbdyn: stopped; the designs that are done are kept in {folder}. Go on: {_again(options)}",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    fits: list[object] = []
+    for name in options.predict:
+        try:
+            fits.append(surrogate(found, name, seed=options.seed))
+        except InputError as error:  # one that is the same in all runs, say; the others are told nevertheless
+            fits.append(error)
+    if not options.quiet:
+        print(found, *fits, f"results and observables.nc in {folder}", sep="\n\n")
+    if found.refused:
+        print(f"trbdyn: {len(found.refused)} designs could not be run; the first: {found.refused[0]}", file=sys.stderr)
+    return FAILED if found.refused else DONE
+
+
+def _band(text: str) -> tuple[str, tuple[float, float]]:
+    path, _, ends = text.partition("=")
+    low, _, high = ends.partition(":")
+    try:
+        return path.strip(), (float(low), float(high))
+    except ValueError:
+        raise InputError.of("--band", text, "must be PATH=LOW:HIGH, for instance scene.speed_rpm=1000:6000") from None
+
+
+def _again(options: argparse.Namespace) -> str:
+    words = ["ensemble", options.case, *(word for text in options.band for word in ("--band", text))]
+    words += ["--designs", options.designs, "--seed", options.seed, "--predict", *options.predict]
+    words += [word for text in options.changes for word in ("--set", text)]
+    words += ["--workers", options.workers] if options.workers is not None else []
+    words += ["-o", options.output] if options.output else []
+    return command(*words)
