@@ -98,6 +98,7 @@ def test_bad_input(smooth: Surrogate) -> None:
             smooth(inputs)
 
 
+@pytest.mark.slow
 def test_of_real_runs() -> None:
     """Oil and load decide on the torque, roughness of the rib hardly; predicted designs are run and compared."""
     scene, options = trb.cases.scene_32216(2000.0), trb.RunOptions(duration=2e-3, accuracy="fast")

@@ -8,7 +8,6 @@ import doctest
 import importlib
 import re
 from pathlib import Path
-from typing import Any
 
 import matplotlib
 import matplotlib.pyplot as plt
@@ -39,19 +38,12 @@ EXAMPLES = (
 )
 
 
-LONG = ("shaft", "outer_ring", "defects", "plan", "uncertainty", "own_bearing", "first_run", "torque_map", "free_ring")
-"""Pages that compute for more than half a dozen seconds: `make docs` runs them too, and stops at an error."""
-
-
 def name(page: Path) -> str:
     return str(page.relative_to(DOCS))
 
 
-def _page(page: Path) -> Any:
-    return pytest.param(page, id=name(page), marks=[pytest.mark.slow] if page.stem in LONG else [])
-
-
-@pytest.mark.parametrize("page", [_page(page) for page in PAGES if CELL.search(page.read_text(encoding="utf-8"))])
+@pytest.mark.slow  # `make docs` runs every page, too, and stops at an error
+@pytest.mark.parametrize("page", [page for page in PAGES if CELL.search(page.read_text(encoding="utf-8"))], ids=name)
 def test_code_of_the_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     matplotlib.use("Agg")

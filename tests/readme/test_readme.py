@@ -69,6 +69,7 @@ SHORTER = {  # options that the page or the command itself names
     "python benchmarks/paper": " --help",
 }
 SLOWER = (
+    "python -m trbdyn run pair_30310 ",
     "python -m trbdyn ensemble ",
     "python -m trbdyn plan ",
     "python -m trbdyn torque ",
