@@ -38,7 +38,7 @@ def ishigami(unit: Any) -> Any:
 
 @pytest.fixture(scope="module")
 def smooth() -> Surrogate:
-    unit = unit_draws(3, 384, 1)
+    unit = unit_draws(3, 256, 1)
     return surrogate(made_of(ishigami(unit), unit, BANDS), "torque")
 
 
@@ -48,7 +48,7 @@ def test_indices_of_a_known_function(smooth: Surrogate) -> None:
     total = [smooth.indices[band.path].total for band in BANDS]
     np.testing.assert_allclose(first, (0.3139, 0.4424, 0.0), atol=0.03)
     np.testing.assert_allclose(total, (0.5576, 0.4424, 0.2437), atol=0.03)
-    assert smooth.explained > 0.95
+    assert smooth.explained > 0.9
 
 
 def test_its_error_is_that_of_new_runs(smooth: Surrogate) -> None:

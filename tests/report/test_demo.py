@@ -28,6 +28,7 @@ def test_demo(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert len(said) < 16  # no wall of numbers
 
 
+@pytest.mark.slow
 def test_quiet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["demo", "-o", str(tmp_path / "demo"), "--revolutions", "1", "--quiet"]) == 0
     assert capsys.readouterr().out == ""
