@@ -101,7 +101,7 @@ class Effects(Model):
         Share of boundary friction in mixed lubrication: the sixth power of the paper (eq. 2), which ends at a film parameter of
         1.5, or the share exp(-B Lambda^C) of the load that asperities carry, with the constants of `friction`.
     replenishment : float
-        Decline of the films and the rolling resistance on raceways with speed, exp(-c |speed|), as fast rollers do not leave
+        Decline of the films and the rolling resistance on raceways with speed, exp(-c abs(speed)), as fast rollers do not leave
         enough oil to those that follow; c in seconds, of the speed of the rings against each other in rad/s. 0: none;
         `trbdyn.lubricants.replenishment_decline` gives SKF's.
     rolling_resistance : bool
