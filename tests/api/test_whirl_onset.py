@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray
 
 import trbdyn as trb
 from trbdyn import InputError
@@ -76,3 +77,13 @@ def test_a_speed_that_fails_is_said() -> None:
         whirl_onset(SCENE.replace(effects=SCENE.effects.replace(bodies="rollers")), [1000.0])
     found = whirl_onset(SCENE, [2e6], starts=["equal"], longest=40.0)
     assert "1e+06" in str(found.data.message.values[0, 0])
+
+
+def test_a_run_that_failed_is_no_cage_at_rest() -> None:
+    """Nothing is known of the speed between, so the whirl begins somewhere above the last speed that is known."""
+    kinds = np.array([["stable", "unknown", "circling"]], dtype=object)
+    data = xarray.Dataset(
+        {"kind": (("start", "speed_rpm"), kinds)}, {"start": ["equal"], "speed_rpm": [1000.0, 2000.0, 3000.0]}
+    )
+    assert WhirlOnset(data).onset("equal") == (1000.0, 3000.0)
+    assert WhirlOnset(data.isel(speed_rpm=slice(1, 3))).onset("equal") == (0.0, 3000.0)

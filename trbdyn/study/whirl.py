@@ -93,7 +93,8 @@ class WhirlOnset(Displayed):
         Returns
         -------
         tuple of float
-            The first is 0 where the cage whirls at every speed, the second infinite where it never does.
+            The first is 0 where the cage whirls at the slowest speed whose motion is known, the second infinite where it never
+            whirls.
 
         Raises
         ------
@@ -105,12 +106,15 @@ class WhirlOnset(Displayed):
         line = self.data.sel(start=start)
         speeds = np.abs(line["speed_rpm"].values)
         whirls = line["kind"].values == WHIRLS
-        first = int(np.argmax(whirls)) if whirls.any() else len(speeds)
-        return (float(speeds[first - 1]) if first else 0.0, float(speeds[first]) if whirls.any() else np.inf)
+        if not whirls.any():
+            return float(speeds[-1]), np.inf
+        first = int(np.argmax(whirls))
+        # of a run that failed nothing is known
+        below = speeds[:first][line["kind"].values[:first] != "unknown"]
+        return (float(below[-1]) if below.size else 0.0, float(speeds[first]))
 
     def __str__(self) -> str:
-        shown = self._shown()
-        return Shown(shown.title, (shown.head, *shown.rows), shown.head, shown.notes).text()
+        return self._shown().text(names=True)
 
     def __repr__(self) -> str:
         return str(self)
@@ -130,7 +134,9 @@ class WhirlOnset(Displayed):
     def _words(self, start: Any) -> str:
         low, high = self.onset(start)
         if low == 0.0:
-            return f"from the start {start!r} the cage whirls at every speed that was run"
+            return (
+                f"from the start {start!r} the cage whirls at {high:g} rpm, and its motion is known at no slower speed"
+            )
         if np.isinf(high):
             return f"from the start {start!r} it whirls at none of these speeds"
         return f"from the start {start!r} it begins to whirl between {low:g} and {high:g} rpm"
@@ -266,7 +272,9 @@ class _Search:
             low, high = self.gathered(starts).onset(name)  # type: ignore[arg-type]
             if low > 0.0 and np.isfinite(high) and high - low > resolution:
                 sign = np.sign(next(iter(self.rows))[1])
-                found.add(float(sign * 0.5 * (low + high)))
+                middle = float(sign * 0.5 * (low + high))
+                if (name, middle) not in self.rows:  # one that failed is not tried again
+                    found.add(middle)
         return sorted(found)
 
     def gathered(self, starts: Sequence[str]) -> WhirlOnset:
