@@ -384,3 +384,13 @@ def test_a_case_file_names_defects() -> None:
         DepthMap(on="inner", along=(-1e-3, 0.0, 1e-3), across=(-5e-3, 5e-3), depth=((0, 0), (1e-5, 1e-5), (0, 0))),
     )
     assert case_from_dict(tomllib.loads(case_text(scene, trb.RunOptions())))[0] == scene
+
+
+def test_a_roller_of_a_ring_is_refused() -> None:
+    """A pit that was meant for a roller would else be one of the ring, without a word."""
+    with pytest.raises(InputError, match="roller = 3 : must not be given"):
+        trb.Pit(on="outer", length=1e-3, width=5e-3, depth=1e-5, roller=3)
+    with pytest.raises(InputError, match="roller = 3 : must not be given"):
+        trb.DepthMap(
+            on="inner", along=(-1e-3, 0, 1e-3), across=(-3e-3, 3e-3), depth=((0, 0), (1e-5, 1e-5), (0, 0)), roller=3
+        )

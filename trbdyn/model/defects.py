@@ -18,6 +18,11 @@ MAX_ORDER: Final = 500
 MOST_POINTS: Final = 2000
 
 
+def _check_roller(on: str, roller: int | None) -> None:
+    if roller and on != "roller":
+        raise InputError.of("roller", roller, f"must not be given: on = {on!r}")
+
+
 class Pit(Model):
     """A pit with steep walls and a flat ground, as a spall leaves it: on a raceway or a roller.
 
@@ -67,6 +72,11 @@ class Pit(Model):
     angle_deg: Annotated[Number, unit("deg")] = 0.0
     position: Annotated[Number, unit("m")] = 0.0
     roller: Annotated[Whole, unit("1", ge=0)] = 0
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        _check_roller(self.on, self.roller)
+        return self
 
 
 class DepthMap(Model):
@@ -118,6 +128,7 @@ class DepthMap(Model):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        _check_roller(self.on, self.roller)
         for name in ("along", "across"):
             places = getattr(self, name)
             for i, (before, after) in enumerate(pairwise(places)):
