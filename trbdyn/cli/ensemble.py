@@ -52,10 +52,10 @@ def add_ensemble_parser(commands: Any, parents: Sequence[argparse.ArgumentParser
 
 def _ensemble(options: argparse.Namespace) -> int:
     from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
-    from trbdyn.study.uncertainty import uncertainty
+    from trbdyn.study.uncertainty import Band, checked_bands, uncertainty
 
     scene, run = case_with_changes(options.case, options.changes)
-    bands = dict(_band(text) for text in options.band)
+    bands = checked_bands([Band(path=path, low=low, high=high) for path, low, high in map(_band, options.band)])
     if options.designs < FEWEST_DRAWS:
         raise InputError.of("--designs", options.designs, f"must be at least {FEWEST_DRAWS}")
     folder = options.output or f"{Path(options.case).stem}_ensemble"
@@ -91,11 +91,11 @@ def _ensemble(options: argparse.Namespace) -> int:
     return FAILED if found.refused else DONE
 
 
-def _band(text: str) -> tuple[str, tuple[float, float]]:
+def _band(text: str) -> tuple[str, float, float]:
     path, _, ends = text.partition("=")
     low, _, high = ends.partition(":")
     try:
-        return path.strip(), (float(low), float(high))
+        return path.strip(), float(low), float(high)
     except ValueError:
         raise InputError.of("--band", text, "must be PATH=LOW:HIGH, for instance scene.speed_rpm=1000:6000") from None
 

@@ -126,8 +126,7 @@ class Surrogate(Displayed):
         return np.asarray(self._fit.predict(unit)).reshape(shaped[0].shape)
 
     def __str__(self) -> str:
-        shown = self._shown()
-        return Shown(shown.title, (shown.head, *shown.rows), shown.head, shown.notes).text()
+        return self._shown().text(names=True)
 
     def __repr__(self) -> str:
         return str(self)
@@ -187,6 +186,8 @@ def surrogate(found: Uncertainty, quantity: str, *, seed: int = 0) -> Surrogate:
     >>> float(fast({"lubricant.temperature_c": 50.0, "scene.axial_load": 5000.0})) > 0.0
     True
     """
+    if quantity in found.data and quantity not in found.spreads:
+        raise InputError.of("quantity", quantity, "must have a number in every draw; in some of them it has none")
     if quantity not in found.spreads:
         raise InputError.of("quantity", quantity, unknown_name(quantity, found.spreads))
     unit, values = _draws(found, quantity)
