@@ -56,15 +56,18 @@ class Shown:
     notes: tuple[str, ...] = ()
     parts: tuple[Shown, ...] = ()
 
-    def text(self, columns: int | None = None) -> str:
+    def text(self, columns: int | None = None, *, names: bool = False) -> str:
         """The table for a terminal.
 
         Parameters
         ----------
         columns : int, optional
             Only so many of the columns; a unit stands beside its value.
+        names : bool
+            Put the names of the columns above them.
         """
-        cells = [_beside(row[:columns], self.head) for row in self.rows]
+        rows = (self.head, *self.rows) if names else self.rows
+        cells = [_beside(row[:columns], self.head) for row in rows]
         widths = [max((len(row[k]) for row in cells if k < len(row) - 1), default=0) for k in range(len(self.head))]
         lines = [self.title] if self.title else []
         for row in cells:

@@ -132,8 +132,7 @@ class Thermal(Displayed):
         return draw_balance(self, path)
 
     def __str__(self) -> str:
-        shown = self._shown()
-        return Shown(shown.title, (shown.head, *shown.rows), shown.head, shown.notes).text()
+        return self._shown().text(names=True)
 
     def __repr__(self) -> str:
         return str(self)

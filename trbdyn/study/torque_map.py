@@ -106,8 +106,7 @@ class TorqueMap(Displayed):
         return draw_map(self.data, path, temperature)
 
     def __str__(self) -> str:
-        shown = self._shown()
-        return Shown(shown.title, (shown.head, *shown.rows), shown.head, shown.notes).text()
+        return self._shown().text(names=True)
 
     def __repr__(self) -> str:
         return str(self)
