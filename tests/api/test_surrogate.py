@@ -141,6 +141,7 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         ([*WORDS, "--band", "scene.axial_load=3"], "must be PATH=LOW:HIGH"),
         ([*WORDS, "--designs", "39"], "at least 40"),
         ([*WORDS, "--band", "scene.speed_rpm=1:2"], "must not name an input twice"),
+        ([*WORDS, "--predict", "torke"], "did you mean 'torque'"),
     ):
         assert main([*words, "-o", str(tmp_path / "none")]) == 2
         assert text in capsys.readouterr().err

@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from trbdyn.cli.called import command
 from trbdyn.cli.case import add_set, case_with_changes
 from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED
-from trbdyn.errors import InputError
+from trbdyn.errors import InputError, unknown_name
 
 
 def add_ensemble_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
@@ -51,6 +52,7 @@ def add_ensemble_parser(commands: Any, parents: Sequence[argparse.ArgumentParser
 
 
 def _ensemble(options: argparse.Namespace) -> int:
+    from trbdyn.results.summary import LABELS
     from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
     from trbdyn.study.uncertainty import Band, checked_bands, uncertainty
 
@@ -58,6 +60,9 @@ def _ensemble(options: argparse.Namespace) -> int:
     bands = checked_bands([Band(path=path, low=low, high=high) for path, low, high in map(_band, options.band)])
     if options.designs < FEWEST_DRAWS:
         raise InputError.of("--designs", options.designs, f"must be at least {FEWEST_DRAWS}")
+    for name in options.predict:  # before the runs, which take long
+        if not any(name == label or name.startswith(f"{label}_") for label in LABELS):
+            raise InputError.of("--predict", name, unknown_name(name, LABELS))
     folder = options.output or f"{Path(options.case).stem}_ensemble"
     try:
         found = uncertainty(
@@ -66,7 +71,6 @@ def _ensemble(options: argparse.Namespace) -> int:
             samples=options.designs,
             seed=options.seed,
             options=run,
-            quantities=options.predict,
             folder=folder,
             executor="processes",
             workers=options.workers,
@@ -78,6 +82,7 @@ def _ensemble(options: argparse.Namespace) -> int:
             file=sys.stderr,
         )
         return INTERRUPTED
+    found = replace(found, shown=tuple(name for name in options.predict if name in found.spreads))
     fits: list[object] = []
     for name in options.predict:
         try:
