@@ -115,9 +115,8 @@ typedef struct trb_pair_kind {
   /* whether surfaces may be off their true form where a roller is; azimuth: of the roller, turned: of the ring, spin: of the roller, rad; NULL:
    * they never are */
   int (*uneven)(const trb_model *m, const trb_pair *pair, int roller, double azimuth, double turned, double spin);
-  double (*change)(const trb_model *m, const trb_pair *pair,
-                   double speed); /* shortest time in which they change, at a speed of the ring against the
-                                                                              rollers in rad/s, s */
+  /* shortest time in which they change, at a speed of the ring against the rollers in rad/s, s */
+  double (*change)(const trb_model *m, const trb_pair *pair, double speed);
   /* of fast pairs */
   trb_pair_touch *touch;
   int (*surfaces)(const trb_model *m, int roller);                       /* that it tests for a roller; 0: they never touch */
