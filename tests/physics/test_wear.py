@@ -115,3 +115,17 @@ def test_what_is_refused_and_drawn() -> None:
     few = Simulation(Scene(trb.cases.rig_30310(), **THIN)).run(revolutions=0.1, save_groups=("cage", "torque"))
     with pytest.raises(InputError, match="rollers"):
         trb.wear(few, coefficient=1e-17)
+
+
+def test_rollers_without_load_wear_nothing_and_hide_nothing() -> None:
+    """Some rollers touch no raceway: all depths are numbers, and their volume is what all contacts lose together."""
+    result = run(axial_load=1000.0, radial_load=3000.0)
+    assert (result["outer_load"] == 0.0).any()
+    found = trb.wear(result, coefficient=1e-17, records=20)
+    assert all(np.isfinite(found[name]).all() for name in ("raceway_depth", "roller_depth", "friction_power"))
+    seen = worn(result, 20)
+    station, geometry = found.station.values, result.scene.bearing.geometry
+    radius = 0.5 * result.scene.bearing.roller.diameter + station * np.tan(geometry.roller_half_angle)
+    weight = max(seen["replay"].contacts(0)["raceway_weight"][0], key=lambda line: line.sum())
+    volume = float((found.roller_depth.values * 2.0 * np.pi * radius * weight).sum())
+    assert volume == pytest.approx(1e-17 * HOUR * seen["race"].sum(), rel=1e-9)

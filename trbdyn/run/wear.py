@@ -165,13 +165,14 @@ class _Sums:
         number = (angle / (2.0 * np.pi) * self.bins).astype(int) % self.bins
         step = 2.0 * np.pi / self.bins
         for race in range(2):
-            area = self._race_radius[race] * weight[race]
-            of_roller = worn[race] / area
+            # a roller that touches nothing has no part of the line: no weights
+            worn_along = np.divide(worn[race], weight[race], out=np.zeros_like(load[race]), where=weight[race] > 0.0)
+            of_roller = worn_along / self._race_radius[race]
             if self._turns[race]:
                 self.race[race] += of_roller.sum(axis=0) / (2.0 * np.pi)
             else:
                 np.add.at(self.race[race], number, of_roller / step)
-            self.roller += worn[race] / (2.0 * np.pi * self._radius * weight[race])
+            self.roller += worn_along / (2.0 * np.pi * self._radius)
             np.maximum.at(self.power[race], number, heat[race].max(axis=-1))
         self._add_rib(found)
         friction = found["pocket_friction"].sum(axis=1)
