@@ -17,7 +17,8 @@
   F(X, front_rib,        TAKES,  1, "at the front rib") \
   F(X, pocket,           TAKES,  1, "by friction in the pockets") \
   F(X, damping,          TAKES,  1, "by normal damping") \
-  F(X, drag,             TAKES,  p->oil_fill > 0.0, "by drag of the oil on rollers and cage")
+  F(X, drag,             TAKES,  p->oil_fill > 0.0, "by drag of the oil on rollers and cage") \
+  F(X, pocket_film,      TAKES,  p->pocket_film > 0.0, "in the oil films between rollers and pockets")
 
 /* Of pairs without one. */
 #define TRB_HUB_LOSSES(F, X) \

@@ -260,6 +260,7 @@ static void fill_constants(trb_model *m)
   m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);
   m->pocket_friction = dry ? p->dry_friction > 0.0 : !(full && p->traction == TRB_TRACTION_NONE);
   m->film = !dry && (p->lubrication != TRB_LUBRICATION_BOUNDARY) && (m->friction || p->rolling_resistance > 0.0);
+  m->pocket_film = dry || p->lubrication == TRB_LUBRICATION_BOUNDARY ? 0.0 : p->pocket_film;
 }
 
 /* Up to the last one whose effect is on. */

@@ -124,6 +124,7 @@ typedef struct trb_model {
   int           friction;                      /* any friction at raceways and ribs at all */
   int           pocket_friction;               /* any friction in the pockets */
   int           film;                          /* films are needed */
+  double        pocket_film;                   /* gap between roller and bar in which a film acts, m; 0: there is none */
   trb_modes     modes;                         /* of an elastic cage */
   trb_form      form;                          /* of surfaces off their true form */
   int           n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */

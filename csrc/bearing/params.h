@@ -35,6 +35,7 @@
   X(end_stiffness,            "N/m^1.5",1,      1e14,   "stiffness of roller end against a flat of the ring: force = k d^1.5; of the cage: times E' ratio") \
   X(roughness_raceway,        "m",      1e-10,  1e-3,   "composite rms roughness of roller and raceway") \
   X(roughness_rib,            "m",      1e-10,  1e-3,   "composite rms roughness of roller end and rib") \
+  X(roughness_pocket,         "m",      1e-10,  1e-3,   "composite rms roughness of roller and pocket: the film between them is no thinner") \
   /* roller profile and quadrature along the contact */ \
   X(profile,                  "choice",      0,      2,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic") \
   X(crown_radius,             "m",      1e-3,   1e9,    "radius of the crowning arc") \
@@ -126,6 +127,7 @@
   X(rolling_blend,            "1",      1e-6,   0.9,    "half width in h_PE/h_IR over which rolling resistance sets in") \
   X(oil_fill,                 "1",      0,      1,      "share of oil in the mixture of oil and air round the rollers; 0: no drag") \
   X(drag_coefficient,         "1",      0,      20,     "Cd: drag coefficient of a roller across its axis") \
+  X(pocket_film,              "m",      0,      1e-2,   "gap between roller and bar in which the oil makes a film; 0: no film") \
   X(damping_race,             "s/m",    0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
   X(damping_cage,             "s/m",    0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
   /* effects */ \

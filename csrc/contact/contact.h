@@ -37,6 +37,7 @@ enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6, TRB_MOST_MOVING_RINGS = 2 };
   X(pocket_tests,         "pocket faces tested against their roller") \
   X(pocket_culled,        "pocket faces proven not to touch") \
   X(pocket_nodes,         "nodes and points in contact with pocket faces") \
+  X(pocket_films,         "slices whose film towards a pocket face was evaluated") \
   X(drag_rollers,         "rollers whose drag in the oil was evaluated") \
   X(drag_cages,           "cages whose drag in the oil was evaluated") \
   X(land_films,           "strips of the cage's guiding surface whose film was evaluated") \

@@ -204,7 +204,7 @@ void       trb_detail_clear(const trb_model *m, trb_detail *detail);
 
 /* The kinds. */
 extern const trb_pair_kind trb_pair_raceway, trb_pair_rib, trb_pair_front_rib, trb_pair_drag, trb_pair_pocket, trb_pair_land,
-    trb_pair_cage_drag;
+    trb_pair_pocket_with_film, trb_pair_cage_drag;
 
 trb_pair_evaluate trb_contact_pocket;
 trb_pair_touch    trb_contact_pocket_of;

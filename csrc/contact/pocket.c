@@ -9,31 +9,19 @@
 #include "contact/deformed.h"
 #include "contact/friction.h"
 #include "contact/pair.h"
+#include "contact/pocket_view.h"
 #include "laws/line_contact.h"
 #include "surface/sphere.h"
 
-/* Roller and cage in the frame of the pocket. Velocities and sums are filled only where they may touch. */
-typedef struct pocket_view {
-  trb_frame axes;                         /* pocket axes, in the roller's cylindrical frame */
-  trb_vec3  x;                            /* roller's centre of mass, from the pocket's origin */
-  trb_vec3  a;                            /* roller's axis */
-  trb_vec3  cage;                         /* cage's centre of mass, from the pocket's origin */
-  trb_vec3  v, omega, cage_v, cage_omega; /* velocities of roller and cage, m/s and rad/s */
-  trb_vec3  force, moment;                /* on the roller, about its centre of mass */
-  trb_vec3  cage_force, cage_moment;      /* on the cage, about its centre of mass */
-
-  trb_slopes *slopes; /* or NULL */
-} pocket_view;
-
 /* Places seen from a face that has moved; then motions, too. Forces are sums over all faces. */
-static void see_places(const pocket_view *p, const trb_face_shift *s, pocket_view *seen)
+static void see_places(const trb_pocket_view *p, const trb_face_shift *s, trb_pocket_view *seen)
 {
   seen->x = trb_point_from(s, p->x);
   seen->a = trb_seen_from(s, p->a);
 }
 
 /* The velocity of the face's points is that of a rigid body: the cage's and its own. */
-static void see_motions(const pocket_view *p, const trb_face_shift *s, pocket_view *seen)
+static void see_motions(const trb_pocket_view *p, const trb_face_shift *s, trb_pocket_view *seen)
 {
   const trb_vec3 arm = trb_sub(trb_sub(p->cage, s->middle), s->shift);
   seen->cage = trb_point_from(s, p->cage);
@@ -45,7 +33,7 @@ static void see_motions(const pocket_view *p, const trb_face_shift *s, pocket_vi
 }
 
 /* Adds the loads that were found from the face to those of the pocket, and to those of the modes. */
-static void add_seen(const pocket_view *seen, const trb_face_shift *s, const trb_deformed *deformed, pocket_view *p)
+static void add_seen(const trb_pocket_view *seen, const trb_face_shift *s, const trb_deformed *deformed, trb_pocket_view *p)
 {
   const trb_wrench on_face = {trb_seen_back(s, seen->cage_force), trb_seen_back(s, seen->cage_moment)};
   p->force = trb_add(p->force, trb_seen_back(s, seen->force));
@@ -55,16 +43,10 @@ static void add_seen(const pocket_view *seen, const trb_face_shift *s, const trb
   trb_push_modes(deformed, s, p->cage, &on_face);
 }
 
-/* What a face carries. */
-typedef struct pocket_sums {
-  double force, friction; /* magnitudes summed over the face's nodes, N */
-  double deepest;         /* largest interference, m */
-} pocket_sums;
-
 /* Exponent of the interference in a point contact's load. */
 #define TRB_POINT_EXPONENT 1.5
 
-static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_rigid_pose *cage, int roller, pocket_view *p)
+static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_rigid_pose *cage, int roller, trb_pocket_view *p)
 {
   const trb_frame in_r = trb_compose(&cage->body, &m->pocket_axes[roller]);
   const trb_vec3  from_cage = trb_from_frame(&cage->body, m->pocket_origin[roller]);
@@ -75,7 +57,7 @@ static void view_places(const trb_model *m, const trb_roller_pose *r, const trb_
   p->a = trb_to_frame(&p->axes, r->frame.a);
 }
 
-static void view_motions(const trb_roller_pose *r, const trb_rigid_pose *cage, const trb_vec3 *pocket_origin, pocket_view *p)
+static void view_motions(const trb_roller_pose *r, const trb_rigid_pose *cage, const trb_vec3 *pocket_origin, trb_pocket_view *p)
 {
   const trb_vec3 from_cage = trb_turn_z(trb_from_frame(&cage->body, *pocket_origin), r->cosine, -r->sine);
   p->cage = trb_to_frame(&p->axes, trb_scale(-1.0, from_cage));
@@ -86,32 +68,8 @@ static void view_motions(const trb_roller_pose *r, const trb_rigid_pose *cage, c
   p->force = p->moment = p->cage_force = p->cage_moment = trb_v(0, 0, 0);
 }
 
-/* A point of contact. */
-typedef struct pocket_touch {
-  trb_vec3 point, normal; /* m; from the roller into the face */
-  double   interference;  /* m */
-  double   elastic;       /* load without damping, N */
-  double   exponent;      /* of the interference in it */
-  trb_vec3 carried;       /* part of the arm that turns with the roller while the normal stays, m; or */
-  int      on_end;        /* point of the face on the roller's end: the normal turns with the roller, the point stays */
-} pocket_touch;
-
-static void add_slope(trb_wrench *w, trb_vec3 arm, trb_vec3 force)
-{
-  w->force = trb_add(w->force, force);
-  w->moment = trb_add(w->moment, trb_cross(arm, force));
-}
-
-/* Adds what motion k does to the force by moving its point of attack and by turning it. */
-static void add_carried(trb_wrench *w, int k, trb_vec3 unit, const pocket_touch *c, trb_vec3 arm, trb_vec3 force, double q)
-{
-  if (c->on_end && k >= 3) add_slope(w, arm, trb_scale(-q, trb_cross(unit, c->normal)));
-  else if (c->on_end) w->moment = trb_sub(w->moment, trb_cross(unit, force));
-  else if (k >= 3) w->moment = trb_add(w->moment, trb_cross(trb_cross(unit, c->carried), force));
-}
-
 /* d(-q n - q mu(v) s/v) for every motion: the load follows interference and its rate, friction the load, and the sliding s of speed v. */
-static void add_slopes(const trb_model *m, const pocket_touch *c, const trb_touch *touch, trb_vec3 arm, double q, double factor,
+static void add_slopes(const trb_model *m, const trb_pocket_touch *c, const trb_touch *touch, trb_vec3 arm, double q, double factor,
                        trb_slopes *slopes)
 {
   const double   step = 1e-6 * touch->speed, mu = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed) : 0.0;
@@ -127,15 +85,15 @@ static void add_slopes(const trb_model *m, const pocket_touch *c, const trb_touc
     const double   deeper = trb_dot(c->normal, moved);
     const trb_vec3 slid = trb_axpy(moved, -deeper, c->normal);
     const trb_vec3 dragged = trb_add(trb_scale(drag, slid), trb_scale(bend * trb_dot(touch->sliding, slid), touch->sliding));
-    add_slope(&slopes->place[k], arm, trb_scale(-stiffness * deeper, load));
-    add_carried(&slopes->place[k], k, unit, c, arm, force, q);
-    add_slope(&slopes->velocity[k], arm, trb_sub(trb_scale(-damping * deeper, load), dragged));
+    trb_add_slope(&slopes->place[k], arm, trb_scale(-stiffness * deeper, load));
+    trb_add_carried(&slopes->place[k], k, unit, c, arm, force, q);
+    trb_add_slope(&slopes->velocity[k], arm, trb_sub(trb_scale(-damping * deeper, load), dragged));
   }
 }
 
 /* Adds the wrench of one point. */
-static void push(const trb_model *m, const trb_pocket_face *f, pocket_view *p, const pocket_touch *c, trb_counters *counters,
-                 trb_load *load, pocket_sums *sums)
+static void push(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, const trb_pocket_touch *c, trb_counters *counters,
+                 trb_load *load, trb_pocket_sums *sums)
 {
   const trb_vec3  arm = trb_sub(c->point, p->x), cage_arm = trb_sub(c->point, p->cage);
   const trb_touch touch =
@@ -167,31 +125,33 @@ static double sphere_on_face(const trb_model *m, const trb_pocket_face *f, trb_v
   return trb_sphere_on_polygon(&f->surface, centre, h, radius, normal);
 }
 
-static void flank_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
-                          trb_load *load, pocket_sums *sums)
+static void flank_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int roller, int exact, trb_counters *counters,
+                          trb_load *load, trb_pocket_sums *sums)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
   const double  stiffness = m->pocket_palmgren * f->stiffness_factor, *weight = m->race[TRB_RACE_OUTER].weight;
-  const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal);
+  const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal), reach = m->pocket_film;
   for (int k = 0; k < m->n_nodes; k++) {
     const double h = middle + centre[k] * along;
-    if (h >= sphere[k] && !exact) continue;
+    if (h >= sphere[k] + reach && !exact) continue;
     trb_vec3       normal;
     const trb_vec3 c = trb_axpy(p->x, centre[k], p->a);
-    const double   d = sphere_on_face(m, f, c, h, sphere[k], exact, &normal);
+    const double   d = sphere_on_face(m, f, c, h, sphere[k], exact || reach > 0.0, &normal);
     sums->deepest = trb_max(sums->deepest, d);
+    if (!(d > -reach)) continue;
+    trb_pocket_touch touch = {
+        trb_axpy(c, trb_sphere_reach(sphere[k], d), normal), normal, d, 0.0, TRB_PALMGREN_EXPONENT, trb_sub(c, p->x), 0};
+    if (reach > 0.0) trb_pocket_push_film(m, p, &touch, sphere[k], weight[k], counters, load, sums);
     if (!(d > 0.0)) continue;
-    const double       q = stiffness * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
-    const pocket_touch touch = {
-        trb_axpy(c, trb_sphere_reach(sphere[k], d), normal), normal, d, q, TRB_PALMGREN_EXPONENT, trb_sub(c, p->x), 0};
+    touch.elastic = stiffness * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
     push(m, f, p, &touch, counters, load, sums);
   }
 }
 
-static trb_vec3 end_sphere(const trb_model *m, const pocket_view *p) { return trb_axpy(p->x, m->surfaces.large_end.place, p->a); }
+static trb_vec3 end_sphere(const trb_model *m, const trb_pocket_view *p) { return trb_axpy(p->x, m->surfaces.large_end.place, p->a); }
 
-static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int exact, trb_counters *counters,
-                              trb_load *load, pocket_sums *sums)
+static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int exact, trb_counters *counters,
+                              trb_load *load, trb_pocket_sums *sums)
 {
   const trb_geometry *g = &m->geometry;
   const trb_vec3      c = end_sphere(m, p);
@@ -199,16 +159,16 @@ static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
   const double        d = sphere_on_face(m, f, c, trb_polygon_height(&f->surface, c), g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
-  const double       q = m->wall_stiffness * f->stiffness_factor * d * sqrt(d);
-  const pocket_touch touch = {
+  const double           q = m->wall_stiffness * f->stiffness_factor * d * sqrt(d);
+  const trb_pocket_touch touch = {
       trb_axpy(c, trb_sphere_reach(g->sphere_radius, d), normal), normal, d, q, TRB_POINT_EXPONENT, trb_sub(c, p->x), 0};
   push(m, f, p, &touch, counters, load, sums);
 }
 
-static trb_vec3 small_end(const trb_model *m, const pocket_view *p) { return trb_axpy(p->x, m->surfaces.small_end, p->a); }
+static trb_vec3 small_end(const trb_model *m, const trb_pocket_view *p) { return trb_axpy(p->x, m->surfaces.small_end, p->a); }
 
-static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pocket_view *p, trb_counters *counters, trb_load *load,
-                              pocket_sums *sums)
+static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, trb_counters *counters, trb_load *load,
+                              trb_pocket_sums *sums)
 {
   const trb_vec3 end = small_end(m, p), normal = trb_scale(-1.0, p->a);
   const double   stiffness = m->wall_stiffness * f->stiffness_factor / f->surface.n;
@@ -217,16 +177,16 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, pock
     const double   d = trb_dot(trb_sub(point, end), p->a);
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > 0.0)) continue;
-    const double       q = stiffness * d * sqrt(d);
-    const pocket_touch touch = {point, normal, d, q, TRB_POINT_EXPONENT, {0, 0, 0}, 1};
+    const double           q = stiffness * d * sqrt(d);
+    const trb_pocket_touch touch = {point, normal, d, q, TRB_POINT_EXPONENT, {0, 0, 0}, 1};
     push(m, f, p, &touch, counters, load, sums);
   }
 }
 
-/* Lower bound of the gap between the flank and a face. A bounded face is no nearer than its plane. For a cone without profile the height
+/* Lower bound of the gap between the flank and a face, less that in which a film acts. A bounded face is no nearer than its plane. For a cone without profile the height
  * over the plane less the sphere's radius is linear along the axis, so its least value is at one of the ends; a profile only takes
  * material away. Where this bound is not positive, the least value over the nodes is taken. */
-static double flank_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
+static double flank_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
   const double  deviation = 0.5 * m->diameter_deviation[roller];
@@ -235,14 +195,14 @@ static double flank_gap(const trb_model *m, const trb_pocket_face *f, const pock
   for (int end = -1; end <= 1; end += 2) {
     const double     station = 0.5 * end * m->params.effective_length;
     const trb_sphere last = trb_sphere_inscribed(&m->surfaces.flank, station, trb_cone_radius(&m->surfaces.flank, station) + deviation);
-    gap = trb_min(gap, middle + last.place * along - last.radius);
+    gap = trb_min(gap, middle + last.place * along - last.radius - m->pocket_film);
   }
   if (gap > 0.0) return gap;
-  for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k]);
+  for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k] - m->pocket_film);
   return of_nodes;
 }
 
-static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p)
+static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p)
 {
   const trb_vec3 end = small_end(m, p);
   double         gap = INFINITY;
@@ -251,24 +211,24 @@ static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const 
 }
 
 /* Lower bound of the gap. */
-static double face_gap(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, int roller)
+static double face_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller)
 {
   if (f->part == TRB_PART_FLANK) return flank_gap(m, f, p, roller);
   if (f->part == TRB_PART_LARGE_END) return trb_polygon_height(&f->surface, end_sphere(m, p)) - m->geometry.sphere_radius;
   return small_end_gap(m, f, p);
 }
 
-static pocket_sums face_forces(const trb_model *m, const trb_pocket_face *f, pocket_view *p, int roller, int exact, trb_counters *counters,
-                               trb_load *load)
+static trb_pocket_sums face_forces(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int roller, int exact,
+                                   trb_counters *counters, trb_load *load)
 {
-  pocket_sums sums = {0.0, 0.0, -INFINITY};
+  trb_pocket_sums sums = {0.0, 0.0, -INFINITY};
   if (f->part == TRB_PART_FLANK) flank_on_face(m, f, p, roller, exact, counters, load, &sums);
   else if (f->part == TRB_PART_LARGE_END) large_end_on_face(m, f, p, exact, counters, load, &sums);
   else small_end_on_face(m, f, p, counters, load, &sums);
   return sums;
 }
 
-static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f, const pocket_sums *sums, trb_detail *detail)
+static void add_detail(const trb_model *m, int roller, const trb_pocket_face *f, const trb_pocket_sums *sums, trb_detail *detail)
 {
   const int slot = roller * m->n_slots + f->slot;
   detail->pocket_force[slot] += sums->force;
@@ -285,10 +245,10 @@ static void note_gap(trb_gaps *gaps, const trb_pocket_face *f, double gap)
 }
 
 /* Lower bound of the gap of a face, deformed or not. Where it is deformed, its place is kept in a shift. */
-static double gap_of(const trb_model *m, const trb_pocket_face *f, const pocket_view *p, const trb_deformed *deformed, int roller,
+static double gap_of(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, const trb_deformed *deformed, int roller,
                      trb_face_shift *shift)
 {
-  pocket_view seen;
+  trb_pocket_view seen;
   if (deformed == NULL) return face_gap(m, f, p, roller);
   trb_face_place(deformed, (int)(f - m->faces), shift);
   see_places(p, shift, &seen);
@@ -296,18 +256,18 @@ static double gap_of(const trb_model *m, const trb_pocket_face *f, const pocket_
 }
 
 /* The same of its loads. */
-static pocket_sums forces_of(const trb_model *m, const trb_pocket_face *f, pocket_view *p, const trb_deformed *deformed, int roller,
-                             int exact, trb_counters *counters, trb_load *load, trb_face_shift *shift)
+static trb_pocket_sums forces_of(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, const trb_deformed *deformed, int roller,
+                                 int exact, trb_counters *counters, trb_load *load, trb_face_shift *shift)
 {
   if (deformed == NULL) return face_forces(m, f, p, roller, exact, counters, load);
-  trb_slopes  slopes;
-  pocket_view seen;
+  trb_slopes      slopes;
+  trb_pocket_view seen;
   seen.slopes = p->slopes != NULL ? &slopes : NULL;
   if (seen.slopes != NULL) slopes = (trb_slopes){.axes = p->axes};
   trb_face_motion(deformed, shift);
   see_places(p, shift, &seen);
   see_motions(p, shift, &seen);
-  const pocket_sums sums = face_forces(m, f, &seen, roller, exact, counters, load);
+  const trb_pocket_sums sums = face_forces(m, f, &seen, roller, exact, counters, load);
   if (!(sums.force > 0.0)) return sums;
   add_seen(&seen, shift, deformed, p);
   if (p->slopes == NULL) return sums;
@@ -328,7 +288,7 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
   const int              exact = detail != NULL && detail->pocket_interference != NULL;
   double                 least[TRB_MOST_SLOTS];
   trb_face_shift         shifts[TRB_MOST_SLOTS];
-  pocket_view            p;
+  trb_pocket_view        p;
   trb_gaps               gaps = far;
   view_places(m, r, cage, roller, &p);
   counters->pocket_tests += end - first;
@@ -352,7 +312,7 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
       note_gap(&gaps, f, gap);
       continue;
     }
-    const pocket_sums sums = forces_of(m, f, &p, deformed, roller, exact, counters, load, &shifts[f - first]);
+    const trb_pocket_sums sums = forces_of(m, f, &p, deformed, roller, exact, counters, load, &shifts[f - first]);
     note_gap(&gaps, f, f->part == TRB_PART_FLANK ? gap : -sums.deepest);
     if (detail != NULL) add_detail(m, roller, f, &sums, detail);
   }

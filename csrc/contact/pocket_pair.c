@@ -79,14 +79,18 @@ static double stiffness_of(const trb_model *m, double depth)
   return m->pocket_palmgren * m->params.effective_length * pow(depth, TRB_PALMGREN_EXPONENT - 1.0);
 }
 
-const trb_pair_kind trb_pair_pocket = {.name = "roller in a pocket",
-                                       .shape = {TRB_SHAPE_NONE, TRB_SHAPE_POCKETS},
-                                       .pace = TRB_PACE_FAST,
-                                       .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
-                                       .evaluate = trb_contact_pocket,
-                                       .touch = trb_contact_pocket_of,
-                                       .surfaces = faces_of,
-                                       .count_clear = count_clear,
-                                       .clearance = clearance_of,
-                                       .ways = ways_of,
-                                       .stiffness = stiffness_of};
+#define POCKET(is, film) \
+  {.name = is, \
+   .shape = {TRB_SHAPE_NONE, TRB_SHAPE_POCKETS}, \
+   .pace = TRB_PACE_FAST, \
+   .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING) | (film), \
+   .evaluate = trb_contact_pocket, \
+   .touch = trb_contact_pocket_of, \
+   .surfaces = faces_of, \
+   .count_clear = count_clear, \
+   .clearance = clearance_of, \
+   .ways = ways_of, \
+   .stiffness = stiffness_of}
+
+const trb_pair_kind trb_pair_pocket = POCKET("roller in a pocket", 0);
+const trb_pair_kind trb_pair_pocket_with_film = POCKET("roller in a pocket with oil", TRB_LOSES(TRB_BY_FILM));

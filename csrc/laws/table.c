@@ -9,6 +9,7 @@
 #include "laws/line_contact.h"
 #include "laws/profile.h"
 #include "laws/rolling_resistance.h"
+#include "laws/squeeze.h"
 #include "laws/traction.h"
 #include "laws/viscosity.h"
 
@@ -68,6 +69,11 @@
     trb_journal_short(x[0], x[1]).across) \
   X(journal_shear, 5, "viscosity radius width clearance eccentricity", "Petroff: friction torque of a journal's film over the difference of the angular velocities, N m s", \
     trb_journal_shear(x[0], x[1], x[2], x[3], x[4])) \
+  X(squeeze_load, 1, "approach", "Film of a cylinder near a plane: load a length over 24 eta u R/h, approach = (V/u) sqrt(2 R/h)", trb_squeeze_film(x[0]).load) \
+  X(squeeze_loss, 1, "approach", "Film of a cylinder near a plane: power lost a length by the flow of pressure over 12 eta u^2 sqrt(2 R/h)", \
+    trb_squeeze_film(x[0]).loss) \
+  X(squeeze_shear, 1, "approach", "Film of a cylinder near a plane: force of sliding a length over eta sqrt(2 R/h) and the sliding speed", \
+    trb_squeeze_film(x[0]).shear) \
   X(smooth_max, 3, "value low half_width", "largest of value and low, once differentiable", trb_smooth_max(x[0], x[1], x[2]))
 
 static double elliptic(double m, int second)

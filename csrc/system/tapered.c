@@ -152,6 +152,9 @@ static void add_pairs(trb_system *s)
     s->pairs[i].name = names[i];
     s->pairs[i].on = is_on(s->model, i);
   }
+  if (!(s->model->pocket_film > 0.0)) return;
+  s->pairs[TRB_PAIR_pocket].kind = &trb_pair_pocket_with_film;
+  s->pairs[TRB_PAIR_pocket].books.loss[TRB_BY_FILM] = TRB_BOOK(TRB_LOSS_pocket_film);
 }
 
 trb_status trb_system_tapered(const trb_model *model, trb_system **system, trb_message *message)

@@ -136,5 +136,7 @@ int main(void)
   check_both(&p, 4930.0);
   p = rig_params(), p.guidance = TRB_GUIDANCE_OUTER_LAND, p.land_clearance = 0.3e-3, p.land_contact_film = 3e-6;
   check_both(&p, 4930.0);
+  p = rig_params(), p.pocket_film = 50e-6;
+  for (int i = 0; i < 3; i++) check_both(&p, 4930.0);
   return check_report();
 }

@@ -28,7 +28,7 @@ static trb_params params_of_test(void)
 {
   trb_params p = rig_params();
   p.damping = 1, p.rolling_pressure_force = 1, p.front_rib_clearance = 5e-6, p.oil_fill = 0.3, p.guidance = guidance;
-  p.cage_face_inner = 42.6e-3, p.cage_face_outer = 45.5e-3;
+  p.cage_face_inner = 42.6e-3, p.cage_face_outer = 45.5e-3, p.pocket_film = 20e-6;
   return p;
 }
 

@@ -52,6 +52,7 @@ ORDINARY: Table = {
     "history_s": 0.005,
     "oil": None,
     "oil_fill": 0.0,
+    "pocket_film": 0.0,
     "rotating_share": 0.0,
     "rotating_turns": 1.0,
     "repeating": None,
@@ -179,6 +180,12 @@ def guided(rng: np.random.Generator) -> Table:
     }
 
 
+def filmed(rng: np.random.Generator) -> Table:
+    """Films between rollers and pockets, from a trace of oil to full pockets."""
+    table = _one_of(rng, usual, wide, guided)(rng)
+    return table | {"pocket_film": _log(rng, 2e-6, 5e-4), "lubrication": _one_of(rng, None, "full_film")}
+
+
 def light(rng: np.random.Generator) -> Table:
     """Rollers that hardly any load holds: 10 to 1500 N, half of them combined, half of them in oil that drags, every preset."""
     table: Table = {
@@ -300,6 +307,7 @@ KINDS = {
     "usual": usual,
     "wide": wide,
     "guided": guided,
+    "filmed": filmed,
     "light": light,
     "repeating": repeating,
     "pieces": pieces,
@@ -446,6 +454,7 @@ def _effects(t: Table) -> trb.Effects:
     }[t["effects"]]()
     changes: Table = {"gravity": t["gravity"], "starvation_factor": t["starvation"]}
     changes |= {"quadrature": "gauss", "n_slices": t["nodes"], "oil_fill": t["oil_fill"], "guidance": t["guidance"]}
+    changes |= {"pocket_film": t["pocket_film"]}
     for name in ("lubrication", "traction", "thermal", "rolling_resistance", "back_rib", "front_rib", "planar"):
         if t[name] is not None:
             changes[name] = t[name]

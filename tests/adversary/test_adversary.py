@@ -23,6 +23,7 @@ def _seeds() -> list[Any]:
     """Five scenes of each kind; of those that take longer the quickest, and the others among the slow tests."""
     quick = {"light": (0,), "pair": (3,), "pieces": (0,), "pitted": (0, 4), "repeating": (2,)}
     quick |= {
+        "filmed": (2, 3, 4),
         "free": (0, 1, 3, 4),
         "guided": (0, 1, 2),
         "outer": (0, 1, 3, 4),

@@ -234,7 +234,7 @@ class Pictures:
         bearing = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
         start = trb.Start(kind="whirl", eccentricity=0.9)
         scene = trb.Scene(bearing=bearing, speed_rpm=3000.0, axial_load=4930.0, start=start)
-        scene = scene.replace(elastic_cage=trb.ElasticCage(n_modes=4))
+        scene = scene.replace(elastic_cage=trb.ElasticCage(n_modes=6))
         run = trb.Simulation(scene, accuracy="reference").run(duration=5e-4, save_every=5e-5)
         run._source = Waving(run._source)
         yield "cage_shape", plot.cage_shape(run)

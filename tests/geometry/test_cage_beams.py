@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from trbdyn.cage.beams import Beam, Elasticity, Frame, Section
+import trbdyn as trb
+from trbdyn.cage.beams import Beam, Elasticity, Frame, Section, told_apart
+from trbdyn.cage.frame import cage_frame
 
 NONE = np.zeros(3)
 STEEL = Elasticity(206e9, 0.3, 7810.0)
@@ -135,3 +137,20 @@ def test_rigid_arms_carry_rigid_motions() -> None:
     assert (rigid.T @ frame.mass @ rigid)[0, 0] == pytest.approx(
         7810.0 * section.area * np.linalg.norm(nodes[1] - 2 * arm), rel=1e-12
     )
+
+
+def test_modes_of_equal_frequency_are_the_same_on_every_machine() -> None:
+    """A free ring's modes come in pairs. Whatever basis a solver gives them, and with whatever sign, the same modes are kept; also
+    of a pair that is cut.
+    """
+    bearing = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
+    frame = cage_frame(bearing).frame
+    frequencies, shapes = frame.natural(8)
+    assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-7)
+    np.testing.assert_allclose(shapes.T @ frame.mass @ shapes, np.eye(8), atol=1e-8)
+    size = np.abs(shapes).max(axis=0)
+    np.testing.assert_allclose(frame.natural(7)[1] / size[:7], shapes[:, :7] / size[:7], atol=1e-5)
+    turned, angle = shapes.copy(), 0.7
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    turned[:, :2] = shapes[:, :2] @ turn @ np.diag([1.0, -1.0])
+    np.testing.assert_allclose(told_apart(frequencies, turned) / size, shapes / size, atol=1e-5)

@@ -27,6 +27,7 @@ KINDS: dict[str, tuple[dict[str, Any], str]] = {
     "pocket": ({"bodies": "rollers_and_cage"}, "pocket_load"),
     "pocket_unbounded": ({"bodies": "rollers_and_cage", "pocket_edges": False}, "pocket_load"),
     "pocket_dry": ({"bodies": "rollers_and_cage", "lubrication": "dry"}, "pocket_load"),
+    "pocket_film": ({"bodies": "rollers_and_cage", "pocket_film": 3e-4}, "pocket_load"),
     "race_damping": ({"damping": "hunt_crossley", "damping_race": 3.0}, "raceway_load"),
     "rib_damping": ({"back_rib": True, "damping": "hunt_crossley", "damping_race": 3.0}, "rib_load"),
     "front_rib_damping": ({"front_rib": True, "damping": "hunt_crossley", "damping_race": 3.0}, "front_rib_load"),

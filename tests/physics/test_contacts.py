@@ -169,3 +169,80 @@ def test_power_of_a_turning_ring(kit: SimpleNamespace) -> None:
         quadratures = sim.view(sim.derivative(vector, time))["quadratures"]
         assert abs(growth) > 1e3
         assert quadratures[1] == pytest.approx(growth, rel=1e-6)
+
+
+REACH = 8e-5
+ROUGH = trb.cases.rig_30310().roughness.pocket
+
+
+def share(gap: float) -> float:
+    """Of the film that the oil there is makes."""
+    x = gap / REACH
+    return 1.0 - x * x * (3.0 - 2.0 * x)
+
+
+@pytest.mark.parametrize("face", ["leading_bar", "trailing_bar"])
+def test_wedge_between_roller_and_bar(kit: SimpleNamespace, face: str) -> None:
+    """Martin's load of a roller that turns near a bar, whichever way; shear and flow take all of the power."""
+    gap, spin = 1e-5, 900.0
+    sim, vector, _ = pressed(kit, face, -gap, lubrication="full_film", pocket_film=REACH)
+    roller, geometry = sim.scene.bearing.roller, sim.scene.bearing.geometry
+    eta, slope = sim.scene.lubricant.viscosity, np.cos(geometry.roller_half_angle)
+    radius = 0.5 * roller.diameter / slope
+    for way in (1.0, -1.0):
+        sim.view(vector)["roller_omega_a"][0] = way * spin
+        found, record = sim.contacts(vector, 0.0), sim.record(vector, 0.0)
+        u = 0.5 * radius * slope * float(np.linalg.norm(record["roller_angular_velocity"][0]))
+        load = 4.896 * eta * u * radius / gap * roller.effective_length * share(gap)
+        assert found["pocket_load"].sum() == pytest.approx(load, rel=5e-3)
+        assert np.linalg.norm(found["cage_force"][0]) == pytest.approx(load, rel=5e-3)
+        # sliding at 2 u, and the flow of the pressure
+        root = np.sqrt(2.0 * radius / gap) * roller.effective_length * share(gap)
+        power = eta * root * u * u * (4.0 * trb.laws.squeeze_shear(0.0) + 12.0 * trb.laws.squeeze_loss(0.0))
+        assert float(record["power_pocket_film"]) == pytest.approx(power, rel=5e-3)
+
+
+@pytest.mark.parametrize("speed", [0.2, -0.2])
+def test_roller_that_falls_on_a_bar(kit: SimpleNamespace, speed: float) -> None:
+    """The whole film of a cylinder that nears a plane; next to nothing, and no pull, where it leaves the plane."""
+    gap = 2e-5
+    sim, vector, _ = pressed(kit, "leading_bar", -gap, lubrication="full_film", pocket_film=REACH)
+    bearing, state = sim.scene.bearing, sim.view(vector)
+    geometry, axes = bearing.geometry, kit.frame(0.0, bearing.geometry.roller_axis_angle)
+    towards = axes.apply(-bearing.cage.pocket.face("leading_bar").normal)
+    for name, part in zip("rtz", kit.about_z(-float(state["roller_psi"][0])).apply(towards), strict=True):
+        state[f"roller_v_{name}"][0] = speed * part
+    found = sim.contacts(vector, 0.0)
+    radius = 0.5 * bearing.roller.diameter / np.cos(geometry.roller_half_angle)
+    load = 3.0 * np.pi * np.sqrt(2.0) * sim.scene.lubricant.viscosity * 0.2 * (radius / gap) ** 1.5
+    load *= bearing.roller.effective_length * share(gap)
+    if speed > 0.0:
+        assert found["pocket_load"].sum() == pytest.approx(load, rel=1e-2)
+        assert float(sim.record(vector)["power_pocket_film"]) == pytest.approx(load * speed, rel=1e-2)
+    else:
+        assert 0.0 < found["pocket_load"].sum() < 1e-6 * load
+
+
+def test_film_of_a_bar_goes_over_into_contact(kit: SimpleNamespace) -> None:
+    """From the farthest oil to dry contact the load has no jump and no kink, and the film is no thinner than the roughness."""
+    gaps = np.concatenate([np.linspace(-3e-6, 5e-6, 161), np.linspace(5.5e-6, 1.1 * REACH, 100)])
+    loads = []
+    for gap in gaps:
+        sim, vector, _ = pressed(kit, "leading_bar", -gap, lubrication="full_film", pocket_film=REACH)
+        sim.view(vector)["roller_omega_a"][0] = 900.0
+        loads.append(float(sim.contacts(vector, 0.0)["pocket_load"].sum()))
+    load = np.array(loads)
+    assert (load[gaps > REACH] == 0.0).all()
+    inside = gaps < REACH
+    assert (np.diff(load[inside]) < 0.0).all()
+    near = np.flatnonzero(np.abs(gaps - ROUGH) < 0.9 * ROUGH)
+    slope = np.gradient(load, gaps)
+    assert np.abs(np.diff(slope[near])).max() < 0.2 * np.abs(slope[near]).max()
+    assert load[inside][-1] < 1e-3 * load.max()
+
+
+def test_films_of_bars_only_take_energy(kit: SimpleNamespace) -> None:
+    sim = kit.simulate(Effects.standard().replace(pocket_film=2e-4))
+    lost = [float(sim.record(kit.perturbed(sim, seed))["power_pocket_film"]) for seed in range(30)]
+    assert min(lost) >= 0.0
+    assert np.count_nonzero(lost) >= 25

@@ -41,6 +41,12 @@ SWITCHES: dict[str, tuple[dict[str, Any], dict[str, Any], tuple[str, ...]]] = {
     "back_rib": ({"back_rib": True}, {"back_rib": False, "planar": True}, ("rib_tests", "rib_contacts")),
     "front_rib": ({"front_rib": True}, {"front_rib": False}, ("front_rib_tests",)),
     "drag": ({"oil_fill": 0.1}, {"oil_fill": 0.0}, ("drag_rollers",)),
+    "pocket_film": ({"pocket_film": 5e-5}, {"pocket_film": 0.0}, ("pocket_films",)),
+    "pocket_film_dry": (
+        {"pocket_film": 5e-5, "lubrication": "full_film"},
+        {"pocket_film": 5e-5, "lubrication": "boundary"},
+        ("pocket_films",),
+    ),
     "guidance": ({"guidance": "inner_land"}, {"guidance": "rollers"}, ("land_films",)),
     "guidance_dry": (
         {"guidance": "outer_land", "lubrication": "dry"},

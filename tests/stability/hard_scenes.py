@@ -164,6 +164,11 @@ def smaller_rollers(count: int) -> trb.Bearing:
     )
 
 
+def smooth_pockets() -> trb.Bearing:
+    bearing = rig_30310()
+    return bearing.replace(roughness=bearing.roughness.replace(pocket=5e-8))
+
+
 def tight_pocket(interference: float) -> Pocket:
     """The default pocket with bars that press on the roller (m)."""
     pocket = default_pocket(rig_30310())
@@ -771,6 +776,27 @@ HARD: tuple[Hard, ...] = (
         "a flooded bearing at 12 000 rpm under a light load: drag of newtons slows the rollers, and they slip",
         lambda: S(12000.0, 3000.0, effects=trb.Effects.standard().replace(oil_fill=1.0, drag_coefficient=3.0)),
         compared=5e-3,
+    ),
+    Hard(
+        "pocket_film_thick_oil",
+        "pockets full of oil of 1 Pa s, which holds the rollers off the bars of a cage that whirls",
+        lambda: S(
+            1000.0,
+            lubricant=_vg(viscosity=1.0),
+            effects=trb.Effects.standard().replace(pocket_film=3e-4),
+            start=trb.Start.whirl(0.9),
+        ),
+    ),
+    Hard(
+        "pocket_film_smooth_and_fast",
+        "a film that begins at 20 um and carries down to 0.05 um, at 12 000 rpm",
+        lambda: S(
+            12000.0,
+            bearing=smooth_pockets(),
+            effects=trb.Effects.standard().replace(pocket_film=2e-5),
+            start=trb.Start.whirl(0.9),
+        ),
+        duration=0.03,
     ),
     Hard(
         "land_thick_oil",

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,6 +170,12 @@ def at_end_of_arm(arm: FloatArray) -> FloatArray:
     return found
 
 
+SPARE: Final = 4
+"""Modes that are computed beyond those that are asked for, so that none of a group of equal frequency is missing."""
+SAME: Final = 1e-6
+"""Relative distance of two frequencies that count as equal."""
+
+
 @dataclass(frozen=True)
 class Frame:
     """A free frame of beams.
@@ -210,7 +217,8 @@ class Frame:
 
     def natural(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Natural frequencies (Hz), shape (count,), and mode shapes with unit modal mass, shape (6 N, count), of the free frame,
-        without its six rigid motions.
+        without its six rigid motions. Modes of equal frequency, as a ring has them, are the ones that `told_apart` chooses,
+        also where `count` leaves one of them out.
         """
         from scipy.sparse import csc_array
         from scipy.sparse.linalg import eigsh
@@ -218,10 +226,11 @@ class Frame:
         below = -self._softest()  # below all squares, so that the shifted matrix is positive
         first = np.random.default_rng(0).standard_normal(len(self.mass))  # the same one in every run
         squares, shapes = eigsh(
-            csc_array(self.stiffness), k=count + 6, M=csc_array(self.mass), sigma=below, v0=first, tol=1e-12
+            csc_array(self.stiffness), k=min(count + 6 + SPARE, len(self.mass) - 1), M=csc_array(self.mass), sigma=below, v0=first, tol=1e-12
         )
         order = np.argsort(squares)[6:]
-        return np.sqrt(np.maximum(squares[order], 0.0)) / (2.0 * np.pi), shapes[:, order]
+        frequencies = np.sqrt(np.maximum(squares[order], 0.0)) / (2.0 * np.pi)
+        return frequencies[:count], told_apart(frequencies, shapes[:, order])[:, :count]
 
     def _softest(self) -> float:
         """A square of an angular frequency that is below those of bending: stiffness over mass of displacements, by their
@@ -266,6 +275,35 @@ class Frame:
         stiffness, _ = local_matrices(length, beam.section, own)
         found: FloatArray = stiffness @ (turn @ displacements[_places(beam)])
         return found
+
+
+def told_apart(frequencies: FloatArray, shapes: FloatArray) -> FloatArray:
+    """The same modes, with those of equal frequency turned into each other, and with signs, so that every machine has the same.
+
+    A solver gives any basis of the motions with one frequency, another one on another processor. Here a fixed draw of loads picks
+    it: the second mode does not answer to the first load, the third not to the first two, and each answers to its own with
+    a positive amplitude.
+
+    Parameters
+    ----------
+    frequencies : ndarray, shape (M,)
+        Natural frequencies, ascending (Hz).
+    shapes : ndarray, shape (6 N, M)
+        Mode shapes with unit modal mass.
+
+    Returns
+    -------
+    ndarray, shape (6 N, M)
+    """
+    loads = np.random.default_rng(1).standard_normal(shapes.shape[::-1])
+    found, first = shapes.copy(), 0
+    while first < len(frequencies):
+        equal = np.abs(frequencies[first:] - frequencies[first]) < SAME * frequencies[first]
+        group = slice(first, first + int(np.argmin(np.append(equal, False))))
+        turn, answers = np.linalg.qr((loads[: group.stop - first] @ shapes[:, group]).T)
+        found[:, group] = shapes[:, group] @ (turn * np.sign(np.diag(answers)))
+        first = group.stop
+    return found
 
 
 def local_axes(along: FloatArray, side: FloatArray) -> FloatArray:

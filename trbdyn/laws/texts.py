@@ -6,6 +6,10 @@ from typing import Final
 
 ARGUMENTS: Final[dict[str, tuple[str, str]]] = {
     "a": ("bar", "constant of Dicke's law, `Lubricant.dicke.a`"),
+    "approach": (
+        "1",
+        "(V/u) sqrt(2 R/h): speed V at which the gap h closes, mean speed u of the surfaces, radius R of the cylinder",
+    ),
     "b": ("bar/C", "constant of Dicke's law, with the temperature"),
     "c": ("1", "constant of Dicke's law, with the pressure"),
     "d": ("1/C", "constant of Dicke's law, with pressure and temperature"),
@@ -93,6 +97,7 @@ EXAMPLES: Final[dict[str, tuple[dict[str, float], str]]] = {
     "film_line_elastic": ({"W": 7e-5, "U": 1.644e-10, "G": 4460.0}, "0.0001259"),
     "friction_boundary": ({"slide_roll": 0.02, "limit": 0.1, "slope": 22.28, "decay": 181.46}, "0.1092"),
     "journal_along": ({"eccentricity_along": 0.0, "eccentricity_across": 0.0}, "1.571"),
+    "squeeze_load": ({"approach": 0.0}, "0.2041"),
     "rolling_line": ({"W": 2e-4, "U": 1e-10, "G": 3745.0}, "0.0002461"),
 }
 """Arguments of an example and what it prints, for some laws."""

@@ -59,7 +59,7 @@ _CONSTANT: Final = {
     "roller.profile": ("kind", "k1", "k2", "zm"),
     "cage": ("offset",),
     "material": ("youngs_modulus", "poisson_ratio", "density", "expansion", "damping_ratio"),
-    "roughness": ("raceway", "rib"),
+    "roughness": ("raceway", "rib", "pocket"),
     "land": ("fill",),
 }
 """Assumed numbers that do not depend on the size."""

@@ -125,6 +125,10 @@ class Effects(Model):
         Flank, and ends, of the rollers against the faces of their pockets.
     pocket_edges : bool
         Faces end at their outlines; without it they are unbounded planes.
+    pocket_film : float
+        Gap between roller and bar in which the oil makes a film (m), where there are films at all: it carries by the wedge that
+        the turning roller draws it into, and by its resistance to being pressed out or drawn in. 0: none, as in the paper. How
+        much oil a bar has is known in no bearing: compare with 0 and with a few times as much.
     guidance : {'rollers', 'inner_land', 'outer_land'}
         What guides the cage: its rollers alone, or also a land of the inner or outer ring, whose numbers are `Bearing.land`.
         The land has an oil film where lubrication is mixed or full film; below a stated height of the film the cage touches
@@ -170,6 +174,7 @@ class Effects(Model):
     pocket_bars: Flag = True
     pocket_ends: Flag = True
     pocket_edges: Flag = True
+    pocket_film: Annotated[Number, parameter("pocket_film")] = 0.0
     guidance: Literal["rollers", "inner_land", "outer_land"] = "rollers"
     oil_fill: Annotated[Number, parameter("oil_fill")] = 0.0
     drag_coefficient: Annotated[Number, parameter("drag_coefficient")] = 1.0

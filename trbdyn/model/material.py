@@ -100,9 +100,12 @@ class Roughness(Model):
         Roller and raceway (m).
     rib : float
         Roller end and back-face rib (m).
+    pocket : float
+        Roller and bar of the cage (m); the film between them (`Effects.pocket_film`) is no thinner.
     """
 
     _assumed: ClassVar[bool] = True
 
     raceway: Annotated[Number, parameter("roughness_raceway")] = 0.16e-6
     rib: Annotated[Number, parameter("roughness_rib")] = 0.24e-6
+    pocket: Annotated[Number, parameter("roughness_pocket")] = 1e-6

@@ -50,7 +50,7 @@ def heat_of(losses: Mapping[str, float], oil_share: float) -> dict[str, float]:
             film(power, "inner_ring")
         elif name == "drag":
             got["oil"] += power
-        elif name in ("pocket", "land", "land_film", "vibration"):
+        elif name in ("pocket", "pocket_film", "land", "land_film", "vibration"):
             got["rollers"] += power
         else:
             raise RuntimeError(f"no node takes the loss {name}")

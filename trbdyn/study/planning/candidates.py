@@ -69,6 +69,7 @@ SWITCHES: Final = (
     ),
     Switch("damping of contacts", {"damping": "off"}, {"damping": "hunt_crossley"}),
     Switch("drag of the oil", {"oil_fill": 0.0}),
+    Switch("films in the pockets", {"pocket_film": 0.0}),
     Switch("land that guides the cage", {"guidance": "rollers"}, needs_cage=True),
 )
 
