@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from trbdyn.study.uncertainty import uncertainty
     from trbdyn.study.what_matters import sensitivity
     from trbdyn.study.whirl import whirl_onset
+    from trbdyn.study.whirl_map import whirl_map
     from trbdyn.viewer import view
 
 _MODULES = {
@@ -133,6 +134,7 @@ _NAMES = {
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
     "wear": "trbdyn.run.wear",
+    "whirl_map": "trbdyn.study.whirl_map",
     "whirl_onset": "trbdyn.study.whirl",
 }
 
@@ -208,6 +210,7 @@ __all__ = [
     "uncertainty",
     "view",
     "wear",
+    "whirl_map",
     "whirl_onset",
 ]
 

@@ -69,6 +69,7 @@ def test_assumed_numbers_follow_the_size_exactly() -> None:
         "poisson_ratio",
         "raceway",
         "rib",
+        "pocket",
         "kind",
         "k1",
         "k2",

@@ -50,7 +50,7 @@ def test_records_miss_what_peaks_see(runs: dict[float, Result]) -> None:
     peak = peaks["pocket_force_peak"].max()
     assert samples[0] < 0.5 * peak
     # peaks look at the ends of steps: a record between two of them may see slightly more
-    assert samples[-1] <= 1.005 * peak
+    assert samples[-1] <= 1.02 * peak
     when = float(peaks["pocket_force_peak_time"].flat[peaks["pocket_force_peak"].argmax()])
     fine = Simulation(whirling()).run(duration=when + 1e-5, save_every=5e-7, save_groups=("pocket",))
     assert fine.pocket_force.max() == pytest.approx(peak, rel=0.02)

@@ -9,7 +9,8 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.cage.beams import Beam, Elasticity, Frame, Section, told_apart
-from trbdyn.cage.frame import cage_frame
+from trbdyn.cage.frame import RIGID_SHARE, cage_frame
+from trbdyn.model.cage_body import Wall
 
 NONE = np.zeros(3)
 STEEL = Elasticity(206e9, 0.3, 7810.0)
@@ -116,6 +117,32 @@ def test_a_ring_pulled_apart_by_two_forces() -> None:
     assert widening == pytest.approx(wanted, rel=5e-3)
 
 
+@pytest.mark.parametrize("thickness", [5e-3, 2e-3])
+def test_a_cage_pulled_apart_at_two_bars(thickness: float) -> None:
+    """Two opposite radial forces in the middle of two bars. By hand each rim gets half of them, and is a ring
+    (F/2) R^3/(E I) (pi/4 - 2/pi) that bends over the share of its length that is not rigid; the mean of both rims is the
+    widening. Bars that tie unlike rims together, and shear, are left out, and 5 % are between both.
+    """
+    body = trb.CageBody(thickness=thickness, small_rim_width=4.8e-3, large_rim_width=4.8e-3)
+    bearing = trb.cases.rig_30310().replace({"cage.body": body})
+    cage, wall, count = cage_frame(bearing), Wall.of(bearing, body), bearing.n_rollers
+    frame, loads = cage.frame, np.zeros((len(cage.frame.mass), 1))
+    for bar in (cage.bars[0], cage.bars[count // 2]):
+        node = frame.beams[bar[len(bar) // 2 - 1]].end
+        loads[6 * node : 6 * node + 2, 0] = frame.nodes[node, :2] / np.linalg.norm(frame.nodes[node, :2])
+    moved = frame.static(loads)
+    assert frame.stiffness @ moved == pytest.approx(loads, abs=1e-6)
+    by_hand = []
+    for edge, sign in ((wall.small_edge, -0.5), (wall.large_edge, 0.5)):
+        radius = float(wall.place(np.array(edge + sign * 4.8e-3), np.array(wall.height))[0])
+        window = float(wall.half_angle(np.array([edge]), np.array([wall.height]))[0])
+        bends = 1.0 - RIGID_SHARE * (1.0 - window * count / math.pi)
+        second = 4.8e-3 * thickness**3 / 12.0
+        modulus = bearing.cage_material.youngs_modulus
+        by_hand.append(bends * 0.5 * radius**3 / (modulus * second) * (math.pi / 4.0 - 2.0 / math.pi))
+    assert float(loads[:, 0] @ moved[:, 0]) == pytest.approx(np.mean(by_hand), rel=0.05)
+
+
 def test_one_force_accelerates_and_bends() -> None:
     """A free beam pushed at one end: it moves as a rigid body, and the moment in its middle is F L/8."""
     section, length = Section(4e-3, 2e-3), 0.1
@@ -140,7 +167,7 @@ def test_rigid_arms_carry_rigid_motions() -> None:
 
 
 def test_modes_of_equal_frequency_are_the_same_on_every_machine() -> None:
-    """A free ring's modes come in pairs. Whatever basis a solver gives them, and with whatever sign, the same modes are kept; also
+    """A free ring's modes come in pairs. Whatever basis and signs a solver gives them, the same modes are kept; also
     of a pair that is cut.
     """
     bearing = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})

@@ -204,7 +204,7 @@ AT_REST = ("housing_position", "housing_tilt", "housing_velocity", "housing_angu
 def test_every_field_computed_a_second_time(kit: SimpleNamespace, speed: float, back: float) -> None:
     effects = Effects.standard().replace(damping="hunt_crossley", damping_race=0.05, damping_cage=0.1, front_rib=True)
     # the pressure force's torque on the ring, 1e-6 of all, is in no share
-    effects = effects.replace(rolling_pressure_force=False, oil_fill=0.2, guidance="inner_land")
+    effects = effects.replace(rolling_pressure_force=False, oil_fill=0.2, guidance="inner_land", pocket_film=1e-4)
     bearing = rig_30310()
     bearing = bearing.replace(cage=bearing.cage.replace(offset=1.5e-3))
     scenery = {
@@ -255,7 +255,7 @@ def test_every_field_computed_a_second_time(kit: SimpleNamespace, speed: float, 
 def test_quadratures_grow_by_the_recorded_powers(kit: SimpleNamespace) -> None:
     """Each loss by its own power, in the order of the table."""
     effects = Effects.standard().replace(damping="hunt_crossley", damping_race=0.05, damping_cage=0.1, oil_fill=0.2)
-    effects = effects.replace(rolling_pressure_force=True, guidance="outer_land")
+    effects = effects.replace(rolling_pressure_force=True, guidance="outer_land", pocket_film=1e-4)
     sim = kit.simulate(effects, scenery={"radial_load": 1500.0})
     seen = set()
     for seed, back in ((5, 0.0), (6, 2e-4)):

@@ -82,7 +82,7 @@ class TestInfluence:
 
 class TestCandidates:
     def test_every_switch_is_an_effect_that_may_be_left_out_or_one_that_is_off(self) -> None:
-        scene = rolling(oil_fill=0.1)
+        scene = rolling(oil_fill=0.1, pocket_film=1e-5)
         kinds = {one.name: one.kind for one in candidates(scene, wants_cage=False)}
         ours = {switch.name for switch in SWITCHES} - {"land that guides the cage"}
         assert {name for name, kind in kinds.items() if kind == "effect"} == ours

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -37,6 +37,8 @@ HOTTEST: Final = 180.0
 """Films hotter than this are not looked for (C)."""
 SETTLED: Final = 0.01
 """Change of the torque that may still come, and share of the power that is not lost, at the end of each run."""
+ROUGH: Final = 0.05
+"""The same for runs that only tell on which side of the balance their temperature lies."""
 CURVE: Final = 7
 """Temperatures at which losses are computed for the bands."""
 DRAWS: Final = 512
@@ -239,21 +241,21 @@ def _balanced(runs: _Runs, paths: HeatPaths) -> dict[str, float]:
     """Temperatures of the nodes whose films make as much heat as the network gives off."""
     nodes: dict[str, float] = {}
 
-    def excess(film: float) -> float:
+    def excess(film: float, losses: Callable[[float, Mapping[str, float]], dict[str, float]] = runs.losses) -> float:
         nonlocal nodes
-        nodes = network(paths, heat_of(runs.losses(film, nodes), paths.oil_share))
+        nodes = network(paths, heat_of(losses(film, nodes), paths.oil_share))
         return film_temperature(nodes) - film
 
     low = max(film_temperature(network(paths, dict.fromkeys(PARTS, 0.0))), runs.coldest)
     if excess(low) <= 0.0:
         raise InputError.of("paths", low, "temperatures outside lie below what the oil is known at (C)")
     high = min(low + 30.0, HOTTEST)
-    while excess(high) > 0.0:
+    while excess(high, runs.roughly) > 0.0:
         if high >= HOTTEST:
             limit = f"would make films hotter than {HOTTEST:g} C: the conductances are too small for these losses (W/K)"
             raise InputError.of("paths", "conductances", limit)
         low, high = high, min(high + 30.0, HOTTEST)
-    excess(float(brentq(excess, low, high, xtol=CLOSE, rtol=1e-6)))
+    excess(float(brentq(lambda film: excess(film, runs.roughly), low, high, xtol=CLOSE, rtol=1e-6)))
     return nodes
 
 
@@ -297,6 +299,7 @@ class _Runs:
     executor: Any
     workers: int | None
     known: dict[float, dict[str, float]] = field(default_factory=dict)
+    rough: dict[float, dict[str, float]] = field(default_factory=dict)
 
     @property
     def coldest(self) -> float:
@@ -325,10 +328,16 @@ class _Runs:
             self._run({film: self.scene_at(film, nodes)})
         return self.known[film]
 
+    def roughly(self, film: float, nodes: Mapping[str, float]) -> dict[str, float]:
+        """The same, good enough to tell on which side of the balance it lies: also where the losses scatter by `ROUGH`."""
+        if film not in self.known and film not in self.rough:
+            self._run({film: self.scene_at(film, nodes)}, ROUGH)
+        return self.known.get(film, self.rough.get(film, {}))
+
     def side_by_side(self, films: list[float]) -> None:
         self._run({film: self.scene_at(film, {}) for film in films if film not in self.known})
 
-    def _run(self, waiting: dict[float, Scene]) -> None:
+    def _run(self, waiting: dict[float, Scene], within: float = SETTLED) -> None:
         speed = value_at(self.scene.speed_rpm, 0.0)
         for turns in TURNS:
             run = short_run(self.options, speed, turns)
@@ -339,15 +348,18 @@ class _Runs:
                 workers=self.workers,
                 observables={"drift": drift, "stored": stored},
             )
-            left = {}
+            left, last = {}, turns == TURNS[-1]
             for k, (film, scene) in enumerate(waiting.items()):
                 one = data.isel(case=k)
                 if str(one["status"].values) != "done":
                     raise TrbError(f"the run at {film:.4g} C failed: {one['message'].values}")
-                if max(float(one["drift"]), float(one["stored"])) > SETTLED:
-                    left[film] = scene
-                else:
+                moves = max(float(one["drift"]), float(one["stored"]))
+                if moves <= SETTLED:
                     self.known[film] = _losses(one)
+                elif last and moves <= within:
+                    self.rough[film] = _losses(one)
+                else:
+                    left[film] = scene
             waiting = left
             if not waiting:
                 return

@@ -39,6 +39,8 @@ GROUPS: Final = ("cage", "rollers")
 STARTS: Final = {"equal": Start.equal(), "whirl": Start.whirl(0.9)}
 WHIRLS: Final = "circling"
 
+Point = tuple[str, float, float | None]
+
 
 def _quarter(result: Result, number: int) -> Result:
     start, end = float(result["time"][0]), float(result["time"][-1])
@@ -203,26 +205,19 @@ def whirl_onset(
     >>> str(found.data.kind.values[0, 0])
     'stable'
     """
-    wanted = _speeds(speeds)
-    for name in starts:
-        if name not in STARTS:
-            raise InputError.of("starts", name, f"must be one of {', '.join(STARTS)}")
-    if scene.effects.bodies == "rollers":
-        raise InputError.of(("effects", "bodies"), "rollers", "must be 'rollers_and_cage'")
+    wanted = speeds_of(speeds)
     if resolution is not None and not 0.0 < number_of("resolution", resolution) < np.inf:
         raise InputError.of("resolution", resolution, "must be > 0 (rpm)")
-    if not TURNS[0] <= number_of("longest", longest):
-        raise InputError.of("longest", longest, f"must be >= {TURNS[0]:g} (1)")
     how = {"folder": folder, "executor": executor, "workers": workers, "progress": progress}
-    search = _Search(scene, RunOptions(accuracy="fast") if options is None else options, float(longest), how)
-    names = list(dict.fromkeys(starts))
-    search.add([(name, speed) for name in names for speed in wanted])
-    while resolution is not None and (points := search.between(names, resolution)):
-        search.add([(name, speed) for speed in points for name in names])
-    return search.gathered(names)
+    search = CageRuns(scene, starts, options, longest, how)
+    names = search.starts
+    search.add([(name, speed, None) for name in names for speed in wanted])
+    while resolution is not None and (points := search.between(resolution)):
+        search.add([(name, speed, None) for speed in points for name in names])
+    return search.gathered()
 
 
-def _speeds(speeds: Any) -> list[float]:
+def speeds_of(speeds: Any) -> list[float]:
     if isinstance(speeds, str) or not isinstance(speeds, Sequence | np.ndarray) or not len(speeds):
         raise InputError.of("speeds", speeds, "must be a sequence of at least one number (rpm)")
     found = sorted({number_of("speeds", speed) for speed in speeds}, key=abs)
@@ -231,32 +226,44 @@ def _speeds(speeds: Any) -> list[float]:
     return found
 
 
-class _Search:
-    """Runs that were made, by start and speed."""
+class CageRuns:
+    """Runs that were made, by start, speed (rpm) and axial load (N; None: that of the scene)."""
 
-    def __init__(self, scene: Scene, options: RunOptions, longest: float, how: dict[str, Any]) -> None:
-        self.scene, self.options, self.longest, self.how = scene, options, longest, how
-        self.rows: dict[tuple[str, float], dict[str, Any]] = {}
+    def __init__(
+        self, scene: Scene, starts: Sequence[str], options: RunOptions | None, longest: float, how: dict[str, Any]
+    ) -> None:
+        for name in starts:
+            if name not in STARTS:
+                raise InputError.of("starts", name, f"must be one of {', '.join(STARTS)}")
+        if scene.effects.bodies == "rollers":
+            raise InputError.of(("effects", "bodies"), "rollers", "must be 'rollers_and_cage'")
+        if not TURNS[0] <= number_of("longest", longest):
+            raise InputError.of("longest", longest, f"must be >= {TURNS[0]:g} (1)")
+        self.scene, self.longest, self.how = scene, float(longest), how
+        self.starts = list(dict.fromkeys(starts))
+        self.options = RunOptions(accuracy="fast") if options is None else options
+        self.rows: dict[Point, dict[str, Any]] = {}
 
-    def add(self, points: Sequence[tuple[str, float]]) -> None:
+    def add(self, points: Sequence[Point]) -> None:
         """Run points until they are decided."""
         waiting = [point for point in points if point not in self.rows]
         for turns in (*(turns for turns in TURNS if turns < self.longest), self.longest):
             if not waiting:
                 return
             cases = [self._case(*point, turns) for point in waiting]
-            data = run_study(Study(tuple(cases), (), "whirl_onset"), observables=OBSERVED, **self.how)
+            data = run_study(Study(tuple(cases), (), "cage_runs"), observables=OBSERVED, **self.how)
             for k, point in enumerate(waiting):
                 self.rows[point] = _row(data.isel(case=k), turns)
             waiting = [
                 point for point in waiting if not self.rows[point]["decided"] and not self.rows[point]["message"]
             ]
 
-    def _case(self, start: str, speed: float, turns: float) -> Case:
-        parameters = {"start": start, "speed_rpm": speed}
+    def _case(self, start: str, speed: float, load: float | None, turns: float) -> Case:
+        changes = {"speed_rpm": speed} | ({} if load is None else {"axial_load": load})
+        parameters = {"start": start, **changes}
         try:
             scene = self.scene.replace(start=STARTS[start])
-            base = Base.of(Base.of(scene).build({"scene.speed_rpm": speed})[0])
+            base = Base.of(Base.of(scene).build({f"scene.{name}": value for name, value in changes.items()})[0])
         except InputError as error:
             return Case(parameters, None, self.options, str(error).splitlines()[0])
         built = base.build({})[0]
@@ -265,38 +272,43 @@ class _Search:
         own = self.options.replace(revolutions=None, duration=length, save_every=save_every, save_groups=GROUPS)
         return Case(parameters, built, own)
 
-    def between(self, starts: Sequence[str], resolution: float) -> list[float]:
+    def between(self, resolution: float) -> list[float]:
         """Speeds in the middle of where the whirl begins, as far as the speeds beside it are not near enough."""
         found = set()
-        for name in starts:
-            low, high = self.gathered(starts).onset(name)  # type: ignore[arg-type]
+        for name in self.starts:
+            low, high = self.gathered().onset(name)  # type: ignore[arg-type]
             if low > 0.0 and np.isfinite(high) and high - low > resolution:
                 sign = np.sign(next(iter(self.rows))[1])
                 middle = float(sign * 0.5 * (low + high))
-                if (name, middle) not in self.rows:  # one that failed is not tried again
+                if (name, middle, None) not in self.rows:  # one that failed is not tried again
                     found.add(middle)
         return sorted(found)
 
-    def gathered(self, starts: Sequence[str]) -> WhirlOnset:
+    def gathered(self) -> WhirlOnset:
         import xarray
 
-        speeds = sorted({speed for _, speed in self.rows}, key=abs)
+        speeds = sorted({speed for _, speed, _ in self.rows}, key=abs)
         # a speed that was asked of one start only has a row for each
-        rows = [[self.rows[name, speed] for speed in speeds] for name in starts]
-
-        def column(name: str, kind: Any = None) -> Any:
-            return np.array([[row[name] for row in line] for line in rows], dtype=kind)
-
-        dims = ("start", "speed_rpm")
-        variables: dict[str, Any] = {
-            "kind": (dims, column("kind", object), {"long_name": "class of the cage's motion"}),
-            "orbit": (dims, column("orbit"), {"long_name": "orbit of the cage over the radial play", "units": "1"}),
-            "decided": (dims, column("decided", bool)),
-            "turns": (dims, column("turns"), {"long_name": "turns of the cage", "units": "1"}),
-            "message": (dims, column("message", object)),
-        }
-        places = {"start": list(starts), "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"})}
+        rows = [[self.rows[name, speed, None] for speed in speeds] for name in self.starts]
+        variables = variables_of(rows, ("start", "speed_rpm"))
+        places = {"start": self.starts, "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"})}
         return WhirlOnset(xarray.Dataset(variables, places, {"bearing": self.scene.bearing.name}))
+
+
+def variables_of(rows: Sequence[Any], dims: tuple[str, ...]) -> dict[str, Any]:
+    """Variables of a dataset from rows of runs, which are nested as the dimensions say."""
+    flat, shape = np.array(rows, dtype=object).ravel(), np.array(rows, dtype=object).shape
+
+    def column(name: str, kind: Any = None) -> Any:
+        return np.array([row[name] for row in flat], dtype=kind).reshape(shape)
+
+    return {
+        "kind": (dims, column("kind", object), {"long_name": "class of the cage's motion"}),
+        "orbit": (dims, column("orbit"), {"long_name": "orbit of the cage over the radial play", "units": "1"}),
+        "decided": (dims, column("decided", bool)),
+        "turns": (dims, column("turns"), {"long_name": "turns of the cage", "units": "1"}),
+        "message": (dims, column("message", object)),
+    }
 
 
 def _row(found: xarray.Dataset, turns: float) -> dict[str, Any]:
