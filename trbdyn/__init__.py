@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from trbdyn.statics.assembly import equilibrium
     from trbdyn.statics.preload import preload_diagram
     from trbdyn.statics.stiffness import stiffness
+    from trbdyn.study.cage_map import cage_map
     from trbdyn.study.planning import plan
     from trbdyn.study.surrogate import surrogate
     from trbdyn.study.thermal import thermal
@@ -55,7 +56,6 @@ if TYPE_CHECKING:
     from trbdyn.study.uncertainty import uncertainty
     from trbdyn.study.what_matters import sensitivity
     from trbdyn.study.whirl import whirl_onset
-    from trbdyn.study.whirl_map import whirl_map
     from trbdyn.viewer import view
 
 _MODULES = {
@@ -134,7 +134,7 @@ _NAMES = {
     "uncertainty": "trbdyn.study.uncertainty",
     "view": "trbdyn.viewer",
     "wear": "trbdyn.run.wear",
-    "whirl_map": "trbdyn.study.whirl_map",
+    "cage_map": "trbdyn.study.cage_map",
     "whirl_onset": "trbdyn.study.whirl",
 }
 
@@ -184,6 +184,7 @@ __all__ = [
     "Waviness",
     "__version__",
     "animation",
+    "cage_map",
     "cases",
     "equilibrium",
     "errors",
@@ -210,7 +211,6 @@ __all__ = [
     "uncertainty",
     "view",
     "wear",
-    "whirl_map",
     "whirl_onset",
 ]
 

@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 import trbdyn as trb
 from trbdyn import plot
 from trbdyn.plot.animation import animate
+from trbdyn.plot.cage_map import draw_map as draw_cage_map
 from trbdyn.plot.heat import draw_balance
 from trbdyn.plot.torque import draw_map
 from trbdyn.results.result import Result
@@ -291,6 +292,21 @@ class Pictures:
             if len(temperatures) > 1:
                 yield f"draw_map {name}, one temperature", draw_map(data, temperature=1)
 
+    @staticmethod
+    def of_cage_maps() -> Iterator[tuple[str, Any]]:
+        order, kinds = ("start", "axial_load", "speed_rpm"), ["stable", "rocking", "circling", "unstable", "unknown"]
+        orbit = np.append(0.08 * np.arange(11.0), np.nan).reshape(2, 2, 3)
+        data = xarray.Dataset(
+            {
+                "kind": (order, np.array([kinds[k % 5] for k in range(12)], dtype=object).reshape(2, 2, 3)),
+                "orbit": (order, orbit),
+                "decided": (order, orbit < 0.7),
+            },
+            {"start": ["equal", "whirl"], "axial_load": [1e3, 4e3], "speed_rpm": [500.0, 1000.0, 2000.0]},
+            {"bearing": "30310"},
+        )
+        yield "cage_map over speed and load", draw_cage_map(data)
+
     def of_assembly(self) -> Iterator[tuple[str, Any]]:
         pair = trb.load_assembly("pair_30310")
         yield "shaft_drawing", plot.shaft_drawing(pair)
@@ -308,7 +324,8 @@ class Pictures:
     def all(self) -> Iterator[tuple[str, Any]]:
         yield from self.of_result()
         yield from self.of_animation(self.result)
-        for more in (self.of_bearings, self.of_elastic_cage, self.of_heat, self.of_torque_maps, self.of_assembly):
+        maps = (self.of_torque_maps, self.of_cage_maps)
+        for more in (self.of_bearings, self.of_elastic_cage, self.of_heat, *maps, self.of_assembly):
             yield from more()
 
 

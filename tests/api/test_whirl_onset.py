@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +53,31 @@ def test_no_whirl_and_files(tmp_path: Path) -> None:
     assert "whirls at none of these speeds" in str(once)
     again = whirl_onset(light, [-3000.0], starts=["equal"], longest=40.0, folder=tmp_path)
     assert again.data.equals(once.data)
+
+
+def test_a_map_over_speed_and_load(found: WhirlOnset) -> None:
+    """At the load of the scene it is what the search over speeds found; a load that cannot be is told."""
+    chart = trb.cage_map(SCENE, [1000.0], [3080.0, -10.0], starts=["whirl"], longest=40.0)
+    data = chart.data
+    assert data.kind.dims == ("start", "axial_load", "speed_rpm")
+    assert list(data.axial_load.values) == [-10.0, 3080.0]
+    one, other = (
+        data.sel(start="whirl", axial_load=3080.0, speed_rpm=1000.0),
+        found.data.sel(start="whirl", speed_rpm=1000.0),
+    )
+    assert str(one.kind.values) == str(other.kind.values)
+    assert float(one.orbit) == float(other.orbit)
+    assert (data.kind.sel(axial_load=-10.0).values == "unknown").all()
+    text = str(chart)
+    assert f"{one.kind.values} 0." in text
+    assert "failed" in text
+    assert "axial_load" in text
+    with pytest.raises(InputError, match="axial_loads"):
+        trb.cage_map(SCENE, [1000.0], [])
+    with pytest.raises(InputError, match="axial_loads"):
+        trb.cage_map(SCENE, [1000.0], [math.inf])
+    with pytest.raises(InputError, match="starts"):
+        trb.cage_map(SCENE, [1000.0], [1230.0], starts=["middle"])  # type: ignore[list-item]
 
 
 @pytest.mark.parametrize(

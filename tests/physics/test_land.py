@@ -546,7 +546,9 @@ def test_a_state_has_the_land_s_losses_only_with_a_land(kit: SimpleNamespace) ->
     }
     usual = sizes["rollers", 0.0]
     assert sizes["rollers", 0.1] == usual + 1
-    assert {sizes[guidance, fill] for guidance in LANDS for fill in (0.0, 0.1)} == {usual + 4}  # drag, and the films of pockets, stand before the land's two
+    assert {sizes[guidance, fill] for guidance in LANDS for fill in (0.0, 0.1)} == {
+        usual + 4
+    }  # drag, and the films of pockets, stand before the land's two
 
 
 @pytest.mark.parametrize(

@@ -226,7 +226,12 @@ class Frame:
         below = -self._softest()  # below all squares, so that the shifted matrix is positive
         first = np.random.default_rng(0).standard_normal(len(self.mass))  # the same one in every run
         squares, shapes = eigsh(
-            csc_array(self.stiffness), k=min(count + 6 + SPARE, len(self.mass) - 1), M=csc_array(self.mass), sigma=below, v0=first, tol=1e-12
+            csc_array(self.stiffness),
+            k=min(count + 6 + SPARE, len(self.mass) - 1),
+            M=csc_array(self.mass),
+            sigma=below,
+            v0=first,
+            tol=1e-12,
         )
         order = np.argsort(squares)[6:]
         frequencies = np.sqrt(np.maximum(squares[order], 0.0)) / (2.0 * np.pi)

@@ -1,0 +1,175 @@
+"""What a cage does over speed and axial load, from two starts: a map of classes, with runs that end once they are decided."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.validation import number_of
+from trbdyn.errors import InputError
+from trbdyn.model.scene import Scene
+from trbdyn.run.options import RunOptions
+from trbdyn.study.whirl import TURNS, CageRuns, speeds_of, variables_of
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True, repr=False)
+class CageMap(Displayed):
+    """What a cage does over speed and load; print it for a table.
+
+    Attributes
+    ----------
+    data : xarray.Dataset
+        Dimensions start, axial_load and speed_rpm, loads ascending, speeds ascending in size. Variables: kind (text), orbit
+        (over the radial play), decided, turns (of the cage), message.
+    """
+
+    data: xarray.Dataset
+
+    def picture(self, path: str | Path | None = None) -> Any:
+        """Draw the map: a field for each point, coloured by class, with the orbit over the radial play.
+
+        Parameters
+        ----------
+        path : path-like, optional
+            Where to save the picture.
+
+        Returns
+        -------
+        Figure
+            The matplotlib figure, one map for each start.
+        """
+        from trbdyn.plot.cage_map import draw_map
+
+        return draw_map(self.data, path)
+
+    def __str__(self) -> str:
+        return self._shown().text(names=True)
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _shown(self) -> Shown:
+        speeds = [f"{speed:g} rpm" for speed in self.data["speed_rpm"].values]
+        rows = []
+        for start in self.data["start"].values:
+            for load in self.data["axial_load"].values:
+                line = self.data.sel(start=start, axial_load=load)
+                told = [
+                    _told(str(kind), float(orbit), bool(decided))
+                    for kind, orbit, decided in zip(
+                        line["kind"].values, line["orbit"].values, line["decided"].values, strict=True
+                    )
+                ]
+                rows.append((str(start), f"{load:g}", *told))
+        failed = sorted({str(text) for text in self.data["message"].values.ravel() if text})
+        open_runs = int(np.count_nonzero(~self.data["decided"].values)) - int(
+            np.count_nonzero(self.data["message"].values)
+        )
+        notes = ["motion of the cage and its orbit over the radial play"]
+        if open_runs:
+            notes.append(f"?: not decided in {float(self.data['turns'].max()):g} turns of the cage ({open_runs} runs)")
+        return Shown(
+            "Motion of the cage over speed and load",
+            tuple(rows),
+            ("start", "axial load (N)", *speeds),
+            (*notes, *failed),
+        )
+
+
+def _told(kind: str, orbit: float, decided: bool) -> str:
+    return "failed" if np.isnan(orbit) else f"{kind} {orbit:.2f}{'' if decided else '?'}"
+
+
+def cage_map(
+    scene: Scene,
+    speeds: Sequence[float],
+    axial_loads: Sequence[float],
+    *,
+    starts: Sequence[Literal["equal", "whirl"]] = ("equal", "whirl"),
+    longest: float = TURNS[-1],
+    options: RunOptions | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    executor: Any = "threads",
+    workers: int | None = None,
+    progress: bool = False,
+) -> CageMap:
+    """What the cage of a scene does at each of some speeds and axial loads, from rest and from a large whirl.
+
+    A run ends when it is decided: after 40 turns of the cage where class and orbit stand; where they do not, after 160 or 640,
+    as in `whirl_onset`.
+
+    Parameters
+    ----------
+    scene : Scene
+        Gives all but speed, axial load and start.
+    speeds : sequence of float
+        Speeds of the shaft (rpm), all of one sign, none 0.
+    axial_loads : sequence of float
+        Axial loads (N).
+    starts : sequence of {'equal', 'whirl'}
+        Starts.
+    longest : float
+        Turns of the cage of the longest runs (1).
+    options : RunOptions, optional
+        Accuracy and settings of each run, not its length; 'fast' by default.
+    folder : path-like, optional
+        Keep runs in files there, and take what is there already.
+    executor, workers
+        As in `trbdyn.study.run`.
+    progress : bool
+        Show a progress bar.
+
+    Returns
+    -------
+    CageMap
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> scene = trb.cases.scene_30310(2000.0, 1230.0)
+    >>> found = trb.cage_map(scene, [1000.0], [1230.0], starts=["equal"], longest=40.0)
+    >>> str(found.data.kind.values[0, 0, 0])
+    'stable'
+    """
+    turning, loads = speeds_of(speeds), _loads(axial_loads)
+    runs = CageRuns(
+        scene,
+        starts,
+        options,
+        longest,
+        {"folder": folder, "executor": executor, "workers": workers, "progress": progress},
+    )
+    runs.add([(start, speed, load) for start in runs.starts for load in loads for speed in turning])
+    rows = [[[runs.rows[start, speed, load] for speed in turning] for load in loads] for start in runs.starts]
+    import xarray
+
+    places = {
+        "start": runs.starts,
+        "axial_load": ("axial_load", loads, {"units": "N"}),
+        "speed_rpm": ("speed_rpm", turning, {"units": "rpm"}),
+    }
+    variables = variables_of(rows, ("start", "axial_load", "speed_rpm"))
+    return CageMap(xarray.Dataset(variables, places, {"bearing": scene.bearing.name}))
+
+
+def _loads(loads: Any) -> list[float]:
+    if isinstance(loads, str) or not isinstance(loads, Sequence | np.ndarray) or not len(loads):
+        raise InputError.of("axial_loads", loads, "must be a sequence of at least one number (N)")
+    found = sorted({number_of("axial_loads", load) for load in loads})
+    if not all(np.isfinite(found)):
+        raise InputError.of("axial_loads", loads, "must be finite (N)")
+    return found
