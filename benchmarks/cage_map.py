@@ -24,7 +24,10 @@ COLUMNS: Final = {
     "motion": "text: class of the motion of the cage",
     "orbit": "1: orbit of the cage over the radial play",
     "decided": "text: whether class and orbit stand",
-    "turns": "1: turns of the cage of the last run",
+    "turns": "1: turns of the cage of the last run; in the summary, of all runs together",
+    "seconds": "s: wall time of the map",
+    "decided_after_40_turns": "1: share of the points that were decided in the first runs",
+    "turns_without_early_end": "1: turns of the cage that would be run if no run ended early",
 }
 SPEEDS: Final = (500.0, 1000.0, 2000.0, 3000.0, 4500.0, 6000.0)
 LOADS: Final = (620.0, 1230.0, 2460.0, 4930.0, 9860.0)

@@ -225,7 +225,7 @@ def test_roller_that_falls_on_a_bar(kit: SimpleNamespace, speed: float) -> None:
 
 def test_film_of_a_bar_goes_over_into_contact(kit: SimpleNamespace) -> None:
     """From the farthest oil to dry contact the load has no jump and no kink, and the film is no thinner than the roughness."""
-    gaps = np.concatenate([np.linspace(-3e-6, 5e-6, 161), np.linspace(5.5e-6, 1.1 * REACH, 100)])
+    gaps = np.concatenate([np.linspace(-3e-6, 5e-6, 81), np.linspace(5.5e-6, 1.1 * REACH, 40)])
     loads = []
     for gap in gaps:
         sim, vector, _ = pressed(kit, "leading_bar", -gap, lubrication="full_film", pocket_film=REACH)
