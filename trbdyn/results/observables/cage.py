@@ -271,11 +271,11 @@ Kind = Literal["unknown", "stable", "rocking", "circling", "unstable"]
 
 REST_ORBIT: Final = 0.1
 """Largest orbit (rms) of a stable cage, in units of the play."""
-OWN_SIDE: Final = 0.4
+OWN_SIDE: Final = 0.25
 """Least share of its mean distance from the axis that a rocking cage keeps on its own side of the axis."""
 LEAST_COHERENCE: Final = 0.5
-"""Least coherence about the axis of a circling cage. A circle about a place beside the axis reaches this and `OWN_SIDE` together:
-where its radius is 0.6 of the distance of its centre.
+"""Least coherence about the axis of a circling cage. A circle about a place beside the axis has more than this where it no longer
+keeps `OWN_SIDE`: where its radius is above 0.75 of the distance of its centre.
 """
 LEAST_TURNS: Final = 2.0
 """Turns of the cage below which its motion has no class."""
@@ -324,7 +324,7 @@ def classify(
 
     Stable: the centre stays near one place (root mean square distance from it below `rest_orbit` times the play). Rocking: it
     hangs beside the axis, and moves to and fro or in loops about that place without coming near to the other side of the axis
-    (`own_side` at least 0.4). Circling: it goes round the bearing axis in one sense (coherence about the axis at least
+    (`own_side` at least 0.25). Circling: it goes round the bearing axis in one sense (coherence about the axis at least
     `least_coherence`, either way). Unstable: none of these. The deviation of the speed alone would not do: an orbit that repeats
     itself but is not round has a large one; nor would the coherence about the mean place, as a cage that rocks in small loops
     has any.
