@@ -43,8 +43,8 @@ DIFFER = {
     "32012_2910_2370_0_unequal": "circling",
 }
 """Loci whose class is not the one that eyes saw. The first ten are small: eyes tell stable from rocking at 0.09 to 0.11 of
-the play as the bound does not, and once at 0.03, misled by large velocities. Then five that go round the axis with blows, which make
-their speed uneven: a coherence of 0.28 to 0.48. Last three that touch the axis."""
+the play as the bound does not, and once at 0.03, misled by large velocities. Then five that go round the axis with blows, which
+make their speed uneven: a coherence of 0.28 to 0.48. Last three that touch the axis."""
 
 
 @pytest.mark.parametrize("index", range(len(NAMES)), ids=NAMES)

@@ -224,6 +224,18 @@ def test_a_load_that_rotates_is_the_same_as_one_of_a_held_path() -> None:
     assert np.max(np.abs(place[0] - place[1])) < 0.1 * np.max(np.abs(place[1]))
 
 
+def test_a_rotating_load_that_stands_is_a_radial_load() -> None:
+    """With no turns for a turn of the shaft it has the direction that it begins with."""
+    quiet = Effects.standard().replace(gravity=False)
+    standing = Simulation(
+        scene_of(RING, effects=quiet, rotating_load=RotatingLoad(400.0, turns=0.0, direction_deg=30.0))
+    )
+    radial = Simulation(scene_of(RING, effects=quiet, radial_load=400.0, radial_direction_deg=30.0))
+    vector = radial.state.vector
+    np.testing.assert_allclose(standing.derivative(vector), radial.derivative(vector), rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(standing.state.vector, vector, rtol=1e-9, atol=1e-12)
+
+
 def test_every_number_of_the_ring_acts() -> None:
     """Rates of a ring that moves, with each number of it changed by a factor, as its equations say."""
     body = ROTOR.replace(unbalance=1e-3, unbalance_angle_deg=40.0, damping=50.0, damping_turns=0.2)

@@ -31,7 +31,8 @@ class RotatingLoad(Model):
     >>> import trbdyn as trb
     >>> scene = trb.Scene(
     ...     trb.cases.rig_30310(), speed_rpm=3000, axial_load=4930.0, rotating_load=trb.RotatingLoad(500.0),
-    ring="follows" ... )
+    ...     ring="follows",
+    ... )
     >>> float(scene.period)
     0.02
     """
