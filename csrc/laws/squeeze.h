@@ -54,12 +54,13 @@ static inline double trb_squeeze_end(double s)
 
 static inline trb_squeeze trb_squeeze_film(double s)
 {
-  const double              near = trb_max(s, TRB_SQUEEZE_APART), more = near / s, r = trb_squeeze_end(near);
+  const double              near = trb_max(s, TRB_SQUEEZE_APART), r = trb_squeeze_end(near);
   const trb_squeeze_moments m = trb_squeeze_integrals(r);
   const double              at = trb_squeeze_rate(&m, r), load = r * r * m.of[1] - m.of[3] + at * (m.of[2] - r * m.of[1]);
   const double              loss = at * load + m.of[4] - r * r * m.of[2] - at * (m.of[3] - r * m.of[2]);
-  if (s < TRB_SQUEEZE_APART) return (trb_squeeze){.load = load * more * more, .loss = loss * more, .shear = m.angle * more};
-  return (trb_squeeze){.load = load, .loss = loss, .shear = m.angle};
+  if (s >= TRB_SQUEEZE_APART) return (trb_squeeze){.load = load, .loss = loss, .shear = m.angle};
+  const double more = near / s;
+  return (trb_squeeze){.load = load * more * more, .loss = loss * more, .shear = m.angle * more};
 }
 
 #endif
