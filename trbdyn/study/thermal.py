@@ -332,7 +332,7 @@ class _Runs:
         """The same, good enough to tell on which side of the balance it lies: also where the losses scatter by `ROUGH`."""
         if film not in self.known and film not in self.rough:
             self._run({film: self.scene_at(film, nodes)}, ROUGH)
-        return self.known.get(film, self.rough.get(film, {}))
+        return self.known[film] if film in self.known else self.rough[film]
 
     def side_by_side(self, films: list[float]) -> None:
         self._run({film: self.scene_at(film, {}) for film in films if film not in self.known})
