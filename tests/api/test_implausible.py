@@ -131,3 +131,22 @@ def test_files_of_the_package_are_no_names_for_users() -> None:
     assert not {"lubricant", "shipped", "viscosity"} & set(dir(trb.lubricants))
     assert not hasattr(trb.lubricants, "lubricant")
     assert math.isclose(trb.lubricants.wooster(0.0346), 2.085e-8, rel_tol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("effects", "roughness", "words"),
+    [
+        ({"pocket_film": 5e-3}, 1e-6, "more than a tenth of the roller's diameter"),
+        ({"pocket_film": 1e-5}, 1e-4, "less than twice bearing.roughness.pocket"),
+        ({"pocket_film": 1e-5, "lubrication": "boundary"}, 1e-6, "makes no film"),
+        ({"pocket_film": 1e-5}, 1e-6, ""),
+    ],
+)
+def test_a_film_in_the_pockets_that_is_hardly_one(effects: dict[str, Any], roughness: float, words: str) -> None:
+    bearing = RIG.replace({"roughness.pocket": roughness})
+    scene = trb.Scene(bearing, speed_rpm=1000.0, axial_load=1e3, effects=trb.Effects.standard().replace(**effects))
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        trb.Simulation(scene)
+    found = [str(one.message) for one in said if issubclass(one.category, UnusualInput)]
+    assert (words in found[0]) if words else not found

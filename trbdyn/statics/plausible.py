@@ -43,6 +43,7 @@ def unusual(scene: Scene, equilibrium: Equilibrium) -> tuple[str, ...]:
         for text in (
             _pressure(scene, equilibrium),
             *_plays(scene),
+            *_pocket_film(scene),
             *_cage(scene),
             _fill(scene),
             _gravity(scene),
@@ -157,6 +158,28 @@ def _plays(scene: Scene) -> list[str]:
         for name in ("play_radial", "play_circumferential", "play_axial")
         if getattr(cage, name) > most
     ]
+
+
+def _pocket_film(scene: Scene) -> list[str]:
+    """A film in the pockets that cannot be, or that is hardly one."""
+    film, rough = scene.effects.pocket_film, scene.bearing.roughness.pocket
+    most = LARGEST_PLAY_SHARE * scene.bearing.roller.diameter
+    if not film:
+        return []
+    if not scene.effects.films or scene.effects.bodies == "rollers" or not scene.effects.pocket_bars:
+        return [f"effects.pocket_film = {film:g} m makes no film: it needs lubricant films, a cage and its bars"]
+    found = []
+    if film > most:
+        found.append(
+            f"effects.pocket_film = {film:g} m is more than a tenth of the roller's diameter, where its law, of narrow "
+            "gaps, does not hold; usual are 1e-5 to 2e-4 m"
+        )
+    if film < 2.0 * rough:
+        found.append(
+            f"effects.pocket_film = {film:g} m is less than twice bearing.roughness.pocket = {rough:g} m, below which the "
+            "film gets no thinner: so it does not depend on the gap"
+        )
+    return found
 
 
 def _gravity(scene: Scene) -> str:
