@@ -55,15 +55,41 @@ def advance(simulation: Simulation | AssemblySimulation, duration: float) -> flo
     return time.process_time() - begin
 
 
+def finer(scene: Scene, simulation: Simulation, factor: float) -> Simulation:
+    """A run from the simulation's state on, its tolerances times a factor."""
+    usual = simulation.options.tolerances.to_dict()
+    start = scene.replace(start=Start.state(simulation.state))
+    return Simulation(start, **{name: factor * usual[name] for name in Tolerances.model_fields})
+
+
+def path_of(simulation: Simulation) -> Any:
+    """The cage's centre within the window (m)."""
+    return simulation.run(duration=WINDOW, save_every=WINDOW / 30)["cage_position"]
+
+
 def error_of(scene: Scene, simulation: Simulation) -> float:
     """Largest error of the cage's centre over Cpr within the window from the simulation's state on."""
-    start = scene.replace(start=Start.state(simulation.state))
-    usual = simulation.options.tolerances.to_dict()
-    paths = []
-    for factor in (1.0, 1.0 / TIGHTER):
-        finer = Simulation(start, **{name: factor * usual[name] for name in Tolerances.model_fields})
-        paths.append(finer.run(duration=WINDOW, save_every=WINDOW / 30)["cage_position"])
-    return float(np.max(np.abs(paths[1] - paths[0])) / scene.bearing.cage.play_radial)
+    usual, tight = (path_of(finer(scene, simulation, factor)) for factor in (1.0, 1.0 / TIGHTER))
+    return float(np.max(np.abs(tight - usual)) / scene.bearing.cage.play_radial)
+
+
+def front_of(scene: Scene, factors: Sequence[float], windows: int, speed_rpm: float) -> tuple[list[float], list[float]]:
+    """Time a turn (ms) and error of the cage's centre (Cpr, geometric mean), for factors of the tolerances.
+
+    They are measured over windows from states of one run.
+    """
+    simulation = Simulation(scene)
+    advance(simulation, 120.0 / speed_rpm)
+    taken, errors = np.zeros(len(factors)), np.zeros((windows, len(factors)))
+    for window in range(windows):
+        advance(simulation, 4.0 * WINDOW)
+        tight = path_of(finer(scene, simulation, min(factors) / TIGHTER))
+        for at, factor in enumerate(factors):
+            path = path_of(finer(scene, simulation, factor))
+            errors[window, at] = np.max(np.abs(path - tight)) / scene.bearing.cage.play_radial
+            taken[at] += advance(finer(scene, simulation, factor), WINDOW)
+    turns = windows * WINDOW * speed_rpm / 60.0
+    return list(1e3 * taken / turns), list(np.exp(np.mean(np.log(errors), axis=0)))
 
 
 def rows_of(

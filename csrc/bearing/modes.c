@@ -7,6 +7,9 @@
 #include "base/memory.h"
 #include "bearing/model.h"
 
+/* Coriolis forces below this share of the largest one are none. */
+#define TRB_NO_CORIOLIS 1e-9
+
 static double *doubles(size_t count) { return trb_zeros(count, sizeof(double)); }
 
 static int allocate(trb_modes *to, size_t n_faces)
@@ -15,13 +18,15 @@ static int allocate(trb_modes *to, size_t n_faces)
   to->frequency = doubles(n);
   to->damping = doubles(n);
   to->mass = doubles(n);
+  to->per = doubles(n);
   to->share = doubles(n);
   to->yield = doubles(n);
-  to->coriolis = doubles(n * n);
-  to->shapes = doubles(n_faces * n * TRB_SHAPE + 1);
+  to->coriolis = trb_zeros(n * n + 1, sizeof *to->coriolis);
+  to->first_coriolis = calloc(n + 1, sizeof *to->first_coriolis);
+  to->shapes = doubles(n_faces * n * TRB_SHAPE_ROOM + 1);
   to->middle = trb_zeros(n_faces + 1, sizeof *to->middle);
-  return to->frequency != NULL && to->damping != NULL && to->mass != NULL && to->share != NULL && to->yield != NULL &&
-         to->coriolis != NULL && to->shapes != NULL && to->middle != NULL;
+  return to->frequency != NULL && to->damping != NULL && to->mass != NULL && to->per != NULL && to->share != NULL && to->yield != NULL &&
+         to->coriolis != NULL && to->first_coriolis != NULL && to->shapes != NULL && to->middle != NULL;
 }
 
 /* Mean of the vertices. */
@@ -30,6 +35,23 @@ static trb_vec3 middle_of(const trb_polygon *p)
   trb_vec3 sum = {0, 0, 0};
   for (int i = 0; i < p->n; i++) sum = trb_add(sum, trb_polygon_vertex(p, i));
   return trb_scale(1.0 / p->n, sum);
+}
+
+/* Modes of a ring of beams act on each other only where they have as many waves: the rest are rounding errors, and left out. */
+static void set_coriolis(trb_modes *to, const double *forces, int n_columns)
+{
+  double largest = 0.0;
+  for (int i = 0; i < to->n; i++)
+    for (int k = 0; k < i; k++) largest = fmax(largest, fabs(forces[(size_t)i * (size_t)n_columns + (size_t)k]));
+  int n = 0;
+  for (int i = 0; i < to->n; i++) {
+    to->first_coriolis[i] = n;
+    for (int k = 0; k < to->n; k++) {
+      const double force = forces[(size_t)i * (size_t)n_columns + (size_t)k];
+      if (fabs(force) > TRB_NO_CORIOLIS * largest) to->coriolis[n++] = (trb_coriolis){k, force};
+    }
+  }
+  to->first_coriolis[to->n] = n;
 }
 
 static trb_status check_row(const double *row, int mode, int n_columns, trb_message *message)
@@ -51,7 +73,7 @@ trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, in
   const int  n_faces = m->first_face[m->n_rollers];
   if (n_modes != (int)m->params.cage_modes)
     return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", m->params.cage_modes, n_modes);
-  if (n_modes == 0) return TRB_OK;
+  if (n_modes <= 0) return TRB_OK;
   if (n_columns != columns) return trb_fail(message, TRB_ERR_INPUT, "modes: %d columns needed, %d given", columns, n_columns);
   for (int i = 0; i < n_modes; i++) {
     const trb_status status = check_row(rows + (size_t)i * (size_t)n_columns, i, n_columns, message);
@@ -71,23 +93,21 @@ trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, in
   for (int j = 0; j < m->n_rollers; j++)
     for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
       const int at = TRB_MODE_shapes + TRB_SHAPE * (j * m->n_slots + m->faces[f].slot);
-      double   *shapes = to->shapes + (size_t)f * (size_t)n_modes * TRB_SHAPE;
+      double   *shapes = to->shapes + (size_t)f * (size_t)n_modes * TRB_SHAPE_ROOM;
       to->middle[f] = middle_of(&m->faces[f].surface);
       for (int i = 0; i < n_modes; i++)
-        memcpy(shapes + (size_t)i * TRB_SHAPE, rows + (size_t)i * (size_t)n_columns + at, TRB_SHAPE * sizeof *shapes);
+        memcpy(shapes + (size_t)i * TRB_SHAPE_ROOM, rows + (size_t)i * (size_t)n_columns + at, TRB_SHAPE * sizeof *shapes);
     }
   for (int i = 0; i < n_modes; i++) {
     const double *row = rows + (size_t)i * (size_t)n_columns, w = row[TRB_MODE_frequency];
     to->frequency[i] = w;
     to->damping[i] = 2.0 * row[TRB_MODE_damping] * w;
     to->mass[i] = row[TRB_MODE_mass];
-    to->fastest = fmax(to->fastest, w);
-    for (int k = 0; k < n_modes; k++) to->coriolis[k * n_modes + i] = row[shapes_end + k];
-  }
-  for (int i = 0; i < n_modes; i++) {
-    to->share[i] = to->frequency[i] / to->fastest;
+    to->per[i] = 1.0 / fmax(w, trb_least_mode_frequency);
+    to->share[i] = w * to->per[i];
     to->yield[i] = 1.0 / (to->share[i] * to->mass[i]);
   }
+  set_coriolis(to, rows + shapes_end, n_columns);
   return TRB_OK;
 }
 
@@ -96,9 +116,11 @@ void trb_modes_free(trb_modes *modes)
   free(modes->frequency);
   free(modes->damping);
   free(modes->mass);
+  free(modes->per);
   free(modes->share);
   free(modes->yield);
   free(modes->coriolis);
+  free(modes->first_coriolis);
   free(modes->shapes);
   free(modes->middle);
   *modes = (trb_modes){0};

@@ -15,24 +15,35 @@
  * i. */
 enum { TRB_MODE_frequency, TRB_MODE_damping, TRB_MODE_mass, TRB_MODE_shapes };
 
-enum { TRB_SHAPE = 6, TRB_MOST_MODES = 100 };
+/* A mode's shape at a face, and how much room it takes; TRB_SHAPE_ROOM: padded by zeros, so that loops over it have no remainder. */
+enum { TRB_SHAPE = 6, TRB_SHAPE_ROOM = 8, TRB_MOST_MODES = 100 };
+
+/* The least angular frequency that makes a velocity of an amplitude, rad/s (body/elastic_cage.h). */
+static const double trb_least_mode_frequency = 1.7e4;
+
+/* Coriolis force by a mode over its rate and the turn of the cage, kg. */
+typedef struct trb_coriolis {
+  int    by;
+  double force;
+} trb_coriolis;
 
 typedef struct trb_modes {
-  int       n;         /* 0: the cage is rigid */
-  double   *frequency; /* angular, rad/s */
-  double   *damping;   /* rate of decay of the energy, twice the damping ratio times the angular frequency, 1/s */
-  double   *mass;      /* modal, kg */
-  double    fastest;   /* the largest frequency, rad/s */
-  double   *share;     /* frequency over the largest one */
-  double   *yield;     /* one over share and mass, 1/kg */
-  double   *coriolis;  /* [mode][mode]: force on the second one, kg */
-  double   *shapes;    /* [face of the model][mode][TRB_SHAPE] */
-  trb_vec3 *middle;    /* of each face's outline, in the frame of its pocket, m */
+  int           n;              /* 0: the cage is rigid */
+  double       *frequency;      /* angular, rad/s */
+  double       *damping;        /* rate of decay of the energy, twice the damping ratio times the angular frequency, 1/s */
+  double       *mass;           /* modal, kg */
+  double       *per;            /* amplitude for a unit of its coordinate, s */
+  double       *share;          /* frequency over the one that makes a velocity of its amplitude: 1, or less for slow modes */
+  double       *yield;          /* one over share and mass, 1/kg */
+  double       *shapes;         /* [face of the model][mode][TRB_SHAPE_ROOM] */
+  trb_vec3     *middle;         /* of each face's outline, in the frame of its pocket, m */
+  trb_coriolis *coriolis;       /* on one mode after the other */
+  int          *first_coriolis; /* [mode]: of those on it; one more: their number */
 } trb_modes;
 
 static inline const double *trb_shapes_of(const trb_modes *modes, int face)
 {
-  return modes->shapes + (size_t)face * (size_t)modes->n * TRB_SHAPE;
+  return modes->shapes + (size_t)face * (size_t)modes->n * TRB_SHAPE_ROOM;
 }
 
 void trb_modes_free(trb_modes *modes);

@@ -20,12 +20,21 @@ typedef struct trb_coordinate {
 
 typedef struct trb_body trb_body;
 
+/* Sums over modes; they are compiled for each instruction set (contact/kernels.h). Shapes are those of a face. */
+typedef struct trb_modal_kernels {
+  /* The shapes times amplitudes: a displacement, then a turn. */
+  void (*sum)(const double *shapes, int n, const double *amplitude, double sum[TRB_SHAPE_ROOM]);
+  /* Adds what a force and a moment on the face, padded by zeros, do to each mode. */
+  void (*push)(const double *shapes, int n, const double load[TRB_SHAPE_ROOM], double *force);
+} trb_modal_kernels;
+
 /* How a body is deformed, of which contacts read the amplitudes and their rates, and to which they add generalised forces. */
 typedef struct trb_deformed {
-  const trb_modes *modes;
-  double          *amplitude; /* of each mode, m */
-  double          *rate;      /* m/s */
-  double          *force;     /* power over rate, N */
+  const trb_modes         *modes;
+  const trb_modal_kernels *kernels;
+  double                  *amplitude; /* of each mode, m */
+  double                  *rate;      /* m/s */
+  double                  *force;     /* power over rate, N */
 } trb_deformed;
 
 typedef struct trb_body_kind {
@@ -51,10 +60,12 @@ typedef struct trb_body_kind {
   double (*mass)(const trb_model *m, const trb_body *body);        /* on which gravity acts, kg */
   double (*kinetic)(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose); /* energy, J */
   /* of bodies that deform: amplitudes and their rates out of the coordinates; what forces on the modes add to the rates of the coordinates; the
-   * coordinate that goes with the amplitude of a mode (that of its rate is the next one), and amplitude and rate for a unit of both */
+   * coordinate that goes with the amplitude of a mode (that of its rate is the next one), and amplitude and rate for a unit of both; slopes of the
+   * rates with one of these coordinates, added: loads apart, no others of the body's rates depend on it than those of the modes */
   void (*deform)(const trb_body *body, const double *y, trb_deformed *deformed);
   void (*pushed)(const trb_body *body, const double *force, double *rates);
   int (*amplitude)(const trb_body *body, int mode, double per[2]);
+  void (*slopes)(const trb_body *body, const trb_rigid_pose *pose, int coordinate, double *rates);
   /* what its drive and the loads on it put in while bodies act on it by a wrench; NULL: nothing */
   trb_drive_power (*work)(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, const trb_wrench *load);
 } trb_body_kind;

@@ -1,12 +1,10 @@
 #include "body/elastic_cage.h"
 
-#include <string.h>
-
 static int place_of(int mode) { return TRB_CAGE_SIZE + 2 * mode; }
 
 static int amplitude_of(const trb_body *body, int mode, double per[2])
 {
-  per[0] = 1.0 / body->modes->fastest;
+  per[0] = body->modes->per[mode];
   per[1] = body->modes->share[mode];
   return place_of(mode);
 }
@@ -30,15 +28,15 @@ static void pushed(const trb_body *body, const double *force, double *rates)
   for (int i = 0; i < modes->n; i++) rates[place_of(i) + 1] += force[i] * modes->yield[i];
 }
 
-/* Of each mode, over the angular velocity. */
-static void coriolis(const trb_modes *modes, const double *y, double *force)
+/* Coriolis force on a mode over the angular velocity. */
+static double coriolis(const trb_modes *modes, int mode, const double *y)
 {
-  const double *column = modes->coriolis;
-  memset(force, 0, (size_t)modes->n * sizeof *force);
-  for (int k = 0; k < modes->n; k++, column += modes->n) {
-    const double rate = modes->share[k] * y[place_of(k) + 1];
-    for (int i = 0; i < modes->n; i++) force[i] += column[i] * rate;
+  double force = 0.0;
+  for (int c = modes->first_coriolis[mode]; c < modes->first_coriolis[mode + 1]; c++) {
+    const int by = modes->coriolis[c].by;
+    force += modes->coriolis[c].force * modes->share[by] * y[place_of(by) + 1];
   }
+  return force;
 }
 
 static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *drive, const trb_rigid_pose *c, const double *y,
@@ -46,23 +44,38 @@ static void rates_of(const trb_model *m, const trb_body *body, const trb_drive *
 {
   const trb_modes *modes = body->modes;
   trb_body_cage.rates(m, body, drive, c, y, load, rates);
-  double force[TRB_MOST_MODES];
-  coriolis(modes, y, force);
   for (int i = 0; i < modes->n; i++) {
     const int at = place_of(i);
     rates[at] = modes->frequency[i] * y[at + 1];
     rates[at + 1] = -modes->frequency[i] * y[at] - modes->damping[i] * y[at + 1];
-    force[i] *= c->omega_frame.z;
+    rates[at + 1] += coriolis(modes, i, y) * c->omega_frame.z * modes->yield[i];
   }
-  pushed(body, force, rates);
+}
+
+/* Coriolis forces by a mode are minus those on it. */
+static void slopes_of(const trb_body *body, const trb_rigid_pose *pose, int coordinate, double *rates)
+{
+  const trb_modes *modes = body->modes;
+  const int        mode = (coordinate - TRB_CAGE_SIZE) / 2, at = place_of(mode);
+  if (coordinate == at) {
+    rates[at + 1] -= modes->frequency[mode];
+    return;
+  }
+  rates[at] += modes->frequency[mode];
+  rates[at + 1] -= modes->damping[mode];
+  for (int c = modes->first_coriolis[mode]; c < modes->first_coriolis[mode + 1]; c++) {
+    const int on = modes->coriolis[c].by;
+    rates[place_of(on) + 1] -= modes->coriolis[c].force * modes->share[mode] * pose->omega_frame.z * modes->yield[on];
+  }
 }
 
 static void deform(const trb_body *body, const double *y, trb_deformed *deformed)
 {
-  const double per = 1.0 / body->modes->fastest;
   for (int i = 0; i < body->modes->n; i++) {
-    deformed->amplitude[i] = per * y[place_of(i)];
-    deformed->rate[i] = body->modes->share[i] * y[place_of(i) + 1];
+    double        per[2];
+    const double *at = y + amplitude_of(body, i, per);
+    deformed->amplitude[i] = per[0] * at[0];
+    deformed->rate[i] = per[1] * at[1];
   }
 }
 
@@ -82,8 +95,8 @@ static double kinetic_of(const trb_model *m, const trb_body *body, const trb_rig
 
 #define RIGID(name, kind, text) {#name, TRB_TOL_##kind, text},
 #define MODE(number) \
-  {"q" #number, TRB_TOL_VELOCITY, "amplitude of mode " #number " times the largest angular frequency, m/s"}, \
-      {"p" #number, TRB_TOL_VELOCITY, "rate of its amplitude times that over its own angular frequency, m/s"},
+  {"q" #number, TRB_TOL_VELOCITY, "amplitude of mode " #number " times its angular frequency or 17000 rad/s, the larger one, m/s"}, \
+      {"p" #number, TRB_TOL_VELOCITY, "rate of its amplitude times the same over its angular frequency, m/s"},
 #define TEN(t) MODE(t##0) MODE(t##1) MODE(t##2) MODE(t##3) MODE(t##4) MODE(t##5) MODE(t##6) MODE(t##7) MODE(t##8) MODE(t##9)
 static const trb_coordinate coordinates[TRB_CAGE_SIZE + 2 * TRB_MOST_MODES] = {TRB_CAGE_STATE(RIGID) TEN() TEN(1) TEN(2) TEN(3) TEN(4)
                                                                                    TEN(5) TEN(6) TEN(7) TEN(8) TEN(9)};
@@ -101,7 +114,8 @@ const trb_body_kind trb_body_elastic_cage = {.name = "elastic cage",
                                              .kinetic = kinetic_of,
                                              .deform = deform,
                                              .pushed = pushed,
-                                             .amplitude = amplitude_of};
+                                             .amplitude = amplitude_of,
+                                             .slopes = slopes_of};
 
 trb_body trb_elastic_cage_of(const trb_modes *modes, const char *name)
 {

@@ -12,7 +12,8 @@
 file(GLOB trb_kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/contact/*_kernel.c
   ${CMAKE_CURRENT_SOURCE_DIR}/stepping/*_kernel.c)
 # linear algebra needs no functions of libmvec, and its checks need numbers that may be infinite
-set_source_files_properties(${CMAKE_CURRENT_SOURCE_DIR}/stepping/block_kernel.c ${CMAKE_CURRENT_SOURCE_DIR}/stepping/vector_kernel.c PROPERTIES COMPILE_OPTIONS "-fno-fast-math")
+set_source_files_properties(${CMAKE_CURRENT_SOURCE_DIR}/stepping/block_kernel.c ${CMAKE_CURRENT_SOURCE_DIR}/stepping/vector_kernel.c
+  ${CMAKE_CURRENT_SOURCE_DIR}/contact/modal_kernel.c PROPERTIES COMPILE_OPTIONS "-fno-fast-math")
 
 function(trb_kernel variant)
   add_library(trb_kernel_${variant} OBJECT ${trb_kernel_sources})

@@ -8,13 +8,13 @@
 #include "contact/kernels.h"
 
 const trb_kernel_variant trb_kernel_variants[] = {
-    {"scalar", trb_raceway_kernel_scalar, trb_rib_kernel_scalar},
-    {"base", trb_raceway_kernel_base, trb_rib_kernel_base},
+    {"scalar", trb_raceway_kernel_scalar, trb_rib_kernel_scalar, &trb_modal_kernels_scalar},
+    {"base", trb_raceway_kernel_base, trb_rib_kernel_base, &trb_modal_kernels_base},
 #ifdef TRB_HAVE_AVX2
-    {"avx2", trb_raceway_kernel_avx2, trb_rib_kernel_avx2},
+    {"avx2", trb_raceway_kernel_avx2, trb_rib_kernel_avx2, &trb_modal_kernels_avx2},
 #endif
 #ifdef TRB_HAVE_AVX512
-    {"avx512", trb_raceway_kernel_avx512, trb_rib_kernel_avx512},
+    {"avx512", trb_raceway_kernel_avx512, trb_rib_kernel_avx512, &trb_modal_kernels_avx512},
 #endif
 };
 const int trb_n_kernel_variants = (int)(sizeof trb_kernel_variants / sizeof trb_kernel_variants[0]);

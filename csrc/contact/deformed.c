@@ -3,7 +3,7 @@
 /* Motions of a face at the centre of mass of its roller, as a rigid one, for a unit of each mode: displacement, then turn. */
 static void motions_at(const trb_modes *modes, const double *shape, trb_vec3 arm, double (*motions)[TRB_MOST_MODES])
 {
-  for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE) {
+  for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE_ROOM) {
     const trb_vec3 turn = trb_v(shape[3], shape[4], shape[5]), carried = trb_cross(turn, arm);
     motions[0][i] = shape[0] + carried.x, motions[1][i] = shape[1] + carried.y, motions[2][i] = shape[2] + carried.z;
     motions[3][i] = turn.x, motions[4][i] = turn.y, motions[5][i] = turn.z;

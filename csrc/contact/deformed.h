@@ -14,19 +14,13 @@ typedef struct trb_face_shift {
   trb_vec3      turn_rate;  /* angular velocity, rad/s */
 } trb_face_shift;
 
-static inline void trb_sum_shapes(const double *shapes, int n, const double *amplitude, trb_vec3 *shift, trb_vec3 *turn)
+static inline void trb_sum_shapes(const trb_deformed *deformed, const double *shapes, const double *amplitude, trb_vec3 *shift,
+                                  trb_vec3 *turn)
 {
-  double sum[2][TRB_SHAPE] = {{0}}; /* side by side: one sum alone would wait for each of its additions */
-  int    i = 0;
-  for (; i + 2 <= n; i += 2, shapes += 2 * TRB_SHAPE) {
-    for (int k = 0; k < TRB_SHAPE; k++) sum[0][k] += amplitude[i] * shapes[k];
-    for (int k = 0; k < TRB_SHAPE; k++) sum[1][k] += amplitude[i + 1] * shapes[TRB_SHAPE + k];
-  }
-  if (i < n)
-    for (int k = 0; k < TRB_SHAPE; k++) sum[0][k] += amplitude[i] * shapes[k];
-  for (int k = 0; k < TRB_SHAPE; k++) sum[0][k] += sum[1][k];
-  *shift = trb_v(sum[0][0], sum[0][1], sum[0][2]);
-  *turn = trb_v(sum[0][3], sum[0][4], sum[0][5]);
+  double sum[TRB_SHAPE_ROOM];
+  deformed->kernels->sum(shapes, deformed->modes->n, amplitude, sum);
+  *shift = trb_v(sum[0], sum[1], sum[2]);
+  *turn = trb_v(sum[3], sum[4], sum[5]);
 }
 
 /* Its place. */
@@ -34,14 +28,14 @@ static inline void trb_face_place(const trb_deformed *deformed, int face, trb_fa
 {
   s->shapes = trb_shapes_of(deformed->modes, face);
   s->middle = deformed->modes->middle[face];
-  trb_sum_shapes(s->shapes, deformed->modes->n, deformed->amplitude, &s->shift, &s->turn);
+  trb_sum_shapes(deformed, s->shapes, deformed->amplitude, &s->shift, &s->turn);
 }
 
 /* Its motion, too. The angular velocity of a turn r is r' + r x r'/2, up to terms of r squared. */
 static inline void trb_face_motion(const trb_deformed *deformed, trb_face_shift *s)
 {
   trb_vec3 rate;
-  trb_sum_shapes(s->shapes, deformed->modes->n, deformed->rate, &s->shift_rate, &rate);
+  trb_sum_shapes(deformed, s->shapes, deformed->rate, &s->shift_rate, &rate);
   s->turn_rate = trb_axpy(rate, 0.5, trb_cross(s->turn, rate));
 }
 
@@ -69,10 +63,8 @@ static inline void trb_push_modes(const trb_deformed *deformed, const trb_face_s
 {
   const trb_vec3 arm = trb_sub(trb_sub(point, s->middle), s->shift), f = on_face->force;
   const trb_vec3 about = trb_add(on_face->moment, trb_cross(arm, f)), m = trb_axpy(about, -0.5, trb_cross(s->turn, about));
-  for (int i = 0; i < deformed->modes->n; i++) {
-    const double *shape = s->shapes + (size_t)i * TRB_SHAPE;
-    deformed->force[i] += shape[0] * f.x + shape[1] * f.y + shape[2] * f.z + shape[3] * m.x + shape[4] * m.y + shape[5] * m.z;
-  }
+  const double   load[TRB_SHAPE_ROOM] = {f.x, f.y, f.z, m.x, m.y, m.z};
+  deformed->kernels->push(s->shapes, deformed->modes->n, load, deformed->force);
 }
 
 /* Adds the slopes of a face to those of its modes. slopes: of the face; place: of the roller's centre of mass. */

@@ -115,10 +115,13 @@ typedef void trb_rib_kernel(const trb_model *m, const trb_rib *rib, const trb_in
 trb_raceway_kernel trb_raceway_kernel_scalar, trb_raceway_kernel_base, trb_raceway_kernel_avx2, trb_raceway_kernel_avx512;
 trb_rib_kernel     trb_rib_kernel_scalar, trb_rib_kernel_base, trb_rib_kernel_avx2, trb_rib_kernel_avx512;
 
+extern const trb_modal_kernels trb_modal_kernels_scalar, trb_modal_kernels_base, trb_modal_kernels_avx2, trb_modal_kernels_avx512;
+
 typedef struct trb_kernel_variant {
-  const char         *name;
-  trb_raceway_kernel *raceway;
-  trb_rib_kernel     *rib;
+  const char              *name;
+  trb_raceway_kernel      *raceway;
+  trb_rib_kernel          *rib;
+  const trb_modal_kernels *modal;
 } trb_kernel_variant;
 
 enum { TRB_MAX_KERNEL_VARIANTS = 4 };

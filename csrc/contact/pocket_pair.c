@@ -58,7 +58,7 @@ static void ways_of(const trb_model *m, int roller, double *ways)
     const double      *shape = trb_shapes_of(modes, f);
     double             reach = extent[gap] + trb_clearance_play(m) + trb_norm(aside);
     for (int k = 0; k < p->n; k++) reach = fmax(reach, trb_norm(trb_sub(trb_polygon_vertex(p, k), middle)));
-    for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE) {
+    for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE_ROOM) {
       const double way = trb_norm(trb_v(shape[0], shape[1], shape[2])) + reach * trb_norm(trb_v(shape[3], shape[4], shape[5]));
       ways[i * TRB_N_GAPS + gap] = fmax(ways[i * TRB_N_GAPS + gap], 1.1 * way);
     }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "contact/kernels.h"
 #include "contact/uneven.h"
 
 /* What a fast pair with a body that deforms keeps of its modes. */
@@ -101,6 +102,13 @@ static int make_bodies(trb_dynamics *d)
   return 1;
 }
 
+/* Of the workspace's variant. */
+static void choose_kernels(const trb_dynamics *d)
+{
+  for (int b = 0; b < d->system->n_bodies; b++)
+    if (d->bodies[b].deformed != NULL) d->bodies[b].deformed->kernels = trb_kernel_variants[d->work->variant].modal;
+}
+
 static int make_uneven(trb_dynamics *d)
 {
   d->spin = trb_zeros((size_t)d->model->n_rollers, sizeof *d->spin);
@@ -136,6 +144,7 @@ trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motio
   } else {
     for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
     status = trb_workspace_create(system->pairs, system->n_pairs, variant, &d->work, message);
+    if (status == TRB_OK) choose_kernels(d);
     if (status == TRB_OK && m->form.n > 0 && !make_uneven(d)) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
     if (status == TRB_OK && !choose_fast(d)) status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   }

@@ -138,7 +138,7 @@ int trb_arrow_factor(const trb_arrow *arrow, trb_arrow_factors *f)
 
 void trb_arrow_solve(const trb_arrow_factors *f, double *x)
 {
-  if (f->followers != NULL) trb_followers_before(f->followers, f->borders, f->n, x);
+  if (f->followers != NULL) trb_followers_before(f->followers, f->kernels, f->borders, f->n, x);
   f->kernels->solve(f->rollers, f->borders, f->n, &f->hub, x);
   if (f->followers != NULL) trb_followers_after(f->followers, f->n, x);
 }

@@ -175,14 +175,50 @@ static inline void add_product(const double (*columns)[TRB_NP], int n, const dou
   for (int i = 0; i < TRB_NP; i++) to[i] = sum[i];
 }
 
+/* A part of a column, as compilers of C know numbers side by side: where the number of columns is not known to them they would take the loop
+ * over the columns instead, and shuffle. */
+typedef double eight __attribute__((vector_size(8 * sizeof(double))));
+typedef double four __attribute__((vector_size(4 * sizeof(double))));
+typedef struct column_sum {
+  eight first;
+  four  last;
+} column_sum;
+
+_Static_assert(TRB_NP == 12, "a part of a column has eight entries and four");
+
+static inline void get_column(const double *from, column_sum *to)
+{
+  memcpy(&to->first, from, sizeof to->first);
+  memcpy(&to->last, from + 8, sizeof to->last);
+}
+
+static inline void put_column(const column_sum *from, double *to)
+{
+  memcpy(to, &from->first, sizeof from->first);
+  memcpy(to + 8, &from->last, sizeof from->last);
+}
+
+static inline void add_column(const double *column, double factor, column_sum *sum)
+{
+  column_sum own;
+  get_column(column, &own);
+  sum->first += factor * own.first;
+  sum->last += factor * own.last;
+}
+
 /* The same for a part of the columns of a hub, which are `room` apart. */
 static inline void add_part(const double *restrict columns, int room, int n, const double *restrict x, double scale, double *restrict to)
 {
-  double sum[TRB_NP];
-  memcpy(sum, to, sizeof sum);
-  for (int c = 0; c < n; c++)
-    for (int i = 0; i < TRB_NP; i++) sum[i] += scale * x[c] * columns[c * room + i];
-  memcpy(to, sum, sizeof sum);
+  column_sum even, odd = {{0}, {0}}; /* one sum alone would wait for each of its additions */
+  int        c = 0;
+  get_column(to, &even);
+  for (; c + 2 <= n; c += 2, columns += 2 * room) {
+    add_column(columns, scale * x[c], &even);
+    add_column(columns + room, scale * x[c + 1], &odd);
+  }
+  if (c < n) add_column(columns, scale * x[c], &even);
+  even.first += odd.first, even.last += odd.last;
+  put_column(&even, to);
 }
 
 /* Entries of a part, which may end beyond those of the hub. */
@@ -244,7 +280,12 @@ static int invert_wide(int n, int room, double *restrict a, double *restrict row
       double *const other = a + i * room;
       const double  m = other[c];
       if (i == c) continue;
-      for (int k = 0; k < room; k++) other[k] -= m * row[k];
+      for (int k = 0; k < room; k += TRB_NP) {
+        column_sum part;
+        get_column(other + k, &part);
+        add_column(row + k, -m, &part);
+        put_column(&part, other + k);
+      }
       other[c] = -m * per;
     }
     memcpy(at, row, (size_t)room * sizeof *at);
@@ -323,6 +364,8 @@ static void solve(const trb_arrow_factor_block *own, const trb_arrow_factor_bord
   else solve_wide(own, border, n, hub, x);
 }
 
+static void add(const double *columns, int stride, int n, const double *x, double *to) { add_part(columns, stride, n, x, 1.0, to); }
+
 static double step_from(const double *restrict origin, const double *restrict per, const double *restrict y, double turn,
                         double *restrict step)
 {
@@ -372,6 +415,7 @@ const trb_block_kernels TRB_JOIN(trb_block_kernels_, TRB_KERNEL_VARIANT) = {.fac
                                                                             .border = border,
                                                                             .invert_hub = invert_hub,
                                                                             .solve = solve,
+                                                                            .add = add,
                                                                             .step_from = step_from,
                                                                             .follow = follow,
                                                                             .follow_ring = follow_ring,

@@ -63,6 +63,8 @@ typedef struct trb_block_kernels {
   /* x: rollers then hub, overwritten by the solution. The entry after the last roller is read and written back: it must be there even if
    * the hub has no entries. */
   void (*solve)(const trb_arrow_factor_block *own, const trb_arrow_factor_border *border, int n, const trb_hub_factor *hub, double *x);
+  /* Adds columns, `stride` apart, times a vector of n to TRB_NP entries. */
+  void (*add)(const double *columns, int stride, int n, const double *x, double *to);
   /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. It reads TRB_NP entries of
    * y. */
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);

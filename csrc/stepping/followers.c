@@ -24,7 +24,7 @@ trb_status trb_followers_create(int n_rollers, int hub_width, int n, const int (
   trb_followers *f = calloc(1, sizeof *f);
   *followers = NULL;
   if (f != NULL) {
-    f->memory = trb_zeros((size_t)n + of_hub + of_rollers + (size_t)hub_width + of_border, sizeof *f->memory);
+    f->memory = trb_zeros(2 * (size_t)n + of_hub + of_rollers + of_border, sizeof *f->memory);
     f->numbers = calloc(2 * (size_t)n + (size_t)kept, sizeof *f->numbers);
     f->place = calloc((size_t)hub_width, sizeof *f->place);
   }
@@ -36,8 +36,8 @@ trb_status trb_followers_create(int n_rollers, int hub_width, int n, const int (
   f->rate = f->memory;
   f->hub = f->rate + n;
   f->rollers = f->hub + of_hub;
-  f->right = f->rollers + of_rollers;
-  f->folded.to_hub = f->right + hub_width;
+  f->own = f->rollers + of_rollers;
+  f->folded.to_hub = f->own + n;
   f->folded.from = f->folded.to_hub + (size_t)kept * TRB_NR;
   f->entry = f->numbers;
   f->leader = f->entry + n;
@@ -101,30 +101,28 @@ const trb_arrow_border *trb_followers_border(trb_followers *f, const trb_arrow *
   return to;
 }
 
-/* Adds the followers' columns times their right-hand sides to entries, at most TRB_NP of them. */
-static void add_columns(const trb_followers *f, const double *column, int stride, int n, double *to)
+/* Adds the followers' columns times their right-hand sides to n entries, at most TRB_NP of them. */
+static void add_columns(const trb_followers *f, const trb_block_kernels *kernels, const double *columns, int stride, int n, double *to)
 {
   double sum[TRB_NP] = {0};
-  for (int k = 0; k < f->n; k++, column += stride) {
-    const double own = f->right[f->entry[k]];
-    for (int i = 0; i < TRB_NP; i++) sum[i] += own * column[i];
-  }
+  kernels->add(columns, stride, f->n, f->own, sum);
   for (int i = 0; i < TRB_NP && i < n; i++) to[i] += sum[i];
 }
 
-void trb_followers_before(trb_followers *f, const trb_arrow_factor_border *borders, int n_rollers, double *x)
+void trb_followers_before(trb_followers *f, const trb_block_kernels *kernels, const trb_arrow_factor_border *borders, int n_rollers,
+                          double *x)
 {
   double *const hub = x + n_rollers * TRB_NR;
-  memcpy(f->right, hub, (size_t)f->width * sizeof *hub);
-  for (int i = 0; i < f->kept; i++) hub[i] = f->right[f->kept_entry[i]];
-  for (int part = 0; part < f->room; part += TRB_NP) add_columns(f, f->hub + part, f->room, f->kept - part, hub + part);
+  for (int k = 0; k < f->n; k++) f->own[k] = hub[f->entry[k]];
+  for (int i = 0; i < f->kept; i++) hub[i] = hub[f->kept_entry[i]];
+  for (int part = 0; part < f->room; part += TRB_NP) add_columns(f, kernels, f->hub + part, f->room, f->kept - part, hub + part);
   for (int j = 0; j < n_rollers; j++)
-    if (borders[j].parts != 0U) add_columns(f, f->rollers + (size_t)j * (size_t)f->n * TRB_NP, TRB_NP, TRB_NR, x + j * TRB_NR);
+    if (borders[j].parts != 0U) add_columns(f, kernels, f->rollers + (size_t)j * (size_t)f->n * TRB_NP, TRB_NP, TRB_NR, x + j * TRB_NR);
 }
 
 void trb_followers_after(const trb_followers *f, int n_rollers, double *x)
 {
   double *const hub = x + n_rollers * TRB_NR;
   for (int i = f->kept - 1; i >= 0; i--) hub[f->kept_entry[i]] = hub[i];
-  for (int k = 0; k < f->n; k++) hub[f->entry[k]] = f->right[f->entry[k]] + f->rate[k] * hub[f->kept_entry[f->leader[k]]];
+  for (int k = 0; k < f->n; k++) hub[f->entry[k]] = f->own[k] + f->rate[k] * hub[f->kept_entry[f->leader[k]]];
 }

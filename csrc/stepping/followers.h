@@ -14,7 +14,7 @@ typedef struct trb_followers {
   double          *rate;           /* [n]: gamma a */
   double          *hub;            /* [n][room]: gamma times the follower's column in the rows of the hub */
   double          *rollers;        /* [roller][n][TRB_NP]: in the rows of the rollers */
-  double          *right;          /* [width]: of the hub's equations */
+  double          *own;            /* [n]: right-hand sides of their equations */
   trb_arrow_border folded;         /* of a roller, scratch */
   double          *memory;
   int             *numbers;
@@ -29,7 +29,8 @@ void       trb_followers_free(trb_followers *followers);
 void                    trb_followers_hub(trb_followers *f, const trb_arrow *arrow, const trb_hub_factor *hub);
 const trb_arrow_border *trb_followers_border(trb_followers *f, const trb_arrow *arrow, int roller);
 /* Before a solution, and after it; x: as trb_arrow_solve takes it. */
-void trb_followers_before(trb_followers *f, const trb_arrow_factor_border *borders, int n_rollers, double *x);
+void trb_followers_before(trb_followers *f, const trb_block_kernels *kernels, const trb_arrow_factor_border *borders, int n_rollers,
+                          double *x);
 void trb_followers_after(const trb_followers *f, int n_rollers, double *x);
 
 #endif

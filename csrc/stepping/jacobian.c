@@ -110,8 +110,45 @@ static void hub_rates(trb_jacobian *jac, const double *y, int moved, int at, dou
   }
 }
 
-/* Adds to the block of the hub, by differences of its rates. Those of bodies that other systems have are zero here. */
-static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
+/* What a wrench does to a body's rates, which is linear. still: rates of the hub without loads. */
+static void respond(trb_jacobian *jac, int b, const double *y, const double *still)
+{
+  const trb_dynamics *d = jac->d;
+  const trb_body     *body = &d->system->bodies[b];
+  const int           first = body->first - trb_state_hub(d->system);
+  const double        force = body->kind->mass(d->model, body), arm = 0.5 * d->model->params.pitch_diameter;
+  for (int c = 0; c < 6; c++) {
+    const double unit[6] = {c == 0, c == 1, c == 2, c == 3, c == 4, c == 5}, size = c < 3 ? force : force * arm * arm;
+    trb_wrench   load = {trb_scale(size, trb_v(unit[0], unit[1], unit[2])), trb_scale(size, trb_v(unit[3], unit[4], unit[5]))};
+    body_rates(d, b, y, &load, jac->rates);
+    for (int i = 0; i < body->size; i++) jac->response[first + i][c] = (jac->rates[first + i] - still[first + i]) / size;
+  }
+}
+
+/* Adds a body's response to a wrench. */
+static void add_response(const trb_jacobian *jac, int first, int size, const trb_wrench *load, double *rates)
+{
+  const double of[6] = {load->force.x, load->force.y, load->force.z, load->moment.x, load->moment.y, load->moment.z};
+  for (int i = 0; i < size; i++)
+    for (int q = 0; q < 6; q++) rates[i] += of[q] * jac->response[first + i][q];
+}
+
+/* Adds the columns of the hub that belong to the modes of a body, in closed form: they change loads, and themselves. */
+static void modal_columns(trb_jacobian *jac, int b, const double *y, const double *still, trb_arrow *arrow)
+{
+  const trb_dynamics *d = jac->d;
+  const trb_body     *body = &d->system->bodies[b];
+  const int           first = body->first - trb_state_hub(d->system), rigid = trb_rigid_coordinates(body);
+  respond(jac, b, y, still);
+  for (int c = rigid; c < body->size; c++) {
+    double *column = arrow->hub + (first + c) * arrow->room + first;
+    body->kind->slopes(body, &d->bodies[b].pose, c, column);
+    add_response(jac, first, rigid, &jac->changes[first + c], column);
+  }
+}
+
+/* Adds to the block of the hub, by differences of its rates but for modes. Those of bodies that other systems have are zero here. */
+static void hub_block(trb_jacobian *jac, const double *y, const double *still, trb_arrow *arrow)
 {
   trb_dynamics *d = jac->d;
   const int     hub = trb_state_hub(d->system);
@@ -121,7 +158,8 @@ static void hub_block(trb_jacobian *jac, const double *y, trb_arrow *arrow)
     const trb_body *body = &d->system->bodies[b];
     double         *own = jac->moved + body->first;
     if (body->size == 0) continue;
-    for (int c = 0; c < body->size; c++) {
+    if (body->modes != NULL) modal_columns(jac, b, y, still, arrow);
+    for (int c = 0; c < trb_rigid_coordinates(body); c++) {
       const int    at = body->first - hub + c;
       const double was = own[c], h = trb_difference[body->coordinates[c].tolerance], per = 1.0 / h;
       own[c] = was + h;
@@ -148,7 +186,7 @@ static trb_ring_pose difference_of(const trb_ring_pose *to, const trb_ring_pose 
                          per * (to->angle - from->angle)};
 }
 
-/* Of each ring with coordinates: what a wrench does to its rates, which is linear, and what its coordinates do to its pose. */
+/* Of each ring with coordinates: what a wrench does to its rates, and what its coordinates do to its pose. */
 static void prepare_rings(trb_jacobian *jac, const double *y, const double *still)
 {
   trb_dynamics *d = jac->d;
@@ -158,13 +196,7 @@ static void prepare_rings(trb_jacobian *jac, const double *y, const double *stil
     const trb_body *body = &d->system->bodies[b];
     const int       first = body->first - hub;
     double         *own = jac->moved + body->first;
-    const double    force = body->kind->mass(d->model, body), arm = 0.5 * d->model->params.pitch_diameter;
-    for (int c = 0; c < 6; c++) {
-      const double unit[6] = {c == 0, c == 1, c == 2, c == 3, c == 4, c == 5}, size = c < 3 ? force : force * arm * arm;
-      trb_wrench   load = {trb_scale(size, trb_v(unit[0], unit[1], unit[2])), trb_scale(size, trb_v(unit[3], unit[4], unit[5]))};
-      body_rates(d, b, y, &load, jac->rates);
-      for (int i = 0; i < body->size; i++) jac->response[first + i][c] = (jac->rates[first + i] - still[first + i]) / size;
-    }
+    respond(jac, b, y, still);
     for (int c = 0; c < body->size; c++) {
       const double  was = own[c], h = trb_difference[body->coordinates[c].tolerance];
       trb_ring_pose moved;
@@ -204,10 +236,7 @@ static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
     trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, b));
     for (int c = 0; c < TRB_NR; c++) {
       const trb_wrench w = reaction_of(tangent, &slopes->reaction[c], &one, 1);
-      const double     of[6] = {w.force.x, w.force.y, w.force.z, w.moment.x, w.moment.y, w.moment.z};
-      double          *from = border->from + c * arrow->room + first;
-      for (int i = 0; i < body->size; i++)
-        for (int q = 0; q < 6; q++) from[i] += of[q] * jac->response[first + i][q];
+      add_response(jac, first, body->size, &w, border->from + c * arrow->room + first);
     }
     for (int c = 0; c < body->size; c++) {
       double  inputs[TRB_RING_IN];
@@ -234,13 +263,15 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
     trb_coupling    k;
     trb_load        load;
     k.slopes.modal = modal != NULL ? &modal->slopes : NULL;
-    if (modal != NULL) trb_modal_clear(modal);
     const trb_gaps gaps = pair->kind->touch(d->model, pair, &at, j, &d->work->counters, &load, &k.slopes, NULL);
-    if (trb_gaps_clear(&gaps) || !(trb_norm(load.on_b.force) > 0.0)) continue;
-    trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, pair->b));
-    trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[pair->b], &d->bodies[pair->b].pose, &load);
-    trb_add_wrench(&d->on_body[pair->b], &load.on_b);
-    add_fast(jac, j, &k, pair->b, y, still, arrow);
+    if (trb_gaps_clear(&gaps)) continue;
+    if (trb_norm(load.on_b.force) > 0.0) {
+      trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, pair->b));
+      trb_coupling_place(&k, &d->rollers[j], &d->system->bodies[pair->b], &d->bodies[pair->b].pose, &load);
+      trb_add_wrench(&d->on_body[pair->b], &load.on_b);
+      add_fast(jac, j, &k, pair->b, y, still, arrow);
+    }
+    if (modal != NULL) trb_modal_clear(modal);
   }
 }
 
@@ -271,7 +302,7 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
     fill_fast(jac, j, y, still, arrow);
     fill_rings(jac, j, arrow);
   }
-  hub_block(jac, y, arrow);
+  hub_block(jac, y, still, arrow);
   for (int b = 0; b < d->system->n_bodies; b++)
     if (jac->modal[b] != NULL)
       trb_modal_finish(jac->modal[b], &d->system->bodies[b], d->system->bodies[b].first - trb_state_hub(d->system), arrow);

@@ -19,8 +19,8 @@ typedef struct trb_jacobian {
   double       *moved;    /* scratch: a state with one coordinate moved */
   double       *rates;    /* scratch: three times the rates of the hub */
   trb_wrench   *changes;  /* scratch: slopes of the loads of the hub's bodies with each of their own coordinates */
-  /* scratch, of rings with coordinates: what a unit of each force and moment in R does to the rates; their inputs' slopes with each
-   * coordinate, in inertial axes */
+  /* scratch, of rings with coordinates and of bodies that deform: what a unit of each force and moment in R does to the rates; of rings: their
+   * inputs' slopes with each coordinate, in inertial axes */
   double (*response)[6];
   trb_ring_pose *with;
   trb_modal     *modal[TRB_MOST_BODIES]; /* of bodies that deform */

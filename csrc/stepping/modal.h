@@ -18,8 +18,9 @@ typedef struct trb_modal {
 /* NULL: out of memory. */
 trb_modal *trb_modal_create(const trb_body *body, int hub_width);
 void       trb_modal_free(trb_modal *modal);
-/* Before the rollers of a Jacobian, and before each of them. */
+/* Before the rollers of a Jacobian. */
 void trb_modal_start(trb_modal *modal);
+/* After each roller that touches the body: slopes are added to zeros. */
 void trb_modal_clear(trb_modal *modal);
 /* Adds what a roller that touches the body gives: to its borders, to the slopes of the loads on the hub's coordinates, and to the pulls.
  * first: of the body's coordinates in the hub. */

@@ -223,7 +223,7 @@ static void test_ways(void)
       const trb_polygon *face = &m->faces[f].surface;
       const int          gap = m->faces[f].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
       const double      *shape = trb_shapes_of(modes, f);
-      for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE)
+      for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE_ROOM)
         for (int k = 0; k < face->n; k++) {
           const trb_vec3 from = trb_sub(trb_polygon_vertex(face, k), modes->middle[f]);
           const trb_vec3 turned = trb_cross(trb_v(shape[3], shape[4], shape[5]), from);
