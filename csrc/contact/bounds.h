@@ -3,12 +3,15 @@
 #ifndef TRB_CONTACT_BOUNDS_H
 #define TRB_CONTACT_BOUNDS_H
 
-#include "body/roller.h"
+#include <math.h>
 
-/* What a roller's motion does to the interference with a ring, at most. */
+#include "body/roller.h"
+#include "surface/cone.h"
+
+/* What the motions of a roller and a ring do to their interference, at most. */
 typedef struct trb_margin_arm {
   double arm;           /* largest distance of what can touch from the roller's centre of mass, m */
-  double ring;          /* and from the other body's reference point, m */
+  double ring;          /* by which the other body's turn about its reference point moves the contact along its normal, m */
   int    on_end;        /* 1: the contact is on the roller's end, its normal nearly along the roller's axis */
   double normal_sine;   /* of an end: of the angle between the normal and the bearing axis */
   double normal_lean;   /* of an end: sine of the angle between the normal and the roller's axis */
@@ -32,6 +35,15 @@ typedef struct trb_clearance_arms {
   double roller[TRB_CLEARANCE_ROLLER];
   double body[TRB_CLEARANCE_BODY];
 } trb_clearance_arms;
+
+/* By how much a turn of a cone about its body's reference point changes the interference with a sphere, over its angle, m. The interference
+ * is (e - R) cos(alpha) - z sin(alpha) of the sphere's centre, at e from the axis and z along it (surface/cone.h). A turn changes e by no
+ * more than its angle times z, and z by no more than its angle times e. radius, axial: the largest e and z, the latter from the reference point. A
+ * tenth more, for the squares of angles. */
+static inline double trb_cone_turned(const trb_cone *cone, double radius, double axial)
+{
+  return 1.1 * (fabs(cone->cosine) * axial + fabs(cone->sine) * radius);
+}
 
 /* Displacements and gaps up to which the arms of clearances are proven, m. */
 static inline double trb_clearance_play(const trb_model *m) { return 0.5 * m->params.roller_diameter; }

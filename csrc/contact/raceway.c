@@ -139,9 +139,11 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
 
 static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
 {
-  (void)pair;
-  const double chain = trb_chain_length(m);
-  return (trb_margin_arm){.arm = chain, .ring = chain + m->geometry.outer_race_radius + m->params.total_length};
+  const trb_geometry *g = &m->geometry;
+  const trb_cone     *race = nodes_of(pair)->cone;
+  const double        chain = trb_chain_length(m), reach = chain + trb_clearance_play(m);
+  const double        axial = fabs(race->place + g->roller_mass_offset * m->axis_cosine) + reach;
+  return (trb_margin_arm){.arm = chain, .ring = trb_cone_turned(race, g->roller_centre_radius + reach, axial)};
 }
 
 static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)

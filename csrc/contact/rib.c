@@ -75,13 +75,15 @@ static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
   const trb_geometry *g = &m->geometry;
   const trb_rib      *rib = rib_of(pair);
   const trb_sphere   *end = &rib->end;
-  const double        arm = fabs(end->place);
+  const double        arm = fabs(end->place), play = trb_clearance_play(m);
+  const double        offset = fabs(g->roller_centre_radius + end->place * m->axis_sine);
+  const double        axial = fabs(rib->face.place) + end->radius * fabs(rib->face.sine);
   return (trb_margin_arm){.arm = arm,
-                          .ring = arm + g->outer_race_radius + m->params.total_length,
+                          .ring = trb_cone_turned(&rib->face, offset + play, axial + play),
                           .on_end = 1,
                           .normal_sine = fabs(rib->face.cosine),
                           .normal_lean = rib->normal_lean,
-                          .sphere_offset = fabs(g->roller_centre_radius + end->place * m->axis_sine)};
+                          .sphere_offset = offset};
 }
 
 /* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */

@@ -15,7 +15,8 @@
 /* Of the slow pairs that are on. */
 typedef struct trb_margin_arms {
   trb_margin_arm of[TRB_MOST_PAIRS];
-  int            row[TRB_MOST_PAIRS]; /* number of the pair in the system */
+  int            row[TRB_MOST_PAIRS];  /* number of the pair in the system */
+  int            body[TRB_MOST_PAIRS]; /* the ring */
   int            n;
 } trb_margin_arms;
 
@@ -23,17 +24,17 @@ typedef struct trb_margin_arms {
 typedef struct trb_ring_offset {
   double lean;  /* sine of the angle between the axes */
   double aside; /* of the reference point from the bearing's axis, m */
-  /* of rings with coordinates, together: since the margins were found */
-  double shifted; /* of reference points, m */
-  double leaned;  /* of axes, rad */
+  /* of a ring with coordinates: since the margins were found */
+  double shifted; /* of its reference point, m */
+  double leaned;  /* of its axis, rad */
 } trb_ring_offset;
 
 trb_margin_arms trb_margin_arms_of(const trb_system *system);
-/* The largest over all bodies of a system. */
-trb_ring_offset trb_ring_offset_of(const trb_system *system, const trb_body_at *bodies);
-/* Whether every contact is proven to change its interference by less than a share of its margin. place: the roller's state at which the
+/* Of every body of a system that is a ring. */
+void trb_ring_offsets_of(const trb_system *system, const trb_body_at *bodies, trb_ring_offset *offsets);
+/* Whether every contact is proven to change its interference by less than a share of its margin. rings: of every body; place: the roller's state at which the
  * margins, one a pair, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
-int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *ring, const double *margin, double share, const double *place,
+int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *rings, const double *margin, double share, const double *place,
                      const double *step, double turn);
 
 #endif

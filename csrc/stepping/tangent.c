@@ -277,7 +277,7 @@ static void begin(void *self, const trb_dynamics *d, double time)
 {
   trb_tangents *t = self;
   t->under_way = trb_motion_under_way(d->motion, time);
-  t->offset = trb_ring_offset_of(d->system, d->bodies);
+  trb_ring_offsets_of(d->system, d->bodies, t->offsets);
   for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
 }
 
@@ -288,14 +288,13 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   const trb_tangent_measure *measure = t->measure;
   const trb_block_kernels   *kernels = measure->factors->kernels;
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
-  trb_ring_offset            offset = t->offset;
   if (t->under_way) return 0;
   const double distance2 =
       r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, d, roller, of_ring)
                : (double)INFINITY;
-  const double slid = trb_rings_moved(t, d, roller, &offset);
+  const double slid = trb_rings_moved(t, d, roller);
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step, slid) ||
-                      !trb_margin_holds(&t->arms, &offset, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
+                      !trb_margin_holds(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
   r->served += !t->beyond[roller];
   if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
   kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, flow);

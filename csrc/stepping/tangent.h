@@ -47,18 +47,18 @@ typedef struct trb_tangents {
   const trb_model  *model;
   const trb_system *system;
   trb_tangent      *rollers;
-  trb_ring_tangent *rings;                                  /* of every roller, one for each ring with coordinates */
-  trb_ring_pose    *seen;                                   /* scratch: those rings as each roller sees them */
-  double (*partly)[TRB_FLOW_ROOM];                          /* scratch: flows of every roller under the contacts with one ring alone */
-  double least_mass;                                        /* of these rings, for one roller, kg */
-  double least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT]; /* lower bounds of a flow that follows a tangent; no bounds */
-  const struct trb_tangent_measure *measure;                /* of the evaluation under way */
-  int                               under_way;              /* the prescribed motion is: everything is exact */
-  int                              *beyond;                 /* scratch: whether a bound of the tangent is passed */
-  trb_ring_offset                   offset;                 /* of the rings, in this evaluation */
-  trb_margin_arms                   arms;                   /* what bounds the change of an interference */
-  double                            time;                   /* at which slopes were last evaluated, s */
-  int                               has_slopes;             /* whether they were at all */
+  trb_ring_tangent *rings;                                    /* of every roller, one for each ring with coordinates */
+  trb_ring_pose    *seen;                                     /* scratch: those rings as each roller sees them */
+  double (*partly)[TRB_FLOW_ROOM];                            /* scratch: flows of every roller under the contacts with one ring alone */
+  double least_mass;                                          /* of these rings, for one roller, kg */
+  double least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT];   /* lower bounds of a flow that follows a tangent; no bounds */
+  const struct trb_tangent_measure *measure;                  /* of the evaluation under way */
+  int                               under_way;                /* the prescribed motion is: everything is exact */
+  int                              *beyond;                   /* scratch: whether a bound of the tangent is passed */
+  trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
+  trb_margin_arms                   arms;                     /* what bounds the change of an interference */
+  double                            time;                     /* at which slopes were last evaluated, s */
+  int                               has_slopes;               /* whether they were at all */
 } trb_tangents;
 
 /* Limits of a tangent, and what its error is measured with. */

@@ -113,16 +113,15 @@ void trb_rings_move_origin(trb_tangents *t, const trb_dynamics *d, int roller, c
   }
 }
 
-double trb_rings_moved(const trb_tangents *t, const trb_dynamics *d, int roller, trb_ring_offset *offset)
+double trb_rings_moved(trb_tangents *t, const trb_dynamics *d, int roller)
 {
   double slid = 0.0;
   for (int k = 0; k < t->system->n_moving; k++) {
-    const trb_ring_pose *from = &trb_tangents_ring_of(t, roller, k)->from, *to = &d->bodies[t->system->moving[k]].ring;
-    const double         leaned = trb_norm(trb_sub(to->axis, from->axis)), shifted = trb_norm(trb_sub(to->centre, from->centre));
-    offset->shifted += shifted;
-    offset->leaned += leaned;
-    offset->lean += leaned;
-    offset->aside += shifted;
+    const int            body = t->system->moving[k];
+    const trb_ring_pose *from = &trb_tangents_ring_of(t, roller, k)->from, *to = &d->bodies[body].ring;
+    trb_ring_offset     *offset = &t->offsets[body];
+    offset->leaned = trb_norm(trb_sub(to->axis, from->axis));
+    offset->shifted = trb_norm(trb_sub(to->centre, from->centre));
     slid +=
         trb_norm(trb_sub(to->velocity, from->velocity)) + 0.5 * t->model->params.pitch_diameter * trb_norm(trb_sub(to->omega, from->omega));
   }
