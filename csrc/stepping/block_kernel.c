@@ -389,21 +389,31 @@ static void follow(const double *restrict value, const double (*restrict slope)[
   memcpy(flow, sum, sizeof sum);
 }
 
+enum { EIGHTS = TRB_TANGENT_OUT / 8 };
+_Static_assert(TRB_TANGENT_OUT % 8 == 0 && TRB_RING_OUT == 8, "flows and reactions are whole vectors");
+
+static inline void add_eight(const double *column, double factor, eight *sum)
+{
+  eight own;
+  memcpy(&own, column, sizeof own);
+  *sum += factor * own;
+}
+
 static void follow_ring(const trb_ring_slopes *restrict slopes, const double *restrict value, const double *restrict step,
                         const double *restrict of_ring, const double *restrict least, double *restrict flow, double *restrict reaction)
 {
-  double sum[TRB_TANGENT_OUT], force[TRB_RING_OUT];
+  eight  sum[EIGHTS], even = {0}, odd = {0};
+  double changed[TRB_TANGENT_OUT];
   memcpy(sum, flow, sizeof sum);
-  memcpy(force, value, sizeof force);
   for (int c = 0; c < TRB_RING_IN; c++)
-    for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] += of_ring[c] * slopes->flow[c][i];
-  for (int c = 0; c < TRB_TANGENT_IN; c++)
-    for (int i = 0; i < TRB_RING_OUT; i++) force[i] += step[c] * slopes->reaction[c][i];
-  for (int c = 0; c < TRB_RING_IN; c++)
-    for (int i = 0; i < TRB_RING_OUT; i++) force[i] += of_ring[c] * slopes->reaction[TRB_TANGENT_IN + c][i];
-  for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = larger(sum[i], least[i]);
-  memcpy(flow, sum, sizeof sum);
-  memcpy(reaction, force, sizeof force);
+    for (int k = 0; k < EIGHTS; k++) add_eight(slopes->flow[c] + 8 * k, of_ring[c], &sum[k]);
+  memcpy(&even, value, sizeof even);
+  for (int c = 0; c < TRB_TANGENT_IN; c++) add_eight(slopes->reaction[c], step[c], c % 2 == 0 ? &even : &odd);
+  for (int c = 0; c < TRB_RING_IN; c++) add_eight(slopes->reaction[TRB_TANGENT_IN + c], of_ring[c], c % 2 == 0 ? &even : &odd);
+  even += odd;
+  memcpy(changed, sum, sizeof changed);
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) flow[i] = larger(changed[i], least[i]);
+  memcpy(reaction, &even, sizeof even);
 }
 
 static void weigh(const double *restrict relative, const double *restrict scale, const double *restrict y, int n, double *restrict weights)
