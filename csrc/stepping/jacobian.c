@@ -220,8 +220,9 @@ static trb_wrench reaction_of(const trb_ring_tangent *tangent, const double (*co
 /* Borders of a roller to the rings with coordinates, and its part of the slopes of their loads. */
 static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
 {
-  trb_dynamics     *d = jac->d;
-  trb_arrow_border *border = &arrow->borders[leaf_of(d, j)];
+  trb_dynamics            *d = jac->d;
+  trb_arrow_border        *border = &arrow->borders[leaf_of(d, j)];
+  const trb_block_kernels *kernels = trb_block_kernels_of(d->work->variant);
   for (int k = 0; k < d->system->n_moving; k++) {
     const int               b = d->system->moving[k];
     const trb_body         *body = &d->system->bodies[b];
@@ -239,11 +240,11 @@ static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
       add_response(jac, first, body->size, &w, border->from + c * arrow->room + first);
     }
     for (int c = 0; c < body->size; c++) {
-      double  inputs[TRB_RING_IN];
+      double  inputs[TRB_RING_IN], change[TRB_NP] = {0};
       double *to = border->to_hub + (first + c) * TRB_NR;
       trb_ring_inputs(&jac->with[first + c], cosine, sine, inputs);
-      for (int in = 0; in < TRB_RING_IN; in++)
-        for (int i = 0; i < TRB_NR; i++) to[i] += inputs[in] * slopes->flow[in][i];
+      kernels->add(slopes->flow[0], TRB_FLOW_ROOM, TRB_RING_IN, inputs, change);
+      for (int i = 0; i < TRB_NR; i++) to[i] += change[i];
       const trb_wrench w = reaction_of(tangent, &slopes->reaction[TRB_TANGENT_IN], inputs, TRB_RING_IN);
       trb_add_wrench(&jac->changes[first + c], &w);
     }
