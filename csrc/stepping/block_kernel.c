@@ -379,10 +379,10 @@ static double step_from(const double *restrict origin, const double *restrict pe
 }
 
 static void follow(const double *restrict value, const double (*restrict slope)[TRB_TANGENT_OUT], const double *restrict step,
-                   const double *restrict least, double *restrict flow)
+                   const double *restrict curve, double bend, const double *restrict least, double *restrict flow)
 {
   double sum[TRB_TANGENT_OUT];
-  memcpy(sum, value, sizeof sum);
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = value[i] + bend * curve[i];
   for (int c = 0; c < TRB_TANGENT_IN; c++)
     for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] += step[c] * slope[c][i];
   for (int i = 0; i < TRB_TANGENT_OUT; i++) sum[i] = larger(sum[i], least[i]);

@@ -68,8 +68,9 @@ typedef struct trb_block_kernels {
   /* Step from an origin to a roller's state and an angle; gives the sum of squares of step times per. It reads TRB_NP entries of
    * y. */
   double (*step_from)(const double *origin, const double *per, const double *y, double turn, double *step);
-  /* flow = value + slope step, but no less than least; slope is stored column by column. */
-  void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, const double *least, double *flow);
+  /* flow = value + slope step + bend curve, but no less than least; slope is stored column by column. */
+  void (*follow)(const double *value, const double (*slope)[TRB_TANGENT_OUT], const double *step, const double *curve, double bend,
+                 const double *least, double *flow);
   /* Adds what a ring's step does to a flow, which is then no less than least, and gives the reaction on the ring; see stepping/tangent.h.
    * step: of the roller's inputs; of_ring: of the ring's. */
   void (*follow_ring)(const trb_ring_slopes *slopes, const double *value, const double *step, const double *of_ring, const double *least,

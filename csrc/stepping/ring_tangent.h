@@ -22,8 +22,10 @@ typedef struct trb_ring_tangent {
   double          value[TRB_RING_OUT]; /* reaction at the origin */
   double          origin[TRB_RING_IN]; /* inputs there */
   double          per[TRB_RING_IN];    /* weights of a distance */
-  trb_ring_pose   from;                /* the ring there, in inertial coordinates */
-  double          cosine, sine;        /* of the frame's angle in R */
+  double          curve[TRB_RING_OUT]; /* of the reaction, and the ring's part of its direction: see trb_tangent */
+  double          along[TRB_RING_IN];
+  trb_ring_pose   from;         /* the ring there, in inertial coordinates */
+  double          cosine, sine; /* of the frame's angle in R */
 } trb_ring_tangent;
 
 /* Tolerances: those of a roller's coordinate of the same kind. */

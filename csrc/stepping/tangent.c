@@ -21,6 +21,11 @@ static const double power_share = 0.03;
 /* Reach: smallest, first and largest value; largest growth and decline in one change; factor of caution; distance beyond which the
  * slopes are not corrected. */
 static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
+/* Steps between origins that go on one way, or back: least cosine of the angle between them, in the metric of the tolerances; largest ratio of
+ * lengths of steps that go on evenly. */
+static const double least_cosine = 0.5, most_uneven = 5.0;
+/* The same of a reach where the tangent bends: what a bend promises holds near the origins between which it was seen. */
+static const double bent_growth = 1.2, bent_caution = 0.7;
 
 /* Losses by sliding and damping are never negative. Near zero, where they curve most, a tangent could make them so: they are bounded. */
 static void set_bounds(trb_tangents *t)
@@ -81,6 +86,35 @@ void trb_tangents_forget(trb_tangents *t)
   t->time = 0.0;
 }
 
+/* No bend is known, as slopes were found at the origin. */
+static void straighten(trb_tangents *t, int roller)
+{
+  trb_tangent *r = &t->rollers[roller];
+  memset(r->curve, 0, sizeof r->curve);
+  memset(r->along, 0, sizeof r->along);
+  r->length = 0.0;
+  r->bends = 0;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
+    memset(ring->curve, 0, sizeof ring->curve);
+    memset(ring->along, 0, sizeof ring->along);
+  }
+}
+
+/* A step along the way of the origins, over the last step between them. */
+static double share_of(const trb_tangents *t, int roller, const double *step, double (*of_ring)[TRB_RING_IN])
+{
+  const double *along = t->rollers[roller].along;
+  double        share = 0.0;
+  for (int i = 0; i < TRB_TANGENT_IN; i++) share += along[i] * step[i];
+  for (int k = 0; k < t->system->n_moving; k++)
+    for (int i = 0; i < TRB_RING_IN; i++) share += trb_tangents_ring_of(t, roller, k)->along[i] * of_ring[k][i];
+  return share;
+}
+
+/* What the bend counts at a share of that step: nothing at both origins. */
+static double bend_at(double share) { return share * (share + 1.0); }
+
 static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
 {
   const trb_instant at = trb_dynamics_instant(d);
@@ -121,6 +155,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
     memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
     memcpy(r->origin, y + trb_state_roller(d->system, j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
+    straighten(t, j);
     trb_rings_begin(t, d, j);
   }
   trb_rings_see(t, d, 0);
@@ -192,10 +227,73 @@ static double power_error(const double *flow, const double *error)
   return off / (all + 1e-300);
 }
 
-/* An exact flow becomes the origin. With s the step from the old origin, P the diagonal matrix of weights and e = flow - prediction, the
- * slopes become L + e (P^2 s)^T/(s^T P^2 s) (Broyden 1965, Math. Comp. 19, 577, in the metric of the tolerances), so that they explain
- * this flow. As the error grows with the square of the distance, the reach becomes the distance times the root of allowed over found
- * error. */
+/* The bend along the last step, of the length given: its direction, how its flow and reactions differ from the slopes, and whether it goes on
+ * as the step before did (same_way). With x the way along it, L and K the lengths of both steps and e the difference, Newton's
+ * interpolation through the three origins is f + (slope + e/L) x + e/(L (L + K)) x (x + L); where slopes were found at the origin before,
+ * K = 0. If the way does not go on evenly, nothing is known of a bend. */
+static void bend(trb_tangents *t, int roller, double length, int same_way, const double *direction, const double *error,
+                 double (*of_ring)[TRB_RING_IN], double (*off)[TRB_RING_OUT])
+{
+  trb_tangent *r = &t->rollers[roller];
+  const int    even = length < most_uneven * r->length && r->length < most_uneven * length;
+  r->bends = r->length == 0.0 || (same_way && even);
+  const double share = r->bends ? length / (length + r->length) : 0.0;
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) r->curve[i] = share * error[i];
+  memcpy(r->along, direction, sizeof r->along);
+  r->length = length;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
+    for (int i = 0; i < TRB_RING_OUT; i++) ring->curve[i] = share * off[k][i];
+    memcpy(ring->along, of_ring[k], sizeof ring->along);
+  }
+}
+
+/* Error over that allowed, of a flow and of reactions. */
+static double over_allowed(const trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *flow, const double *error,
+                           double (*off)[TRB_RING_OUT])
+{
+  double in_state = step_error(&t->rollers[roller], measure, error);
+  for (int k = 0; k < t->system->n_moving; k++)
+    in_state = trb_max(in_state, trb_rings_error(t, trb_tangents_ring_of(t, roller, k), measure, off[k]));
+  return trb_max(in_state / measure->share, power_error(flow, error) / power_share);
+}
+
+/* Errors over those allowed: of the slopes alone, and of the prediction, which bends. */
+typedef struct trb_found {
+  double straight, bent;
+} trb_found;
+
+/* How an exact flow and the exact reactions differ from the slopes. */
+static trb_found compare(const trb_tangents *t, int roller, const trb_tangent_measure *measure, const double *flow,
+                         const trb_wrench *reactions, const double *step, double (*of_ring)[TRB_RING_IN], double *error,
+                         double (*off)[TRB_RING_OUT])
+{
+  const trb_tangent       *r = &t->rollers[roller];
+  const trb_block_kernels *kernels = measure->factors->kernels;
+  const double             by = bend_at(share_of(t, roller, step, of_ring));
+  double                   left[TRB_TANGENT_OUT], left_off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
+  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, 0.0, t->anything, error);
+  for (int k = 0; k < t->system->n_moving; k++) {
+    const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
+    double                  exact[TRB_RING_OUT];
+    kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->anything, error, off[k]);
+    trb_ring_reaction(ring, &reactions[k], exact);
+    for (int i = 0; i < TRB_RING_OUT; i++) {
+      off[k][i] = exact[i] - off[k][i];
+      left_off[k][i] = off[k][i] - by * ring->curve[i];
+    }
+  }
+  for (int i = 0; i < TRB_TANGENT_OUT; i++) {
+    error[i] = flow[i] - error[i];
+    left[i] = error[i] - by * r->curve[i];
+  }
+  return (trb_found){over_allowed(t, roller, measure, flow, error, off), over_allowed(t, roller, measure, flow, left, left_off)};
+}
+
+/* An exact flow becomes the origin. With s the step from the old origin, P the diagonal matrix of weights and e = flow - prediction by the
+ * slopes, these become L + e (P^2 s)^T/(s^T P^2 s) (Broyden 1965, Math. Comp. 19, 577, in the metric of the tolerances), so that they
+ * explain this flow. The reach becomes the distance times the root of allowed over found error, as errors grow with the square of the distance
+ * where nothing is known of a bend. */
 static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_tangent_measure *measure, const double *y,
                   const double *flow, const trb_wrench *reactions)
 {
@@ -208,22 +306,16 @@ static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_
   if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
   const double by_rings = r->known ? trb_rings_step(t, d, roller, of_ring) : 0.0;
   const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step) + by_rings) : 0.0;
-  if (r->known && length < farthest) {
-    double direction[TRB_TANGENT_IN], in_state = 0.0;
-    kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->anything, error);
-    for (int k = 0; k < n_moving; k++) {
-      const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
-      double                  exact[TRB_RING_OUT];
-      kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->anything, error, off[k]);
-      trb_ring_reaction(ring, &reactions[k], exact);
-      for (int i = 0; i < TRB_RING_OUT; i++) off[k][i] = exact[i] - off[k][i];
-      in_state = trb_max(in_state, trb_rings_error(t, ring, measure, off[k]));
-    }
-    for (int i = 0; i < TRB_TANGENT_OUT; i++) error[i] = flow[i] - error[i];
-    in_state = trb_max(in_state, step_error(r, measure, error));
-    const double in_power = power_error(flow, error) / power_share;
-    const double factor = caution / sqrt(trb_max(in_state / measure->share, in_power) + 1e-300);
-    r->reach = trb_clamp(length * trb_clamp(factor, decline, growth), least_reach, largest_reach);
+  if (r->known && length > 0.0 && length < farthest) {
+    double          direction[TRB_TANGENT_IN];
+    const trb_found found = compare(t, roller, measure, flow, reactions, step, of_ring, error, off);
+    /* going back to the origin before, the prediction is right there whatever it is worth elsewhere */
+    const double way = share_of(t, roller, step, of_ring) * r->length / length, most = way < -least_cosine ? 1.0 : growth;
+    const double straight = trb_clamp(caution / sqrt(found.straight + 1e-300), decline, most);
+    const double bent = trb_clamp(bent_caution / sqrt(found.bent + 1e-300), decline, trb_min(most, bent_growth));
+    const int    pays = r->bends ? bent > straight : straight < bent_growth;
+    const int    same_way = pays && way > least_cosine;
+    r->reach = trb_clamp(length * trb_max(straight, bent), least_reach, largest_reach);
     for (int c = 0; c < TRB_TANGENT_IN; c++) direction[c] = step[c] * r->per[c] * r->per[c] / (length * length);
     for (int c = 0; c < TRB_TANGENT_IN; c++)
       for (int i = 0; i < TRB_TANGENT_OUT; i++) r->slope[c][i] += error[i] * direction[c];
@@ -232,8 +324,10 @@ static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_
       for (int c = 0; c < TRB_RING_IN; c++) of_ring[k][c] *= ring->per[c] * ring->per[c] / (length * length);
       trb_rings_correct(ring, error, off[k], direction, of_ring[k]);
     }
+    bend(t, roller, length, same_way, direction, error, of_ring, off);
   } else {
     r->reach = first_reach;
+    straighten(t, roller);
   }
   memcpy(r->margin, margin, sizeof r->margin);
   memcpy(r->value, flow, sizeof r->value);
@@ -297,11 +391,13 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
                       !trb_margin_holds(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
   r->served += !t->beyond[roller];
   if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
-  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, t->least, flow);
+  const double by = bend_at(share_of(t, roller, step, of_ring));
+  kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, by, t->least, flow);
   for (int k = 0; k < t->system->n_moving; k++) {
     const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
     double                  reaction[TRB_RING_OUT];
     kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->least, flow, reaction);
+    for (int i = 0; i < TRB_RING_OUT; i++) reaction[i] += by * ring->curve[i];
     reactions[k] = trb_ring_wrench(ring, reaction);
   }
   return 1;

@@ -8,7 +8,9 @@
  * A tangent is exact at one point, its origin. Distances from it are measured in tolerances of the integrator, and the tangent is used
  * up to a distance that is called its reach. Beyond it the contacts are evaluated exactly. That point becomes the new origin; the error
  * of the prediction there corrects the slopes along the step that was made (Broyden's update) and sets the new reach, so that errors
- * stay near a given share of a step's tolerance. A tangent that would be used for a few evaluations only is not used: each new origin
+ * stay near a given share of a step's tolerance. Most of the way between origins is the roller's orbit, which is smooth: the change of slope from
+ * one step to the next tells how the flow bends along it, and the tangent follows that bend (Newton's interpolation through the last three
+ * origins). In other directions it is straight. A tangent that would be used for a few evaluations only is not used: each new origin
  * puts a small jump into the forces, and such jumps cost the integrator more than the tangent saves.
  *
  * An error that was measured in one direction says little about another direction, and a tangent cannot foresee that a contact begins or
@@ -36,6 +38,10 @@ typedef struct trb_tangent {
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
   double per[TRB_TANGENT_IN];    /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
+  double curve[TRB_TANGENT_OUT]; /* bend of the flow along the way on which the origins lie; zero: none is known */
+  double along[TRB_TANGENT_IN];  /* times a step: its part of the last step between origins, of which this is the direction */
+  int    bends;                  /* 1: the curve is not zero */
+  double length;                 /* of the last step between origins; 0: slopes were found at the origin */
   double reach;                  /* distance up to which it is used */
   double margin[TRB_MOST_PAIRS]; /* of the contacts at the origin, m */
   double usual;                  /* for how many evaluations an origin is used: running mean */

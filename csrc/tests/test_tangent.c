@@ -167,6 +167,37 @@ static void test_turn(const trb_params *params)
   close_bench(&b);
 }
 
+/* From origins on one way the tangent bends along it: half the way, an eighth of the error, forwards and back. */
+static void test_bend(const trb_params *params)
+{
+  bench  b;
+  double found[MOST], exact[MOST], off[2][2];
+  if (!open_bench(&b, params, 1e6, ANYWHERE)) return;
+  for (int k = 0; k < 2; k++) {
+    const double time = (k == 0 ? 0.2 : 0.1) / fabs(b.d->drive.frame_speed), shares[2] = {1.5, 0.5};
+    trb_tangents_forget(b.tangents);
+    trb_dynamics_pose(b.d, 0.0, b.y);
+    trb_tangents_differentiate(b.tangents, b.d, b.y, b.moved);
+    for (int origin = 0; origin < 2; origin++) {
+      for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].reach = 0.0, b.tangents->rollers[j].usual = 1e9;
+      trb_tangents_derivative(b.tangents, b.d, &b.measure, origin * time, b.y, found);
+    }
+    for (int j = 0; j < b.model->n_rollers; j++) {
+      CHECK(b.tangents->rollers[j].bends);
+      b.tangents->rollers[j].reach = 1e6;
+    }
+    for (int i = 0; i < 2; i++) {
+      const long long before = b.d->work->counters.tangent_rollers;
+      trb_tangents_derivative(b.tangents, b.d, &b.measure, shares[i] * time, b.y, found);
+      CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers);
+      trb_rhs(b.d, NULL, shares[i] * time, b.y, exact);
+      off[k][i] = distance(&b, found, exact);
+    }
+  }
+  for (int i = 0; i < 2; i++) CHECK_NEAR(off[0][i] / off[1][i], 8.0, 1.5);
+  close_bench(&b);
+}
+
 /* A step beyond the reach is exact, and from the new origin the tangent leads back to the old one: Broyden's condition. */
 static void test_learning(const trb_params *params)
 {
@@ -342,6 +373,7 @@ int main(void)
   for (int sign = 1; sign >= -1; sign -= 2) {
     p = rig_params(), speed = sign * 100.0 * TRB_PI;
     test_turn(&p);
+    test_bend(&p);
   }
   return check_report();
 }
