@@ -1,8 +1,10 @@
 /* The elastic cage: contacts, energies, clearances and the Jacobian know how it is deformed. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "body/elastic_cage.h"
 #include "check.h"
+#include "contact/kernels.h"
 #include "motion/audit.h"
 #include "rig.h"
 #include "stepping/jacobian.h"
@@ -268,8 +270,36 @@ static void test_steps(const char *method)
   take_down(&b);
 }
 
+/* Sums over modes, of every instruction set, entry by entry. */
+static void test_sums(int n)
+{
+  double shapes[9 * TRB_SHAPE_ROOM] = {0}, amplitude[9], load[TRB_SHAPE_ROOM] = {0}, to[TRB_SHAPE_ROOM], force[9], pushed[9];
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k < TRB_SHAPE; k++) shapes[i * TRB_SHAPE_ROOM + k] = rig_random(&seed);
+    amplitude[i] = rig_random(&seed), force[i] = rig_random(&seed);
+  }
+  for (int k = 0; k < TRB_SHAPE; k++) load[k] = rig_random(&seed);
+  for (int v = 0; v < trb_n_kernel_variants; v++) {
+    if (!trb_kernel_runs(v)) continue;
+    trb_kernel_variants[v].modal->sum(shapes, n, amplitude, to);
+    memcpy(pushed, force, sizeof pushed);
+    trb_kernel_variants[v].modal->push(shapes, n, load, pushed);
+    for (int k = 0; k < TRB_SHAPE; k++) {
+      double sum = 0.0;
+      for (int i = 0; i < n; i++) sum += amplitude[i] * shapes[i * TRB_SHAPE_ROOM + k];
+      CHECK_NEAR(to[k], sum, 1e-14);
+    }
+    for (int i = 0; i < n; i++) {
+      double sum = force[i];
+      for (int k = 0; k < TRB_SHAPE; k++) sum += load[k] * shapes[i * TRB_SHAPE_ROOM + k];
+      CHECK_NEAR(pushed[i], sum, 1e-14);
+    }
+  }
+}
+
 int main(void)
 {
+  for (int n = 1; n <= 9; n++) test_sums(n);
   test_refused();
   test_undeformed();
   test_power(4, 2e-5, 2, 1);
