@@ -31,6 +31,9 @@ def peak_table() -> list[tuple[str, str, str, str, str, str]]:
     """(name, group, kind, unit, text, how two intervals are joined) of every peak, in order; joined is largest, smallest, time
     (of the extreme before it), mean or sum."""
 
+least_mode_frequency: float
+"""Least angular frequency that makes a velocity of the amplitude of a mode in a state (rad/s)."""
+
 def geometry_table() -> list[tuple[str, str, str]]:
     """(name, unit, text) of every derived geometric quantity."""
 

@@ -244,6 +244,14 @@ static int add_type(PyObject *module, const char *name, PyType_Spec *spec, PyTyp
   return *to == NULL ? -1 : PyModule_AddObjectRef(module, name, (PyObject *)*to);
 }
 
+static int add_number(PyObject *module, const char *name, double value)
+{
+  PyObject *number = PyFloat_FromDouble(value);
+  const int failed = number == NULL ? -1 : PyModule_AddObjectRef(module, name, number);
+  Py_XDECREF(number);
+  return failed;
+}
+
 static int execute(PyObject *module)
 {
   /* types and exceptions are static: another interpreter would share them, and NumPy's */
@@ -253,7 +261,8 @@ static int execute(PyObject *module)
   }
   import_array1(-1);
   if (add_exceptions(module) != 0 || add_type(module, "Model", &trb_model_spec, &trb_model_type) != 0) return -1;
-  return add_type(module, "Simulation", &trb_simulation_spec, &trb_simulation_type);
+  if (add_type(module, "Simulation", &trb_simulation_spec, &trb_simulation_type) != 0) return -1;
+  return add_number(module, "least_mode_frequency", trb_least_mode_frequency);
 }
 
 static PyModuleDef_Slot slots[] = {

@@ -23,7 +23,7 @@ static const double power_share = 0.03;
 static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
 /* Steps between origins that go on one way, or back: least cosine of the angle between them, in the metric of the tolerances; largest ratio of
  * lengths of steps that go on evenly. */
-static const double least_cosine = 0.5, most_uneven = 5.0;
+static const double least_cosine = 0.9, most_uneven = 3.0;
 /* The same of a reach where the tangent bends: what a bend promises holds near the origins between which it was seen. */
 static const double bent_growth = 1.2, bent_caution = 0.7;
 

@@ -29,10 +29,14 @@ def scene(elastic: trb.ElasticCage | None, effects: Effects | None = None, **cha
 
 def accelerations(sim: Simulation, rates: Array) -> Array:
     """Of the amplitudes (m/s2), out of the rates of a state."""
-    frequency = cage_modes(sim.scene).frequency
-    return np.array(
-        [float(sim.view(rates)[f"cage_p{mode}"]) * part / frequency[-1] for mode, part in enumerate(frequency)]
-    )
+    parts = share_of_scale(cage_modes(sim.scene))
+    return np.array([float(sim.view(rates)[f"cage_p{mode}"]) * part for mode, part in enumerate(parts)])
+
+
+def share_of_scale(modes: CageModes) -> Array:
+    """Frequency of each mode over the one that makes a velocity of its amplitude."""
+    speeds = 2.0 * np.pi * modes.frequency
+    return speeds / np.maximum(speeds, 17000.0)
 
 
 def squeezed(sim: Simulation, least: float) -> Array:
@@ -85,8 +89,8 @@ def struck(scene: Scene, mode: int | None = None) -> trb.Result:
     modes, vector = cage_modes(sim.scene), sim.state.vector
     at = list(zip(modes.face_pocket, modes.face_name, strict=True)).index((0, "leading_bar"))
     blow = modes.shape[:, at, 0] if mode is None else np.eye(len(modes.frequency))[mode]
-    for number, part in enumerate(1e-2 * blow / modes.modal_mass):
-        sim.view(vector)[f"cage_p{number}"] = part * modes.frequency[-1] / modes.frequency[number]
+    for number, part in enumerate(1e-2 * blow / modes.modal_mass / share_of_scale(modes)):
+        sim.view(vector)[f"cage_p{number}"] = part
     start = trb.Start.state(vector, displacement=sim.state.displacement)
     return Simulation(sim.scene.replace(start=start), accuracy="reference").run(duration=0.04, save_every=1e-5)
 

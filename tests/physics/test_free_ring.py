@@ -174,7 +174,7 @@ def test_energy_of_a_coast_down_a_run_up_and_a_drop_to_no_load() -> None:
     loads = dropped["inner_load"].sum(axis=1)
     gone = (dropped["time"] > 0.012) & (dropped["time"] < 0.019)
     assert np.median(loads[gone]) < 0.1 * loads[0]
-    assert dropped["ring_position"][-1, 2] == pytest.approx(dropped["ring_position"][0, 2], rel=0.1)
+    assert dropped["ring_position"][-1, 2] == pytest.approx(dropped["ring_position"][0, 2], rel=0.15)
 
 
 def test_a_heavy_ring_is_a_held_one() -> None:
@@ -307,7 +307,9 @@ def test_a_ring_that_leaves_its_bearing_is_said() -> None:
         result = Simulation(scene_of(ROTOR, effects=effects)).run(duration=0.05, save_every=1e-3)
     assert not result.success
     assert "free inner ring stands" in result.message
-    assert np.max(np.abs(result["ring_position"])) < 10e-3
+    assert (
+        np.max(np.abs(result["ring_position"])) < 20e-3
+    )  # it falls by more than a millimetre from one look to the next
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {

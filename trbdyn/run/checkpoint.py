@@ -4,7 +4,7 @@ A run with a schedule (`checkpoint_every`) starts its integrator again at the fi
 that time, whether or not anybody resumes it. So a run that goes on from a checkpoint, in another process, takes the same steps
 as one that was never interrupted: to the last bit, on the same build and instruction set.
 
-The file ``run.h5.checkpoint`` beside ``run.h5``, format version 2: a line that names the format and its version; the SHA-256 of
+The file ``run.h5.checkpoint`` beside ``run.h5``, format version 3: a line that names the format and its version; the SHA-256 of
 all that follows; a line of JSON; the state vector and the peaks so far as little-endian float64. It is written under another
 name, synchronised to the disk and then renamed; the one before it stays as ``run.h5.checkpoint.previous``. Nothing in it is
 executed.
@@ -33,7 +33,7 @@ from trbdyn.errors import FileError, InputError
 Array = NDArray[np.float64]
 
 MAGIC = b"trbdyn-checkpoint"
-VERSION = 2
+VERSION = 3
 
 LARGEST = 64 << 20
 """Size of a file beyond which it is no checkpoint (bytes)."""

@@ -137,9 +137,10 @@ class Replay:
             view[f"cage_{name}"] = value  # type: ignore[index]
         if result.scene.elastic_cage is not None:
             speeds = 2.0 * np.pi * cage_modes(result.scene).frequency
-            rates = speeds.max() / speeds * result["cage_mode_rate"][index]
-            for mode, (amplitude, rate) in enumerate(zip(result["cage_mode"][index], rates, strict=True)):
-                view[f"cage_q{mode}"], view[f"cage_p{mode}"] = speeds.max() * amplitude, rate  # type: ignore[index]
+            scale = np.maximum(speeds, _core.least_mode_frequency)
+            rates = scale / speeds * result["cage_mode_rate"][index]
+            for mode, (amplitude, rate) in enumerate(zip(scale * result["cage_mode"][index], rates, strict=True)):
+                view[f"cage_q{mode}"], view[f"cage_p{mode}"] = amplitude, rate  # type: ignore[index]
 
     def _put_ring(self, view: StateView, index: int, body: MovingBody, ring: str, group: str, speed: float) -> None:
         """Put a ring that moves, from its group of the result; speed: what is prescribed about its axis (rad/s)."""
