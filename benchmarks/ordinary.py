@@ -44,6 +44,7 @@ COLUMNS: Final = {
     "ms": "ms: processor time of the steps of a turn",
     "steps": "1: steps a turn",
     "evaluations": "1: force evaluations of the integrator a turn",
+    "exact": "1: share of the rollers whose forces at raceways and ribs are evaluated and not followed",
     "loss": "W: mean loss",
     "loss_off": "1: its difference from the tight run, over it",
     "closure": "1: residual of the energy audit over the dissipated work",
@@ -92,12 +93,14 @@ def measured(scene: trb.Scene, settle: float, turns: float) -> tuple[dict[str, A
     turn = 60.0 / float(scene.speed_rpm)
     while sim.time < settle * turn:
         sim.step()
-    state, before = sim.state, sim.statistics
+    state, before, counted = sim.state, sim.statistics, sim.counters
     end, began = sim.time + turns * turn, time.process_time()
     while sim.time < end:
         sim.step()
     spent, bearing = time.process_time() - began, sim.time - state.time
     found = {name: (sim.statistics[key] - before[key]) / turns for name, key in NAMES.items()}
+    seen, followed = (sim.counters[name] - counted[name] for name in ("force_evaluations", "tangent_rollers"))
+    found["exact"] = 1.0 - followed / (seen * scene.bearing.n_rollers)
     return found | {"ms": 1e3 * spent * turn / bearing, "real_time_factor": bearing / spent}, state
 
 
@@ -166,6 +169,7 @@ SHOWN: Final = (
     "ms",
     "steps",
     "evaluations",
+    "exact",
     "loss_off",
     "closure",
     "warnings",
