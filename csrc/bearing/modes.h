@@ -18,7 +18,8 @@ enum { TRB_MODE_frequency, TRB_MODE_damping, TRB_MODE_mass, TRB_MODE_shapes };
 /* A mode's shape at a face, and how much room it takes; TRB_SHAPE_ROOM: padded by zeros, so that loops over it have no remainder. */
 enum { TRB_SHAPE = 6, TRB_SHAPE_ROOM = 8, TRB_MOST_MODES = 100 };
 
-/* The least angular frequency that makes a velocity of an amplitude, rad/s (body/elastic_cage.h). */
+/* The least angular frequency that makes a velocity of an amplitude, rad/s (body/elastic_cage.h): with the tolerances that users have, an
+ * amplitude is then integrated to twenty times the tolerance of positions at most. */
 static const double trb_least_mode_frequency = 1.7e4;
 
 /* Coriolis force by a mode over its rate and the turn of the cage, kg. */

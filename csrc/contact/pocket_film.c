@@ -35,7 +35,7 @@ typedef struct trb_bar_slice {
 } trb_bar_slice;
 
 /* The slope of the law's load is taken from a difference; that of its loss is twice the load. */
-static trb_bar_film trb_film_on_bar(const trb_model *m, const trb_bar_slice *at, const trb_touch *touch, int with_slopes)
+static trb_bar_film film_on_bar(const trb_model *m, const trb_bar_slice *at, const trb_touch *touch, int with_slopes)
 {
   const trb_params *p = &m->params;
   const double      least = p->roughness_pocket, h = trb_smooth_max(at->gap, least, least);
@@ -72,7 +72,7 @@ static trb_bar_film trb_film_on_bar(const trb_model *m, const trb_bar_slice *at,
 }
 
 /* Change of the wrench by changes of gap, V or u. */
-static trb_wrench trb_bar_change(const trb_bar_film *f, const trb_bar_parts *by, double change, trb_vec3 normal, trb_vec3 sliding)
+static trb_wrench change_of(const trb_bar_film *f, const trb_bar_parts *by, double change, trb_vec3 normal, trb_vec3 sliding)
 {
   const trb_vec3 force = trb_axpy(trb_axpy(trb_scale(-by->load, normal), 0.5 * by->pull, f->along), -by->drag, sliding);
   return (trb_wrench){trb_scale(change, force), trb_scale(change * by->pull, f->lever)};
@@ -94,10 +94,10 @@ static void add_film_slopes(const trb_bar_film *film, const trb_bar_slice *slice
     const trb_vec3 slid = trb_axpy(moved, -deeper, c->normal);
     const double   turned = k < 3 ? 0.0 : trb_dot(film->along, trb_cross(unit, slice->arm));
     const double   faster = turned - 0.5 * trb_dot(film->along, slid);
-    add_film_slope(&slopes->place[k], arm, trb_bar_change(film, &film->by_depth, deeper, c->normal, touch->sliding));
+    add_film_slope(&slopes->place[k], arm, change_of(film, &film->by_depth, deeper, c->normal, touch->sliding));
     if (k >= 3) trb_add_carried(&slopes->place[k], k, unit, c, arm, film->force, film->is.load);
-    add_film_slope(&slopes->velocity[k], arm, trb_bar_change(film, &film->by_rate, deeper, c->normal, touch->sliding));
-    add_film_slope(&slopes->velocity[k], arm, trb_bar_change(film, &film->by_speed, faster, c->normal, touch->sliding));
+    add_film_slope(&slopes->velocity[k], arm, change_of(film, &film->by_rate, deeper, c->normal, touch->sliding));
+    add_film_slope(&slopes->velocity[k], arm, change_of(film, &film->by_speed, faster, c->normal, touch->sliding));
     trb_add_slope(&slopes->velocity[k], arm, trb_scale(-film->is.drag, slid));
   }
 }
@@ -115,7 +115,7 @@ void trb_pocket_push_film(const trb_model *m, trb_pocket_view *p, const trb_pock
                                .axis = p->a,
                                .arm = trb_sub(arm, c->carried),
                                .turning = trb_sub(p->omega, p->cage_omega)};
-  const trb_bar_film  film = trb_film_on_bar(m, &slice, &touch, p->slopes != NULL);
+  const trb_bar_film  film = film_on_bar(m, &slice, &touch, p->slopes != NULL);
   counters->pocket_films++;
   p->force = trb_add(p->force, film.force);
   p->moment = trb_add(p->moment, trb_add(trb_cross(arm, film.force), film.couple));
