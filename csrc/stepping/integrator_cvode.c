@@ -66,7 +66,12 @@ static void fill(const trb_integrator *it, double time, const double *y, trb_arr
   const int fresh = again || old || changing;
   self->filled_at = it->time;
   self->uses = fresh ? 0 : self->uses + 1;
-  for (int k = 0; k < it->assembly->n; k++) trb_jacobian_fill(self->jacobians[k], time, y, fresh, arrow);
+  for (int k = 0; k < it->assembly->n; k++) {
+    const trb_system *system = &it->assembly->members[k];
+    for (int j = 0; j < system->model->n_rollers; j++)
+      if (trb_newton_is_poor(self->newton, system->layout.leaf + j)) trb_jacobian_renew(self->jacobians[k], j);
+    trb_jacobian_fill(self->jacobians[k], time, y, fresh, arrow);
+  }
 }
 
 /* The matrix holds the Jacobian J; the solver forms I - gamma J when it reads it. usable: the Jacobian need not be computed again. Its

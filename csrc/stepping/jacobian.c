@@ -20,7 +20,9 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
     j->changes = trb_zeros(width, sizeof *j->changes);
     j->response = trb_zeros(width, sizeof *j->response);
     j->with = trb_zeros(width, sizeof *j->with);
-    if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL)
+    j->renewed = calloc((size_t)system->model->n_rollers, sizeof *j->renewed);
+    if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL ||
+        j->renewed == NULL)
       status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
     else status = trb_tangents_create(system, &j->tangents, message);
     for (int b = 0; b < system->n_bodies && status == TRB_OK; b++)
@@ -45,6 +47,7 @@ void trb_jacobian_free(trb_jacobian *jacobian)
   free(jacobian->changes);
   free(jacobian->response);
   free(jacobian->with);
+  free(jacobian->renewed);
   for (int b = 0; b < TRB_MOST_BODIES; b++) trb_modal_free(jacobian->modal[b]);
   free(jacobian);
 }
@@ -276,6 +279,21 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
   }
 }
 
+void trb_jacobian_renew(trb_jacobian *jacobian, int roller) { jacobian->renewed[jacobian->n_renewed++] = roller; }
+
+/* Takes slopes of raceways and ribs again: of all rollers, or of those that were asked for. */
+static void take_slopes(trb_jacobian *jac, const double *y, int fresh)
+{
+  trb_dynamics *d = jac->d;
+  if (fresh || !jac->tangents->has_slopes) {
+    trb_tangents_differentiate(jac->tangents, d, d->everyone, d->model->n_rollers, y, jac->moved);
+    jac->rings_evaluations++;
+  } else if (jac->n_renewed > 0) {
+    trb_tangents_differentiate(jac->tangents, d, jac->renewed, jac->n_renewed, y, jac->moved);
+  }
+  jac->n_renewed = 0;
+}
+
 void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fresh, trb_arrow *arrow)
 {
   trb_dynamics    *d = jac->d;
@@ -284,10 +302,7 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
   const trb_wrench none = {{0, 0, 0}, {0, 0, 0}};
   memcpy(jac->moved, y, (size_t)trb_state_size(d->system) * sizeof *y);
   trb_dynamics_pose(d, time, y);
-  if (fresh || !jac->tangents->has_slopes) {
-    trb_tangents_differentiate(jac->tangents, d, y, jac->moved);
-    jac->rings_evaluations++;
-  }
+  take_slopes(jac, y, fresh);
   for (int j = 0; j < m->n_rollers; j++)
     for (int c = 0; c < TRB_NR; c++)
       memcpy(arrow->rollers[leaf_of(d, j)].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));

@@ -13,8 +13,8 @@
  * F must also have fallen by a correction, or be negligible. Else a slope that is too large leaves nearly all of it in every step: steps
  * of nanoseconds then carry the same error on for ever, each of them within the tolerance.
  *
- * What a first correction leaves of F is measured. Where the share is large, slopes are taken again. Where it is small F is evaluated again
- * all the same: the integrals of losses and works have no slopes, so that they hold only where F was evaluated last.
+ * What a first correction leaves of F is measured. Where the share is large, slopes are taken again: of those bodies, mostly one or two, whose
+ * equations lack so much. Where it is small F is evaluated again all the same: the integrals of losses and works have no slopes, so that they hold only where F was evaluated last.
  *
  * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
  * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
@@ -39,9 +39,9 @@ static const double most_kept = 0.95;
 /* What the equations lack is accepted below the first share of the tolerance; else it must also have fallen to the second share by a
  * correction. */
 static const double negligible = 0.04, contraction = 0.3;
-/* Slopes are taken again where a first correction leaves more than this share, after so many solves at least. */
+/* Slopes are taken again where a first correction leaves more than this share, of a body after so many solves at least. */
 static const double poor = 0.2;
-enum { between_renewals = 50 };
+enum { between_renewals = 20 };
 /* A correction that grows beyond this multiple of the first one diverges. */
 static const double divergence = 1e3;
 /* Weight of the present solve in the share of solves that fail, and the share above which bodies are taken one by one: not in the course of
@@ -71,7 +71,10 @@ typedef struct newton {
   int     has_best;             /* whether the last iterations came to a point after their first correction */
   int     pause, paused;        /* failed solves for which that is left out, and those that went by */
   double  failing;              /* share of solves that failed, the last ones counting most */
-  int     is_poor, since;       /* whether a first correction left too much, and solves since slopes were last taken again for that */
+  int     is_poor;              /* whether a first correction left too much */
+  int    *poor;                 /* body by body: whether its slopes are to be taken again for that */
+  long   *renewed;              /* body by body: the solve at which they last were */
+  long    solves;               /* so far */
 } newton;
 
 /* Entries of a body. */
@@ -167,8 +170,28 @@ static int holds(const newton *self, double off, double before, double tolerance
   return off <= negligible * tolerance || (off <= tolerance && off <= contraction * before);
 }
 
-/* What the first correction of a solve left is known. */
-static void measure(newton *self, double off, double before) { self->is_poor = off / before > poor && self->since >= between_renewals; }
+/* What the first correction of a solve left is known. If it is too much, slopes of the bodies with the largest parts of it are to be taken
+ * again. The others together leave less than half of what is too much. */
+static void measure(newton *self, double off, double before, const double *lack, const double *weight)
+{
+  const double limit = 0.5 * poor * before;
+  self->is_poor = 0;
+  if (!(off > poor * before)) return;
+  for (int body = 0; body <= self->n_bodies; body++) {
+    const part   of = part_of(self, body);
+    const double left = product(of.n, lack + of.from, lack + of.from, weight + of.from);
+    self->poor[body] = left * (self->n_bodies + 1) > limit * limit * self->n && self->solves - self->renewed[body] >= between_renewals;
+    self->is_poor |= self->poor[body];
+  }
+}
+
+/* Slopes are being taken again: those of all bodies, or those that were poor. */
+static void note_renewal(newton *self, int all)
+{
+  for (int body = 0; body <= self->n_bodies; body++)
+    if (all || self->poor[body]) self->renewed[body] = self->solves;
+  self->is_poor = 0;
+}
 
 /* one_by_one: the bodies, and the best points after the first correction are kept. */
 static int iterate(newton *self, N_Vector correction, N_Vector weights, double tolerance, int one_by_one, void *memory)
@@ -188,7 +211,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     const double *const weight = N_VGetArrayPointer(weights);
     /* what the equations lack, in the mean over all entries */
     const double off = sqrt(product(self->n, delta, delta, weight) / self->n);
-    if (m == 1) measure(self, off, before);
+    if (m == 1) measure(self, off, before, delta, weight);
     if (one_by_one && m > 0) remember(self, N_VGetArrayPointer(correction), delta, weight);
     for (int i = 0; i < self->n; i++) delta[i] = -delta[i];
     const int flag = self->solve(self->delta, memory);
@@ -228,7 +251,7 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
   int     bad = 0, current = 0;
   (void)start;
   self->iterations = self->failures = 0;
-  self->since++;
+  self->solves++;
   for (;;) {
     const int one_by_one = self->failing > often;
     int       flag = self->residual(correction, self->delta, memory);
@@ -237,7 +260,7 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
       flag = self->setup(bad || self->is_poor, &current, memory);
       if (flag != 0) return flag;
     }
-    if (bad || self->is_poor) self->since = self->is_poor = 0;
+    if (bad || self->is_poor) note_renewal(self, bad);
     flag = iterate(self, correction, weights, tolerance, one_by_one && current, memory);
     if (flag > 0 && one_by_one && current && self->paused++ >= self->pause) {
       flag = renew(self, correction, weights, tolerance, memory);
@@ -265,6 +288,8 @@ static int free_solver(SUNNonlinearSolver solver)
     free(self->square);
     free(self->best);
     free(self->best_square);
+    free(self->poor);
+    free(self->renewed);
     free(self);
   }
   solver->content = NULL;
@@ -326,7 +351,13 @@ int trb_newton_troubled(SUNNonlinearSolver solver)
 int trb_newton_renewing(SUNNonlinearSolver solver)
 {
   const newton *self = solver->content;
-  return self->renewing || self->is_poor;
+  return self->renewing;
+}
+
+int trb_newton_is_poor(SUNNonlinearSolver solver, int body)
+{
+  const newton *self = solver->content;
+  return self->is_poor && self->poor[body];
 }
 
 void trb_newton_forget(SUNNonlinearSolver solver)
@@ -335,7 +366,9 @@ void trb_newton_forget(SUNNonlinearSolver solver)
   self->troubled = 0;
   self->failing = 0.0;
   self->pause = self->paused = 0;
-  self->is_poor = self->since = 0;
+  self->is_poor = 0;
+  self->solves = 0;
+  memset(self->renewed, 0, (size_t)(self->n_bodies + 1) * sizeof *self->renewed);
 }
 
 SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_main, int n_bodies, int size, SUNContext context)
@@ -355,8 +388,11 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_ma
     self->square = calloc((size_t)(n_bodies + 1) * TRB_NEWTON_MOST, sizeof(double));
     self->best = calloc((size_t)self->n, sizeof(double));
     self->best_square = calloc((size_t)n_bodies + 1, sizeof(double));
+    self->poor = calloc((size_t)n_bodies + 1, sizeof *self->poor);
+    self->renewed = calloc((size_t)n_bodies + 1, sizeof *self->renewed);
   }
-  if (self == NULL || !self->delta || !self->taken || !self->square || !self->best || !self->best_square) {
+  if (self == NULL || !self->delta || !self->taken || !self->square || !self->best || !self->best_square ||
+      !self->poor || !self->renewed) {
     (void)free_solver(solver);
     return NULL;
   }

@@ -14,8 +14,10 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_ma
 
 /* Whether solves fail: the last one that was not broken off by an evaluation or a Jacobian that failed, or more than a tenth of those before. */
 int trb_newton_troubled(SUNNonlinearSolver solver);
-/* Whether slopes are being taken again because they were poor, or within a solve: all of them, then. */
+/* Whether slopes are being taken again within a solve: all of them, then. */
 int trb_newton_renewing(SUNNonlinearSolver solver);
+/* Whether the slopes of a body are to be taken again, as the last first correction left too much of what its equations lacked. */
+int trb_newton_is_poor(SUNNonlinearSolver solver, int body);
 /* Forget which solves failed, and what corrections left. */
 void trb_newton_forget(SUNNonlinearSolver solver);
 

@@ -115,11 +115,11 @@ static double share_of(const trb_tangents *t, int roller, const double *step, do
 /* What the bend counts at a share of that step: nothing at both origins. */
 static double bend_at(double share) { return share * (share + 1.0); }
 
-static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double per)
+static void differentiate(trb_tangents *t, trb_dynamics *d, const trb_instant *at, int column, double per)
 {
-  const trb_instant at = trb_dynamics_instant(d);
-  trb_contact_slow(d->model, &at, d->work, d->loads, NULL);
-  for (int j = 0; j < d->model->n_rollers; j++) {
+  trb_contact_slow(d->model, at, d->work, d->loads, NULL);
+  for (int k = 0; k < at->n; k++) {
+    const int    j = at->chosen[k];
     trb_tangent *r = &t->rollers[j];
     double       flow[TRB_FLOW_SIZE];
     trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
@@ -129,27 +129,30 @@ static void differentiate(trb_tangents *t, trb_dynamics *d, int column, double p
   }
 }
 
-static int all_finite(const trb_tangents *t)
+static int all_finite(const trb_tangents *t, const int *chosen, int n)
 {
   double sum = 0.0;
-  for (int j = 0; j < t->model->n_rollers; j++)
+  for (int q = 0; q < n; q++)
     for (int c = 0; c < TRB_TANGENT_IN; c++)
-      for (int i = 0; i < TRB_TANGENT_OUT; i++) sum += 0.0 * t->rollers[j].slope[c][i];
-  for (int i = 0; i < t->model->n_rollers * t->system->n_moving; i++) {
-    const trb_ring_slopes *slopes = &t->rings[i].slopes;
+      for (int i = 0; i < TRB_TANGENT_OUT; i++) sum += 0.0 * t->rollers[chosen[q]].slope[c][i];
+  for (int i = 0; i < n * t->system->n_moving; i++) {
+    const trb_ring_slopes *slopes = &trb_tangents_ring_of(t, chosen[i % n], i / n)->slopes;
     for (int k = 0; k < TRB_RING_IN * TRB_FLOW_ROOM; k++) sum += 0.0 * (&slopes->flow[0][0])[k];
     for (int k = 0; k < TRB_RING_ALL * TRB_RING_OUT; k++) sum += 0.0 * (&slopes->reaction[0][0])[k];
   }
   return sum == 0.0;
 }
 
-void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *y, double *moved)
+void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen, int n, const double *y, double *moved)
 {
-  const trb_model  *m = d->model;
-  const trb_instant at = trb_dynamics_instant(d);
-  const double      time = d->drive.time, frame_speed = d->drive.frame_speed;
+  const trb_model *m = d->model;
+  const double     time = d->drive.time, frame_speed = d->drive.frame_speed;
+  trb_instant      at = trb_dynamics_instant(d);
+  at.chosen = chosen;
+  at.n = n;
   trb_contact_slow(m, &at, d->work, d->loads, NULL);
-  for (int j = 0; j < m->n_rollers; j++) {
+  for (int k = 0; k < n; k++) {
+    const int    j = chosen[k];
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
     memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
@@ -161,29 +164,32 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const double *
   trb_rings_see(t, d, 0);
   for (int c = 0; c < TRB_NR; c++) {
     const double h = trb_difference[trb_roller_tolerance(c)];
-    for (int j = 0; j < m->n_rollers; j++) {
-      double *entry = &moved[trb_state_roller(d->system, j) + c];
+    for (int k = 0; k < n; k++) {
+      const int j = chosen[k];
+      double   *entry = &moved[trb_state_roller(d->system, j) + c];
       *entry = y[trb_state_roller(d->system, j) + c] + h;
       trb_dynamics_pose_roller(d, j, moved + trb_state_roller(d->system, j));
       *entry = y[trb_state_roller(d->system, j) + c];
     }
-    differentiate(t, d, c, 1.0 / h);
+    differentiate(t, d, &at, c, 1.0 / h);
   }
   if (frame_speed != 0.0) {
     trb_dynamics_pose(d, time + turn_difference / fabs(frame_speed), y);
     trb_rings_see(t, d, 1);
-    differentiate(t, d, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
+    differentiate(t, d, &at, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
   trb_dynamics_pose(d, time, y);
-  trb_rings_differentiate(t, d);
+  trb_rings_differentiate(t, d, chosen, n);
   /* these slopes are exact, so tangents are used at once, with a small reach */
-  for (int j = 0; j < m->n_rollers && !t->has_slopes; j++) {
-    t->rollers[j].reach = first_reach;
-    t->rollers[j].usual = enough;
+  for (int k = 0; k < n && !t->has_slopes; k++) {
+    t->rollers[chosen[k]].reach = first_reach;
+    t->rollers[chosen[k]].usual = enough;
   }
-  t->time = time;
-  t->has_slopes = 1;
-  if (!all_finite(t)) trb_tangents_forget(t);
+  if (n == m->n_rollers) {
+    t->time = time;
+    t->has_slopes = 1;
+  }
+  if (!all_finite(t, chosen, n)) trb_tangents_forget(t);
 }
 
 const double *trb_tangents_column(const trb_tangents *t, int roller, int column)

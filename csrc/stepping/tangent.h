@@ -63,7 +63,7 @@ typedef struct trb_tangents {
   int                              *beyond;                   /* scratch: whether a bound of the tangent is passed */
   trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
   trb_margin_arms                   arms;                     /* what bounds the change of an interference */
-  double                            time;                     /* at which slopes were last evaluated, s */
+  double                            time;                     /* at which the slopes of all rollers were last evaluated, s */
   int                               has_slopes;               /* whether they were at all */
 } trb_tangents;
 
@@ -90,8 +90,8 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
 void       trb_tangents_free(trb_tangents *tangents);
 /* Forget origins, reaches and slopes. */
 void trb_tangents_forget(trb_tangents *tangents);
-/* Computes all slopes by differences about a state whose poses d holds; moved: scratch as long as a state. */
-void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const double *y, double *moved);
+/* Computes the slopes of n chosen rollers by differences about a state whose poses d holds; moved: scratch as long as a state. */
+void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const int *chosen, int n, const double *y, double *moved);
 
 /* Column of a roller's block of the Jacobian: from its tangent if that is in use, else as differences gave it. */
 const double *trb_tangents_column(const trb_tangents *tangents, int roller, int column);

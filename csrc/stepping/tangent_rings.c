@@ -45,19 +45,21 @@ void trb_rings_begin(trb_tangents *t, const trb_dynamics *d, int roller)
   }
 }
 
-void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d)
+void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen, int n)
 {
-  const trb_instant at = trb_dynamics_instant(d);
-  const int         n = d->model->n_rollers;
+  trb_instant at = trb_dynamics_instant(d);
+  at.chosen = chosen;
+  at.n = n;
   for (int k = 0; k < t->system->n_moving; k++) {
     const int body = t->system->moving[k];
     trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
-    for (int j = 0; j < n; j++) trb_dynamics_roller_flow(d, j, &d->loads[j], t->partly[j]);
+    for (int i = 0; i < n; i++) trb_dynamics_roller_flow(d, chosen[i], &d->loads[chosen[i]], t->partly[chosen[i]]);
     for (int c = 0; c < TRB_RING_IN; c++) {
       const double h = trb_difference[trb_roller_tolerance(trb_ring_like(c))], per = 1.0 / h;
-      for (int j = 0; j < n; j++) trb_ring_move(&d->bodies[body].in_frame[j], c, h);
+      for (int i = 0; i < n; i++) trb_ring_move(&d->bodies[body].in_frame[chosen[i]], c, h);
       trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
-      for (int j = 0; j < n; j++) {
+      for (int q = 0; q < n; q++) {
+        const int         j = chosen[q];
         trb_ring_tangent *ring = trb_tangents_ring_of(t, j, k);
         double            flow[TRB_FLOW_SIZE];
         trb_dynamics_roller_flow(d, j, &d->loads[j], flow);
@@ -66,8 +68,11 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d)
       }
       trb_rings_see(t, d, 1);
     }
+    for (int i = 0; i < n; i++) {
+      trb_ring_tangent *ring = trb_tangents_ring_of(t, chosen[i], k);
+      ring->found = ring->slopes;
+    }
   }
-  for (int i = 0; i < d->model->n_rollers * t->system->n_moving; i++) t->rings[i].found = t->rings[i].slopes;
 }
 
 double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error)

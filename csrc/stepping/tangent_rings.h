@@ -12,8 +12,8 @@ void trb_rings_differentiate_reactions(trb_tangents *t, const trb_dynamics *d, i
 void trb_rings_see(trb_tangents *t, trb_dynamics *d, int put_back);
 /* The origin of each roller's part that belongs to a ring, and the frame in which it is written. */
 void trb_rings_begin(trb_tangents *t, const trb_dynamics *d, int roller);
-/* Slopes with the inputs of the rings: every roller sees the ring moved along its own axes. Only contacts with this ring change. */
-void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d);
+/* Slopes of n chosen rollers with the inputs of the rings: each sees the ring moved along its own axes. Only contacts with this ring change. */
+void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen, int n);
 /* Error of a step of the ring, in tolerances, from an error in a reaction, if those of all rollers are alike; moments count by an arm of
  * half the pitch diameter. */
 double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error);

@@ -115,7 +115,7 @@ static void test_order(void)
     double             to[ROOM];
     memcpy(moved, y, sizeof moved);
     trb_dynamics_pose(d, 0.0, y);
-    trb_tangents_differentiate(tangents, d, y, moved);
+    trb_tangents_differentiate(tangents, d, d->everyone, d->model->n_rollers, y, moved);
     for (int j = 0; j < n; j++) tangents->rollers[j].usual = 1e9;
     trb_tangents_derivative(tangents, d, &measure, 0.0, y, rates);
     trb_rhs(d, NULL, 0.0, y, exact);
@@ -195,6 +195,8 @@ static void test_heavy(void)
   trb_settings settings = rig_settings();
   trb_message  message = {TRB_OK, ""};
   double       y[2][ROOM] = {{0}}, end[2][ROOM];
+  /* finer than usual, as the cage's hits enlarge what the two integrations leave */
+  settings.rtol *= 0.2, settings.atol_position *= 0.2, settings.atol_velocity *= 0.2, settings.atol_angle *= 0.2, settings.atol_spin *= 0.2;
   for (int k = 0; k < 2; k++) {
     p[k].ring_unbalance = p[k].ring_offset = 0.0;
     trb_system     *system = rig_system(&p[k]);

@@ -64,7 +64,7 @@ static int open_bench(bench *b, const trb_params *params, double share, double b
   b->measure = (trb_tangent_measure){b->relative, b->scale, b->factors, share, 0.5 * bounds, 1e-3 * bounds};
   memcpy(b->moved, b->y, sizeof b->moved);
   trb_dynamics_pose(b->d, 0.0, b->y);
-  trb_tangents_differentiate(b->tangents, b->d, b->y, b->moved);
+  trb_tangents_differentiate(b->tangents, b->d, b->d->everyone, b->d->model->n_rollers, b->y, b->moved);
   for (int j = 0; j < b->model->n_rollers; j++) b->tangents->rollers[j].usual = 1e9;
   return 1;
 }
@@ -117,7 +117,7 @@ static void test_order(const trb_params *params)
   double y[MOST], found[MOST], exact[MOST], off[2], lost[2];
   if (!open_bench(&b, params, 1.0, ANYWHERE)) return;
   for (int k = 0; k < 2; k++) {
-    trb_tangents_differentiate(b.tangents, b.d, b.y, b.moved);
+    trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, b.d->model->n_rollers, b.y, b.moved);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
     for (int j = 0; j < b.model->n_rollers; j++) {
       CHECK(b.tangents->rollers[j].known);
@@ -150,7 +150,7 @@ static void test_turn(const trb_params *params)
     const double time = (k == 0 ? 0.2 : 0.1) / fabs(b.d->drive.frame_speed);
     trb_tangents_forget(b.tangents);
     trb_dynamics_pose(b.d, 0.0, b.y);
-    trb_tangents_differentiate(b.tangents, b.d, b.y, b.moved);
+    trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, b.d->model->n_rollers, b.y, b.moved);
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
     for (int j = 0; j < b.model->n_rollers; j++) {
       b.tangents->rollers[j].usual = 1e9;
@@ -177,7 +177,7 @@ static void test_bend(const trb_params *params)
     const double time = (k == 0 ? 0.2 : 0.1) / fabs(b.d->drive.frame_speed), shares[2] = {1.5, 0.5};
     trb_tangents_forget(b.tangents);
     trb_dynamics_pose(b.d, 0.0, b.y);
-    trb_tangents_differentiate(b.tangents, b.d, b.y, b.moved);
+    trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, b.d->model->n_rollers, b.y, b.moved);
     for (int origin = 0; origin < 2; origin++) {
       for (int j = 0; j < b.model->n_rollers; j++) b.tangents->rollers[j].reach = 0.0, b.tangents->rollers[j].usual = 1e9;
       trb_tangents_derivative(b.tangents, b.d, &b.measure, origin * time, b.y, found);
@@ -349,7 +349,7 @@ static void test_not_finite(const trb_params *params)
   CHECK(distance(&b, found, exact) < 1e-6);
   y[trb_state_roller(b.system, 2) + TRB_ROLLER_v_t] = 1e300;
   trb_dynamics_pose(b.d, 0.0, y);
-  trb_tangents_differentiate(b.tangents, b.d, y, b.moved);
+  trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, b.d->model->n_rollers, y, b.moved);
   CHECK(!b.tangents->has_slopes);
   close_bench(&b);
 }
