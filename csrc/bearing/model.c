@@ -94,6 +94,17 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
   return TRB_OK;
 }
 
+/* A flank without profile at both ends of the effective length. */
+static void fill_ends(trb_model *m)
+{
+  const trb_cone *flank = &m->surfaces.flank;
+  for (int j = 0; j < m->n_rollers; j++)
+    for (int end = 0; end < 2; end++) {
+      const double station = (end - 0.5) * m->params.effective_length;
+      m->end_spheres[2 * j + end] = trb_sphere_inscribed(flank, station, trb_cone_radius(flank, station) + 0.5 * m->diameter_deviation[j]);
+    }
+}
+
 /* Where the front rib acts, its edges lie on the roller's small end, seen from there below the far side of its rim. */
 static trb_status check_front_rib(const trb_model *m, trb_message *message)
 {
@@ -198,13 +209,14 @@ static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, t
   return TRB_OK;
 }
 
-/* Where each pocket stands in the cage. */
+/* Where each roller stands in the bearing, and each pocket in the cage. */
 static void fill_pockets(trb_model *m)
 {
   const trb_geometry *g = &m->geometry;
   const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = 0.5 * m->params.pitch_diameter;
   for (int j = 0; j < m->n_rollers; j++) {
     const double angle = 2.0 * TRB_PI * j / m->n_rollers, cosine = cos(angle), sine = sin(angle);
+    m->nominal_angle[j] = (trb_angle){cosine, sine};
     m->pocket_axes[j] = (trb_frame){{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
     m->pocket_origin[j] = trb_v(radius * cosine, radius * sine, -m->params.cage_offset);
   }
@@ -284,8 +296,10 @@ static int allocate(trb_model *m)
   ok &= (m->station = doubles(lanes)) != NULL;
   ok &= (m->centre = doubles(all)) != NULL;
   ok &= (m->sphere = doubles(all)) != NULL;
+  ok &= (m->end_spheres = calloc(2 * (size_t)m->n_rollers, sizeof *m->end_spheres)) != NULL;
   ok &= (m->pocket_axes = calloc((size_t)m->n_rollers, sizeof *m->pocket_axes)) != NULL;
   ok &= (m->pocket_origin = calloc((size_t)m->n_rollers, sizeof *m->pocket_origin)) != NULL;
+  ok &= (m->nominal_angle = calloc((size_t)m->n_rollers, sizeof *m->nominal_angle)) != NULL;
   for (int race = 0; race < TRB_N_RACES; race++) {
     m->race[race].race = race;
     m->race[race].cone = &m->surfaces.race[race];
@@ -381,6 +395,7 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   if ((status = fill_nodes(m, message)) != TRB_OK) return status;
   if ((status = fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
   m->n_losses = losses_of(&m->params);
+  fill_ends(m);
   fill_constants(m);
   fill_land(m);
   fill_pockets(m);
@@ -420,8 +435,10 @@ void trb_model_free(trb_model *model)
   free(model->station);
   free(model->centre);
   free(model->sphere);
+  free(model->end_spheres);
   free(model->pocket_axes);
   free(model->pocket_origin);
+  free(model->nominal_angle);
   free(model->faces);
   free(model->first_face);
   trb_modes_free(&model->modes);

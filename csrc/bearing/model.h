@@ -98,6 +98,7 @@ typedef struct trb_model {
   double          *station;            /* per lane: node's station from mid length, m */
   double          *centre;             /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
   double          *sphere;             /* per roller and lane: sphere's radius, m */
+  trb_sphere      *end_spheres;        /* per roller: of a flank without profile at both ends of the effective length */
   trb_race_nodes   race[TRB_N_RACES];
   trb_pocket_face *faces;      /* all faces, grouped by pocket */
   int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
@@ -115,6 +116,7 @@ typedef struct trb_model {
   trb_ring_body ring[TRB_N_RACES];             /* rings, by their raceway, where they have coordinates */
   trb_guide     guide[TRB_N_RACES];            /* lands, by the raceway of their ring */
   trb_frame    *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
+  trb_angle    *nominal_angle;                 /* per roller: of its nominal place in the frame R */
   trb_vec3     *pocket_origin;                 /* per pocket: nominal mid length, from the cage's centre of mass, m */
   double        land_station[TRB_LAND_STRIPS]; /* of the guiding surface's strips, from its middle, m */
   double        land_weight[TRB_LAND_STRIPS];  /* their widths, m */

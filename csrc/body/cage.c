@@ -8,11 +8,11 @@ static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, t
 static void cage_pose(const trb_model *m, const trb_body *body, const trb_drive *drive, const double *y, trb_rigid_pose *pose)
 {
   (void)body;
-  const double turn_cos = cos(y[TRB_CAGE_psi]), turn_sin = sin(y[TRB_CAGE_psi]);
+  const trb_angle turn = trb_angle_of(y[TRB_CAGE_psi]);
   pose->x = trb_v(y[TRB_CAGE_x], y[TRB_CAGE_y], m->geometry.centre_plane + m->params.cage_offset + y[TRB_CAGE_z]);
   pose->frame = trb_tilted_frame(y[TRB_CAGE_skew], y[TRB_CAGE_tilt]);
-  pose->body.n = trb_add(trb_scale(turn_cos, pose->frame.n), trb_scale(turn_sin, pose->frame.t));
-  pose->body.t = trb_sub(trb_scale(turn_cos, pose->frame.t), trb_scale(turn_sin, pose->frame.n));
+  pose->body.n = trb_add(trb_scale(turn.cosine, pose->frame.n), trb_scale(turn.sine, pose->frame.t));
+  pose->body.t = trb_sub(trb_scale(turn.cosine, pose->frame.t), trb_scale(turn.sine, pose->frame.n));
   pose->body.a = pose->frame.a;
   pose->v = trb_v(y[TRB_CAGE_v_x], y[TRB_CAGE_v_y], y[TRB_CAGE_v_z]);
   pose->omega_frame = trb_v(y[TRB_CAGE_omega_n], y[TRB_CAGE_omega_t], drive->frame_speed + y[TRB_CAGE_omega_a]);

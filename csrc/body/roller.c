@@ -10,18 +10,19 @@ void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, i
   const trb_rolling   rolling = trb_pure_rolling(m, drive->rolling_speed, drive->carried_speed);
   pose->radius = g->roller_centre_radius + y[TRB_ROLLER_r];
   pose->angle = trb_nominal_angle(m, roller) + y[TRB_ROLLER_psi];
-  pose->cosine = cos(pose->angle);
-  pose->sine = sin(pose->angle);
+  const trb_angle angle = trb_angle_sum(m->nominal_angle[roller], trb_angle_of(y[TRB_ROLLER_psi]));
+  pose->cosine = angle.cosine;
+  pose->sine = angle.sine;
   pose->x = trb_v(pose->radius, 0.0, g->roller_centre_height + y[TRB_ROLLER_z]);
   pose->v = trb_v(y[TRB_ROLLER_v_r], rolling.v_t + y[TRB_ROLLER_v_t], y[TRB_ROLLER_v_z]);
 }
 
 void trb_roller_pose_unpack(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_rolling   rolling = trb_pure_rolling(m, drive->rolling_speed, drive->carried_speed);
+  const trb_rolling rolling = trb_pure_rolling(m, drive->rolling_speed, drive->carried_speed);
   trb_roller_pose_unpack_centre(m, drive, roller, y, pose);
-  pose->frame = trb_tilted_frame(y[TRB_ROLLER_skew], g->roller_axis_angle + y[TRB_ROLLER_tilt]);
+  const trb_angle axis = {m->axis_cosine, m->axis_sine};
+  pose->frame = trb_turned_frame(trb_angle_of(y[TRB_ROLLER_skew]), trb_angle_sum(axis, trb_angle_of(y[TRB_ROLLER_tilt])));
   pose->orbit_speed = pose->v.y / pose->radius;
   pose->omega_frame = trb_v(rolling.omega_n + y[TRB_ROLLER_omega_n], y[TRB_ROLLER_omega_t], rolling.omega_a + y[TRB_ROLLER_omega_a]);
   pose->omega = trb_from_frame(&pose->frame, pose->omega_frame);

@@ -189,13 +189,11 @@ static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, trb_
 static double flank_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double  deviation = 0.5 * m->diameter_deviation[roller];
   const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal);
   double        gap = INFINITY, of_nodes = INFINITY;
-  for (int end = -1; end <= 1; end += 2) {
-    const double     station = 0.5 * end * m->params.effective_length;
-    const trb_sphere last = trb_sphere_inscribed(&m->surfaces.flank, station, trb_cone_radius(&m->surfaces.flank, station) + deviation);
-    gap = trb_min(gap, middle + last.place * along - last.radius - m->pocket_film);
+  for (int end = 0; end < 2; end++) {
+    const trb_sphere *last = &m->end_spheres[2 * roller + end];
+    gap = trb_min(gap, middle + last->place * along - last->radius - m->pocket_film);
   }
   if (gap > 0.0) return gap;
   for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k] - m->pocket_film);

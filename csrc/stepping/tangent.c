@@ -358,18 +358,22 @@ static double speed_of_range(const trb_model *m, double speed)
   return dry || (!boundary && p->traction == TRB_TRACTION_COULOMB) ? trb_min(speed, usual_decay * p->coulomb_speed) : speed;
 }
 
-/* Whether a roller has slipped away from its origin by so little that friction is linear; rings: by what the rings did. */
-static int slips_little(const trb_dynamics *d, double share, const double *step, double rings)
+/* By how much a roller may slip away from its origin so that friction is linear. */
+static double slip_allowed(const trb_dynamics *d, double share)
 {
   const trb_params  *p = &d->model->params;
   const trb_body_at *driven = &d->bodies[d->system->driven];
   const double       shaft = d->system->n_moving > 0 ? trb_dot(driven->ring.omega, driven->ring.axis) : d->drive.shaft_speed;
-  const double       radius = 0.5 * p->roller_diameter;
-  const double       speed = radius * fabs(d->model->geometry.roller_spin_ratio * (shaft - d->drive.carried_speed));
-  const double       slid = fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
-                            radius * fabs(step[TRB_ROLLER_omega_a]) +
-                            p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
-  return slid + rings <= share * speed_of_range(d->model, trb_max(speed, p->speed_floor));
+  const double       spin = d->model->geometry.roller_spin_ratio * (shaft - d->drive.carried_speed);
+  return share * speed_of_range(d->model, trb_max(0.5 * p->roller_diameter * fabs(spin), p->speed_floor));
+}
+
+/* By how much a roller has slipped away from its origin, m/s. */
+static double slipped(const trb_params *p, const double *step)
+{
+  return fabs(step[TRB_ROLLER_v_r]) + fabs(step[TRB_ROLLER_v_t]) + fabs(step[TRB_ROLLER_v_z]) +
+         0.5 * p->roller_diameter * fabs(step[TRB_ROLLER_omega_a]) +
+         p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
 }
 
 /* No tangent holds while the prescribed motion is under way. */
@@ -377,6 +381,7 @@ static void begin(void *self, const trb_dynamics *d, double time)
 {
   trb_tangents *t = self;
   t->under_way = trb_motion_under_way(d->motion, time);
+  t->slip = slip_allowed(d, t->measure->slip_share);
   trb_ring_offsets_of(d->system, d->bodies, t->offsets);
   for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
 }
@@ -392,8 +397,8 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   const double distance2 =
       r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, d, roller, of_ring)
                : (double)INFINITY;
-  const double slid = trb_rings_moved(t, d, roller);
-  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !slips_little(d, measure->slip_share, step, slid) ||
+  const double slid = slipped(&t->model->params, step) + trb_rings_moved(t, d, roller);
+  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip) ||
                       !trb_margin_holds(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
   r->served += !t->beyond[roller];
   if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;

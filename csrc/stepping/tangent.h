@@ -60,6 +60,7 @@ typedef struct trb_tangents {
   double least[TRB_TANGENT_OUT], anything[TRB_TANGENT_OUT];   /* lower bounds of a flow that follows a tangent; no bounds */
   const struct trb_tangent_measure *measure;                  /* of the evaluation under way */
   int                               under_way;                /* the prescribed motion is: everything is exact */
+  double                            slip;                     /* by which a roller may slip away from its origin in this evaluation, m/s */
   int                              *beyond;                   /* scratch: whether a bound of the tangent is passed */
   trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
   trb_margin_arms                   arms;                     /* what bounds the change of an interference */
