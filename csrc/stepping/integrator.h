@@ -16,7 +16,6 @@
   X(max_order,      2,     1,     5,    "highest order of BDF") \
   X(erk_order,      5,     2,     8,    "order of the explicit method") \
   X(rings_age,      2e-2,  0,     1e3,  "bearing time after which the part of the Jacobian from raceways and ribs is computed again, s") \
-  X(rings_uses,     20,    1,     1e6,  "number of Jacobians after which that part is computed again") \
   X(rings_share,    0.1,   0,     1,    "share of a step's tolerance by which forces of raceways and ribs may be wrong between exact evaluations") \
   X(jacobian_every, 10,    1,     1e6,  "most steps between evaluations of the part of the Jacobian from pockets") \
   X(setup_every,    20,    1,     1e6,  "most steps between factorisations") \

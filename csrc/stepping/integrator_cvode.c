@@ -23,7 +23,6 @@ typedef struct bdf {
   trb_statistics     before;    /* totals up to the last restart */
   double             smallest;  /* smallest step, s */
   double             filled_at; /* end of the last step when the Jacobian was last evaluated, s */
-  int                uses;      /* Jacobians that used the part of the rings since it was computed */
 } bdf;
 
 static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
@@ -55,17 +54,16 @@ static int weights(N_Vector y, N_Vector out, void *data)
 static void fill(const trb_integrator *it, double time, const double *y, trb_arrow *arrow)
 {
   bdf *self = it->self;
-  /* the part of the rings is computed again when it is old or was used often, when Newton's method failed with it within this step, and
+  /* the part of the rings is computed again when it is old, when Newton's method failed twice with it within this step, and
    * always while speed or ring change or have just done so: an old slope that is too stiff makes corrections so small that they seem to
    * converge */
   const double made = self->jacobians[0]->tangents->time;
   const int    again = (it->time == self->filled_at && made < it->time) || trb_newton_renewing(self->newton);
-  const int    old = fabs(time - made) > it->settings.rings_age || self->uses >= it->settings.rings_uses;
+  const int    old = fabs(time - made) > it->settings.rings_age;
   int          changing = 0;
   for (int k = 0; k < it->assembly->n; k++) changing |= trb_motion_changes(it->members[k].motion, time - it->settings.rings_age, time);
   const int fresh = again || old || changing;
   self->filled_at = it->time;
-  self->uses = fresh ? 0 : self->uses + 1;
   for (int k = 0; k < it->assembly->n; k++) {
     const trb_system *system = &it->assembly->members[k];
     for (int j = 0; j < system->model->n_rollers; j++)
@@ -198,7 +196,6 @@ static trb_status bdf_restart(trb_integrator *it, trb_message *message)
   self->before = so_far;
   /* what was learned is forgotten, so that what follows depends on time and state alone */
   self->filled_at = -INFINITY;
-  self->uses = 0;
   for (int k = 0; k < it->assembly->n; k++) trb_tangents_forget(self->jacobians[k]->tangents);
   trb_newton_forget(self->newton);
   ((trb_arrow_factors *)self->solver->content)->gamma = 0.0;

@@ -65,13 +65,15 @@ typedef struct newton {
   double *best, *best_square;   /* body by body: the point at which its equations lacked least, and their weighted square there */
   int     n, n_main, most;      /* entries; those before the integrals that no force reads; iterations allowed */
   int     n_bodies, size;       /* bodies but the last one, and their entries; what is left before the integrals is the last one */
+  double  off;                  /* what the equations lacked before the last correction */
   int     iterations, failures; /* of the last solve */
   int     troubled;             /* whether the last solve failed */
   int     renewing;             /* slopes are taken again within a solve */
   int     has_best;             /* whether the last iterations came to a point after their first correction */
   int     pause, paused;        /* failed solves for which that is left out, and those that went by */
   double  failing;              /* share of solves that failed, the last ones counting most */
-  int     is_poor;              /* whether a first correction left too much */
+  double *left;                 /* body by body: weighted squares of what its equations lacked after the last correction that left too much */
+  int     is_poor;              /* whether a correction left too much */
   int    *poor;                 /* body by body: whether its slopes are to be taken again for that */
   long   *renewed;              /* body by body: the solve at which they last were */
   long    solves;               /* so far */
@@ -170,26 +172,33 @@ static int holds(const newton *self, double off, double before, double tolerance
   return off <= negligible * tolerance || (off <= tolerance && off <= contraction * before);
 }
 
-/* What the first correction of a solve left is known. If it is too much, slopes of the bodies with the largest parts of it are to be taken
- * again. The others together leave less than half of what is too much. */
-static void measure(newton *self, double off, double before, const double *lack, const double *weight)
+/* What the equations of each body lack. */
+static void measure(newton *self, const double *lack, const double *weight)
 {
-  const double limit = 0.5 * poor * before;
-  self->is_poor = 0;
-  if (!(off > poor * before)) return;
   for (int body = 0; body <= self->n_bodies; body++) {
-    const part   of = part_of(self, body);
-    const double left = product(of.n, lack + of.from, lack + of.from, weight + of.from);
-    self->poor[body] = left * (self->n_bodies + 1) > limit * limit * self->n && self->solves - self->renewed[body] >= between_renewals;
+    const part of = part_of(self, body);
+    self->left[body] = product(of.n, lack + of.from, lack + of.from, weight + of.from);
+  }
+}
+
+/* Slopes are to be taken again of the bodies with the largest parts of what a correction left, if it is so long since they last were. The
+ * others together leave less than half of what is too much. */
+static void choose_poor(newton *self, double too_much, int solves)
+{
+  const double limit = 0.5 * too_much;
+  self->is_poor = 0;
+  for (int body = 0; body <= self->n_bodies; body++) {
+    self->poor[body] =
+        self->left[body] * (self->n_bodies + 1) > limit * limit * self->n && self->solves - self->renewed[body] >= solves;
     self->is_poor |= self->poor[body];
   }
 }
 
-/* Slopes are being taken again: those of all bodies, or those that were poor. */
-static void note_renewal(newton *self, int all)
+/* Slopes have been taken again of the bodies that were poor. */
+static void note_renewal(newton *self)
 {
   for (int body = 0; body <= self->n_bodies; body++)
-    if (all || self->poor[body]) self->renewed[body] = self->solves;
+    if (self->poor[body]) self->renewed[body] = self->solves;
   self->is_poor = 0;
 }
 
@@ -198,6 +207,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
 {
   double first = INFINITY, before = 0.0;
   self->has_best = 0;
+  memset(self->left, 0, (size_t)(self->n_bodies + 1) * sizeof *self->left);
   if (one_by_one) {
     for (int body = 0; body <= self->n_bodies; body++) self->best_square[body] = (double)INFINITY;
     memcpy(self->best, N_VGetArrayPointer(correction), (size_t)self->n * sizeof *self->best);
@@ -211,7 +221,8 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     const double *const weight = N_VGetArrayPointer(weights);
     /* what the equations lack, in the mean over all entries */
     const double off = sqrt(product(self->n, delta, delta, weight) / self->n);
-    if (m == 1) measure(self, off, before, delta, weight);
+    if (m > 1 || (m == 1 && off > poor * before)) measure(self, delta, weight);
+    if (m == 1 && off > poor * before) choose_poor(self, poor * before, between_renewals);
     if (one_by_one && m > 0) remember(self, N_VGetArrayPointer(correction), delta, weight);
     for (int i = 0; i < self->n; i++) delta[i] = -delta[i];
     const int flag = self->solve(self->delta, memory);
@@ -220,7 +231,7 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     const double square = improve_all(self, m, one_by_one, weight, delta), change = sqrt(square / self->n);
     N_VLinearSum(1.0, correction, 1.0, self->delta, correction);
     if (change <= tolerance && holds(self, off, before, tolerance)) return 0;
-    before = off;
+    self->off = before = off;
     if (m == 0) first = change;
     if (!(change <= divergence * first) || !(square > 0.0)) return SUN_NLS_CONV_RECVR;
   }
@@ -260,7 +271,7 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
       flag = self->setup(bad || self->is_poor, &current, memory);
       if (flag != 0) return flag;
     }
-    if (bad || self->is_poor) note_renewal(self, bad);
+    if (self->is_poor) note_renewal(self);
     flag = iterate(self, correction, weights, tolerance, one_by_one && current, memory);
     if (flag > 0 && one_by_one && current && self->paused++ >= self->pause) {
       flag = renew(self, correction, weights, tolerance, memory);
@@ -274,6 +285,7 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
     self->troubled = 1;
     if (current) return flag;
     bad = 1;
+    choose_poor(self, self->off, 0);
     N_VConst(0.0, correction);
   }
 }
@@ -288,6 +300,7 @@ static int free_solver(SUNNonlinearSolver solver)
     free(self->square);
     free(self->best);
     free(self->best_square);
+    free(self->left);
     free(self->poor);
     free(self->renewed);
     free(self);
@@ -388,11 +401,12 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_ma
     self->square = calloc((size_t)(n_bodies + 1) * TRB_NEWTON_MOST, sizeof(double));
     self->best = calloc((size_t)self->n, sizeof(double));
     self->best_square = calloc((size_t)n_bodies + 1, sizeof(double));
+    self->left = calloc((size_t)n_bodies + 1, sizeof *self->left);
     self->poor = calloc((size_t)n_bodies + 1, sizeof *self->poor);
     self->renewed = calloc((size_t)n_bodies + 1, sizeof *self->renewed);
   }
   if (self == NULL || !self->delta || !self->taken || !self->square || !self->best || !self->best_square ||
-      !self->poor || !self->renewed) {
+      !self->left || !self->poor || !self->renewed) {
     (void)free_solver(solver);
     return NULL;
   }
