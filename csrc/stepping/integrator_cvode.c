@@ -67,7 +67,8 @@ static void fill(const trb_integrator *it, double time, const double *y, trb_arr
   for (int k = 0; k < it->assembly->n; k++) {
     const trb_system *system = &it->assembly->members[k];
     for (int j = 0; j < system->model->n_rollers; j++)
-      if (trb_newton_is_poor(self->newton, system->layout.leaf + j)) trb_jacobian_renew(self->jacobians[k], j);
+      if (trb_newton_is_poor(self->newton, system->layout.leaf + j) || trb_tangents_are_worn(self->jacobians[k]->tangents, j))
+        trb_jacobian_renew(self->jacobians[k], j);
     trb_jacobian_fill(self->jacobians[k], time, y, fresh, arrow);
   }
 }

@@ -21,6 +21,9 @@ static const double power_share = 0.03;
 /* Reach: smallest, first and largest value; largest growth and decline in one change; factor of caution; distance beyond which the
  * slopes are not corrected. */
 static const double least_reach = 1e-3, first_reach = 1.0, largest_reach = 1e3, growth = 3.0, decline = 0.05, caution = 0.8, farthest = 1e5;
+/* Corrections after which slopes are computed again by differences, which cost about as many exact evaluations: each correction is right along its
+ * own step only. */
+enum { most_corrections = 20 };
 /* Steps between origins that go on one way, or back: least cosine of the angle between them, in the metric of the tolerances; largest ratio of
  * lengths of steps that go on evenly. */
 static const double least_cosine = 0.9, most_uneven = 3.0;
@@ -159,6 +162,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
     memcpy(r->origin, y + trb_state_roller(d->system, j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
     straighten(t, j);
+    r->corrected = 0;
     trb_rings_begin(t, d, j);
   }
   trb_rings_see(t, d, 0);
@@ -191,6 +195,8 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
   }
   if (!all_finite(t, chosen, n)) trb_tangents_forget(t);
 }
+
+int trb_tangents_are_worn(const trb_tangents *t, int roller) { return t->rollers[roller].corrected >= most_corrections; }
 
 const double *trb_tangents_column(const trb_tangents *t, int roller, int column)
 {
@@ -344,6 +350,7 @@ static void learn(trb_tangents *t, const trb_dynamics *d, int roller, const trb_
   r->usual += newest * (r->served - r->usual);
   r->served = 0;
   r->known = 1;
+  r->corrected++;
 }
 
 /* The share of the mean rolling speed that a roller may slip away is meant for the usual boundary friction, which turns from its slope

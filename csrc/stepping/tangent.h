@@ -47,6 +47,7 @@ typedef struct trb_tangent {
   double usual;                  /* for how many evaluations an origin is used: running mean */
   int    served;                 /* for how many this one was */
   int    known;                  /* 0: there is no origin */
+  int    corrected;              /* how often its slopes were corrected since they were computed by differences */
 } trb_tangent;
 
 typedef struct trb_tangents {
@@ -93,6 +94,9 @@ void       trb_tangents_free(trb_tangents *tangents);
 void trb_tangents_forget(trb_tangents *tangents);
 /* Computes the slopes of n chosen rollers by differences about a state whose poses d holds; moved: scratch as long as a state. */
 void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const int *chosen, int n, const double *y, double *moved);
+
+/* Whether a roller's slopes were corrected so often that they are to be computed again. */
+int trb_tangents_are_worn(const trb_tangents *tangents, int roller);
 
 /* Column of a roller's block of the Jacobian: from its tangent if that is in use, else as differences gave it. */
 const double *trb_tangents_column(const trb_tangents *tangents, int roller, int column);
