@@ -158,7 +158,7 @@ def test_colours_follow_the_choice_and_the_factor_is_always_said(browser: Any, p
         )
         browser.frame()
         pictures.append(browser.picture()[CANVAS])
-        label = browser.js(f"trbView.head.quantities.find((q) => q.name == '{mode}').label")
+        label = browser.js(f"trbView.head.bearings[0].quantities.find((q) => q.name == '{mode}').label")
         assert label in browser.js("document.getElementById('scale').textContent")
     for one, other in pairwise(pictures):
         assert different(one, other) > 0.01
@@ -219,7 +219,7 @@ def test_no_cage(browser: Any, tmp_path: Path) -> None:
     browser.open(tmp_path / "v.html", READY)
     browser.frame()
     assert browser.errors == []
-    assert not browser.js("trbView.head.has_cage")
+    assert not browser.js("trbView.head.bearings[0].has_cage")
     assert browser.js("document.getElementById('switch-cage')") is None
 
 

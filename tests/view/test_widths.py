@@ -157,7 +157,8 @@ def test_the_view_says_what_it_shows(browser: Any, view_page: Path) -> None:
     assert not browser.js(f"{legend}.hidden")
     said = browser.js(f"{legend}.textContent")
     largest = browser.js(
-        "Math.max(...trbView.head.quantities.filter((q) => /^(outer|inner)_load$/.test(q.name)).map((q) => q.values.high))"
+        "Math.max(...trbView.head.bearings[0].quantities.filter((q) => /^(outer|inner)_load$/.test(q.name))"
+        ".map((q) => q.values.high))"
     )
     assert f"the longest {largest:.4g} N" in said
     assert f"as long as a roller is thick is {largest / 1.1:.4g} N" in said

@@ -1,4 +1,5 @@
-"""A result as a moving 3-D view in a browser: one HTML file that needs no network, or an animated glTF file.
+"""A result, of a bearing or of several on a shaft, as a moving 3-D view in a browser: one HTML file that needs no network.
+A bearing's result can be saved as an animated glTF file, too.
 
 The view is drawn by three.js. It was chosen by looking into the packages that can be installed from PyPI: the package
 jupyter-threejs-sage carries three.js itself (0.6 MB, with orbit controls), so that picking, histories, exaggerated
@@ -20,9 +21,8 @@ from trbdyn.errors import FileError, InputError
 from trbdyn.results.result import Result
 from trbdyn.viewer import data as data_of
 from trbdyn.viewer.gltf import save_gltf
-from trbdyn.viewer.page import page
+from trbdyn.viewer.page import Shown, page
 from trbdyn.viewer.shapes import shapes
-from trbdyn.viewer.together import together
 
 if TYPE_CHECKING:
     from trbdyn.results.assembly import AssemblyResult
@@ -108,7 +108,7 @@ def view(
     ----------
     result : Result or AssemblyResult
         Needs the groups time, cage and rollers; colours and arrows come from contacts and pocket. The bearings of an assembly
-        are shown beside each other at the same instant, each in its own axes.
+        are shown where they sit on the shaft, with one scale of colours and arrows for all of them.
     path : path-like, optional
         HTML file to write.
     revolutions : float or None
@@ -147,20 +147,22 @@ def view(
     >>> trb.view(result, max_frames=20).html.startswith("<!doctype html>")
     True
     """
-    if not isinstance(result, Result):
-        return _view_of_assembly(
-            result,
-            path,
-            title,
-            height,
-            revolutions=revolutions,
-            max_frames=max_frames,
-            max_size_mb=max_size_mb / len(result),
-            exaggeration=exaggeration,
-        )
-    data_of.check(result, revolutions, max_frames)
     if exaggeration is not None and not 1.0 <= exaggeration <= 1e4:
         raise InputError.of("exaggeration", exaggeration, "must be from 1 to 10000 (1)")
+    if isinstance(result, Result):
+        shown, shaft = [_shown(result, revolutions, max_frames, max_size_mb)], None
+    else:
+        shown, shaft = _on_shaft(result, revolutions, max_frames, max_size_mb)
+        title = title or f"{', '.join(result)} on one shaft"
+    made = View(page(shown, factor=exaggeration, title=title, shaft=shaft), height=height)
+    if path is not None:
+        made.save(path)
+    return made
+
+
+def _shown(result: Result, revolutions: float | None, max_frames: int, max_size_mb: float, **where: Any) -> Shown:
+    """A bearing of the page; where: its name and place on a shaft."""
+    data_of.check(result, revolutions, max_frames)
     bearing = result.scene.bearing
     stations = (
         data_of.stations(result) if len(result) > 1 else np.linspace(-0.5, 0.5, 2) * bearing.roller.effective_length
@@ -168,20 +170,37 @@ def view(
     meshes = shapes(bearing, stations, result.scene.effects.guidance if result.has_cage else "rollers")
     limit = frames_that_fit(result, max_size_mb, len(meshes.faces), stations.size)
     taken = data_of.frames(result, revolutions=revolutions, max_frames=min(max_frames, limit))
-    made = View(page(result, meshes, taken, factor=exaggeration, title=title), height=height)
-    if path is not None:
-        made.save(path)
-    return made
+    return Shown(result, meshes, taken, **where)
 
 
-def _view_of_assembly(
-    result: AssemblyResult, path: str | os.PathLike[str] | None, title: str, height: int, **options: Any
-) -> View:
-    pages = {f"{name}: {one.scene.bearing.name}": view(one, **options).html for name, one in result.items()}
-    made = View(together(pages, title or f"{', '.join(result)} on one shaft"), height=height)
-    if path is not None:
-        made.save(path)
-    return made
+def _on_shaft(
+    result: AssemblyResult, revolutions: float | None, max_frames: int, max_size_mb: float
+) -> tuple[list[Shown], dict[str, float]]:
+    """The bearings of an assembly where they sit, and the ends of the shaft."""
+    assembly = result.assembly
+    if assembly is None:
+        raise InputError.of("assembly", None, "must be known, to say where the bearings sit on the shaft")
+    reach = [end for one in assembly.bearings for end in one.rollers_reach]
+    middle = 0.5 * (min(reach) + max(reach))
+    places = [
+        {"name": name, "place": at.centre_plane - middle, "turned": at.side > 0.0}
+        for name, at in zip(result, assembly.bearings, strict=True)
+    ]
+    size = max_size_mb / len(result)
+
+    def taken(most: int) -> list[Shown]:
+        pairs = zip(result.values(), places, strict=True)
+        return [_shown(one, revolutions, most, size, **place) for one, place in pairs]
+
+    shown = taken(max_frames)
+    counts = {one.frames.index.size for one in shown}
+    if len(counts) > 1:  # each bearing has room for another number; all need the same moments
+        shown = taken(min(counts))
+    first, beyond = assembly.bearings[0], max(one.bearing.roller.effective_length for one in assembly.bearings)
+    ends = [min(reach) - beyond, max(reach) + beyond, assembly.shaft.mass_position]
+    ends += [load.position for load in assembly.loads]
+    along = [-first.side * (end - first.centre_plane) for end in ends]
+    return shown, {"from": min(along), "to": max(along)}
 
 
 def frames_that_fit(result: Result, max_size_mb: float, n_faces: int, n_stations: int) -> int:

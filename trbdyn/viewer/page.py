@@ -6,6 +6,8 @@ import base64
 import gzip
 import html
 import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Final
 
@@ -55,10 +57,11 @@ class _Block:
         return base64.b64encode(gzip.compress(b"".join(self.parts), 6, mtime=0)).decode("ascii")
 
 
-def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None = None, title: str = "") -> str:
-    """The HTML of the view.
+@dataclass(frozen=True)
+class Shown:
+    """A bearing that a page shows.
 
-    Parameters
+    Attributes
     ----------
     result : Result
         The run.
@@ -66,63 +69,120 @@ def page(result: Result, shapes: Shapes, frames: Frames, *, factor: float | None
         Meshes of its bearing.
     frames : Frames
         Frames of it.
+    name : str
+        Its name on the shaft; empty where it is alone.
+    place : float
+        Where its roller-centre plane stands along the axis, from the middle of the picture (m).
+    turned : bool
+        Whether it is turned about the x axis, so that its own axis points the other way.
+    """
+
+    result: Result
+    shapes: Shapes
+    frames: Frames
+    name: str = ""
+    place: float = 0.0
+    turned: bool = False
+
+
+def page(
+    shown: Sequence[Shown],
+    *,
+    factor: float | None = None,
+    title: str = "",
+    shaft: Mapping[str, float] | None = None,
+) -> str:
+    """The HTML of the view.
+
+    Parameters
+    ----------
+    shown : sequence of Shown
+        A bearing, or the bearings on a shaft, all with frames of the same times.
     factor : float, optional
         Factor of exaggeration at the start.
     title : str
         Title of the page.
+    shaft : mapping of str to float, optional
+        Ends of the shaft, ``from`` and ``to``, along the first bearing's own axis from its roller-centre plane (m).
     """
     block = _Block()
-    bearing = result.scene.bearing
-    largest = largest_factor(bearing, shapes, frames.pose) if result.has_cage else 200.0
+    first = shown[0]
+    limits = [
+        largest_factor(one.result.scene.bearing, one.shapes, one.frames.pose) if one.result.has_cage else 200.0
+        for one in shown
+    ]
+    largest = min(limits)
+    wished = min(default_factor(one.result, largest) for one in shown) if factor is None else factor
     head: dict[str, Any] = {
-        **facts(result),
-        "title": title,
+        "title": title or first.result.scene.bearing.name,
+        "about": _about(shown),
+        "turning": first.result.scene.turning_ring,
+        "factor": min(wished, largest),
+        "largest_factor": largest,
+        "frames": int(first.frames.index.size),
+        "records": first.frames.total,
+        "shown": shown_turns(first.result, first.frames),
+        "time": block.add(_relative(first.frames.time), "f4") | {"start": float(first.frames.time[0])},
+        "turns": block.add(first.frames.turns, "f4"),
+        "colours": _colours(),
+        "bearings": [_bearing(block, one) for one in shown],
+        "shaft": None if shaft is None else dict(shaft),
+    }
+    head["bytes"] = block.size
+    return _fill(head, block.text())
+
+
+def _about(shown: Sequence[Shown]) -> str:
+    """Bearings, speed and loads in words."""
+    said = [facts(one.result) for one in shown]
+    speed = f"{said[0]['speed_rpm']:.4g} rpm"
+    if len(shown) == 1:
+        return f"{said[0]['bearing']}, {speed}, {said[0]['loads']}"
+    parts = (f"{one.name}: {fact['bearing']}, {fact['loads']}" for one, fact in zip(shown, said, strict=True))
+    return "; ".join((speed, *parts))
+
+
+def _bearing(block: _Block, one: Shown) -> dict[str, Any]:
+    """What the program needs of a bearing."""
+    bearing, shapes = one.result.scene.bearing, one.shapes
+    return {
+        "name": one.name,
+        "place": one.place,
+        "turned": one.turned,
         "rollers": bearing.n_rollers,
         "slots": len(bearing.slot_names),
         "slot_names": [name.replace("_", " ") or f"face {k}" for k, name in enumerate(bearing.slot_names)],
-        "has_cage": result.has_cage,
+        "has_cage": one.result.has_cage,
         "geometry": {
             "axis_angle": bearing.geometry.roller_axis_angle,
             "centre_radius": bearing.geometry.roller_centre_radius,
             "centre_height": bearing.geometry.roller_centre_height - bearing.geometry.centre_plane,
-            "cup_angle": float(np.radians(bearing.cup_half_angle_deg)),
             "diameter": bearing.roller.diameter,
             "length": bearing.roller.effective_length,
             "outer_radius": float(np.hypot(*shapes.outer.position[:, :2].T).max()),
             "play_radial": bearing.cage.play_radial,
         },
-        "factor": min(default_factor(result, largest) if factor is None else factor, largest),
-        "largest_factor": largest,
         "meshes": {name: _mesh(block, mesh) for name in MESHES if (mesh := getattr(shapes, name)) is not None},
-        "guidance": result.scene.effects.guidance,
+        "guidance": one.result.scene.effects.guidance,
         "roller_rows": shapes.roller_rows,
         "row_size": AROUND + 1,
         "faces": [
             {
                 "pocket": face.pocket,
                 "slot": face.slot,
-                "name": face.name.replace("_", " "),
                 "mesh": _mesh(block, face.mesh),
                 "centre": face.centre.tolist(),
                 "normal": face.normal.tolist(),
                 "shift": face.shift.tolist(),
             }
-            for face in (shapes.faces if result.has_cage else ())
+            for face in (shapes.faces if one.result.has_cage else ())
         ],
-        "frames": int(frames.index.size),
-        "records": frames.total,
-        "shown": shown_turns(result, frames),
-        "time": block.add(_relative(frames.time), "f4") | {"start": float(frames.time[0])},
-        "turns": block.add(frames.turns, "f4"),
         "pose": {
             name: block.add(_relative(values) if name == "spin" else values, "f4")
-            for name, values in frames.pose.items()
+            for name, values in one.frames.pose.items()
         },
-        "quantities": [_quantity(block, quantity) for quantity in frames.quantities],
-        "colours": _colours(),
+        "quantities": [_quantity(block, quantity) for quantity in one.frames.quantities],
     }
-    head["bytes"] = block.size
-    return _fill(head, block.text())
 
 
 def shown_turns(result: Result, frames: Frames) -> str:
@@ -186,10 +246,10 @@ def _colours() -> list[list[float]]:
 
 def _fill(head: dict[str, Any], data: str) -> str:
     here = files("trbdyn.viewer")
-    names = {"style": "viewer.css", "program": "viewer.js"}
+    names = {"style": "viewer.css", "bearing": "bearing.js", "program": "viewer.js"}
     parts = {name: here.joinpath(file).read_text(encoding="utf-8") for name, file in names.items()}
     parts |= {
-        "title": html.escape(head["title"] or head["bearing"]),
+        "title": html.escape(head["title"]),
         "three": three_js().replace("</script", "<\\/script"),
         "head": json.dumps(head, allow_nan=False).replace("</", "<\\/"),
         "data": data,
