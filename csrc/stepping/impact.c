@@ -50,6 +50,18 @@ static double closing_speed(const trb_roller_pose *r, const trb_rigid_pose *body
   return trb_norm(trb_sub(r->v, trb_turn_z(there, r->cosine, -r->sine)));
 }
 
+/* Bound of that speed without angles: the speed of either against a turn with the frame R about the bearing's axis. */
+static double closing_at_most(const trb_model *m, const trb_drive *drive, const double *y_roller, const trb_rigid_pose *body)
+{
+  const trb_geometry *g = &m->geometry;
+  const double        w = drive->frame_speed, radius = g->roller_centre_radius + y_roller[TRB_ROLLER_r];
+  const double        around = trb_pure_rolling(m, drive->rolling_speed, drive->carried_speed).v_t + y_roller[TRB_ROLLER_v_t] - w * radius;
+  const double        along = g->roller_centre_height + y_roller[TRB_ROLLER_z] - body->x.z;
+  const double        arm = fabs(radius) + fabs(body->x.x) + fabs(body->x.y) + fabs(along);
+  const trb_vec3      moved = trb_add(body->v, trb_v(w * body->x.y, -w * body->x.x, 0.0)), turned = trb_sub(body->omega, trb_v(0.0, 0.0, w));
+  return fabs(y_roller[TRB_ROLLER_v_r]) + fabs(around) + fabs(y_roller[TRB_ROLLER_v_z]) + trb_norm(moved) + trb_norm(turned) * arm;
+}
+
 /* Largest interference of a roller and another body that meet, over their speed: one over the natural frequency of both masses on a linear
  * spring, which is as stiff as the contact of a flank is at an interference of 1 um. */
 static double rise_of(const trb_dynamics *d, const trb_pair *pair)
@@ -72,10 +84,12 @@ static void place(trb_impacts *impacts, const trb_dynamics *d, const trb_drive *
   }
 }
 
+static int is_far(double left, double step, double speed) { return left > ahead * step * speed; }
+
 /* Factor of the tolerances of two bodies. most: the largest speed since they met, which is kept. */
 static double factor_of(const trb_approach *now, double step, const trb_impact_measure *measure, double *most)
 {
-  if (now->left > ahead * step * now->speed) {
+  if (is_far(now->left, step, now->speed)) {
     *most = INFINITY;
     return 1.0;
   }
@@ -114,11 +128,14 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
     impacts->factor[j] = 1.0;
     for (int f = 0; f < d->n_fast; f++) {
       const trb_fast_pair *fast = &d->fast[f];
-      trb_roller_pose      r;
+      const trb_rigid_pose *body = &impacts->bodies[fast->pair->b].pose;
+      trb_roller_pose       r;
       if (fast->pair->kind->surfaces(m, j) == 0) continue;
-      trb_roller_pose_unpack_centre(m, &drive, j, y_roller, &r);
-      const double       left = trb_dynamics_gap_left(d, f, j, y);
-      const trb_approach now = {.left = left, .speed = closing_speed(&r, &impacts->bodies[fast->pair->b].pose), .rise = rise[f]};
+      trb_approach now = {.left = trb_dynamics_gap_left(d, f, j, y), .speed = closing_at_most(m, &drive, y_roller, body), .rise = rise[f]};
+      if (!is_far(now.left, step, now.speed)) {
+        trb_roller_pose_unpack_centre(m, &drive, j, y_roller, &r);
+        now.speed = closing_speed(&r, body);
+      }
       impacts->factor[j] = trb_min(impacts->factor[j], factor_of(&now, step, measure, &impacts->speed[j]));
     }
     least = trb_min(least, impacts->factor[j]);

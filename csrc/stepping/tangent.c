@@ -7,6 +7,8 @@
 #include "base/memory.h"
 #include "stepping/tangent_rings.h"
 
+_Static_assert(TRB_TANGENT_IN % 4 == 0, "sums of four");
+
 const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
 /* Turn of the frame R that counts as one tolerance, and turn by which slopes over it are computed, rad. */
@@ -108,8 +110,10 @@ static void straighten(trb_tangents *t, int roller)
 static double share_of(const trb_tangents *t, int roller, const double *step, double (*of_ring)[TRB_RING_IN])
 {
   const double *along = t->rollers[roller].along;
-  double        share = 0.0;
-  for (int i = 0; i < TRB_TANGENT_IN; i++) share += along[i] * step[i];
+  double        sum[4] = {0}; /* side by side: one sum alone would wait for each of its additions */
+  for (int i = 0; i < TRB_TANGENT_IN; i += 4)
+    for (int k = 0; k < 4; k++) sum[k] += along[i + k] * step[i + k];
+  double share = (sum[0] + sum[1]) + (sum[2] + sum[3]);
   for (int k = 0; k < t->system->n_moving; k++)
     for (int i = 0; i < TRB_RING_IN; i++) share += trb_tangents_ring_of(t, roller, k)->along[i] * of_ring[k][i];
   return share;
