@@ -82,7 +82,7 @@ def test_closure_falls_with_the_tolerance(kit: SimpleNamespace, case: str) -> No
     assert loose.pocket_force.max() > 10.0
     assert closure(tight) < 1e-4
     assert closure(loose) < 5e-3
-    # what is as small with loose tolerances has no need to fall; without friction, closures of one tolerance scatter by a factor of 3
+    # what is as small with loose tolerances has no need to fall; without friction the closures scatter by a factor of 3
     assert closure(tight) < max(0.1 * closure(loose), 3e-6)
 
 
