@@ -102,7 +102,7 @@ class FakeRun:
 
 
 def test_longer_runs_only_where_they_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At 10 rpm the rib's friction takes a good part of a turn to settle: after a tenth of it 3.7 % may still come. At 30 rpm it has
+    """At 10 rpm the rib's friction takes a good part of a turn to settle: after a tenth 3.7 % may still come. At 30 rpm it has
     settled by then; what the cage's hits leave there is 0.1 to 1 %.
     """
     monkeypatch.setattr(module, "TURNS", (0.1, 2.0))
