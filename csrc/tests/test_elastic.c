@@ -233,6 +233,11 @@ static void test_ways(void)
         }
     }
   }
+  /* bars that do not move have no way, and walls have theirs as before */
+  for (int f = m->first_face[0]; f < m->first_face[1]; f++)
+    for (int i = 0; i < modes->n * TRB_SHAPE_ROOM && m->faces[f].part == TRB_PART_FLANK; i++) ((double *)trb_shapes_of(modes, f))[i] = 0.0;
+  trb_pair_pocket.ways(m, 0, ways);
+  for (int i = 0; i < modes->n; i++) CHECK(ways[i * TRB_N_GAPS + TRB_GAP_FLANK] == 0.0 && ways[i * TRB_N_GAPS + TRB_GAP_ENDS] > 0.0);
   rig_free(system);
 }
 
