@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "contact/uneven.h"
 #include "rig.h"
 
 enum { SAMPLES = 41, COLUMNS = TRB_FORM_depth + 2 * RIG_SLICES };
@@ -52,6 +53,41 @@ static void depths_are_read(const trb_model *m)
   }
   const trb_form_scale outer = trb_form_scale_of(form, TRB_RACE_OUTER), inner = trb_form_scale_of(form, TRB_RACE_INNER);
   CHECK(outer.race == 0.2 && outer.roller == (double)INFINITY && inner.race == (double)INFINITY && inner.roller == 0.2);
+}
+
+/* A contact on the outer raceway, at an azimuth inside its patch; the ring rests. */
+static void fill_at(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *g, double azimuth, trb_uneven *to)
+{
+  const trb_race_input in = {.roller = r, .ring = g, .centre = m->centre, .sphere = m->sphere, .nodes = &m->race[TRB_RACE_OUTER]};
+  trb_uneven_fill(m, &in, 0, azimuth, 0.0, 0, to);
+}
+
+/* What a depth does goes with its difference along the way: its rate where the roller orbits, and the force for a unit of load, whose power is
+ * that rate. */
+static void rates_follow_depths(const trb_model *m)
+{
+  static trb_uneven     at, before, after;
+  const trb_geometry   *g = &m->geometry;
+  const double          azimuth = 6.25, orbit = 300.0, radius = g->roller_centre_radius, step = 1e-5;
+  const trb_ring_pose   ring = {.axis = {0, 0, 1}};
+  const trb_roller_pose roller = {.radius = radius,
+                                  .cosine = 1.0,
+                                  .orbit_speed = orbit,
+                                  .x = {radius, 0, g->roller_centre_height},
+                                  .frame = trb_tilted_frame(0.0, g->roller_axis_angle),
+                                  .v = {0, orbit * radius, 0},
+                                  .omega = {0, 0, orbit}};
+  fill_at(m, &roller, &ring, azimuth, &at);
+  fill_at(m, &roller, &ring, azimuth - step, &before);
+  fill_at(m, &roller, &ring, azimuth + step, &after);
+  for (int k = 0; k < m->n_nodes; k++) {
+    const double slope = (after.depth[k] - before.depth[k]) / (2.0 * step);
+    CHECK(fabs(slope) > 0.05);
+    CHECK_NEAR(at.rate[k], orbit * slope, 1e-3 * orbit);
+    CHECK_NEAR(at.fy[k] * orbit * radius + at.mz[k] * orbit, at.rate[k], 1e-9 * orbit);
+    /* the force is as large as the slope over the distance of the node from the axis */
+    CHECK_NEAR(at.fy[k] * (radius + m->centre[k] * roller.frame.a.x), slope, 1e-3);
+  }
 }
 
 static int refused(trb_model *m, int row, int column, double value, int n_rows)
@@ -126,6 +162,7 @@ int main(void)
   trb_model *m = rig_model(&p);
   CHECK(trb_model_set_form(m, &rows[0][0], 2 * SAMPLES, COLUMNS, NULL) == TRB_OK && m->form.n == 2);
   depths_are_read(m);
+  rates_follow_depths(m);
   trb_model_free(m);
   what_is_wrong_is_refused();
   smooth_forces_do_not_know_them();

@@ -233,13 +233,13 @@ class EquilibriumSolver:
         nothing, and the largest share of them that was balanced (1).
         """
         force, known = np.concatenate([load.force, load.moment]), list[tuple[float, Array, Array]]()
-        part = np.array([1.0, 1.0, 0.0, 1.0, 1.0])
-        if not np.any(part * force):
+        raised = np.array([True, True, False, True, True])
+        if not np.any(force[raised]):
             return None, 0.0
         share, step = 0.0, RAISED_BY
         while step >= RAISED_LEAST:
             wanted = min(share + step, 1.0) if known else 0.0
-            acting = np.where(part > 0.0, wanted * force, force)
+            acting = np.where(raised, wanted * force, force)
             place, rollers = load.displacement, None
             if known:
                 (_, place, rollers), before = known[-1], known[max(len(known) - 2, 0)]
