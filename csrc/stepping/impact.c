@@ -58,7 +58,7 @@ static double closing_at_most(const trb_model *m, const trb_drive *drive, const 
   const double        around = trb_pure_rolling(m, drive->rolling_speed, drive->carried_speed).v_t + y_roller[TRB_ROLLER_v_t] - w * radius;
   const double        along = g->roller_centre_height + y_roller[TRB_ROLLER_z] - body->x.z;
   const double        arm = fabs(radius) + fabs(body->x.x) + fabs(body->x.y) + fabs(along);
-  const trb_vec3      moved = trb_add(body->v, trb_v(w * body->x.y, -w * body->x.x, 0.0)), turned = trb_sub(body->omega, trb_v(0.0, 0.0, w));
+  const trb_vec3 moved = trb_add(body->v, trb_v(w * body->x.y, -w * body->x.x, 0.0)), turned = trb_sub(body->omega, trb_v(0.0, 0.0, w));
   return fabs(y_roller[TRB_ROLLER_v_r]) + fabs(around) + fabs(y_roller[TRB_ROLLER_v_z]) + trb_norm(moved) + trb_norm(turned) * arm;
 }
 
@@ -127,7 +127,7 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
     const double *y_roller = y + trb_state_roller(d->system, j);
     impacts->factor[j] = 1.0;
     for (int f = 0; f < d->n_fast; f++) {
-      const trb_fast_pair *fast = &d->fast[f];
+      const trb_fast_pair  *fast = &d->fast[f];
       const trb_rigid_pose *body = &impacts->bodies[fast->pair->b].pose;
       trb_roller_pose       r;
       if (fast->pair->kind->surfaces(m, j) == 0) continue;

@@ -21,8 +21,7 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
     j->response = trb_zeros(width, sizeof *j->response);
     j->with = trb_zeros(width, sizeof *j->with);
     j->renewed = calloc((size_t)system->model->n_rollers, sizeof *j->renewed);
-    if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL ||
-        j->renewed == NULL)
+    if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL || j->renewed == NULL)
       status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for the Jacobian");
     else status = trb_tangents_create(system, &j->tangents, message);
     for (int b = 0; b < system->n_bodies && status == TRB_OK; b++)

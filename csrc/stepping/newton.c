@@ -14,7 +14,8 @@
  * of nanoseconds then carry the same error on for ever, each of them within the tolerance.
  *
  * What a first correction leaves of F is measured. Where the share is large, slopes are taken again: of those bodies, mostly one or two, whose
- * equations lack so much. Where it is small F is evaluated again all the same: the integrals of losses and works have no slopes, so that they hold only where F was evaluated last.
+ * equations lack so much. Where it is small F is evaluated again all the same: the integrals of losses and works have no slopes, so that they
+ * hold only where F was evaluated last.
  *
  * Corrections are improved by Broyden's update of M^-1 from those that went before in the same step (Kelley, Solving Nonlinear Equations
  * with Newton's Method, 2003, section 4.2): a slope that is too large or too small along the way is found after one evaluation more, and
@@ -72,11 +73,11 @@ typedef struct newton {
   int     has_best;             /* whether the last iterations came to a point after their first correction */
   int     pause, paused;        /* failed solves for which that is left out, and those that went by */
   double  failing;              /* share of solves that failed, the last ones counting most */
-  double *left;                 /* body by body: weighted squares of what its equations lacked after the last correction that left too much */
-  int     is_poor;              /* whether a correction left too much */
-  int    *poor;                 /* body by body: whether its slopes are to be taken again for that */
-  long   *renewed;              /* body by body: the solve at which they last were */
-  long    solves;               /* so far */
+  double *left;    /* body by body: weighted squares of what its equations lacked after the last correction that left too much */
+  int     is_poor; /* whether a correction left too much */
+  int    *poor;    /* body by body: whether its slopes are to be taken again for that */
+  long   *renewed; /* body by body: the solve at which they last were */
+  long    solves;  /* so far */
 } newton;
 
 /* Entries of a body. */
@@ -188,8 +189,7 @@ static void choose_poor(newton *self, double too_much, int solves)
   const double limit = 0.5 * too_much;
   self->is_poor = 0;
   for (int body = 0; body <= self->n_bodies; body++) {
-    self->poor[body] =
-        self->left[body] * (self->n_bodies + 1) > limit * limit * self->n && self->solves - self->renewed[body] >= solves;
+    self->poor[body] = self->left[body] * (self->n_bodies + 1) > limit * limit * self->n && self->solves - self->renewed[body] >= solves;
     self->is_poor |= self->poor[body];
   }
 }
@@ -405,8 +405,8 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_ma
     self->poor = calloc((size_t)n_bodies + 1, sizeof *self->poor);
     self->renewed = calloc((size_t)n_bodies + 1, sizeof *self->renewed);
   }
-  if (self == NULL || !self->delta || !self->taken || !self->square || !self->best || !self->best_square ||
-      !self->left || !self->poor || !self->renewed) {
+  if (self == NULL || !self->delta || !self->taken || !self->square || !self->best || !self->best_square || !self->left || !self->poor ||
+      !self->renewed) {
     (void)free_solver(solver);
     return NULL;
   }
