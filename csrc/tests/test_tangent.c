@@ -110,6 +110,36 @@ static void test_origin(const trb_params *params)
   close_bench(&b);
 }
 
+/* Slopes of chosen rollers are those that all have, and leave the others' alone. */
+static void test_chosen(const trb_params *params)
+{
+  const int   chosen[2] = {3, 7}, n = (int)params->n_rollers;
+  trb_tangent before[12], alone[12];
+  bench       b;
+  double      y[MOST];
+  if (!open_bench(&b, params, 1.0, ANYWHERE)) return;
+  for (int j = 0; j < n; j++) b.tangents->rollers[j].corrected = 30;
+  CHECK(trb_tangents_are_worn(b.tangents, 3));
+  memcpy(before, b.tangents->rollers, sizeof before);
+  place(&b, 40.0, y);
+  memcpy(b.moved, y, sizeof b.moved);
+  trb_dynamics_pose(b.d, 0.0, y);
+  trb_tangents_differentiate(b.tangents, b.d, chosen, 2, y, b.moved);
+  memcpy(alone, b.tangents->rollers, sizeof alone);
+  for (int j = 0; j < n; j++) {
+    const int is_chosen = j == 3 || j == 7;
+    CHECK((memcmp(alone[j].slope, before[j].slope, sizeof alone[j].slope) != 0) == is_chosen);
+    CHECK(trb_tangents_are_worn(b.tangents, j) == !is_chosen);
+  }
+  trb_tangents_differentiate(b.tangents, b.d, b.d->everyone, n, y, b.moved);
+  for (int k = 0; k < 2; k++) {
+    const trb_tangent *one = &alone[chosen[k]], *all = &b.tangents->rollers[chosen[k]];
+    CHECK(memcmp(one->slope, all->slope, sizeof one->slope) == 0 && memcmp(one->origin, all->origin, sizeof one->origin) == 0);
+    CHECK(memcmp(one->value, all->value, sizeof one->value) == 0 && memcmp(one->found, all->found, sizeof one->found) == 0);
+  }
+  close_bench(&b);
+}
+
 /* Half the distance, a quarter of the error; quadratures are followed like the rates. */
 static void test_order(const trb_params *params)
 {
@@ -375,5 +405,6 @@ int main(void)
     test_turn(&p);
     test_bend(&p);
   }
+  test_chosen(&p);
   return check_report();
 }
