@@ -50,6 +50,26 @@ def test_catalogue_bearings_run_from_required_inputs(name: str) -> None:
     assert all(-1e-12 <= gap < 0.1 * bearing.roller.diameter for gap in gaps.values())
 
 
+@pytest.mark.parametrize(
+    ("kind", "first", "other"),
+    [
+        (Ribs, {"edge_low": 1e-4}, {"edge_high": 3e-3}),
+        (Cage, {"mass": 0.1}, {"bar_width": 2e-3}),
+        (trb.Land, {"clearance": 1e-4}, {"width": 3e-3}),
+        (Profile, {"load": 1e4}, {"load": 2e4}),
+        (Material, {"density": 7000.0}, {"youngs_modulus": 2e11}),
+        (trb.Roughness, {"raceway": 1e-7}, {"rib": 1e-7}),
+    ],
+)
+def test_a_part_that_is_changed_still_leaves_open_what_was_not_given(
+    kind: Any, first: dict[str, float], other: dict[str, float]
+) -> None:
+    """Else what follows the size of the bearing would be fixed at the numbers of another one."""
+    assert kind(**first).replace(**other).model_fields_set == first.keys() | other.keys()
+    roller = Roller(diameter=6e-3, effective_length=9e-3).replace(end_stiffness=1e9)
+    assert roller.model_fields_set == {"diameter", "effective_length", "end_stiffness"}
+
+
 def test_assumed_numbers_follow_the_size_exactly() -> None:
     """The same bearing 1.7 times as large: every assumed length is, too."""
     small, factor = catalogue("31310"), 1.7

@@ -65,6 +65,11 @@ def test_intermediate_quantities_follow_from_each_other(kit: SimpleNamespace) ->
     per_length = 0.356 * modulus * length ** (-1.0 / 9.0) * at("interference") ** (10.0 / 9.0)
     np.testing.assert_allclose(at("load_per_length"), per_length, rtol=1e-10)
     np.testing.assert_allclose(at("load"), per_length * weight, rtol=1e-10)
+    # a slice's sphere is the same at both races, as large as the roller there but for its profile
+    sphere = found["reach"] + 0.5 * found["interference"]
+    both = loaded.all(axis=0)
+    np.testing.assert_allclose(sphere[0][both], sphere[1][both], rtol=1e-12)
+    np.testing.assert_allclose(2.0 * sphere[:, both], scene.bearing.roller.diameter, rtol=0.1)
     radius = at("radius")
     half_width = np.sqrt(8.0 * per_length * radius / (np.pi * modulus))
     np.testing.assert_allclose(at("half_width"), half_width, rtol=1e-10)
