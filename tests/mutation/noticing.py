@@ -192,6 +192,7 @@ THEN: dict[str, list[str]] = {
         "physics/test_effects.py",
         "geometry/test_interference.py",
         "laws/test_in_contacts.py",
+        "physics/test_defects.py",
     ],
     "records": [
         "convergence/test_peaks.py",
@@ -199,6 +200,8 @@ THEN: dict[str, list[str]] = {
         "physics/test_kinematics.py",
         "physics/test_looking.py",
         "api/test_simulation.py",
+        "physics/test_free_ring.py",
+        "physics/test_outer_ring.py",
     ],
     "motion": [
         "physics/test_rigid_body.py",
