@@ -113,6 +113,28 @@ static void test_limits(void)
   rig_free(system);
 }
 
+/* A cage leans about its centre of mass: as far as that is from its middle plane, to either side, its pockets are further away. */
+static void test_lean(void)
+{
+  double lean[3][TRB_N_GAPS];
+  for (int k = 0; k < 3; k++) {
+    trb_clearance_arms arms[TRB_N_GAPS];
+    trb_params         p = rig_params();
+    p.cage_offset = 5e-3 * (k - 1);
+    trb_model *m = rig_model(&p);
+    trb_pair_pocket.clearance(m, arms);
+    for (int g = 0; g < TRB_N_GAPS; g++) {
+      CHECK(arms[g].body[TRB_CAGE_skew] == arms[g].body[TRB_CAGE_tilt]);
+      lean[k][g] = arms[g].body[TRB_CAGE_skew];
+    }
+    trb_model_free(m);
+  }
+  for (int g = 0; g < TRB_N_GAPS; g++) {
+    CHECK_NEAR(lean[0][g] - lean[1][g], 5e-3, 1e-15);
+    CHECK_NEAR(lean[2][g] - lean[1][g], 5e-3, 1e-15);
+  }
+}
+
 int main(void)
 {
   trb_params p = rig_params();
@@ -122,5 +144,6 @@ int main(void)
   p = rig_params(), p.n_slices = 8, p.cage_offset = 3e-3;
   check_scene(&p);
   test_limits();
+  test_lean();
   return check_report();
 }
