@@ -54,6 +54,18 @@ def test_a_locus_has_the_class_that_eyes_see(index: int) -> None:
     assert found.kind == DIFFER.get(NAMES[index], KINDS[index]), found
 
 
+@pytest.mark.parametrize("aside", [0.0, 0.1, 0.3, 0.6])
+def test_coherence_about_the_axis_counts_the_way_to_it(aside: float) -> None:
+    """A circle of radius a about a place at c turns about it with coherence 1, and about the axis with a/sqrt(a^2 + c^2)."""
+    turn = np.linspace(0.0, 40.0 * np.pi, 4001)[:-1]
+    place = 0.3 * np.column_stack([np.cos(turn), np.sin(turn)]) + [aside, 0.0]
+    speed = 0.3 * 50.0 * np.column_stack([-np.sin(turn), np.cos(turn)])
+    found = obs.classify(1e-4 * place, 1e-4 * speed, 1e-4)
+    assert found.whirl_coherence == pytest.approx(1.0, rel=1e-6)
+    assert found.orbit_over_play == pytest.approx(0.3, rel=1e-6)
+    assert found.axis_coherence == pytest.approx(0.3 / np.hypot(0.3, aside), rel=1e-6)
+
+
 def test_the_loci_are_many_and_half_of_them_are_held_back() -> None:
     """Of those that are held back, nine of ten have the class that eyes saw; no whirl is called small."""
     assert len(NAMES) == len(set(NAMES)) >= 200

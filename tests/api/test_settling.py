@@ -88,6 +88,7 @@ def test_a_whirl_that_grows_from_almost_nothing_drifts() -> None:
     assert found.answer == "drifting"
     assert found.time_scale == pytest.approx(2.0, rel=0.15)
     assert "grows" in found.reason
+    assert found.growth_rate == pytest.approx(0.5, rel=0.15)
 
 
 def test_scatter_is_no_drift() -> None:
@@ -108,6 +109,7 @@ def test_rollers_without_a_cage_are_judged_by_their_spacing() -> None:
     t = np.linspace(0.0, 2.0, 4001)
     steady = obs.motion_settling(t, CAGE * t, 0.3 + 0.01 * NOISE.normal(size=t.size))
     assert steady.settled
+    assert steady.growth_rate == 0.0
     assert obs.motion_settling(t, CAGE * t, 0.3 + 0.4 * t).answer == "drifting"
 
 

@@ -217,6 +217,7 @@ THEN: dict[str, list[str]] = {
     "stepping": ["convergence", "api/test_simulation.py", "physics/test_audit.py", "physics/test_gradient.py"],
     "results": [
         "api/test_pictures.py",
+        "api/test_cage_classes.py",
         "api/test_confidence.py",
         "api/test_results.py",
         "api/test_plotting.py",
