@@ -1,6 +1,5 @@
 #include "body/cage.h"
 
-#include <math.h>
 #include <string.h>
 
 static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, third = {0, 0, 1};

@@ -1,7 +1,5 @@
 #include "body/roller.h"
 
-#include <math.h>
-
 static const trb_vec3 none = {0, 0, 0}, first = {1, 0, 0}, second = {0, 1, 0}, third = {0, 0, 1};
 
 void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, int roller, const double *y, trb_roller_pose *pose)

@@ -56,7 +56,7 @@ static void fill(const trb_integrator *it, double time, const double *y, trb_arr
   bdf *self = it->self;
   /* the part of the rings is computed again when it is old, when Newton's method failed twice with it within this step, and
    * always while speed or ring change or have just done so: an old slope that is too stiff makes corrections so small that they seem to
-   * converge */
+   * converge; that of single rollers where it was poor or corrected often */
   const double made = self->jacobians[0]->tangents->time;
   const int    again = (it->time == self->filled_at && made < it->time) || trb_newton_renewing(self->newton);
   const int    old = fabs(time - made) > it->settings.rings_age;

@@ -3,7 +3,7 @@
  * It is the sum of two parts that change at different rates. The part of the slow pairs is what they and inertia do to each roller. It
  * changes slowly and is computed by differences: one evaluation of these pairs for each coordinate, with all rollers moved at once. It is
  * reused until it is old, or until a second Jacobian is asked for within one step; that of single rollers until Newton's method finds it
- * poor. The part of the fast pairs changes with each impact.
+ * poor, or has corrected it often. The part of the fast pairs changes with each impact.
  * Only rollers that touch have it, and its slopes are computed in closed form together with the forces. Pairs without a roller are part of
  * the block of the hub, by differences. A ring with coordinates has borders to all rollers: they are the slopes that the tangents have with
  * the ring's place and motion, times what each of its coordinates does to these. */

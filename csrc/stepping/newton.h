@@ -16,7 +16,8 @@ SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_ma
 int trb_newton_troubled(SUNNonlinearSolver solver);
 /* Whether slopes are being taken again within a solve: all of them, then. */
 int trb_newton_renewing(SUNNonlinearSolver solver);
-/* Whether the slopes of a body are to be taken again, as the last first correction left too much of what its equations lacked. */
+/* Whether the slopes of a body are to be taken again, as the last first correction left too much of what its equations lacked, or as it lacked
+ * most when a solve failed. */
 int trb_newton_is_poor(SUNNonlinearSolver solver, int body);
 /* Forget which solves failed, and what corrections left. */
 void trb_newton_forget(SUNNonlinearSolver solver);

@@ -275,6 +275,53 @@ static void test_impacts(void)
   CHECK(heavy > 1e-6 && heavy < 1e-3); /* some 10 us to the largest interference */
 }
 
+/* Speed of a roller's centre against the point of the cage that is there, from their poses in R. */
+static double closing_at(const trb_dynamics *d, int j)
+{
+  const trb_roller_pose *r = &d->rollers[j];
+  const trb_rigid_pose  *cage = &d->bodies[TRB_BODY_CAGE].pose;
+  const trb_vec3         arm = trb_sub(trb_turn_z(r->x, r->cosine, r->sine), cage->x);
+  return trb_norm(trb_sub(trb_turn_z(r->v, r->cosine, r->sine), trb_add(cage->v, trb_cross(cage->omega, arm))));
+}
+
+/* A roller counts as far from its pocket where the gap lasts for three steps at its true speed, not at a bound of it. */
+static void test_far(void)
+{
+  const trb_impact_measure measure = {.share = 1e-9, .least = 1e-6, .velocity = 1.0, .position = 1.0};
+  const trb_params         p = rig_params();
+  unsigned long long       seed = 11;
+  int                      seen = 0;
+  for (int i = 0; i < 20; i++) {
+    double        y[512], rates[512];
+    trb_impacts   impacts;
+    trb_dynamics *d;
+    trb_message   unused;
+    trb_system   *system = rig_system(&p);
+    trb_motion   *turning = rig_motion(rig_state(system, 4930.0, 100.0, y), 100.0);
+    rig_disturb(system, &seed, y);
+    for (int k = 0; k < 3; k++) y[rig_cage(system) + TRB_CAGE_v_x + k] += 0.2 * rig_random(&seed);
+    if (!CHECK(trb_dynamics_create(system, turning, "scalar", &d, &unused) == TRB_OK)) return;
+    CHECK(trb_impacts_create(system->model, &impacts, &unused) == TRB_OK);
+    trb_rhs(d, NULL, 0.0, y, rates);
+    trb_dynamics_pose(d, 0.0, y);
+    for (int j = 0; j < system->model->n_rollers; j++) {
+      const double left = trb_dynamics_gap_left(d, 0, j, y), closing = closing_at(d, j), until = left / (3.0 * closing);
+      if (!(left > 0.0)) continue;
+      trb_impacts_look(&impacts, d, turning, 0.0, y, until * 0.999999, &measure);
+      CHECK(impacts.factor[j] == 1.0 && impacts.speed[j] == (double)INFINITY);
+      trb_impacts_look(&impacts, d, turning, 0.0, y, until * 1.000001, &measure);
+      CHECK(impacts.factor[j] < 1.0);
+      CHECK_NEAR(impacts.speed[j], closing, 1e-9 * closing);
+      seen++;
+    }
+    trb_impacts_free(&impacts);
+    trb_dynamics_free(d);
+    trb_motion_free(turning);
+    rig_free(system);
+  }
+  CHECK(seen > 50);
+}
+
 int main(void)
 {
   const trb_params p = rig_params();
@@ -289,6 +336,7 @@ int main(void)
   test_newton_share();
   test_weights();
   test_impacts();
+  test_far();
   test_beside();
   test_failed_step();
   for (int i = 0; i < 6; i++) test_set_state("bdf", pow(10.0, -i));

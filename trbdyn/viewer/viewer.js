@@ -147,19 +147,20 @@
     if (box.dataset.shown !== JSON.stringify([pick, state.mode])) {
       box.dataset.shown = JSON.stringify([pick, state.mode]);
       const rows = [];
-      for (const full of Object.values(one.quantities)) {
-        const q = full;
+      for (const q of Object.values(one.quantities)) {
         if (q.kind === "station") continue;
         if (q.kind === "pocket") {
           for (let s = 0; s < slots; s++) {
             if (pick.kind === "face" && s !== pick.slot) continue;
-            rows.push({ q: full, column: pick.index * slots + s, label: `force, ${slot_names[s]}`, current: q.name === state.mode && pick.kind === "face" });
+            rows.push({ q, column: pick.index * slots + s, label: `force, ${slot_names[s]}`, current: q.name === state.mode && pick.kind === "face" });
           }
-        } else rows.push({ q: full, column: pick.index, label: q.label, current: q.name === state.mode });
+        } else rows.push({ q, column: pick.index, label: q.label, current: q.name === state.mode });
       }
       box.rows = rows;
-      box.innerHTML = `<h3>${where}</h3><canvas id="history"></canvas><p class="hint" id="history-note"></p><table>` + rows.map((r) => `<tr class="${r.current ? "current" : ""}"><td>${r.label}</td><td></td></tr>`).join("") +
-        "</table>";
+      box.innerHTML = '<h3></h3><canvas id="history"></canvas><p class="hint" id="history-note"></p><table>' +
+        rows.map((r) => `<tr class="${r.current ? "current" : ""}"><td></td><td></td></tr>`).join("") + "</table>";
+      box.querySelector("h3").textContent = where; // names of bearings and faces are what a user wrote
+      box.querySelectorAll("td:first-child").forEach((cell, k) => { cell.textContent = rows[k].label; });
     }
     box.querySelectorAll("td:last-child").forEach((cell, k) => {
       cell.textContent = number(one.valueAt(box.rows[k].q, b.nearest, box.rows[k].column)) + unit(box.rows[k].q);
