@@ -3,7 +3,7 @@
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
 
-#include "motion/clearance.h"
+#include "motion/fast_pairs.h"
 #include "motion/ring_motion.h"
 #include "system/system.h"
 
@@ -17,18 +17,6 @@ enum {
   TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_FLOW_N_QUADRATURES,
   TRB_FLOW_ROOM = (TRB_FLOW_SIZE + 7) / 8 * 8 /* padded, so that loops over it have no remainder */
 };
-
-/* A pair that is evaluated at every instant, and what is proven of every roller in it. */
-typedef struct trb_fast_pair {
-  const trb_pair    *pair;
-  int                row;        /* its number in the system */
-  trb_clearance     *clearances; /* n_rollers */
-  trb_clearance_arms arms[TRB_N_GAPS];
-  /* where the other body deforms; NULL where it does not */
-  int    *places; /* [mode]: of its amplitude in the state */
-  double *ways;   /* [roller][mode][gap]: as its kind gives them, for a unit of that coordinate */
-  double *modal;  /* [roller][mode]: those coordinates where the gaps were found */
-} trb_fast_pair;
 
 typedef struct trb_dynamics {
   const trb_system *system;
@@ -77,11 +65,8 @@ double trb_dynamics_longest_step(const trb_dynamics *d);
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
 /* All loads at the poses kept; detail may be NULL. */
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
-/* The same without the pairs that are proven not to touch, which changes no bit of the loads; apart: see trb_dynamics_apart, may be NULL. */
+/* The same without the pairs that are proven not to touch, which changes no bit of the loads; apart: see trb_fast_apart, may be NULL. */
 void trb_dynamics_loads_of(trb_dynamics *d, const unsigned *apart, trb_detail *detail);
-/* What is proven of a state y near those that were evaluated last: of every roller, bits of the pairs in which it touches
- * nothing. */
-void trb_dynamics_apart(const trb_dynamics *d, const double *y, unsigned *apart);
 /* What the contacts read, all surfaces of true form. */
 trb_instant trb_dynamics_instant(const trb_dynamics *d);
 
@@ -96,20 +81,10 @@ static inline trb_wrench *trb_dynamics_reactions(const trb_dynamics *d, int roll
 /* Adds the kept reactions of a roller to the loads of the bodies. */
 void trb_dynamics_add_reactions(trb_dynamics *d, int roller);
 
-/* A right-hand side is made in four steps: start it, put in the flow of each roller, add the pairs without a roller, put in the rates of
+/* A right-hand side is made in four steps: start it, put in the flow of each roller (with its fast pairs), add the pairs without a roller, put in the rates of
  * the hub. */
 void trb_dynamics_start(trb_dynamics *d, double *rates);
 void trb_dynamics_put(const trb_dynamics *d, int roller, const double *flow, double *rates);
-/* Forget what was proven of fast pairs at earlier states. */
-void trb_dynamics_forget(trb_dynamics *d);
-/* Fast pairs in which a roller is not proven clear at a state, bit by pair. */
-unsigned trb_dynamics_near(const trb_dynamics *d, int roller, const double *y);
-/* Lower bound of the gap of a roller that is left in a fast pair at a state, m; not above 0: it may touch. */
-double trb_dynamics_gap_left(const trb_dynamics *d, int fast, int roller, const double *y);
-/* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
-trb_gaps trb_dynamics_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
-/* Adds the loads of the fast pairs in which a roller is near to its flow and to the loads of the hub's bodies. */
-void trb_dynamics_add_fast(trb_dynamics *d, int roller, const double *y, double *flow);
 /* Adds the loads of pairs without a roller to those of the hub's bodies and their powers to the quadratures of the rates. */
 void trb_dynamics_add_hub(trb_dynamics *d, double *rates);
 /* Adds what bodies lose in themselves, at the poses kept, to a list of losses. */

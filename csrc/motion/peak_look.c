@@ -194,12 +194,12 @@ static void look_at_fast(trb_peak_look *p, const double *y, double *values)
   forces.pocket_force = to;
   forces.pocket_interference = NULL;
   for (int j = 0; j < m->n_rollers; j++) {
-    const unsigned near = trb_dynamics_near(p->d, j, y);
+    const unsigned near = trb_fast_near(p->d, j, y);
     if (near == 0) continue;
     pose(p, j, y);
     for (int f = 0; f < p->d->n_fast; f++) {
       trb_load load;
-      if (near >> f & 1U) (void)trb_dynamics_touch(p->d, f, j, y, &load, NULL, &forces);
+      if (near >> f & 1U) (void)trb_fast_touch(p->d, f, j, y, &load, NULL, &forces);
     }
   }
 }

@@ -28,7 +28,7 @@ const char *trb_field_kind_name(trb_field_kind kind);
 int trb_field_shape(const trb_model *m, trb_field_kind kind, int shape[2]);
 /* Offset of a field in a record; TRB_N_FIELDS gives the record's length. */
 int trb_record_offset(const trb_model *m, int field);
-/* Fill a record at (time, y). detail: buffers of the caller. apart: what is known not to touch there (trb_dynamics_apart), saves time; may
+/* Fill a record at (time, y). detail: buffers of the caller. apart: what is known not to touch there (trb_fast_apart), saves time; may
  * be NULL. */
 void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record);
 

@@ -14,7 +14,7 @@ static int place(trb_dynamics *d, const trb_approximation *instead, double time,
   if (instead != NULL) instead->begin(instead->self, d, time);
   for (int j = 0; j < m->n_rollers; j++) {
     const double *own = y + trb_state_roller(d->system, j);
-    d->near[j] = trb_dynamics_near(d, j, y);
+    d->near[j] = trb_fast_near(d, j, y);
     d->uneven[j] = trb_dynamics_spin_roller(d, j, y);
     const int follows =
         instead != NULL && !d->uneven[j] && instead->follow(instead->self, d, j, own, d->flows[j], trb_dynamics_reactions(d, j));
@@ -54,7 +54,7 @@ void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, con
   evaluate_slow(d, instead, n_exact, y);
   for (int j = 0; j < m->n_rollers; j++) {
     /* fast pairs that are not proven clear */
-    if (d->near[j] != 0) trb_dynamics_add_fast(d, j, y, d->flows[j]);
+    if (d->near[j] != 0) trb_fast_add(d, j, y, d->flows[j]);
     trb_dynamics_add_reactions(d, j);
     /* rates of rollers */
     trb_dynamics_put(d, j, d->flows[j], rates);

@@ -20,7 +20,7 @@ typedef struct place {
   double   *row; /* of a record; NULL: the end of a step */
   double    time;
   double   *y;
-  unsigned *apart; /* of a record: see trb_dynamics_apart; of all rollers */
+  unsigned *apart; /* of a record: see trb_fast_apart; of all rollers */
 } place;
 
 struct trb_recorder {
@@ -136,7 +136,7 @@ void trb_recorder_record(trb_recorder *r, double time, const double *y, double *
   memcpy(next->y, y, r->n_state * sizeof *y);
   for (int k = 0; k < r->n; k++) {
     const trb_dynamics *stepping = r->parts[k].stepping;
-    trb_dynamics_apart(stepping, y, next->apart + stepping->system->layout.leaf);
+    trb_fast_apart(stepping, y, next->apart + stepping->system->layout.leaf);
   }
   hand_over(r);
 }

@@ -23,7 +23,7 @@ typedef struct trb_record_parts {
 
 /* Length of a bearing's part of a row: a record, then peaks if they are kept. */
 int trb_record_parts_length(const trb_record_parts *parts);
-/* Fills it; apart: of trb_dynamics_apart. */
+/* Fills it; apart: of trb_fast_apart. */
 void trb_record_parts_fill(const trb_record_parts *parts, const unsigned *apart, double time, const double *y, double *row);
 
 /* Starts the thread. parts: of n bearings; nothing else may use what they hold until the recorder is closed, but for the dynamics of the

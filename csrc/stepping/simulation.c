@@ -198,7 +198,7 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
   trb_integrator_set_tolerances(it);
   for (int k = 0; k < s->assembly.n; k++) {
     trb_impacts_forget(s->assembly.members[k].model, &it->members[k].impacts);
-    trb_dynamics_forget(it->members[k].dynamics);
+    trb_fast_forget(it->members[k].dynamics);
   }
   if (s->with_peaks) begin_peaks(s, time, it->y);
   return it->kind->restart(it, message);
@@ -331,7 +331,7 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
     return TRB_OK;
   }
   for (int k = 0; k < s->assembly.n; k++) {
-    trb_dynamics_apart(it->members[k].dynamics, y, s->apart[k]);
+    trb_fast_apart(it->members[k].dynamics, y, s->apart[k]);
     trb_record_parts_fill(&s->parts[k], s->apart[k], time, y, record);
     record += trb_record_parts_length(&s->parts[k]);
   }
