@@ -336,8 +336,8 @@ class Simulation(Displayed):
             over the average, for instance ``{"torque": 0.01, "orbit_radius_over_cpr": 0.05}``, and the motion is known to
             have settled. `revolutions` or `duration` is then the longest run; one that ends there without it warns.
         save_every : float, optional
-            Time between records (s). By default 1e-4 s up to 5000 records, in longer runs longer intervals up to 1e-3
-            s, but not longer than a twentieth of a turn of the shaft (`trbdyn.run.keeping`); ``result.meta["kept"]`` says
+            Time between records (s). By default a 32nd of a turn of the shaft, but at most 1e-2 s; in a run that would have
+            fewer than 200 records a half, a quarter and so on of that, as far as 1e-4 s. ``result.meta["kept"]`` says
             what was kept.
         save_groups : sequence of str, optional
             Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
