@@ -59,4 +59,4 @@ html_theme = "furo"
 html_title = f"trbdyn {version}"
 html_show_sphinx = False
 html_static_path = ["static"]
-html_css_files = ["tables.css"]
+html_css_files = ["widths.css"]

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing, Cage, CageBody, Material, Profile, Ribs, Roller, Roughness, Scatter
     from trbdyn.model.defects import DepthMap, Pit, Waviness
     from trbdyn.model.effects import Effects
+    from trbdyn.model.elastic_cage import ElasticCage
     from trbdyn.model.growth import Growth
     from trbdyn.model.heat import HeatPaths
     from trbdyn.model.land import Land
@@ -147,6 +148,7 @@ __all__ = [
     "CageBody",
     "DepthMap",
     "Effects",
+    "ElasticCage",
     "Face",
     "FileError",
     "Growth",

@@ -329,6 +329,13 @@ def test_names_of_parts_are_exported() -> None:
         assert getattr(trb, name).__doc__
 
 
+def test_every_name_that_can_be_used_is_listed() -> None:
+    """Completion, ``from trbdyn import *`` and type checkers know what `trbdyn` gives."""
+    known = trb._NAMES.keys() | trb._MODULES.keys()
+    assert known == set(trb.__all__) == set(dir(trb))
+    assert all(getattr(trb, name) is not None for name in known)
+
+
 def test_a_new_case_has_the_usual_effects(tmp_path: Path) -> None:
     own, named = tmp_path / "own.toml", tmp_path / "named.toml"
     assert main(["new", str(own)]) == 0

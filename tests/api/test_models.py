@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import inspect
 import math
 import pickle
 from typing import Any
@@ -219,6 +220,12 @@ class TestScene:
             line.startswith("bearing.roller.densty = 1 : unknown name; did you mean 'density'?") for line in lines
         )
         assert "speed_rpm = None : must be a number or a History of times and values (rpm)" in lines
+
+    def test_values_without_names(self) -> None:
+        """Every name that the model has is told, and signatures do not offer values without names."""
+        with pytest.raises(InputError, match=r"must be given by name, as History\(times=\.\.\.\); names: times, values, slopes, repeats"):
+            History([0.0, 1.0], [2.0, 3.0])  # type: ignore[call-arg]
+        assert str(inspect.signature(History)) == "(*, times, values, slopes=None, repeats=False)"
 
     def test_load_at_the_limit(self, rig: Bearing) -> None:
         most = 1000 / math.tan(math.radians(rig.cup_half_angle_deg))

@@ -177,6 +177,7 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
         parameters = [
             entry.replace(annotation=inspect.Parameter.empty, default=_brief(entry.default))
             for entry in full.parameters.values()
+            if entry.kind is not inspect.Parameter.VAR_POSITIONAL
         ]
         cls.__signature__ = full.replace(parameters=parameters, return_annotation=inspect.Signature.empty)
 
@@ -184,7 +185,11 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
         """What `dir` of the class lists, so that completion shows fields and methods of the model, none of pydantic's."""
         return dir(type(self))
 
-    def __init__(self, /, **fields: Any) -> None:
+    def __init__(self, /, *unnamed: Any, **fields: Any) -> None:
+        if unnamed:
+            name, names = type(self).__name__, list(type(self).model_fields)
+            limit = f"must be given by name, as {name}({names[0]}=...); names: {', '.join(names)}"
+            raise InputError.of(name, unnamed[0], limit)
         try:
             super().__init__(**fields)
         except ValidationError as error:
