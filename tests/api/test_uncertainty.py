@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 from scipy.stats import qmc, sobol_indices, uniform
 
 import trbdyn as trb
-from trbdyn.study.uncertainty import Band, first_order, open_inputs, uncertainty
+from trbdyn.study.definition import Base, Case
+from trbdyn.study.uncertainty import Band, drawn_case, first_order, open_inputs, uncertainty, unit_draws
 
 SHORT = trb.RunOptions(duration=1e-3, accuracy="fast")
 BANDS = {"lubricant.temperature_c": (47.0, 53.0), "bearing.cup_half_angle_deg": (14.0, 15.7)}
@@ -96,6 +98,64 @@ def test_open_inputs_of_a_catalogue_bearing() -> None:
         scene, [b for b in open_inputs(scene) if not b.path.startswith("bearing.")], samples=8, options=SHORT
     )
     assert found.draws == 8
+
+
+CATALOGUE = {
+    "30204": {"bore": 0.02, "outside": 0.047, "width": 0.01525, "C": 28e3, "e": 0.35},
+    "32208": {"bore": 0.04, "outside": 0.08, "width": 0.02475, "C": 74.8e3, "e": 0.37},
+    "33213": {"bore": 0.065, "outside": 0.12, "width": 0.041, "C": 240e3, "e": 0.39},
+}
+
+
+def draws_of(scene: trb.Scene, bands: list[Band], count: int) -> list[Case]:
+    base = Base.of(scene)
+    unit = unit_draws(len(bands), count, 5)
+    return [drawn_case(base, trb.RunOptions(revolutions=1.0), bands, row, k) for k, row in enumerate(unit)]
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_every_draw_of_a_catalogue_bearing_can_be_built(name: str) -> None:
+    """Numbers and sizes that belong together are drawn together: nothing overlaps, is refused or is warned of."""
+    bearing = trb.Bearing.from_catalogue(**CATALOGUE[name])
+    scene = trb.Scene(bearing, speed_rpm=2000.0, axial_load=0.05 * CATALOGUE[name]["C"])
+    bands = list(open_inputs(scene))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cases = draws_of(scene, bands, 64)
+    assert [case.error for case in cases if case.scene is None] == []
+    drawn = [case.scene.bearing for case in cases if case.scene is not None]
+    fill = [one.n_rollers * one.roller.diameter / (np.pi * one.pitch_diameter) for one in drawn]
+    one_roller = max(one.roller.diameter / (np.pi * one.pitch_diameter) for one in drawn)
+    assert min(fill) > 0.80 - one_roller
+    assert max(fill) <= 0.90
+    assert np.ptp(fill) > 0.05
+    assert len({one.n_rollers for one in drawn}) > 3
+    assert all(case.parameters["bearing.n_rollers"] == one.n_rollers for case, one in zip(cases, drawn, strict=True))
+    # the radius at which a cage has most of its mass does not follow its mass
+    radius = [(one.cage.inertia_axial / one.cage.mass) ** 0.5 for one in drawn]
+    assert max(radius) / min(radius) < 1.2
+    assert np.ptp([one.cage.mass for one in drawn]) > 0.8 * bearing.cage.mass
+
+
+def test_bands_of_ones_own_are_drawn_as_they_are() -> None:
+    """Whoever gives another band than that of the estimate knows something: nothing is put right."""
+    bearing = trb.Bearing.from_catalogue(**CATALOGUE["32208"])
+    scene = trb.Scene(bearing, speed_rpm=2000.0, axial_load=3000.0)
+    size = bearing.roller.diameter
+    bands = [
+        Band(path="bearing.n_rollers", low=15, high=17),
+        Band(path="bearing.roller.diameter", low=0.98 * size, high=1.01 * size),
+        Band(path="bearing.cage.mass", low=0.9 * bearing.cage.mass, high=1.1 * bearing.cage.mass),
+        Band(path="bearing.roller.effective_length", low=0.014, high=0.017),
+    ]
+    cases = draws_of(scene, bands, 16)
+    assert {case.parameters["bearing.n_rollers"] for case in cases} == {15, 16, 17}
+    apart = bearing.roller.total_length - bearing.roller.effective_length
+    for case in cases:
+        assert case.scene is not None
+        roller, cage = case.scene.bearing.roller, case.scene.bearing.cage
+        assert roller.total_length - roller.effective_length == pytest.approx(apart)
+        assert (cage.inertia_axial / cage.mass) == pytest.approx(bearing.cage.inertia_axial / bearing.cage.mass)
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.results.summary import LABELS
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Base, Case, Study
+from trbdyn.study.drawn_bearing import belongs_together
 from trbdyn.study.runner import run as run_study
 
 if TYPE_CHECKING:
@@ -338,26 +339,14 @@ def drawn_case(base: Base, options: RunOptions, bands: Sequence[Band], row: Arra
         else:
             value = float(band.low + share * (band.high - band.low))
         overrides[band.path] = value
-    parameters = {"draw": number, **overrides}
+    ends = {band.path: (band.low, band.high, float(share)) for band, share in zip(bands, row, strict=True)}
+    overrides = belongs_together(base.tables.get("bearing"), overrides, ends)
+    parameters = {"draw": number} | {band.path: overrides[band.path] for band in bands}
     try:
-        scene, _ = base.build(_longer_with_its_line(base, overrides))
+        scene, _ = base.build(overrides)
     except InputError as error:
         return Case(parameters, None, options, str(error).splitlines()[0])
     return Case(parameters, scene, options)
-
-
-def _longer_with_its_line(base: Base, overrides: dict[str, Any]) -> dict[str, Any]:
-    """A longer contact line makes the roller longer by as much, unless its length is drawn as well."""
-    line, whole = "bearing.roller.effective_length", "bearing.roller.total_length"
-    roller = base.tables.get("bearing", {}).get("roller")
-    if (
-        line not in overrides
-        or whole in overrides
-        or not isinstance(roller, Mapping)
-        or roller.get("total_length") is None
-    ):
-        return overrides
-    return {**overrides, whole: roller["total_length"] + overrides[line] - roller["effective_length"]}
 
 
 def _gathered(data: xarray.Dataset, bands: tuple[Band, ...], unit: Array, quantities: Sequence[str]) -> Uncertainty:

@@ -1,0 +1,69 @@
+"""Estimates of a catalogue bearing that belong together are drawn together: each draw is a bearing that can be built.
+
+Bands of estimates are given one by one. If each were drawn by itself, a large number of rollers, as there are of thin
+ones, would meet thick ones, which overlap, and a light cage would have the moments of inertia of a heavy one. So what an
+estimate follows from is kept in each draw:
+
+- the number of rollers is drawn by the share of the pitch circle that they take;
+- a roller is longer than its contact line by what was drawn for both;
+- the cage's moments of inertia are drawn for its mass, and the one across its axis for the length of its rollers as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from trbdyn.model.catalogue_rollers import FILL
+
+LINE, LENGTH = "bearing.roller.effective_length", "bearing.roller.total_length"
+COUNT, DIAMETER, PITCH = "bearing.n_rollers", "bearing.roller.diameter", "bearing.pitch_diameter"
+MASS, AXIAL, TRANSVERSE = "bearing.cage.mass", "bearing.cage.inertia_axial", "bearing.cage.inertia_transverse"
+
+
+def belongs_together(
+    bearing: Any, drawn: Mapping[str, Any], bands: Mapping[str, tuple[float, float, float]]
+) -> dict[str, Any]:
+    """Inputs of a draw, with those that follow from others put right.
+
+    Parameters
+    ----------
+    bearing : mapping
+        The bearing's table in the base of a study.
+    drawn : mapping of str to number
+        Inputs of the draw, each drawn by itself.
+    bands : mapping of str to tuple
+        Both ends of the band of each input, and how far between them it was drawn (0 to 1). A band that is not the one of
+        the estimate is somebody's knowledge, and what was drawn from it stays.
+
+    Returns
+    -------
+    dict
+        The inputs of the draw, and the length of the rollers where their contact line was drawn and the length was not.
+    """
+    found = dict(drawn)
+    roller = bearing.get("roller") if isinstance(bearing, Mapping) else None
+    if not isinstance(roller, Mapping):
+        return found
+    estimates = {f"bearing.{entry['path']}": entry for entry in bearing.get("estimates") or ()}
+    free = {path for path, entry in estimates.items() if bands.get(path, ())[:2] == (entry["low"], entry["high"])}
+    whole = roller.get("total_length")
+    if LINE in drawn and whole is not None and (LENGTH not in drawn or LENGTH in free):
+        found[LENGTH] = drawn.get(LENGTH, whole) + drawn[LINE] - roller["effective_length"]
+    if COUNT in free and not drawn.keys().isdisjoint((DIAMETER, PITCH)):
+        around = math.pi * drawn.get(PITCH, bearing["pitch_diameter"]) / drawn.get(DIAMETER, roller["diameter"])
+        found[COUNT] = _count(around, bands[COUNT][2])
+    if free >= {MASS, AXIAL, TRANSVERSE}:
+        heavier = drawn[MASS] / estimates[MASS]["value"]
+        longer = drawn.get(LINE, roller["effective_length"]) / roller["effective_length"]
+        along = drawn[TRANSVERSE] - 0.5 * estimates[AXIAL]["value"]  # what the distances along the axis make
+        found[AXIAL] = heavier * drawn[AXIAL]
+        found[TRANSVERSE] = heavier * (0.5 * drawn[AXIAL] + along * longer**2)
+    return found
+
+
+def _count(around: float, share: float) -> int:
+    """Number of rollers that takes a share of the pitch circle between the usual ones, `around` rollers fill it."""
+    nearest = round(around * (FILL.low + share * (FILL.high - FILL.low)))
+    return max(3, min(nearest, math.floor(around * FILL.high)))
