@@ -6,17 +6,19 @@ the figure, back. The style holds for the new picture only: nothing global is ch
 
 from __future__ import annotations
 
+import inspect
 import math
 import os
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Any, Final
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from trbdyn.base.expected import expect
 from trbdyn.base.own_files import folder_path
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
@@ -38,10 +40,8 @@ from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, po
 from trbdyn.plot.style import SAVE_DPI, STYLE, styled
 from trbdyn.plot.wearing import wear_map
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
-
-if TYPE_CHECKING:
-    from trbdyn.results.assembly import AssemblyResult
 
 __all__ = [
     "PICTURES",
@@ -95,6 +95,24 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+def _of_its_kind(draw: Callable[..., Any], kind: type) -> Callable[..., Any]:
+    """A picture that refuses anything but the kind of result that it shows."""
+
+    @wraps(draw)
+    def checked(result: Any, *given: Any, **named: Any) -> Any:
+        expect("result", result, kind)
+        return draw(result, *given, **named)
+
+    return checked
+
+
+for _name in __all__:
+    _draw = globals().get(_name)
+    _first = next(iter(inspect.signature(_draw).parameters.values()), None) if inspect.isfunction(_draw) else None
+    if _first is not None and _first.annotation in ("Result", "AssemblyResult"):
+        globals()[_name] = _of_its_kind(globals()[_name], Result if _first.annotation == "Result" else AssemblyResult)
 
 
 Picture = Callable[["Result"], Axes | Figure]

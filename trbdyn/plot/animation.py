@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -13,12 +12,11 @@ from matplotlib.artist import Artist
 from matplotlib.patches import Circle
 from scipy.integrate import cumulative_trapezoid
 
+from trbdyn.base.expected import expect
 from trbdyn.errors import FileError, InputError
 from trbdyn.plot.cage import last_turns, revolutions
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, styled
-
-if TYPE_CHECKING:
-    from trbdyn.results.result import Result
+from trbdyn.results.result import Result
 
 __all__ = ["animate", "save"]
 
@@ -61,6 +59,7 @@ def animate(
     InputError
         If a number is not positive or a group was not recorded.
     """
+    expect("result", result, Result)
     for name, value in (("last", last), ("frames", frames), ("fps", fps)):
         if not value > 0:
             raise InputError.of(name, value, "must be > 0")

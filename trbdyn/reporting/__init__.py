@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from trbdyn.base.expected import expect
 from trbdyn.errors import FileError, InputError, unknown_name
 
 if TYPE_CHECKING:
@@ -77,8 +78,10 @@ def report(
     from trbdyn.plot import PICTURES
     from trbdyn.plot.assembly import of_result
     from trbdyn.reporting.page import page, page_of_assembly
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
+    expect("result", result, Result, AssemblyResult)
     known = {*PICTURES, *(() if isinstance(result, Result) else of_result(result))}
     for name in pictures or ():
         if name not in known:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.base.expected import expect
 from trbdyn.base.own_files import output_path
 from trbdyn.errors import InputError, StepError
 from trbdyn.model.assembly import Assembly
@@ -100,6 +101,8 @@ class AssemblySimulation:
         instruction_set: str = "",
         **options: Any,
     ) -> None:
+        if not isinstance(subject, Seating):
+            expect("assembly", subject, Assembly)
         self.options = RunOptions(accuracy=accuracy, **options)
         self.assembly = subject if isinstance(subject, Assembly) else None
         seating = seating_of(subject) if isinstance(subject, Assembly) else subject

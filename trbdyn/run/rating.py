@@ -6,7 +6,7 @@ from typing import Any, Final, overload
 
 import numpy as np
 
-from trbdyn.errors import InputError
+from trbdyn.base.expected import expect
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.motion import value_at
 from trbdyn.model.scene import Scene
@@ -102,13 +102,12 @@ def rating(
         "contamination": contamination,
         "reliability": reliability,
     }
+    expect("subject", subject, Scene, Result, Assembly, ShaftEquilibrium)
     if isinstance(subject, Scene):
         return sheet(subject, at_equilibrium(subject), **options)
     if isinstance(subject, Result):
         return sheet(subject.scene, of_run(subject), **options)
-    if isinstance(subject, Assembly | ShaftEquilibrium):
-        return system_sheet(equilibrium(subject) if isinstance(subject, Assembly) else subject, **options)
-    raise InputError.of("subject", type(subject).__name__, "must be a Scene, a Result, an Assembly or its equilibrium")
+    return system_sheet(equilibrium(subject) if isinstance(subject, Assembly) else subject, **options)
 
 
 def of_run(result: Result) -> Loading:

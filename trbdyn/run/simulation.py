@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
+from trbdyn.base.expected import expect
 from trbdyn.base.own_files import output_path
 from trbdyn.base.shown import Displayed, Shown, field_rows
 from trbdyn.base.validation import number_of
@@ -69,6 +70,7 @@ class Simulation(Displayed):
     """
 
     def __init__(self, scene: Scene, *, accuracy: str = "standard", instruction_set: str = "", **options: Any) -> None:
+        expect("scene", scene, Scene)
         self.scene = scene
         self.options = RunOptions(accuracy=accuracy, **options)
         self._model = build_model(scene, instruction_set)

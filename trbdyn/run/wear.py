@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import laws
+from trbdyn.base.expected import expect
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.results import fields as field_table
+from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
 
 if TYPE_CHECKING:
     import xarray
-
-    from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
 
@@ -76,6 +76,7 @@ def wear(result: Result, *, coefficient: float, records: int = 200, bins: int = 
     """
     import xarray
 
+    expect("result", result, Result)
     k = number_of("coefficient", coefficient)
     if not 0.0 < k < math.inf:
         raise InputError.of("coefficient", coefficient, "must be > 0 (m2/N)")

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError, LoadError
@@ -267,8 +268,7 @@ def equilibrium(assembly: Assembly, *, time: float = 0.0, axial_displacement: fl
     >>> round(found["left"].axial_load / 1e3, 2)
     3.33
     """
-    if not isinstance(assembly, Assembly):
-        raise InputError.of("assembly", type(assembly).__name__, "must be an Assembly")
+    expect("assembly", assembly, Assembly)
     if axial_displacement is not None and not abs(number_of("axial_displacement", axial_displacement)) < FARTHEST:
         raise InputError.of("axial_displacement", axial_displacement, f"must be from {-FARTHEST:g} to {FARTHEST:g} (m)")
     system = ShaftOnBearings(assembly, number_of("time", time))

@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
-from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 
@@ -89,8 +89,7 @@ def preload_diagram(
     >>> [round(float(load[1]) / 1e3, 1) for load in diagram.loads.values()]
     [5.3, 1.5]
     """
-    if not isinstance(assembly, Assembly):
-        raise InputError.of("assembly", type(assembly).__name__, "must be an Assembly")
+    expect("assembly", assembly, Assembly)
     loads = tuple(load.replace(force=(*load.force[:2], 0.0)) for load in assembly.loads)
     across = assembly.replace(loads=loads, gravity=(*assembly.gravity[:2], 0.0))
     middle = equilibrium(across, time=time)

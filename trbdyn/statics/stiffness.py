@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eig
 
 from trbdyn import _core
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, LoadError
 from trbdyn.model.flatten import ring_load
@@ -207,6 +208,7 @@ def stiffness(scene: Scene, *, time: float | None = None) -> Stiffness:
     >>> round(trb.stiffness(scene).matrix[2, 2] * 1e-8, 2)
     2.0
     """
+    expect("scene", scene, Scene)
     at = scene.start.time if time is None else time
     model, angles = normal_contacts(scene), nominal_angles(scene)
     solver = EquilibriumSolver(model, scene, angles)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
@@ -145,6 +146,7 @@ def cage_map(
     >>> str(found.data.kind.values[0, 0, 0])
     'stable'
     """
+    expect("scene", scene, Scene)
     turning, loads = speeds_of(speeds), _loads(axial_loads)
     runs = CageRuns(
         scene,

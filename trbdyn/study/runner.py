@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import folder_path
+from trbdyn.base.validation import Model
 from trbdyn.base.version import __version__
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.scene import Scene
@@ -78,6 +79,10 @@ def run(
     FileError
         If the folder cannot be used.
     """
+    if isinstance(study, Model | str | os.PathLike) or not isinstance(study, Study | Iterable):
+        raise InputError.of(
+            "study", study, "must be a Study, or scenes in a list; trb.study.load_study reads a study from a file"
+        )
     study = study if isinstance(study, Study) else of_scenes(study, options)
     place = None if folder is None else folder_path(folder, "folder")
     if place is not None and (place / DATASET).exists() and not (place / INDEX).exists():

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.results.summary import LABELS
@@ -186,6 +187,7 @@ def surrogate(found: Uncertainty, quantity: str, *, seed: int = 0) -> Surrogate:
     >>> float(fast({"lubricant.temperature_c": 50.0, "scene.axial_load": 5000.0})) > 0.0
     True
     """
+    expect("found", found, Uncertainty)
     if quantity in found.data and quantity not in found.spreads:
         raise InputError.of("quantity", quantity, "must have a number in every draw; in some of them it has none")
     if quantity not in found.spreads:

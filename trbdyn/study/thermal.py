@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.stats import qmc
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, TrbError
 from trbdyn.model.growth import Growth
@@ -216,8 +217,8 @@ def thermal(
     >>> abs(found.balance) < 1e-3
     True
     """
-    if not isinstance(scene, Scene) or not isinstance(paths, HeatPaths):
-        raise InputError.of("scene", f"{type(scene).__name__}, {type(paths).__name__}", "must be a Scene and HeatPaths")
+    expect("scene", scene, Scene)
+    expect("paths", paths, HeatPaths)
     if scene.lubricant.oil is None:
         raise InputError.of("lubricant.oil", None, "must be given: heat changes the temperature of the lubricant")
     if not all(is_constant(quantity) for quantity in scene.ring_quantities().values()):

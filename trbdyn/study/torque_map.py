@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
@@ -261,8 +262,7 @@ def torque_map(
 def _scene(subject: Bearing | Scene) -> Scene:
     if isinstance(subject, Bearing):
         return Scene(subject, speed_rpm=1000.0, axial_load=1000.0)
-    if not isinstance(subject, Scene):
-        raise InputError.of("subject", type(subject).__name__, "must be a Bearing or a Scene")
+    expect("subject", subject, Scene, Bearing)
     return subject
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import Model, Number
 from trbdyn.errors import InputError, unknown_name
@@ -274,6 +275,7 @@ def uncertainty(
     >>> found["torque"].low < found["torque"].high
     True
     """
+    expect("scene", scene, Scene)
     drawn = checked_bands(open_inputs(scene) if bands is None else bands)
     for field, value, least in (("samples", samples, FEWEST), ("seed", seed, 0)):
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:

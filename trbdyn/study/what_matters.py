@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, LoadError, StepError, unknown_name
 from trbdyn.model.estimated import Estimated
@@ -163,6 +164,7 @@ def sensitivity(
     >>> found.influences[0].estimated.path
     'cup_half_angle_deg'
     """
+    expect("scene", scene, Scene)
     if isinstance(starts, bool) or not isinstance(starts, int) or not 2 <= starts <= 1000:
         raise InputError.of("starts", starts, "must be a whole number from 2 to 1000: one start shows no scatter")
     chosen = _chosen(scene.bearing, paths)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
+from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
@@ -205,6 +206,7 @@ def whirl_onset(
     >>> str(found.data.kind.values[0, 0])
     'stable'
     """
+    expect("scene", scene, Scene)
     wanted = speeds_of(speeds)
     if resolution is not None and not 0.0 < number_of("resolution", resolution) < np.inf:
         raise InputError.of("resolution", resolution, "must be > 0 (rpm)")

@@ -13,19 +13,18 @@ from __future__ import annotations
 import html as markup
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
+from trbdyn.base.expected import expect
 from trbdyn.errors import FileError, InputError
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.viewer import data as data_of
 from trbdyn.viewer.gltf import save_gltf
 from trbdyn.viewer.page import Shown, page
 from trbdyn.viewer.shapes import shapes
-
-if TYPE_CHECKING:
-    from trbdyn.results.assembly import AssemblyResult
 
 __all__ = ["MAX_SIZE_MB", "View", "save_gltf", "view"]
 
@@ -147,6 +146,7 @@ def view(
     >>> trb.view(result, max_frames=20).html.startswith("<!doctype html>")
     True
     """
+    expect("result", result, Result, AssemblyResult)
     if exaggeration is not None and not 1.0 <= exaggeration <= 1e4:
         raise InputError.of("exaggeration", exaggeration, "must be from 1 to 10000 (1)")
     if isinstance(result, Result):

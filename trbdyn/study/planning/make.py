@@ -20,6 +20,7 @@ from typing import Final
 
 import numpy as np
 
+from trbdyn.base.expected import expect
 from trbdyn.model.scene import Scene
 from trbdyn.study.planning.candidates import TRUE_ACCURACY, TRUE_NODES, Candidate
 from trbdyn.study.planning.choice import Option, choose
@@ -72,6 +73,7 @@ def plan(scene: Scene, want: Mapping[str, float], *, budget: float | None = None
     >>> proposal.reached
     True
     """
+    expect("scene", scene, Scene)
     began = clock.process_time()
     wishes = checked(scene, want, budget, effort)
     looker = Looker(wishes)

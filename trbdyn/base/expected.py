@@ -1,0 +1,52 @@
+"""What a function works on is checked first: an object of another kind is refused with the way from it to the right one."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from trbdyn.errors import InputError
+
+_WAYS: Final = {
+    ("Scene", "Bearing"): "put it into one, trb.Scene(bearing, speed_rpm=..., axial_load=...)",
+    (
+        "Scene",
+        "Assembly",
+    ): "of a shaft on several bearings there are trb.AssemblySimulation, trb.equilibrium and its stiffness",
+    ("Scene", "Result"): "that of a result is result.scene",
+    ("Scene", "Simulation"): "that of a simulation is simulation.scene",
+    ("Scene", "str"): "trb.load_case reads the scene of a case and its options",
+    ("Result", "Scene"): "trb.Simulation(scene).run(revolutions=...) makes one",
+    ("Result", "Simulation"): "simulation.run(revolutions=...) makes one",
+    ("Result", "Assembly"): "trb.AssemblySimulation(assembly).run(revolutions=...) makes one of each bearing",
+    ("Result", "AssemblyResult"): "it holds one of each bearing, under the bearing's name",
+    ("Result", "str"): "trb.load reads one from a file",
+    ("Assembly", "Scene"): "one bearing alone has trb.Simulation",
+    ("Assembly", "str"): "trb.load_assembly reads one and its options",
+    ("Uncertainty", "Scene"): "trb.uncertainty(scene) makes one",
+}
+"""What to do with the second kind where the first one is wanted."""
+
+
+def expect(field: str, value: Any, *kinds: type) -> None:
+    """Refuse a value that is of none of some kinds.
+
+    Parameters
+    ----------
+    field : str
+        Name of the argument.
+    value : object
+        What was given for it.
+    *kinds : type
+        What it may be.
+
+    Raises
+    ------
+    InputError
+        If it is something else; with the way to the right one where there is one.
+    """
+    if isinstance(value, kinds):
+        return
+    names = [kind.__name__ for kind in kinds]
+    limit = f"must be {' or '.join(f'an {name}' if name[0] in 'AEIOU' else f'a {name}' for name in names)}"
+    ways = [_WAYS[name, type(value).__name__] for name in names if (name, type(value).__name__) in _WAYS]
+    raise InputError.of(field, value, f"{limit}: {ways[0]}" if ways else limit)
