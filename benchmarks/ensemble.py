@@ -45,7 +45,7 @@ BANDS = {
 QUANTITIES = (
     "torque",
     "orbit_radius_over_cpr",
-    "whirl_radius_over_cpr",
+    "axis_distance_over_cpr",
     "pocket_force_peak",
 )
 

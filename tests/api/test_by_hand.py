@@ -238,7 +238,7 @@ def test_settling_by_hand() -> None:
 
 def test_cage_by_hand() -> None:
     position = np.array([[3.0, 4.0, 0.0], [0.0, -2.0, 1.0]])
-    np.testing.assert_array_equal(observables.whirl_radius(position), [5.0, 2.0])
+    np.testing.assert_array_equal(observables.axis_distance(position), [5.0, 2.0])
     np.testing.assert_array_equal(observables.locus(position, 0.5), [[6.0, 8.0], [0.0, -4.0]])
     assert observables.cage_speed_ratio([1.0, 5.0], [2.0, 12.0]) == 0.4
     assert observables.cage_frequency([0.0, 2.0], [1.0, 1.0 + 8.0 * math.pi]) == pytest.approx(2.0)
@@ -261,7 +261,7 @@ def test_slip_of_the_set_is_the_mean_of_its_rollers(build: Callable[..., tuple[A
 def test_derived_by_hand(whirling: Result) -> None:
     np.testing.assert_allclose(whirling.axial_motion, whirling.cage_position[:, 2] / 0.4e-3)
     np.testing.assert_allclose(whirling.cage_locus("rail"), 1.05 * whirling.cage_locus("centre"))
-    np.testing.assert_allclose(whirling.whirl_radius_over_cpr, 0.9)
+    np.testing.assert_allclose(whirling.axis_distance_over_cpr, 0.9)
     np.testing.assert_allclose(whirling.roller_slip, 1e-3, atol=1e-12)
     np.testing.assert_allclose(whirling.spin_slip, 0.0, atol=1e-12)
     assert whirling.clearances.circumferential == 0.12e-3

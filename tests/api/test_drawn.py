@@ -76,8 +76,8 @@ def test_axial_motion(uneven: Result) -> None:
     np.testing.assert_allclose(y, 100.0 * uneven.cage_position[:, 2] / 0.4e-3)
 
 
-def test_whirl_radius(uneven: Result) -> None:
-    ax = plot.whirl_radius(uneven)
+def test_orbit_radius(uneven: Result) -> None:
+    ax = plot.orbit_radius(uneven)
     start, place = uneven.settling().index, uneven.cage_position[:, :2] / 0.25e-3
     x, y = curve(ax, "distance from the bearing axis")
     np.testing.assert_allclose(x, turns(uneven))

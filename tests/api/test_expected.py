@@ -75,7 +75,7 @@ def test_of_an_assembly(name: str) -> None:
 
 
 def test_others() -> None:
-    assert refused(trb.rating, BEARING).startswith("must be a Scene or a Result or an Assembly")
+    assert refused(trb.rating, BEARING).startswith("must be a Scene, a Result, an Assembly or a ShaftEquilibrium")
     assert refused(lambda given: trb.torque_map(given, [1000.0], [1000.0]), None) == "must be a Scene or a Bearing"
     assert "trb.uncertainty(scene) makes one" in refused(lambda given: trb.surrogate(given, "torque"), SCENE)
     for given in (SCENE, BEARING, "study.toml", None):

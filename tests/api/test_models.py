@@ -223,7 +223,10 @@ class TestScene:
 
     def test_values_without_names(self) -> None:
         """Every name that the model has is told, and signatures do not offer values without names."""
-        with pytest.raises(InputError, match=r"must be given by name, as History\(times=\.\.\.\); names: times, values, slopes, repeats"):
+        with pytest.raises(
+            InputError,
+            match=r"must be given by name, as History\(times=\.\.\.\); names: times, values, slopes, repeats",
+        ):
             History([0.0, 1.0], [2.0, 3.0])  # type: ignore[call-arg]
         assert str(inspect.signature(History)) == "(*, times, values, slopes=None, repeats=False)"
 

@@ -165,12 +165,6 @@ def test_the_split_of_torque_has_the_shares_of_the_losses(whirling: Result) -> N
     assert "force on the inner ring" in alone.figure.get_suptitle()
 
 
-def test_old_names_of_pictures(whirling: Result, tmp_path: Path) -> None:
-    with pytest.warns(DeprecationWarning, match="orbit_radius"):
-        plot.whirl_radius(whirling)
-    assert [path.stem for path in plot.all(whirling, tmp_path, only=["whirl_radius"])] == ["orbit_radius"]
-
-
 def test_spectrum_peaks_at_the_cage_frequency(whirling: Result) -> None:
     ax = plot.spectrum(whirling)
     order, density = ax.lines[0].get_data()

@@ -320,7 +320,7 @@ def test_the_sheet_is_a_table_and_plain_data() -> None:
     assert {row.name for row in found.rows} <= set(found.to_dict())
     assert "<table" in found._repr_html_()
     assert json.loads(json.dumps(found.to_dict()))["equivalent_load"] == pytest.approx(5200.0)
-    with pytest.raises(trb.InputError, match="must be a Scene, a Result, an Assembly or its equilibrium"):
+    with pytest.raises(trb.InputError, match="must be a Scene, a Result, an Assembly or a ShaftEquilibrium"):
         trb.rating(BEARING)
 
 

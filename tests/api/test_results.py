@@ -137,15 +137,6 @@ def _summary_text(result: Result) -> str:
     return summary.table(result.summary())
 
 
-def test_old_names_still_work_and_say_what_they_are(whirling: Result) -> None:
-    with pytest.warns(DeprecationWarning, match="old name of axis_distance"):
-        np.testing.assert_array_equal(whirling.whirl_radius, whirling.axis_distance)
-    with pytest.warns(DeprecationWarning, match="orbit_radius_over_cpr tells the whirl"):
-        np.testing.assert_array_equal(whirling.whirl_radius_over_cpr, whirling.axis_distance_over_cpr)
-    values = whirling.summary()
-    assert values["whirl_radius_over_cpr"] == values["axis_distance_over_cpr"]
-
-
 def test_nothing_is_said_of_a_cage_that_is_not_there(whirling: Result) -> None:
     whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers"}))
     for read in (
@@ -767,7 +758,7 @@ def test_a_summary_opens_the_file_once(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(hdf5_file, "open_to_read", lambda place: opens.append(place) or ordinary(place))
     found, wanted = result.summary(), in_memory.summary()
     assert len(opens) == 1
-    for name in ("torque", "whirl_radius_over_cpr", "cage_speed_ratio"):
+    for name in ("torque", "axis_distance_over_cpr", "cage_speed_ratio"):
         assert found[name] == pytest.approx(wanted[name], rel=1e-6)
     with pytest.raises(KeyError, match="mine"), sources.held_open(result._source):
         raise KeyError("mine")

@@ -97,8 +97,8 @@ def test_fields_that_a_result_has_not() -> None:
         result["ring_force"]
     with pytest.raises(AttributeError, match="did you mean 'cage_position'"):
         _ = result.cage_positon
-    with pytest.raises(InputError, match=r"did you mean .*whirl_radius"):
-        result["whirl_radiu"]
+    with pytest.raises(InputError, match=r"did you mean .*orbit_radius"):
+        result["orbit_radiu"]
 
 
 @pytest.mark.parametrize(

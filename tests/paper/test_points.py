@@ -123,7 +123,7 @@ class TestRun:
         assert result.scene == POINT.scene()
         assert result.duration == pytest.approx(0.02)
         assert np.diff(result.time) == pytest.approx(2e-4)
-        assert result.summary()["whirl_radius_over_cpr"] > 0.5
+        assert result.summary()["axis_distance_over_cpr"] > 0.5
         history = files.read_history(path, task.fingerprint)
         assert history is not None
         assert history["time"][0] == 0.0

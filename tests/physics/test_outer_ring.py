@@ -67,10 +67,11 @@ def test_torque_of_the_summary() -> None:
     """The friction torque is that of the moments on the rings, whichever ring turns; losses over the speed between both."""
     ratio = trb.cases.rig_30310().geometry.cage_speed_ratio
     for inner, outer in ((3000.0, 1000.0), (0.0, 2000.0), (2000.0 * (1.0 - ratio), -2000.0 * ratio)):
-        # the moments swing by a tenth: the mean of records every 0.15 ms is off by 0.4 % at times
-        result = Simulation(scene(inner, outer)).run(duration=0.05, save_every=2e-5)
+        result = Simulation(scene(inner, outer)).run(duration=0.05)
         found = result.summary()
-        assert found["torque"] == pytest.approx(np.abs(result.inner_torque[len(result) // 2 :]).mean(), rel=2e-3)
+        # of both rings, weighted by their speeds: where a roller is held up by the cage one carries more and the other one less
+        put_in = np.abs(result.inner_torque * inner - result.outer_torque * outer) / abs(inner - outer)
+        assert found["torque"] == pytest.approx(put_in[len(result) // 2 :].mean(), rel=4e-3)
         assert sum(found["torque_by_loss"].values()) == pytest.approx(found["torque"], rel=0.02)
         assert found["outer_speed_rpm"] == pytest.approx(outer)
 

@@ -47,6 +47,7 @@ def expect(field: str, value: Any, *kinds: type) -> None:
     if isinstance(value, kinds):
         return
     names = [kind.__name__ for kind in kinds]
-    limit = f"must be {' or '.join(f'an {name}' if name[0] in 'AEIOU' else f'a {name}' for name in names)}"
+    called = [f"an {name}" if name[0] in "AEIOU" else f"a {name}" for name in names]
+    limit = f"must be {' or '.join([', '.join(called[:-1]), called[-1]] if len(called) > 1 else called)}"
     ways = [_WAYS[name, type(value).__name__] for name in names if (name, type(value).__name__) in _WAYS]
     raise InputError.of(field, value, f"{limit}: {ways[0]}" if ways else limit)

@@ -31,7 +31,7 @@ from trbdyn.plot.assembly import (
     shaft_orbits,
 )
 from trbdyn.plot.assembly import of_result as of_assembly
-from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map, whirl_radius
+from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map
 from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
@@ -89,7 +89,6 @@ __all__ = [
     "waterfall",
     "wear_map",
     "whirl_map",
-    "whirl_radius",
 ]
 
 
@@ -147,8 +146,6 @@ PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
 
 _OF_ROLLERS: Final = ("pressure_map", "film_map")
 """Pictures that need the group cage where there is a cage, and are of the rollers."""
-
-_RENAMED: Final = {"whirl_radius": "orbit_radius"}
 
 SPECTRUM_RECORDS: Final = 8
 """Fewest records of a spectrum."""
@@ -225,10 +222,7 @@ def all(
     """
     if not isinstance(result, Result):
         return _all_of_assembly(result, folder, only, title)
-    if only is None:
-        chosen = list(drawable(result))
-    else:
-        chosen = [_RENAMED.get(name, name) for name in only]
+    chosen = list(drawable(result) if only is None else only)
     if only is None and len(result) < SPECTRUM_RECORDS:
         chosen = [name for name in chosen if name != "spectrum"]
     for name in chosen:

@@ -5,7 +5,6 @@ All of them raise `InputError` for a run without a cage.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -125,16 +124,6 @@ def cage_locus(
                     {"facecolor": "white", "edgecolor": "none", "pad": 0.8, "alpha": 0.85}
                 )
     return ax
-
-
-def whirl_radius(result: Result, ax: Axes | None = None) -> Axes:
-    """Old name of `orbit_radius`.
-
-    .. deprecated:: 0.1
-        Use `orbit_radius`, which shows the orbit of the cage and its distance from the bearing axis.
-    """
-    warnings.warn("plot.whirl_radius is the old name of plot.orbit_radius", DeprecationWarning, stacklevel=2)
-    return orbit_radius(result, ax)
 
 
 def orbit_radius(result: Result, ax: Axes | None = None) -> Axes:

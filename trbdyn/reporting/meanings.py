@@ -91,7 +91,6 @@ MEANINGS: Final[dict[str, str]] = {
     "torque_note": "Why the two rings have different torques.",
     "torque_by_loss": "The shaft's torque by what loses it.",
     "torque_split": "Forces on the inner ring that make the shaft's torque.",
-    "whirl_radius_over_cpr": "Old name of axis_distance_over_cpr.",
     "power_split": "Share of each kind in the power loss.",
 }
 """A sentence for each entry of `trbdyn.results.summary.LABELS`; an entry without one is shown without."""

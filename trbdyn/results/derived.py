@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
@@ -38,14 +37,6 @@ class Clearances:
     radial: float
     circumferential: float
     axial: float
-
-
-def _old_name(old: str, same: str, better: str) -> None:
-    warnings.warn(
-        f"{old} is the old name of {same}, the distance from the bearing axis; {better} tells the whirl",
-        DeprecationWarning,
-        stacklevel=3,
-    )
 
 
 class Derived(ABC):
@@ -191,27 +182,6 @@ class Derived(ABC):
     def axis_distance_over_cpr(self) -> Array:
         """The distance from the bearing axis in units of the radial play, shape (T,)."""
         return self.axis_distance / self.clearances.radial
-
-    @property
-    def whirl_radius(self) -> Array:
-        """Old name of `axis_distance`.
-
-        .. deprecated:: 0.1
-            Use `orbit_radius` for the size of the whirl, `axis_distance` for the distance from the bearing axis.
-        """
-        _old_name("whirl_radius", "axis_distance", "orbit_radius")
-        return self.axis_distance
-
-    @property
-    def whirl_radius_over_cpr(self) -> Array:
-        """Old name of `axis_distance_over_cpr`.
-
-        .. deprecated:: 0.1
-            Use `orbit_radius_over_cpr` for the size of the whirl, `axis_distance_over_cpr` for the distance from the
-            axis.
-        """
-        _old_name("whirl_radius_over_cpr", "axis_distance_over_cpr", "orbit_radius_over_cpr")
-        return self.axis_distance_over_cpr
 
     @property
     def whirl_frequency(self) -> float:

@@ -116,7 +116,6 @@ LABELS: dict[str, tuple[str, str]] = {
     "power_split": ("power loss by mechanism", "W"),
     "torque_by_loss": ("the same as friction torque of the shaft", "N m"),
     "torque_split": ("forces on the inner ring that make this torque", "N m"),
-    "whirl_radius_over_cpr": ("old name of axis_distance_over_cpr", ""),
 }
 """Words and units of the summary's entries, in the order of the table.
 
@@ -136,7 +135,7 @@ RATINGS: Final = (
 )
 """Numbers of the engineer's sheet that a summary has under the sheet's names."""
 
-UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "whirl_radius_over_cpr", "confidence")
+UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "confidence")
 """Entries that the table leaves out, as another one tells them."""
 
 RECORDS_AT_ONCE: Final = 4096
@@ -274,7 +273,6 @@ def _cage(window: Result) -> dict[str, Any]:
         "axis_distance_over_cpr": distance.mean(),
         "axis_distance_over_cpr_p05": low,
         "axis_distance_over_cpr_p95": high,
-        "whirl_radius_over_cpr": distance.mean(),
         "whirl_ratio": window.whirl_ratio,
         "whirl_frequency": window.whirl_frequency,
         "whirl_coherence": motion.whirl_coherence,

@@ -14,7 +14,6 @@ from trbdyn.results.observables.cage import (
     whirl_coherence,
     whirl_frequency,
     whirl_frequency_spectral,
-    whirl_radius,
 )
 from trbdyn.results.observables.drift import (
     LIMITS,
@@ -80,7 +79,6 @@ __all__ = [
     "whirl_frequency",
     "whirl_frequency_spectral",
     "whirl_growth",
-    "whirl_radius",
     "wrap_angle",
 ]
 

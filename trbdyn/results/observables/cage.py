@@ -7,7 +7,6 @@ zero, and lies far from the axis. They agree for a cage that whirls around the a
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -69,20 +68,6 @@ def axis_distance(position: ArrayLike) -> Array:
     """
     p = _planar(position)
     return np.hypot(p[:, 0], p[:, 1])
-
-
-def whirl_radius(position: ArrayLike) -> Array:
-    """Old name of `axis_distance`: the distance from the bearing axis is no radius of a whirl.
-
-    .. deprecated:: 0.1
-        Use `orbit_radius` for the size of the whirl, `axis_distance` for the distance from the bearing axis.
-    """
-    warnings.warn(
-        "whirl_radius is the old name of axis_distance, the distance from the bearing axis; orbit_radius tells the whirl",
-        DeprecationWarning,
-        stacklevel=2,
-    )
-    return axis_distance(position)
 
 
 def orbit_radius(position: ArrayLike) -> Array:
