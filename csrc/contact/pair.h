@@ -109,6 +109,8 @@ typedef struct trb_pair_kind {
   trb_pair_evaluate *evaluate;
   /* of slow pairs */
   trb_margin_arm (*margin)(const trb_model *m, const trb_pair *pair);
+  /* interference out of the poses alone, the ring as the roller sees it, m; negative: the gap; NULL: it takes an evaluation */
+  double (*depth)(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring);
   trb_hold_arms (*hold)(const trb_model *m, const trb_pair *pair);
   trb_pair_look *look;
   trb_pair_view *view;

@@ -57,7 +57,7 @@ static void evaluate_one(const trb_model *m, const trb_instant *at, const trb_pa
     const trb_race_output *out = &outputs[k];
     trb_loads             *to = &loads[j];
     if (detail != NULL) fill_detail(m, rib_of(pair), &ring[j], k, work->lanes, out, &trb_pair_points(m, pair, detail)[j]);
-    to->margin[row] = trb_min(to->margin[row], fabs(out->depth));
+    to->margin[row] = out->depth;
     if (!out->loaded) continue;
     const trb_load load = trb_load_of_output(out);
     trb_add_load(pair, &load, to);
@@ -84,6 +84,14 @@ static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
                           .normal_sine = fabs(rib->face.cosine),
                           .normal_lean = rib->normal_lean,
                           .sphere_offset = offset};
+}
+
+static double depth_of(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring)
+{
+  const trb_rib *rib = rib_of(pair);
+  const trb_vec3 centre = trb_axpy(roller->x, rib->end.place, roller->frame.a);
+  return rib->end.radius +
+         trb_cone_at(&rib->face, ring->axis, trb_sub(centre, trb_cone_point(&rib->face, ring->centre, ring->axis))).beyond;
 }
 
 /* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
@@ -137,6 +145,7 @@ const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
                                     .is_point = 1,
                                     .evaluate = evaluate,
                                     .margin = margin_of,
+                                    .depth = depth_of,
                                     .hold = hold_of,
                                     .look = look_at,
                                     .view = view_of};

@@ -139,15 +139,21 @@ void trb_dynamics_free(trb_dynamics *d)
   free(d);
 }
 
+trb_ring_pose trb_dynamics_ring_seen(const trb_dynamics *d, int body, const trb_roller_pose *roller)
+{
+  const trb_drive *drive = &d->drive;
+  const double     cosine = drive->cosine * roller->cosine - drive->sine * roller->sine;
+  const double     sine = drive->sine * roller->cosine + drive->cosine * roller->sine;
+  return trb_ring_pose_in_frame(&d->bodies[body].ring, cosine, sine);
+}
+
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y)
 {
   trb_roller_pose *r = &d->rollers[roller];
-  const trb_drive *drive = &d->drive;
-  trb_roller_pose_unpack(d->model, drive, roller, y, r);
-  const double cosine = drive->cosine * r->cosine - drive->sine * r->sine, sine = drive->sine * r->cosine + drive->cosine * r->sine;
+  trb_roller_pose_unpack(d->model, &d->drive, roller, y, r);
   for (int b = 0; b < d->system->n_bodies; b++) {
     trb_body_at *body = &d->bodies[b];
-    if (body->in_frame != NULL && !body->rests) body->in_frame[roller] = trb_ring_pose_in_frame(&body->ring, cosine, sine);
+    if (body->in_frame != NULL && !body->rests) body->in_frame[roller] = trb_dynamics_ring_seen(d, b, r);
   }
 }
 

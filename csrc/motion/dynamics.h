@@ -63,6 +63,8 @@ int trb_dynamics_spin_roller(trb_dynamics *d, int roller, const double *y);
 double trb_dynamics_longest_step(const trb_dynamics *d);
 /* Pose of one roller only, from its part of a state; rings stand where they were put. */
 void trb_dynamics_pose_roller(trb_dynamics *d, int roller, const double *y_roller);
+/* A ring as a roller sees it at a pose. */
+trb_ring_pose trb_dynamics_ring_seen(const trb_dynamics *d, int body, const trb_roller_pose *roller);
 /* All loads at the poses kept; detail may be NULL. */
 void trb_dynamics_loads(trb_dynamics *d, trb_detail *detail);
 /* The same without the pairs that are proven not to touch, which changes no bit of the loads; apart: see trb_fast_apart, may be NULL. */

@@ -49,11 +49,12 @@ void trb_ring_offsets_of(const trb_system *system, const trb_body_at *bodies, tr
   }
 }
 
-int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *rings, const double *margin, double share, const double *place,
-                     const double *step, double turn)
+unsigned trb_margin_open(const trb_margin_arms *arms, const trb_ring_offset *rings, const double *margin, double share, const double *place,
+                         const double *step, double turn)
 {
   const double around = fabs(step[TRB_ROLLER_psi]) + fabs(turn), shift = fabs(step[TRB_ROLLER_r]) + fabs(step[TRB_ROLLER_z]);
   const double turned = fabs(step[TRB_ROLLER_skew]) + fabs(step[TRB_ROLLER_tilt]);
+  unsigned     open = 0U;
   for (int i = 0; i < arms->n; i++) {
     const trb_margin_arm  *a = &arms->of[i];
     const trb_ring_offset *ring = &rings[arms->body[i]];
@@ -61,7 +62,7 @@ int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *rings, 
     const double           lean = ring->lean + ring->leaned, aside = ring->aside + ring->shifted;
     const double           by_turn = a->on_end ? turned_on_end(a, place, step, lean) : a->arm * turned;
     const double           by_ring = around * (aside + lean * by_lean) + (ring->shifted + ring->leaned * by_lean);
-    if (!(shift + by_turn + by_ring <= share * margin[arms->row[i]])) return 0;
+    if (!(shift + by_turn + by_ring <= share * fabs(margin[arms->row[i]]))) open |= 1U << i;
   }
-  return 1;
+  return open;
 }

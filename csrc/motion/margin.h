@@ -32,9 +32,9 @@ typedef struct trb_ring_offset {
 trb_margin_arms trb_margin_arms_of(const trb_system *system);
 /* Of every body of a system that is a ring. */
 void trb_ring_offsets_of(const trb_system *system, const trb_body_at *bodies, trb_ring_offset *offsets);
-/* Whether every contact is proven to change its interference by less than a share of its margin. rings: of every body; place: the roller's state at which the
- * margins, one a pair, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
-int trb_margin_holds(const trb_margin_arms *arms, const trb_ring_offset *rings, const double *margin, double share, const double *place,
-                     const double *step, double turn);
+/* Contacts, bit by arm, that are not proven to change their interference by less than a share of their margin. rings: of every body; place: the
+ * roller's state at which the margins, one a pair, hold; step: from there, of the same coordinates; turn: of the frame R since then, rad. */
+unsigned trb_margin_open(const trb_margin_arms *arms, const trb_ring_offset *rings, const double *margin, double share, const double *place,
+                         const double *step, double turn);
 
 #endif

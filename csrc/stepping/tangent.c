@@ -113,10 +113,11 @@ static double share_of(const trb_tangents *t, int roller, const double *step, do
   double        sum[4] = {0}; /* side by side: one sum alone would wait for each of its additions */
   for (int i = 0; i < TRB_TANGENT_IN; i += 4)
     for (int k = 0; k < 4; k++) sum[k] += along[i + k] * step[i + k];
-  double share = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-  for (int k = 0; k < t->system->n_moving; k++)
-    for (int i = 0; i < TRB_RING_IN; i++) share += trb_tangents_ring_of(t, roller, k)->along[i] * of_ring[k][i];
-  return share;
+  for (int k = 0; k < t->system->n_moving; k++) {
+    const double *of = trb_tangents_ring_of(t, roller, k)->along;
+    for (int i = 0; i < TRB_RING_IN; i++) sum[i % 4] += of[i] * of_ring[k][i];
+  }
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 /* What the bend counts at a share of that step: nothing at both origins. */
@@ -387,6 +388,25 @@ static double slipped(const trb_params *p, const double *step)
          p->effective_length * (fabs(step[TRB_ROLLER_omega_n]) + fabs(step[TRB_ROLLER_omega_t]));
 }
 
+/* Whether contacts that a bound leaves open have changed their interference by less than a share of their margin all the same. Bounds add up what
+ * bodies do that move together, as a roller that follows a rib which leans. Of a point contact the interference itself can be had. */
+static int is_near(const trb_tangents *t, const trb_dynamics *d, int roller, const double *y, unsigned open)
+{
+  const double   *margin = t->rollers[roller].margin, share = t->measure->margin_share;
+  trb_roller_pose pose;
+  for (int i = 0; i < t->arms.n; i++)
+    if (open >> i & 1U && d->system->pairs[t->arms.row[i]].kind->depth == NULL) return 0;
+  trb_roller_pose_unpack(d->model, &d->drive, roller, y, &pose);
+  for (int i = 0; i < t->arms.n; i++) {
+    if (!(open >> i & 1U)) continue;
+    const int           row = t->arms.row[i];
+    const trb_pair     *pair = &d->system->pairs[row];
+    const trb_ring_pose ring = trb_dynamics_ring_seen(d, pair->b, &pose);
+    if (!(fabs(pair->kind->depth(pair, &pose, &ring) - margin[row]) <= share * fabs(margin[row]))) return 0;
+  }
+  return 1;
+}
+
 /* No tangent holds while the prescribed motion is under way. */
 static void begin(void *self, const trb_dynamics *d, double time)
 {
@@ -409,11 +429,14 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
       r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, d, roller, of_ring)
                : (double)INFINITY;
   const double slid = slipped(&t->model->params, step) + trb_rings_moved(t, d, roller);
-  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip) ||
-                      !trb_margin_holds(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
+  t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip);
+  if (!t->beyond[roller]) {
+    const unsigned open = trb_margin_open(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
+    t->beyond[roller] = open != 0U && !is_near(t, d, roller, y, open);
+  }
   r->served += !t->beyond[roller];
   if (t->beyond[roller] || !(r->usual >= enough || r->served > enough_now)) return 0;
-  const double by = bend_at(share_of(t, roller, step, of_ring));
+  const double by = r->bends ? bend_at(share_of(t, roller, step, of_ring)) : 0.0;
   kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, by, t->least, flow);
   for (int k = 0; k < t->system->n_moving; k++) {
     const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);

@@ -3,11 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-trb_ring_tangent *trb_tangents_ring_of(const trb_tangents *t, int roller, int ring)
-{
-  return &t->rings[(size_t)roller * (size_t)t->system->n_moving + (size_t)ring];
-}
-
 void trb_rings_differentiate_reactions(trb_tangents *t, const trb_dynamics *d, int roller, int input, double per, int only)
 {
   trb_wrench reactions[TRB_MOST_MOVING_RINGS];
@@ -77,10 +72,12 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
 
 double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error)
 {
-  const double share = measure->factors->gamma / t->least_mass, arm = 0.5 * t->model->params.pitch_diameter;
+  const double gamma = measure->factors->gamma, arm = 0.5 * t->model->params.pitch_diameter;
+  /* gamma times an acceleration in the velocity, and gamma times that in the place */
+  const double per = gamma / t->least_mass * hypot(ring->per[5], gamma * ring->per[0]);
   double       sum = 0.0;
   for (int i = 0; i < 6; i++) {
-    const double off = share * ring->per[5] * error[i] / (i < 3 ? 1.0 : arm);
+    const double off = per * error[i] / (i < 3 ? 1.0 : arm);
     sum += off * off;
   }
   return sqrt(sum);

@@ -5,7 +5,10 @@
 #include "stepping/tangent.h"
 
 /* A roller's part that belongs to a ring. */
-trb_ring_tangent *trb_tangents_ring_of(const trb_tangents *t, int roller, int ring);
+static inline trb_ring_tangent *trb_tangents_ring_of(const trb_tangents *t, int roller, int ring)
+{
+  return &t->rings[(size_t)roller * (size_t)t->system->n_moving + (size_t)ring];
+}
 /* Slopes of the reactions with an input, at moved poses whose loads are kept; only: on this ring, or on all for -1. */
 void trb_rings_differentiate_reactions(trb_tangents *t, const trb_dynamics *d, int roller, int input, double per, int only);
 /* The rings with coordinates as every roller sees them are kept, or put back. */

@@ -26,6 +26,18 @@ static void disturb(const trb_dynamics *d, double size, double *y)
     for (int c = 0; c <= TRB_ROLLER_tilt; c++) y[trb_state_roller(d->system, j) + c] += size * unit[c] * rig_random(&seed);
 }
 
+/* Depths out of poses alone are those of the evaluation. */
+static void check_depths(const trb_dynamics *d, const trb_loads *loads)
+{
+  for (int i = 0; i < d->system->n_pairs; i++) {
+    const trb_pair *pair = &d->system->pairs[i];
+    for (int j = 0; j < d->model->n_rollers && pair->on && pair->kind->depth != NULL; j++) {
+      const trb_ring_pose ring = trb_dynamics_ring_seen(d, pair->b, &d->rollers[j]);
+      CHECK_NEAR(pair->kind->depth(pair, &d->rollers[j], &ring), loads[j].margin[i], 1e-15);
+    }
+  }
+}
+
 /* Random states of a misaligned, displaced bearing, half of its rollers unloaded, and random steps and turns of the frame from there; steps: 1 or
  * 0. */
 static void walk(double aside, double lean, int steps, double farthest, double *held, double *tightest)
@@ -54,19 +66,20 @@ static void walk(double aside, double lean, int steps, double farthest, double *
     if (steps) disturb(d, pow(10.0, -9.0 + 4.0 * fabs(rig_random(&seed))), moved);
     const double turn = farthest * pow(10.0, -3.0 * fabs(rig_random(&seed)));
     look(d, turn / (m->geometry.cage_speed_ratio * speed), moved, after);
+    check_depths(d, after);
     trb_ring_offset offsets[TRB_MOST_BODIES];
     trb_ring_offsets_of(system, d->bodies, offsets);
     for (int j = 0; j < m->n_rollers; j++) {
       double step[TRB_ROLLER_SIZE];
       for (int c = 0; c < TRB_ROLLER_SIZE; c++)
         step[c] = moved[trb_state_roller(d->system, j) + c] - place[trb_state_roller(d->system, j) + c];
-      if (!trb_margin_holds(&arms, offsets, before[j].margin, share, place + trb_state_roller(d->system, j), step, turn)) continue;
+      if (0U != trb_margin_open(&arms, offsets, before[j].margin, share, place + trb_state_roller(d->system, j), step, turn)) continue;
       ++*held;
       for (int i = 0; i < TRB_N_PAIRS; i++) {
         const double change = fabs(after[j].margin[i] - before[j].margin[i]);
         if (before[j].margin[i] == TRB_NO_CONTACT) continue;
-        CHECK(change <= share * before[j].margin[i] * (1.0 + 1e-9));
-        *tightest = fmax(*tightest, change / before[j].margin[i]);
+        CHECK(change <= share * fabs(before[j].margin[i]) * (1.0 + 1e-9));
+        *tightest = fmax(*tightest, change / fabs(before[j].margin[i]));
       }
     }
   }

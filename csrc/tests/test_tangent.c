@@ -283,15 +283,21 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
   if (!open_bench(&b, params, 1.0, 1.0)) return;
   const double rolling = fabs(0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
   const double slip = 1e-3 * fmin(of_rolling * rolling, speed_of_range);
-  trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found);
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < 5; k++) {
+    for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = 0.0;
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found); /* the origins are there */
     for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = b.tangents->rollers[i].usual = 1e9;
     const long long before = b.d->work->counters.tangent_rollers;
-    const int       j = 3 + k, beyond = k > 0;
-    const double   *margins = b.tangents->rollers[j].margin;
-    const double    margin = fmin(fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]), margins[TRB_PAIR_rib]);
+    const int       j = 3 + k, beyond = k == 1 || k == 2 || k == 4;
+    const double   *margins = b.tangents->rollers[j].margin, race = fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]);
+    const double    rib = fabs(margins[TRB_PAIR_rib]);
+    /* a slip within what is allowed, a way towards a raceway, a slip beyond, a way along the rib that its bound does not tell from one
+     * towards it, and one towards it */
+    const int    moved[] = {TRB_ROLLER_v_t, TRB_ROLLER_r, TRB_ROLLER_v_t, TRB_ROLLER_r, TRB_ROLLER_z};
+    const double by[] = {0.99 * slip, 0.51 * race, 1.01 * slip, fmin(0.9 * rib, 0.49 * race), 0.52 * rib};
+    if (!CHECK(rib < 0.9 * race)) return;
     memcpy(y, b.y, sizeof y);
-    y[trb_state_roller(b.system, j) + (k == 1 ? TRB_ROLLER_r : TRB_ROLLER_v_t)] += k == 1 ? 0.51 * margin : (k == 2 ? 1.01 : 0.99) * slip;
+    y[trb_state_roller(b.system, j) + moved[k]] += by[k];
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
     CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - beyond);
     CHECK(b.tangents->beyond[j] == beyond);
