@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+import trbdyn as trb
 from trbdyn import cases
+from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.effects import Effects
@@ -234,6 +236,21 @@ class TestMistakes:
         broken.write_bytes(b"\xff\xfe")
         with pytest.raises(FileError, match="not a TOML file"):
             load_case(broken)
+
+
+def test_a_written_case_keeps_what_the_same_run_in_python_keeps(tmp_path: Path) -> None:
+    """All groups are not written as a wish: a run then leaves out those of which there is nothing."""
+    text = case_text(trb.cases.scene_30310(3000.0), RunOptions(revolutions=0.01))
+    assert "\n# save_groups =\n" in text
+    assert "save_groups" not in tomllib.loads(text)["run"]
+    assert 'save_groups = ["time", "cage"]' in case_text(
+        trb.cases.scene_30310(3000.0), RunOptions(revolutions=0.01, save_groups=("time", "cage"))
+    )
+    assert main(["new", str(tmp_path / "own.toml")]) == 0
+    assert (
+        main(["run", str(tmp_path / "own.toml"), "--set", "run.revolutions=0.01", "-o", str(tmp_path / "own.h5")]) == 0
+    )
+    assert "housing" not in trb.load(tmp_path / "own.h5").groups
 
 
 def test_a_bearing_from_a_catalogue_is_written_whole(tmp_path):

@@ -57,7 +57,8 @@ def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:
         path = find_assembly(name)
     elif not path.exists() and (changes or name.removesuffix(".toml") in shipped_cases()):
         path = find_case(name)
-    values = read_tables(path, f"; cases that ship with the package: {', '.join(shipped_cases())}")
+    shipped = ", ".join((*shipped_cases(), *shipped_assemblies()))
+    values = read_tables(path, f"; cases that ship with the package: {shipped}")
     for change in changes:
         key, equals, text = change.partition("=")
         *tables, last = key.strip().split(".")

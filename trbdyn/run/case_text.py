@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.base.validation import Model
 from trbdyn.model.lubricants import OILS
+from trbdyn.run.options import GROUPS
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -94,8 +95,8 @@ def _lines(model: Model, values: dict[str, Any], skip: set[str], prefix: str, as
         text = texts.get(key, "")
         if path in assumed:
             lines.append(f"# {path} = {_toml(rounded(value))}  # assumed")
-        elif value is None or value == []:
-            lines.append(f"# {path} =")
+        elif value is None or value == [] or (path == "save_groups" and tuple(value) == GROUPS):
+            lines.append(f"# {path} =")  # all groups: a run then chooses by its length and by what there is
         else:
             lines.append(f"{path} = {_toml(value)}")
         lines += [f"    # {part}" for part in textwrap.wrap(text, WIDTH - 6)]

@@ -86,7 +86,8 @@ class RunOptions(Model):
     save_every : float, optional
         Time between saved records (s); by default that of `trbdyn.run.keeping`, 32 records a turn of the shaft.
     save_groups : sequence of str
-        Groups of quantities to save; 'time' is always among them. With 'peaks' the core looks at all loads at the end of every
+        Groups of quantities to save; 'time' is always among them. By default all of which there is something, but contacts and
+        pocket in runs of more than 20 000 records. With 'peaks' the core looks at all loads at the end of every
         step and keeps their extremes, means and impacts over each record's interval and the whole run; without it that costs
         nothing.
     accuracy : {'fast', 'standard', 'reference'}
