@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 
-from trbdyn import _core
 from trbdyn.base.locks import take_lock
 from trbdyn.base.own_files import file_path, set_aside
 from trbdyn.errors import FileError, InputError
@@ -18,9 +16,8 @@ from trbdyn.results.result import Result, load
 from trbdyn.results.sources import FileSource
 from trbdyn.run import checkpoint
 from trbdyn.run.assembly_resume import is_of_assembly, resume_assembly
-from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.keeping import kept_by_default
-from trbdyn.run.options import OF_ONE_RUN, RunOptions
+from trbdyn.run.revive import revive
 from trbdyn.run.running import Callback, Run, output_times
 from trbdyn.run.simulation import Simulation
 
@@ -88,7 +85,15 @@ def resume(
             raise FileError(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint belongs to another run than {output}"
             )
-        sim, options = _revive(output, found, instruction_set, tell)
+        sim, options = revive(
+            output,
+            found,
+            instruction_set,
+            tell,
+            subject=lambda: Scene.from_dict(found.scene),
+            make=Simulation,
+            motion=lambda sim: checkpoint.digest_of(sim._motion.table),
+        )
         kept = kept_by_default(
             found.end - found.start,
             sim.scene.turning_rpm,
@@ -133,32 +138,3 @@ def resume(
     if older is not None and older.info.success:
         return load(output)
     return run_on(older)
-
-
-def _revive(
-    output: Path, found: Checkpoint, instruction_set: str | None, tell: Callable[[str], None]
-) -> tuple[Simulation, RunOptions]:
-    """A simulation at a checkpoint."""
-    where = checkpoint.checkpoint_path(output)
-    variant = checkpoint.check_instruction_set(found, instruction_set, tell)
-    try:
-        scene, options = Scene.from_dict(found.scene), RunOptions.from_dict(found.options)
-        if scene.fingerprint != found.model:
-            raise FileError(
-                f"{where}: the checkpoint cannot be used: its scene is not the one that its model hash belongs to"
-            )
-        settings = {name: getattr(options, name) for name in RunOptions.model_fields if name not in OF_ONE_RUN}
-        sim = Simulation(scene, instruction_set=variant, **settings)
-        if found.build != checkpoint.build_digest():
-            tell("going on with another build of the core: results may differ in rounding from the uninterrupted run")
-        elif found.motion != checkpoint.digest_of(sim._motion.table):
-            tell(
-                "the ring's equilibrium differs in rounding on this machine: results may differ from the uninterrupted run"
-            )
-        sim._begin(found.time, found.state)
-        if found.peaks.size:
-            sim._core.restore_peaks(found.peaks)
-    except (InputError, _core.CoreInputError) as error:
-        raise FileError(f"{where}: the checkpoint cannot be used: {error}") from error
-    sim._totals, sim._counted = dict(found.statistics), dict(found.counters)
-    return sim, options

@@ -264,11 +264,10 @@ class CageRuns:
         changes = {"speed_rpm": speed} | ({} if load is None else {"axial_load": load})
         parameters = {"start": start, **changes}
         try:
-            scene = self.scene.replace(start=STARTS[start])
-            base = Base.of(Base.of(scene).build({f"scene.{name}": value for name, value in changes.items()})[0])
+            base = Base.of(self.scene.replace(start=STARTS[start]))
+            built, _ = base.build({f"scene.{name}": value for name, value in changes.items()})
         except InputError as error:
             return Case(parameters, None, self.options, str(error).splitlines()[0])
-        built = base.build({})[0]
         length = turns * 2.0 * np.pi / abs(built.orbit_speed(built.start.time))
         save_every = length / (turns * RECORDS_A_TURN)
         own = self.options.replace(revolutions=None, duration=length, save_every=save_every, save_groups=GROUPS)
