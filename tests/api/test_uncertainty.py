@@ -148,6 +148,8 @@ def test_bands_of_ones_own_are_drawn_as_they_are() -> None:
         Band(path="bearing.cage.mass", low=0.9 * bearing.cage.mass, high=1.1 * bearing.cage.mass),
         Band(path="bearing.roller.effective_length", low=0.014, high=0.017),
     ]
+    alone = [Band(path="lubricant.temperature_c", low=55.0, high=65.0)]
+    assert all(case.scene is not None and case.scene.bearing == bearing for case in draws_of(scene, alone, 4))
     cases = draws_of(scene, bands, 16)
     assert {case.parameters["bearing.n_rollers"] for case in cases} == {15, 16, 17}
     apart = bearing.roller.total_length - bearing.roller.effective_length

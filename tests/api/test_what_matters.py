@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -68,13 +70,36 @@ def test_bands_of_a_billionth(monkeypatch: pytest.MonkeyPatch) -> None:
             trb.sensitivity(scene, revolutions=0.1, starts=wrong)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("path", ["roller.diameter", "n_rollers"])
+PAGE = {"bore": 0.050, "outside": 0.110, "width": 0.02925, "C": 125e3, "e": 0.35, "name": "30310"}
+
+
 @pytest.mark.parametrize("factor", [1.0 - 1e-9, 1.0 + 1e-9])
-def test_rounding_takes_no_roller_away(path: str, factor: float) -> None:
+def test_rounding_takes_no_roller_away(factor: float) -> None:
     """With a diameter larger by a billionth the pitch circle had room for one roller less, and the torque was 5 % off."""
-    page = {"bore": 0.050, "outside": 0.110, "width": 0.02925, "C": 125e3, "e": 0.35, "name": "30310"}
-    bearing = trb.Bearing.from_catalogue(**page)
-    value = bearing.n_rollers if path == "n_rollers" else bearing.roller.diameter
-    moved = _moved(bearing, path, value * factor)
+    bearing = trb.Bearing.from_catalogue(**PAGE)
+    (entry,) = (entry for entry in bearing.estimated if entry.path == "roller.diameter")
+    moved = _moved(bearing, entry, bearing.roller.diameter * factor)
     assert moved.n_rollers == bearing.n_rollers
     assert moved.roller.diameter == pytest.approx(bearing.roller.diameter, rel=1e-8)
+
+
+def test_what_follows_from_an_estimate_moves_with_it() -> None:
+    """Both ends of every band can be built, and nothing is warned of: rollers neither overlap nor leave gaps."""
+    bearing = trb.Bearing.from_catalogue(**PAGE)
+    usual = bearing.n_rollers * bearing.roller.diameter / bearing.pitch_diameter
+    for entry in bearing.estimated:
+        for value in {entry.low, entry.high} - {entry.value}:
+            moved = _moved(bearing, entry, value)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                trb.Simulation(trb.Scene(moved, speed_rpm=1000.0, axial_load=2000.0))
+            fill = moved.n_rollers * moved.roller.diameter / moved.pitch_diameter
+            if entry.path in ("roller.diameter", "pitch_diameter"):
+                assert abs(fill - usual) <= 0.51 * moved.roller.diameter / moved.pitch_diameter
+                assert moved.n_rollers != bearing.n_rollers or entry.path == "pitch_diameter"
+            elif entry.path == "n_rollers":
+                assert moved.roller == bearing.roller
+                assert 0.8 * np.pi - 1e-9 < fill < 0.9 * np.pi + 1e-9
+            if entry.path == "roller.effective_length":
+                apart = bearing.roller.total_length - bearing.roller.effective_length
+                assert moved.roller.total_length - moved.roller.effective_length == pytest.approx(apart)

@@ -4,7 +4,7 @@ Bands of estimates are given one by one. If each were drawn by itself, a large n
 ones, would meet thick ones, which overlap, and a light cage would have the moments of inertia of a heavy one. So what an
 estimate follows from is kept in each draw:
 
-- the number of rollers is drawn by the share of the pitch circle that they take;
+- the number of rollers is drawn by the share of the pitch circle that they take, and follows their size where it is not drawn;
 - a roller is longer than its contact line by what was drawn for both;
 - the cage's moments of inertia are drawn for its mass, and the one across its axis for the length of its rollers as well.
 """
@@ -16,6 +16,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from trbdyn.model.catalogue_rollers import FILL
+
+WHOLE = 1e-6
+"""What a number of rollers may be below a whole one by rounding."""
 
 LINE, LENGTH = "bearing.roller.effective_length", "bearing.roller.total_length"
 COUNT, DIAMETER, PITCH = "bearing.n_rollers", "bearing.roller.diameter", "bearing.pitch_diameter"
@@ -40,7 +43,7 @@ def belongs_together(
     Returns
     -------
     dict
-        The inputs of the draw, and the length of the rollers where their contact line was drawn and the length was not.
+        The inputs of the draw, and estimates that were not drawn and follow from them.
     """
     found = dict(drawn)
     roller = bearing.get("roller") if isinstance(bearing, Mapping) else None
@@ -51,19 +54,23 @@ def belongs_together(
     whole = roller.get("total_length")
     if LINE in drawn and whole is not None and (LENGTH not in drawn or LENGTH in free):
         found[LENGTH] = drawn.get(LENGTH, whole) + drawn[LINE] - roller["effective_length"]
-    if COUNT in free and not drawn.keys().isdisjoint((DIAMETER, PITCH)):
+    if COUNT in free or (COUNT in estimates and COUNT not in drawn and not drawn.keys().isdisjoint((DIAMETER, PITCH))):
+        before = math.pi * bearing["pitch_diameter"] / roller["diameter"]
         around = math.pi * drawn.get(PITCH, bearing["pitch_diameter"]) / drawn.get(DIAMETER, roller["diameter"])
-        found[COUNT] = _count(around, bands[COUNT][2])
-    if free >= {MASS, AXIAL, TRANSVERSE}:
-        heavier = drawn[MASS] / estimates[MASS]["value"]
+        share = FILL.low + bands[COUNT][2] * (FILL.high - FILL.low) if COUNT in free else bearing["n_rollers"] / before
+        found[COUNT] = _whole(around, share)
+    if not free.isdisjoint({AXIAL, TRANSVERSE}) and {AXIAL, TRANSVERSE} <= estimates.keys():
+        axial, transverse = (drawn.get(name, estimates[name]["value"]) for name in (AXIAL, TRANSVERSE))
+        heavier = drawn[MASS] / estimates[MASS]["value"] if MASS in free else 1.0
         longer = drawn.get(LINE, roller["effective_length"]) / roller["effective_length"]
-        along = drawn[TRANSVERSE] - 0.5 * estimates[AXIAL]["value"]  # what the distances along the axis make
-        found[AXIAL] = heavier * drawn[AXIAL]
-        found[TRANSVERSE] = heavier * (0.5 * drawn[AXIAL] + along * longer**2)
+        along = transverse - 0.5 * estimates[AXIAL]["value"]  # what the distances along the axis make
+        found[AXIAL] = heavier * axial
+        found[TRANSVERSE] = heavier * (0.5 * axial + along * longer**2)
     return found
 
 
-def _count(around: float, share: float) -> int:
-    """Number of rollers that takes a share of the pitch circle between the usual ones, `around` rollers fill it."""
-    nearest = round(around * (FILL.low + share * (FILL.high - FILL.low)))
-    return max(3, min(nearest, math.floor(around * FILL.high)))
+def _whole(around: float, share: float) -> int:
+    """The whole number next to a share of the rollers that would fill the pitch circle, within the usual shares if one is."""
+    least = math.ceil(around * min(FILL.low, share) - WHOLE)
+    most = math.floor(around * max(FILL.high, share) + WHOLE)
+    return max(3, min(max(round(around * share), least), most))

@@ -10,7 +10,6 @@ own scatter over the starts, from that of the other ends in the median, and from
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
@@ -24,6 +23,7 @@ from trbdyn.errors import InputError, LoadError, StepError, unknown_name
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.scene import Scene, Start
 from trbdyn.run.simulation import Simulation
+from trbdyn.study.drawn_bearing import belongs_together
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -36,8 +36,6 @@ STARTS: Final = 3
 REPEATS: Final = 4
 """Runs of the estimate from each start, all but one with a roller diameter that differs by billionths."""
 BILLIONTH: Final = 1e-9
-WHOLE: Final = 1e-6
-"""What a number of rollers may lack of a whole one, by rounding of what it follows from."""
 CHANCE: Final = 0.05
 """Chance that any end of a table without influences is told apart."""
 LEAST_SHARE: Final = 1e-5
@@ -125,10 +123,12 @@ def sensitivity(
 ) -> Sensitivity:
     """Which estimated inputs of the scene's bearing matter for a result.
 
-    Every estimate (`Bearing.estimated`) is put to the low and the high end of its band, alone, and short runs from several starts
-    are made for each end. A cage that collides is chaotic, so a result moves whatever is changed: influences that are
-    smaller than what chance makes are marked as not told apart. An influence on the slow creep of the rollers, which takes longer
-    than the runs, is not seen.
+    Every estimate (`Bearing.estimated`) is put to the low and the high end of its band, and short runs from several starts
+    are made for each end. What follows from it moves with it: the number of rollers with their diameter and the pitch
+    diameter, their length with that of the contact line; and the number by itself moves as far as rollers of their size have
+    room, from 80 to 90 % of the pitch circle. A cage that collides is chaotic, so a result moves whatever is changed:
+    influences that are smaller than what chance makes are marked as not told apart. An influence on the slow creep of the
+    rollers, which takes longer than the runs, is not seen.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def sensitivity(
 
     diameter = scene.bearing.roller.diameter
     same = [scene.bearing] + [
-        changed(scene.bearing, "roller.diameter", diameter * (1.0 + k * BILLIONTH)) for k in range(1, REPEATS)
+        scene.bearing.replace({"roller.diameter": diameter * (1.0 + k * BILLIONTH)}) for k in range(1, REPEATS)
     ]
     base = np.array([measured(bearing) for bearing in same])
     ends, notes = zip(*(_ends(scene.bearing, entry, measured) for entry in chosen), strict=True)
@@ -276,7 +276,7 @@ def _ends(bearing: Bearing, entry: Estimated, measured: Callable[[Bearing], Arra
             found.append(None)
             continue
         try:
-            found.append(measured(_moved(bearing, entry.path, target)))
+            found.append(measured(_moved(bearing, entry, target)))
         except (InputError, LoadError, StepError) as error:
             found.append(None)
             notes.append(f"{target:.4g}: {_reason(error)}")
@@ -298,49 +298,9 @@ def _reason(error: Exception) -> str:
     return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
 
 
-def _moved(bearing: Bearing, path: str, value: float) -> Bearing:
-    """The bearing with an estimate moved. Number and diameter of the rollers go together where both are estimated: they keep
-    their share of the pitch circle, as more rollers of the same size would overlap.
-    """
-    other = {"n_rollers": "roller.diameter", "roller.diameter": "n_rollers"}.get(path)
-    for entry in bearing.estimated:
-        if entry.path == other:
-            size = min(max(bearing.n_rollers * bearing.roller.diameter / value, entry.low), entry.high)
-            size = math.floor(size + WHOLE) if other == "n_rollers" else size
-            thinner_first = size < entry.value
-            bearing = changed(bearing, other, size) if thinner_first else changed(bearing, path, value)
-            return changed(bearing, path, value) if thinner_first else changed(bearing, other, size)
-    return changed(bearing, path, value)
-
-
-def changed(bearing: Bearing, path: str, value: float) -> Bearing:
-    """The bearing with one input changed, by its path; a longer contact line makes the roller longer by as much.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    path : str
-        For instance ``roller.diameter``.
-    value : float
-        The new value.
-
-    Raises
-    ------
-    InputError
-        If there is no such input, or the bearing cannot be built with it.
-    """
-    *parents, last = path.split(".")
-    models: list[Any] = [bearing]
-    for part in parents:
-        models.append(getattr(models[-1], part, None))
-    if models[-1] is None or last not in type(models[-1]).model_fields:
-        raise InputError.of("path", path, "must be the path of an input, for instance roller.diameter")
-    changes: dict[str, Any] = {last: math.floor(value + WHOLE) if last == "n_rollers" else value}
-    if path == "roller.effective_length":
-        changes["total_length"] = bearing.roller.total_length + value - bearing.roller.effective_length
-    new = models.pop().replace(**changes)
-    for model, part in zip(reversed(models), reversed(parents), strict=True):
-        new = model.replace(**{part: new})
-    found: Bearing = new
-    return found
+def _moved(bearing: Bearing, entry: Estimated, value: float) -> Bearing:
+    """The bearing with an estimate moved to an end of its band, and with it the estimates that follow from it."""
+    path = f"bearing.{entry.path}"
+    share = 0.0 if value == entry.low else 1.0
+    drawn = belongs_together(bearing.inputs(), {path: value}, {path: (entry.low, entry.high, share)})
+    return bearing.replace({name.removeprefix("bearing."): to for name, to in drawn.items()})
