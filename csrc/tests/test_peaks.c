@@ -150,8 +150,14 @@ static void test_restore(void)
   /* the same restart in the run that goes on */
   CHECK(trb_simulation_set_state(s, time, state, NULL) == TRB_OK && trb_simulation_restore_peaks(s, saved, saved_length, NULL) == TRB_OK);
   for (int i = 0; i < STEPS / 2; i++) CHECK(trb_simulation_step(s, NULL) == TRB_OK && trb_simulation_step(other, NULL) == TRB_OK);
+  trb_peaks_save(other->parts[0].peaks, saved);
   trb_peaks_whole(s->parts[0].peaks, s->integrator.time, rows);
   trb_peaks_whole(other->parts[0].peaks, other->integrator.time, rows + length);
+  CHECK(memcmp(rows, rows + length, (size_t)length * sizeof *rows) == 0);
+  /* to ask changes nothing of what is kept, and the next record's row is as it would have been */
+  trb_peaks_record(s->parts[0].peaks, s->integrator.time, rows);
+  trb_peaks_restore(other->parts[0].peaks, saved);
+  trb_peaks_record(other->parts[0].peaks, other->integrator.time, rows + length);
   CHECK(memcmp(rows, rows + length, (size_t)length * sizeof *rows) == 0);
   CHECK(trb_simulation_begin_peaks(s, s->previous - 1e-9, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "must lie in the last step");

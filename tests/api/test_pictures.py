@@ -111,6 +111,11 @@ def test_waterfall_peaks_at_the_whirl() -> None:
         x, y = line.get_data()
         shaft = abs(float(run.shaft_speed.mean())) / (2 * np.pi)
         assert x[np.argmax(y)] == pytest.approx(run.whirl_frequency / shaft, abs=0.2)
+    narrow = trb.plot.waterfall(runs, reach=0.5, decades=0.5)
+    assert narrow.get_xlim() == pytest.approx((-0.5, 0.5), abs=0.1)
+    for reach, decades in ((0.0, 1.0), (1.0, 0.0)):
+        with pytest.raises(trb.InputError, match="must be > 0"):
+            trb.plot.waterfall(runs, reach=reach, decades=decades)
     for bad in ([], [runs[0].window(stop=1e-3)]):
         with pytest.raises(trb.InputError, match="results"):
             trb.plot.waterfall(bad)

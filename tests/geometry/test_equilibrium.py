@@ -307,6 +307,15 @@ class TestCombinedLoads:
     def test_rollers_do_not_skew_without_a_reason(self, rig: Bearing) -> None:
         assert np.abs(simulate(rig, 3000.0, 4930.0).equilibrium.rollers[:, 3]).max() < 1e-12
 
+    @pytest.mark.parametrize("direction", [0.0, 90.0, 180.0, 270.0])
+    def test_heavy_loads_along_the_axes_are_found(self, rig: Bearing, direction: float) -> None:
+        """Some of them are found only where the load is raised from a smaller one, in whichever direction it acts."""
+        limit = most_radial_load(Scene(rig, speed_rpm=3000.0, axial_load=8000.0), 8000.0)
+        for share in (0.95, 0.98, 0.99, 0.995):
+            radial = share * limit * math.cos(math.radians(15.0))
+            found = simulate(rig, 3000.0, 8000.0, radial, radial_direction_deg=direction).equilibrium
+            assert found.residual < 1e-4 * radial
+
     @pytest.mark.parametrize("share", [0.88, 0.95, 0.97, 0.99])
     def test_loads_close_to_the_largest_are_found(self, rig: Bearing, share: float) -> None:
         """The largest load in a direction lies on the edge of the polygon whose corners are the rollers."""
