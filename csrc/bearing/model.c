@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "bearing/pockets.h"
 #include "laws/film.h"
 #include "laws/line_contact.h"
 #include "laws/profile.h"
@@ -118,108 +119,6 @@ static trb_status check_front_rib(const trb_model *m, trb_message *message)
                       heights[i], g->small_end_radius);
   }
   return TRB_OK;
-}
-
-static trb_status check_face(const trb_face *f, int index, int n_rollers, trb_message *message)
-{
-  const double *row = (const double *)f;
-  for (int i = 0; i < TRB_N_FACE_COLUMNS; i++)
-    if (!isfinite(row[i])) return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: column %d is not finite", index, i);
-  const trb_vec3 u = trb_v(f->u[0], f->u[1], f->u[2]), v = trb_v(f->v[0], f->v[1], f->v[2]);
-  if (fabs(trb_dot(u, u) - 1.0) > 1e-9 || fabs(trb_dot(v, v) - 1.0) > 1e-9 || fabs(trb_dot(u, v)) > 1e-9)
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: u and v must be unit vectors at right angles", index);
-  if (f->pocket[0] != floor(f->pocket[0]) || f->pocket[0] < -1 || f->pocket[0] >= n_rollers)
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: pocket = %g: must be -1 (all) or 0 to %d", index, f->pocket[0], n_rollers - 1);
-  if (f->part[0] != 0.0 && f->part[0] != 1.0 && f->part[0] != 2.0)
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: part = %g: must be 0 (flank), 1 (large end) or 2 (small end)", index,
-                    f->part[0]);
-  if (f->slot[0] != floor(f->slot[0]) || f->slot[0] < 0 || f->slot[0] >= TRB_MOST_SLOTS)
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: slot = %g: must be a whole number from 0 to %d", index, f->slot[0],
-                    TRB_MOST_SLOTS - 1);
-  if (!(f->stiffness_factor[0] > 0.0) || !(f->friction_factor[0] >= 0.0))
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: stiffness_factor = %g must be > 0, friction_factor = %g must be >= 0", index,
-                    f->stiffness_factor[0], f->friction_factor[0]);
-  if (f->n_vertices[0] != floor(f->n_vertices[0]) || f->n_vertices[0] < 3 || f->n_vertices[0] > TRB_MAX_VERTICES)
-    return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: n_vertices = %g: must be 3 to %d", index, f->n_vertices[0], TRB_MAX_VERTICES);
-  /* the nearest point is unique, and its distance differentiable, only for convex outlines */
-  const int n = (int)f->n_vertices[0];
-  double    turned = 0.0;
-  for (int i = 0; i < n; i++) {
-    const double *p = f->outline + 2 * i, *q = f->outline + 2 * ((i + 1) % n), *r = f->outline + 2 * ((i + 2) % n);
-    const double  ax = q[0] - p[0], ay = q[1] - p[1], bx = r[0] - q[0], by = r[1] - q[1], cross = ax * by - ay * bx;
-    if (!(cross > 0.0))
-      return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: the outline must be convex and counter-clockwise (vertex %d)", index,
-                      (i + 1) % n);
-    turned += atan2(cross, ax * bx + ay * by);
-  }
-  if (fabs(turned - 2.0 * TRB_PI) > 1e-6) return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: the outline crosses itself", index);
-  return TRB_OK;
-}
-
-static int face_in_pocket(const trb_face *f, int pocket) { return f->pocket[0] < 0.0 || (int)f->pocket[0] == pocket; }
-
-/* Faces that the scene's effects leave out are not in the model, so no loop sees them. */
-static int face_is_on(const trb_model *m, const trb_face *f)
-{
-  return m->params.with_cage > 0.0 && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
-}
-
-static trb_polygon surface_of(const trb_face *f)
-{
-  trb_polygon p = {.origin = trb_v(f->origin[0], f->origin[1], f->origin[2]),
-                   .u = trb_v(f->u[0], f->u[1], f->u[2]),
-                   .v = trb_v(f->v[0], f->v[1], f->v[2]),
-                   .n = (int)f->n_vertices[0]};
-  p.normal = trb_cross(p.u, p.v);
-  memcpy(p.outline, f->outline, sizeof p.outline);
-  return p;
-}
-
-static trb_status fill_faces(trb_model *m, const trb_face *faces, int n_faces, trb_message *message)
-{
-  size_t total = 0;
-  m->n_slots = 1;
-  for (int i = 0; i < n_faces; i++) {
-    const trb_status status = check_face(&faces[i], i, m->n_rollers, message);
-    if (status != TRB_OK) return status;
-    if ((int)faces[i].slot[0] + 1 > m->n_slots) m->n_slots = (int)faces[i].slot[0] + 1;
-    total += faces[i].pocket[0] < 0.0 ? (size_t)m->n_rollers : 1;
-  }
-  m->faces = calloc(total + 1, sizeof *m->faces);
-  m->first_face = calloc((size_t)m->n_rollers + 1, sizeof *m->first_face);
-  if (m->faces == NULL || m->first_face == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %zu pocket faces", total);
-  int count = 0;
-  for (int pocket = 0; pocket < m->n_rollers; pocket++) {
-    m->first_face[pocket] = count;
-    for (int i = 0; i < n_faces; i++) {
-      const trb_face *f = &faces[i];
-      if (!face_in_pocket(f, pocket) || !face_is_on(m, f)) continue;
-      trb_pocket_face *to = &m->faces[count++];
-      to->surface = surface_of(f);
-      to->stiffness_factor = f->stiffness_factor[0];
-      to->friction_factor = f->friction_factor[0];
-      to->part = (int)f->part[0];
-      to->slot = (int)f->slot[0];
-    }
-    if (count - m->first_face[pocket] > TRB_MOST_SLOTS)
-      return trb_fail(message, TRB_ERR_INPUT, "pocket %d has %d faces: must have at most %d", pocket, count - m->first_face[pocket],
-                      TRB_MOST_SLOTS);
-  }
-  m->first_face[m->n_rollers] = count;
-  return TRB_OK;
-}
-
-/* Where each roller stands in the bearing, and each pocket in the cage. */
-static void fill_pockets(trb_model *m)
-{
-  const trb_geometry *g = &m->geometry;
-  const double        sm = sin(g->roller_axis_angle), cm = cos(g->roller_axis_angle), radius = 0.5 * m->params.pitch_diameter;
-  for (int j = 0; j < m->n_rollers; j++) {
-    const double angle = 2.0 * TRB_PI * j / m->n_rollers, cosine = cos(angle), sine = sin(angle);
-    m->nominal_angle[j] = (trb_angle){cosine, sine};
-    m->pocket_axes[j] = (trb_frame){{cm * cosine, cm * sine, -sm}, {-sine, cosine, 0.0}, {sm * cosine, sm * sine, cm}};
-    m->pocket_origin[j] = trb_v(radius * cosine, radius * sine, -m->params.cage_offset);
-  }
 }
 
 /* Strips of the cage's guiding surface: Gauss nodes along its width. */
@@ -393,12 +292,12 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
     m->diameter_deviation[j] = deviation[j];
   }
   if ((status = fill_nodes(m, message)) != TRB_OK) return status;
-  if ((status = fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
+  if ((status = trb_pockets_fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
   m->n_losses = losses_of(&m->params);
   fill_ends(m);
   fill_constants(m);
   fill_land(m);
-  fill_pockets(m);
+  trb_pockets_place(m);
   return TRB_OK;
 }
 
