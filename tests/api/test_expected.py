@@ -81,3 +81,7 @@ def test_others() -> None:
     for given in (SCENE, BEARING, "study.toml", None):
         assert refused(trb.study.run, given).startswith("must be a Study, or scenes in a list")
     assert refused(trb.plot.bearing_loads, SCENE) == "must be an AssemblyResult"
+    for given in (ASSEMBLY, BEARING, None):
+        assert refused(lambda base: trb.study.grid(base, {"scene.speed_rpm": [1.0]}), given).startswith(
+            "must be a Scene, the tables"
+        )

@@ -112,8 +112,14 @@ def read_toml(path: str | FilePath) -> Table:
     ------
     FileError
         If it cannot be read.
+    InputError
+        If it is no name.
     """
-    file = file_path(path, "study")
+    try:
+        file = file_path(path, "study")
+    except InputError:
+        limit = "must be a Scene, the tables of a case, or the name or file of one; of assemblies there are no studies"
+        raise InputError.of("base", path, limit) from None
     if not file.exists() and str(path).removesuffix(".toml") in shipped_cases():
         file = find_case(str(path))
     return read_tables(file)
