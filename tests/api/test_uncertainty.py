@@ -121,7 +121,7 @@ def test_every_draw_of_a_catalogue_bearing_can_be_built(name: str) -> None:
     bands = list(open_inputs(scene))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        cases = draws_of(scene, bands, 64)
+        cases = draws_of(scene, bands, 128)
     assert [case.error for case in cases if case.scene is None] == []
     drawn = [case.scene.bearing for case in cases if case.scene is not None]
     fill = [one.n_rollers * one.roller.diameter / (np.pi * one.pitch_diameter) for one in drawn]
@@ -196,9 +196,11 @@ def test_bands_are_those_of_a_sample_ten_times_as_large(case: str) -> None:
     scene = scenes[case]()
     options = trb.RunOptions(revolutions=0.2, accuracy="fast")
     few, many = (uncertainty(scene, samples=n, seed=s, options=options) for n, s in ((64, 5), (640, 6)))
+    assert few.refused == many.refused == ()
     for name in ("torque", "outer_pressure_max"):
-        width = many[name].high - many[name].low
-        assert few[name].low == pytest.approx(many[name].low, abs=0.2 * width)
-        assert few[name].high == pytest.approx(many[name].high, abs=0.2 * width)
+        # or within what two short runs differ by, where the inputs hardly change it
+        room = max(0.2 * (many[name].high - many[name].low), 1e-4 * many[name].value)
+        assert few[name].low == pytest.approx(many[name].low, abs=room)
+        assert few[name].high == pytest.approx(many[name].high, abs=room)
         for path, share in many[name].shares.items():
             assert few[name].shares.get(path, share) == pytest.approx(share, abs=0.15)

@@ -6,7 +6,7 @@ estimate follows from is kept in each draw:
 
 - the number of rollers is drawn by the share of the pitch circle that they take, and follows their size where it is not drawn;
 - a roller is longer than its contact line by what was drawn for both;
-- the cage's moments of inertia are drawn for its mass, and the one across its axis for the length of its rollers as well.
+- the cage's moments of inertia are drawn for its mass, and the one across its axis for the size of its rollers as well.
 """
 
 from __future__ import annotations
@@ -54,19 +54,30 @@ def belongs_together(
     whole = roller.get("total_length")
     if LINE in drawn and whole is not None and (LENGTH not in drawn or LENGTH in free):
         found[LENGTH] = drawn.get(LENGTH, whole) + drawn[LINE] - roller["effective_length"]
-    if COUNT in free or (COUNT in estimates and COUNT not in drawn and not drawn.keys().isdisjoint((DIAMETER, PITCH))):
-        before = math.pi * bearing["pitch_diameter"] / roller["diameter"]
-        around = math.pi * drawn.get(PITCH, bearing["pitch_diameter"]) / drawn.get(DIAMETER, roller["diameter"])
-        share = FILL.low + bands[COUNT][2] * (FILL.high - FILL.low) if COUNT in free else bearing["n_rollers"] / before
-        found[COUNT] = _whole(around, share)
+    if COUNT in free:
+        share = FILL.low + bands[COUNT][2] * (FILL.high - FILL.low)
+        found[COUNT] = _whole(_around(bearing, drawn), share)
+    elif COUNT in estimates and COUNT not in drawn and not drawn.keys().isdisjoint((DIAMETER, PITCH)):
+        found[COUNT] = _whole(_around(bearing, drawn), bearing["n_rollers"] / _around(bearing, {}))
     if not free.isdisjoint({AXIAL, TRANSVERSE}) and {AXIAL, TRANSVERSE} <= estimates.keys():
-        axial, transverse = (drawn.get(name, estimates[name]["value"]) for name in (AXIAL, TRANSVERSE))
         heavier = drawn[MASS] / estimates[MASS]["value"] if MASS in free else 1.0
-        longer = drawn.get(LINE, roller["effective_length"]) / roller["effective_length"]
+        axial, transverse = (drawn.get(name, estimates[name]["value"]) for name in (AXIAL, TRANSVERSE))
         along = transverse - 0.5 * estimates[AXIAL]["value"]  # what the distances along the axis make
         found[AXIAL] = heavier * axial
-        found[TRANSVERSE] = heavier * (0.5 * axial + along * longer**2)
+        found[TRANSVERSE] = heavier * (0.5 * axial + along * (_width(roller, found) / _width(roller, {})) ** 2)
     return found
+
+
+def _around(bearing: Mapping[str, Any], drawn: Mapping[str, Any]) -> float:
+    """How many rollers would fill the pitch circle."""
+    pitch, diameter = drawn.get(PITCH, bearing["pitch_diameter"]), drawn.get(DIAMETER, bearing["roller"]["diameter"])
+    return float(math.pi * pitch / diameter)
+
+
+def _width(roller: Mapping[str, Any], drawn: Mapping[str, Any]) -> float:
+    """Half of what the cage takes along the rollers' axis at most (m), as `trbdyn.model.cage_space` has it."""
+    length, diameter = drawn.get(LENGTH, roller["total_length"]), drawn.get(DIAMETER, roller["diameter"])
+    return float(0.5 * length + diameter)
 
 
 def _whole(around: float, share: float) -> int:
