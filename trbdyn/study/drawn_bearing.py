@@ -76,8 +76,8 @@ def _around(bearing: Mapping[str, Any], drawn: Mapping[str, Any]) -> float:
 
 def _width(roller: Mapping[str, Any], drawn: Mapping[str, Any]) -> float:
     """Half of what the cage takes along the rollers' axis at most (m), as `trbdyn.model.cage_space` has it."""
-    length, diameter = drawn.get(LENGTH, roller["total_length"]), drawn.get(DIAMETER, roller["diameter"])
-    return float(0.5 * length + diameter)
+    length = drawn.get(LENGTH, roller.get("total_length") or roller["effective_length"])
+    return float(0.5 * length + drawn.get(DIAMETER, roller["diameter"]))
 
 
 def _whole(around: float, share: float) -> int:
