@@ -37,7 +37,8 @@ OF_RESULT: dict[str, Callable[[Any], Any]] = {
     "animation": trb.animation.animate,
 } | {
     name: getattr(trb.plot, name)
-    for name in (*trb.plot.PICTURES.keys() - {"housing_orbit", "housing_motion"}, "cage_shape")
+    for name in (*trb.plot.PICTURES, "cage_shape")
+    if name not in ("housing_orbit", "housing_motion")
 }
 OF_ASSEMBLY: dict[str, Callable[[Any], Any]] = {
     "simulation": trb.AssemblySimulation,

@@ -8,14 +8,11 @@ import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from trbdyn.base.expected import expect
 from trbdyn.errors import FileError, InputError, unknown_name
-
-if TYPE_CHECKING:
-    from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.results.result import Result
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.result import Result
 
 __all__ = ["report", "save_pdf"]
 
@@ -78,8 +75,6 @@ def report(
     from trbdyn.plot import PICTURES
     from trbdyn.plot.assembly import of_result
     from trbdyn.reporting.page import page, page_of_assembly
-    from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.results.result import Result
 
     expect("result", result, Result, AssemblyResult)
     known = {*PICTURES, *(() if isinstance(result, Result) else of_result(result))}
