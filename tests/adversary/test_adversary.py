@@ -48,7 +48,7 @@ def _case(path: Path) -> Any:
     return pytest.param(path, id=path.stem, marks=marks)
 
 
-@pytest.mark.parametrize("path", map(_case, FOUND))
+@pytest.mark.parametrize("path", list(map(_case, FOUND)))
 def test_found_failures_stay_mended(path):
     """A file may say that an end with a reason is no longer good enough for its scene, and what the run has to say."""
     found = json.loads(path.read_text())
