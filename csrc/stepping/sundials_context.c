@@ -63,6 +63,7 @@ void trb_sundials_quiet_cvode(trb_sundials *sundials, void *memory)
 
 void trb_sundials_quiet_erk(trb_sundials *sundials, void *memory)
 {
+  (void)TRB_ARK(SetMaxHnilWarns)(memory, -1);
 #if TRB_SUNDIALS_AT_LEAST(7, 0)
   (void)sundials;
   (void)memory;
