@@ -45,6 +45,7 @@ def test_a_run_that_is_wrong_ends_and_says_so(tmp_path):
     assert trb.load(path).message == result.message
 
 
+@pytest.mark.slow
 def test_it_can_go_on_on_purpose():
     scene = paper_30310(500.0, 4930.0, 20_000.0)
     with pytest.warns(trb.RunWarning):

@@ -71,7 +71,7 @@ def closure(result: Result) -> float:
     return float(np.abs(result.energy_balance["residual"]).max()) / result.energy_audit.dissipated
 
 
-LONG = {"whirl", "ring_displaced", "planar", "boundary", "run_up"}
+LONG = {"paper", "whirl", "ring_displaced", "planar", "boundary", "run_up"}
 
 
 @pytest.mark.parametrize(

@@ -75,6 +75,7 @@ SLOWER = (
     "python -m trbdyn torque ",
     "python -m trbdyn sweep cage_mass -o study",
     "python benchmarks/torque.py",
+    "python benchmarks/ordinary.py",
 )
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
 PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"
