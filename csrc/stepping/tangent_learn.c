@@ -4,7 +4,7 @@
 
 /* Turn of the frame R that counts as one tolerance, rad. */
 static const double turn_unit = 1e-3;
-/* Weight of the last origin in the mean of evaluations that an origin serves. */
+/* Weight of the last origin in the mean of how many evaluations use an origin. */
 static const double newest = 0.2;
 /* Error that a tangent may have in its powers, as a share of all power. */
 static const double power_share = 0.03;

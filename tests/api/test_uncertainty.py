@@ -161,6 +161,21 @@ def test_bands_of_ones_own_are_drawn_as_they_are() -> None:
 
 
 @pytest.mark.parametrize(
+    ("path", "value"), [("n_rollers", 17), ("cage.inertia_transverse", 5.2e-5), ("cage.inertia_axial", 8.4e-5)]
+)
+def test_what_is_known_stays(path: str, value: float) -> None:
+    """Whoever counted the rollers of an estimated bearing does not want their number to follow anything."""
+    bearing = trb.Bearing.from_catalogue(**CATALOGUE["32208"])
+    known = bearing.replace({path: value})
+    assert path not in [entry.path for entry in known.estimated]
+    scene = trb.Scene(known, speed_rpm=2000.0, axial_load=3000.0)
+    built = [case.scene.bearing for case in draws_of(scene, list(open_inputs(scene)), 64) if case.scene is not None]
+    assert len(built) > 16
+    for one in built:
+        assert (one.n_rollers if path == "n_rollers" else getattr(one.cage, path.removeprefix("cage."))) == value
+
+
+@pytest.mark.parametrize(
     ("bands", "changes", "field"),
     [
         ({}, {}, "bands"),

@@ -83,6 +83,13 @@ def test_rounding_takes_no_roller_away(factor: float) -> None:
     assert moved.roller.diameter == pytest.approx(bearing.roller.diameter, rel=1e-8)
 
 
+def test_a_number_of_rollers_that_is_known_stays() -> None:
+    known = trb.Bearing.from_catalogue(**PAGE).replace(n_rollers=12)
+    for entry in known.estimated:
+        if entry.path in ("pitch_diameter", "roller.effective_length"):
+            assert _moved(known, entry, entry.low).n_rollers == _moved(known, entry, entry.high).n_rollers == 12
+
+
 def test_what_follows_from_an_estimate_moves_with_it() -> None:
     """Both ends of every band can be built, and nothing is warned of: rollers neither overlap nor leave gaps."""
     bearing = trb.Bearing.from_catalogue(**PAGE)

@@ -13,27 +13,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
+from trbdyn.model.bearing import Bearing
 from trbdyn.model.catalogue_rollers import FILL
 
-WHOLE = 1e-6
+WHOLE: Final = 1e-6
 """What a number of rollers may be below a whole one by rounding."""
-
 LINE, LENGTH = "bearing.roller.effective_length", "bearing.roller.total_length"
 COUNT, DIAMETER, PITCH = "bearing.n_rollers", "bearing.roller.diameter", "bearing.pitch_diameter"
 MASS, AXIAL, TRANSVERSE = "bearing.cage.mass", "bearing.cage.inertia_axial", "bearing.cage.inertia_transverse"
 
 
 def belongs_together(
-    bearing: Any, drawn: Mapping[str, Any], bands: Mapping[str, tuple[float, float, float]]
+    bearing: Bearing, drawn: Mapping[str, Any], bands: Mapping[str, tuple[float, float, float]]
 ) -> dict[str, Any]:
-    """Inputs of a draw, with those that follow from others put right.
+    """Inputs of a draw, with those that follow from others put right. What is known of the bearing, and is no estimate, stays.
 
     Parameters
     ----------
-    bearing : mapping
-        The bearing's table in the base of a study.
+    bearing : Bearing
+        The bearing with its estimates.
     drawn : mapping of str to number
         Inputs of the draw, each drawn by itself.
     bands : mapping of str to tuple
@@ -45,39 +45,40 @@ def belongs_together(
     dict
         The inputs of the draw, and estimates that were not drawn and follow from them.
     """
-    found = dict(drawn)
-    roller = bearing.get("roller") if isinstance(bearing, Mapping) else None
-    if not isinstance(roller, Mapping):
-        return found
-    estimates = {f"bearing.{entry['path']}": entry for entry in bearing.get("estimates") or ()}
-    free = {path for path, entry in estimates.items() if bands.get(path, ())[:2] == (entry["low"], entry["high"])}
-    whole = roller.get("total_length")
+    found, cage = dict(drawn), bearing.cage
+    estimates = {f"bearing.{entry.path}": entry for entry in bearing.estimated}
+    free = {path for path, entry in estimates.items() if bands.get(path, ())[:2] == (entry.low, entry.high)}
+    whole = bearing.inputs()["roller"].get("total_length")
     if LINE in drawn and whole is not None and (LENGTH not in drawn or LENGTH in free):
-        found[LENGTH] = drawn.get(LENGTH, whole) + drawn[LINE] - roller["effective_length"]
+        found[LENGTH] = drawn.get(LENGTH, whole) + drawn[LINE] - bearing.roller.effective_length
     if COUNT in free:
         share = FILL.low + bands[COUNT][2] * (FILL.high - FILL.low)
         found[COUNT] = _whole(_around(bearing, drawn), share)
     elif COUNT in estimates and COUNT not in drawn and not drawn.keys().isdisjoint((DIAMETER, PITCH)):
-        found[COUNT] = _whole(_around(bearing, drawn), bearing["n_rollers"] / _around(bearing, {}))
-    if not free.isdisjoint({AXIAL, TRANSVERSE}) and {AXIAL, TRANSVERSE} <= estimates.keys():
-        heavier = drawn[MASS] / estimates[MASS]["value"] if MASS in free else 1.0
-        axial, transverse = (drawn.get(name, estimates[name]["value"]) for name in (AXIAL, TRANSVERSE))
-        along = transverse - 0.5 * estimates[AXIAL]["value"]  # what the distances along the axis make
-        found[AXIAL] = heavier * axial
-        found[TRANSVERSE] = heavier * (0.5 * axial + along * (_width(roller, found) / _width(roller, {})) ** 2)
+        found[COUNT] = _whole(_around(bearing, drawn), bearing.n_rollers / _around(bearing, {}))
+    if not free.isdisjoint((AXIAL, TRANSVERSE)):
+        heavier = drawn[MASS] / cage.mass if MASS in free else 1.0
+        if AXIAL in estimates:
+            found[AXIAL] = heavier * drawn.get(AXIAL, cage.inertia_axial)
+        if TRANSVERSE in estimates:
+            along = (
+                drawn.get(TRANSVERSE, cage.inertia_transverse) - 0.5 * cage.inertia_axial
+            )  # by distances along the axis
+            wider = _width(bearing, found) / _width(bearing, {})
+            found[TRANSVERSE] = 0.5 * found.get(AXIAL, cage.inertia_axial) + heavier * along * wider**2
     return found
 
 
-def _around(bearing: Mapping[str, Any], drawn: Mapping[str, Any]) -> float:
+def _around(bearing: Bearing, drawn: Mapping[str, Any]) -> float:
     """How many rollers would fill the pitch circle."""
-    pitch, diameter = drawn.get(PITCH, bearing["pitch_diameter"]), drawn.get(DIAMETER, bearing["roller"]["diameter"])
+    pitch, diameter = drawn.get(PITCH, bearing.pitch_diameter), drawn.get(DIAMETER, bearing.roller.diameter)
     return float(math.pi * pitch / diameter)
 
 
-def _width(roller: Mapping[str, Any], drawn: Mapping[str, Any]) -> float:
+def _width(bearing: Bearing, drawn: Mapping[str, Any]) -> float:
     """Half of what the cage takes along the rollers' axis at most (m), as `trbdyn.model.cage_space` has it."""
-    length = drawn.get(LENGTH, roller.get("total_length") or roller["effective_length"])
-    return float(0.5 * length + drawn.get(DIAMETER, roller["diameter"]))
+    length, diameter = drawn.get(LENGTH, bearing.roller.total_length), drawn.get(DIAMETER, bearing.roller.diameter)
+    return float(0.5 * length + diameter)
 
 
 def _whole(around: float, share: float) -> int:

@@ -18,6 +18,7 @@ from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import Model, Number
 from trbdyn.errors import InputError, unknown_name
+from trbdyn.model.bearing import Bearing
 from trbdyn.model.lubricants import supply_of
 from trbdyn.model.scene import Scene
 from trbdyn.results.summary import LABELS
@@ -342,9 +343,10 @@ def drawn_case(base: Base, options: RunOptions, bands: Sequence[Band], row: Arra
             value = float(band.low + share * (band.high - band.low))
         overrides[band.path] = value
     ends = {band.path: (band.low, band.high, float(share)) for band, share in zip(bands, row, strict=True)}
-    overrides = belongs_together(base.tables.get("bearing"), overrides, ends)
-    parameters = {"draw": number} | {band.path: overrides[band.path] for band in bands}
+    parameters = {"draw": number, **overrides}
     try:
+        overrides = belongs_together(Bearing.model_validate(base.tables["bearing"]), overrides, ends)
+        parameters |= {band.path: overrides[band.path] for band in bands}
         scene, _ = base.build(overrides)
     except InputError as error:
         return Case(parameters, None, options, str(error).splitlines()[0])

@@ -302,5 +302,5 @@ def _moved(bearing: Bearing, entry: Estimated, value: float) -> Bearing:
     """The bearing with an estimate moved to an end of its band, and with it the estimates that follow from it."""
     path = f"bearing.{entry.path}"
     share = 0.0 if value == entry.low else 1.0
-    drawn = belongs_together(bearing.inputs(), {path: value}, {path: (entry.low, entry.high, share)})
+    drawn = belongs_together(bearing, {path: value}, {path: (entry.low, entry.high, share)})
     return bearing.replace({name.removeprefix("bearing."): to for name, to in drawn.items()})
