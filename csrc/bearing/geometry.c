@@ -3,8 +3,7 @@
 #include <math.h>
 
 #include "base/vec3.h"
-#include "laws/hertz.h"
-#include "laws/smooth.h"
+#include "bearing/ribs.h"
 
 const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY] = {
 #define TRB_GEOMETRY_INFO(name, unit, text) {#name, unit, text},
@@ -14,7 +13,7 @@ const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY] = {
 
 /* Cones (docs/theory/geometry.md#cones-and-rollers): with the apex distance Rc, tan(nu) = (Dwe/2)/Rc and sin(alpha_o - nu) = (Dpw/2)/Rc.
  * Their ratio gives nu, by Newton's method. Everything but the distances from the apex is written with radii at mid length, which a cylinder
- * (alpha_o = 0) has too. */
+ * (alpha_o = 0) has too. Where there is no apex, all is counted from the middle of the bearing. */
 static void derive_cones(const trb_params *p, trb_geometry *g)
 {
   const double ratio = p->roller_diameter / p->pitch_diameter;
@@ -28,7 +27,7 @@ static void derive_cones(const trb_params *p, trb_geometry *g)
   g->roller_half_angle = nu;
   g->roller_axis_angle = p->cup_half_angle - nu;
   g->cone_half_angle = p->cup_half_angle - 2.0 * nu;
-  g->apex_to_mid = 0.5 * p->pitch_diameter / sin(g->roller_axis_angle);
+  g->apex_to_mid = p->cup_half_angle > 0.0 ? 0.5 * p->pitch_diameter / sin(g->roller_axis_angle) : 0.0;
   g->apex_to_large_end = g->apex_to_mid + 0.5 * p->effective_length;
   g->centre_plane = g->apex_to_mid * cos(g->roller_axis_angle);
 }
@@ -71,43 +70,53 @@ static void derive_mass(const trb_params *p, trb_geometry *g)
   g->roller_centre_height = g->centre_plane + g->roller_mass_offset * cos(g->roller_axis_angle);
 }
 
-/* Rib: the nominal sphere just touches a cone face at the given height above the inner raceway
- * (docs/theory/geometry.md#rib-of-the-inner-ring). */
+/* The rib of the inner ring against the large ends (bearing/ribs.h). */
 static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *message)
 {
-  const double pole = g->apex_to_mid + g->large_end_station, ai = g->cone_half_angle;
-  g->sphere_radius = p->sphere_ratio * pole;
+  trb_rib_place    rib;
+  const trb_status status = trb_place_rib(p, g, TRB_RACE_INNER, TRB_END_LARGE, &rib, message);
+  if (status != TRB_OK) return status;
+  g->rib_normal_angle = rib.normal_angle;
+  g->rib_contact_radius = rib.radius;
+  g->rib_contact_z = g->centre_plane + rib.along;
+  g->rib_curvature_radius = rib.curvature_radius;
+  g->rib_rx = rib.rx;
+  g->rib_ry = rib.ry;
+  g->rib_ellipticity = rib.ellipticity;
+  g->rib_stiffness = rib.stiffness;
+  g->rib_semi_axis_rolling = rib.semi_rolling;
+  g->rib_semi_axis_across = rib.semi_across;
+  return TRB_OK;
+}
+
+/* Of the large end; a cylinder has no apex, and gives the radius itself. */
+static void derive_sphere(const trb_params *p, trb_geometry *g)
+{
+  const double pole = g->apex_to_mid + g->large_end_station;
+  g->sphere_radius = p->end_radius > 0.0 ? p->end_radius : p->sphere_ratio * pole;
   g->sphere_centre = pole - g->sphere_radius;
-  const double sphere = g->large_end_station - g->sphere_radius; /* its centre, from mid length */
-  /* and above the inner raceway, to which mid length is nearest by the roller's radius there */
-  const double height = 0.5 * p->roller_diameter * cos(g->roller_half_angle) + sphere * sin(g->roller_half_angle);
-  if (!(p->rib_contact_height < g->large_end_diameter))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: must be below the roller's large-end diameter, %g m",
-                    p->rib_contact_height, g->large_end_diameter);
-  const double sine = (p->rib_contact_height - height) / g->sphere_radius;
-  if (!(fabs(sine) < 1.0))
-    return trb_fail(message, TRB_ERR_GEOMETRY,
-                    "rib_contact_height = %g m: the large end's sphere (radius %g m) does not touch the rib there", p->rib_contact_height,
-                    g->sphere_radius);
-  g->rib_normal_angle = ai + asin(sine);
-  g->rib_contact_radius = 0.5 * p->pitch_diameter + sphere * sin(g->roller_axis_angle) + g->sphere_radius * sin(g->rib_normal_angle);
-  g->rib_contact_z = g->centre_plane + sphere * cos(g->roller_axis_angle) + g->sphere_radius * cos(g->rib_normal_angle);
-  if (!(g->rib_normal_angle > 0.0 && g->rib_normal_angle < 1.5))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the rib's face would not close towards the roller",
-                    p->rib_contact_height);
-  g->rib_curvature_radius = g->rib_contact_radius / sin(g->rib_normal_angle);
-  const double curvature = 1.0 / g->sphere_radius - 1.0 / g->rib_curvature_radius;
-  if (!(curvature > 0.0))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "sphere_ratio = %g: the large end (radius %g m) is flatter than the rib (%g m)",
-                    p->sphere_ratio, g->sphere_radius, g->rib_curvature_radius);
-  g->rib_rx = 1.0 / curvature;
-  g->rib_ry = g->sphere_radius;
-  const trb_hertz_point hertz = trb_hertz_point_constants(g->rib_rx, g->rib_ry, g->effective_modulus);
-  const int             rolling_is_long = g->rib_rx > g->rib_ry;
-  g->rib_ellipticity = hertz.ellipticity;
-  g->rib_stiffness = hertz.stiffness;
-  g->rib_semi_axis_rolling = rolling_is_long ? hertz.semi_long : hertz.semi_short;
-  g->rib_semi_axis_across = rolling_is_long ? hertz.semi_short : hertz.semi_long;
+}
+
+/* What only cones have, and what only cylinders have. */
+static trb_status check_kind(const trb_params *p, const trb_geometry *g, trb_message *message)
+{
+  const int cylinder = p->cup_half_angle == 0.0;
+  if (cylinder && !(p->end_radius > 0.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "end_radius = %g m: must be above 0 for cylindrical rollers", p->end_radius);
+  if (cylinder) return TRB_OK;
+  const struct {
+    const char *name;
+    double      value;
+  } none[] = {{"radial_clearance", p->radial_clearance},
+              {"rib_clearance", p->rib_clearance},
+              {"outer_rib", p->outer_rib},
+              {"outer_front_rib", p->outer_front_rib}};
+  for (size_t i = 0; i < sizeof none / sizeof none[0]; i++)
+    if (none[i].value > 0.0)
+      return trb_fail(message, TRB_ERR_GEOMETRY, "%s = %g: must be 0 for tapered rollers", none[i].name, none[i].value);
+  if (!(g->cone_half_angle > 0.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "cup_half_angle = %g rad: too small for rollers of diameter %g m on pitch diameter %g m",
+                    p->cup_half_angle, p->roller_diameter, p->pitch_diameter);
   return TRB_OK;
 }
 
@@ -122,15 +131,15 @@ trb_status trb_geometry_derive(const trb_params *params, trb_geometry *geometry,
   trb_geometry *g = geometry;
   *g = (trb_geometry){0};
   derive_cones(params, g);
-  if (!(g->cone_half_angle > 0.0))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "cup_half_angle = %g rad: too small for rollers of diameter %g m on pitch diameter %g m",
-                    params->cup_half_angle, params->roller_diameter, params->pitch_diameter);
+  const trb_status status = check_kind(params, g, message);
+  if (status != TRB_OK) return status;
   if (params->total_length < params->effective_length)
     return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: must be at least the effective length, %g m", params->total_length,
                     params->effective_length);
   derive_radii(params, g);
   if (!(g->small_end_radius > 0.0))
     return trb_fail(message, TRB_ERR_GEOMETRY, "total_length = %g m: the roller would extend beyond the apex", params->total_length);
+  derive_sphere(params, g);
   derive_mass(params, g);
   g->effective_modulus =
       trb_composite_modulus(params->roller_youngs_modulus, params->roller_poisson_ratio, params->youngs_modulus, params->poisson_ratio);

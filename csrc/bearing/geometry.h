@@ -1,5 +1,5 @@
-/* Everything that follows from the catalogue numbers of a bearing whose cup, cone and rollers share one apex
- * (docs/theory/geometry.md#cones-and-rollers). */
+/* Everything that follows from the catalogue numbers of a bearing whose cup, cone and rollers share one apex, or are cylinders, which have none:
+ * distances from the apex are then from the middle of the bearing (docs/theory/geometry.md#cones-and-rollers). */
 #ifndef TRB_BEARING_GEOMETRY_H
 #define TRB_BEARING_GEOMETRY_H
 
@@ -11,7 +11,7 @@
   X(roller_half_angle,       "rad",   "nu: half angle of the roller cone") \
   X(roller_axis_angle,       "rad",   "alpha_m: angle of the roller axis to the bearing axis") \
   X(cone_half_angle,         "rad",   "alpha_i: half angle of the cone (inner) raceway") \
-  X(apex_to_mid,             "m",     "Rc: apex to roller mid length along its axis") \
+  X(apex_to_mid,             "m",     "Rc: apex to roller mid length along its axis; 0 for cylindrical rollers") \
   X(apex_to_large_end,       "m",     "apex to the large end of the effective length") \
   X(outer_race_radius,       "m",     "radius of the outer raceway at mid roller") \
   X(inner_race_radius,       "m",     "radius of the inner raceway at mid roller") \
@@ -28,7 +28,7 @@
   X(centre_plane,            "m",     "axial position of the roller-centre plane (mid length) from the apex") \
   X(effective_modulus,       "Pa",    "E' of roller and ring: 2/[(1-v1^2)/E1 + (1-v2^2)/E2]") \
   X(pocket_modulus,          "Pa",    "E' of roller and cage") \
-  X(sphere_radius,           "m",     "Rs: radius of the roller's large end") \
+  X(sphere_radius,           "m",     "Rs: radius of the sphere of the roller's large end, of a cylinder of both ends") \
   X(sphere_centre,           "m",     "distance from the apex to the large-end sphere's centre, along the roller axis") \
   X(rib_normal_angle,        "rad",   "angle of the rib face's normal to the bearing axis") \
   X(rib_contact_radius,      "m",     "radius of the nominal rib contact from the bearing axis") \

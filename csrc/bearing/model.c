@@ -12,6 +12,8 @@
 #include "laws/line_contact.h"
 #include "laws/profile.h"
 
+/* Smallest half angle of a cup whose apex is near enough for coordinates that are counted from there, rad. */
+#define TRB_LEAST_CONE 0.01
 /* Smallest height of a land's film over the clearance: the law of the film keeps eight digits. */
 #define TRB_LEAST_CONTACT_FILM 1e-4
 
@@ -26,6 +28,9 @@ static trb_status check_params(const trb_params *params, trb_message *message)
     if ((strcmp(info->unit, "count") == 0 || strcmp(info->unit, "choice") == 0) && values[i] != floor(values[i]))
       return trb_fail(message, TRB_ERR_INPUT, "%s = %g: must be a whole number", info->name, values[i]);
   }
+  if (!(params->cup_half_angle == 0.0 || params->cup_half_angle >= TRB_LEAST_CONE))
+    return trb_fail(message, TRB_ERR_INPUT, "cup_half_angle = %g rad: must be 0, for cylindrical rollers, or at least %g rad",
+                    params->cup_half_angle, TRB_LEAST_CONE);
   if (params->rolling_resistance > 0.0 && !(params->pressure_coefficient > 0.0))
     return trb_fail(message, TRB_ERR_INPUT, "pressure_coefficient = %g 1/Pa: must be > 0 for rolling resistance",
                     params->pressure_coefficient);
@@ -111,7 +116,7 @@ static trb_status check_front_rib(const trb_model *m, trb_message *message)
 {
   const trb_geometry *g = &m->geometry;
   const double        heights[2] = {m->params.front_rib_low, m->params.front_rib_high};
-  if (m->params.front_rib <= 0.0) return TRB_OK;
+  if (m->params.front_rib <= 0.0 || trb_has_cylinders(m)) return TRB_OK;
   for (int i = 0; i < 2; i++) {
     const double rim = trb_cone_radius(&m->surfaces.flank, g->small_end_station - m->params.front_rib_clearance);
     if (!(rim - heights[i] / cos(g->roller_half_angle) > -g->small_end_radius))
@@ -138,6 +143,45 @@ static void fill_land(trb_model *m)
   m->land_film = m->film && p->land_fill > 0.0;
 }
 
+static trb_status fill_rib(trb_model *m, int race, int end, trb_message *message)
+{
+  const trb_params   *p = &m->params;
+  const trb_geometry *g = &m->geometry;
+  trb_rib_place       place;
+  const trb_status    status = trb_place_rib(p, g, race, end, &place, message);
+  if (status != TRB_OK) return status;
+  const double shape = place.ry / place.rx;
+  trb_rib     *rib = &m->rib[race][end];
+  *rib = (trb_rib){.face = trb_rib_face(&place, end),
+                   .race = m->surfaces.race[race],
+                   .end = end == TRB_END_LARGE ? m->surfaces.large_end : m->surfaces.other_end,
+                   .normal_lean = fabs(sin(place.normal_angle - g->roller_axis_angle)),
+                   .edge_low = p->rib_edge_low,
+                   .edge_high = p->rib_edge_high,
+                   .stiffness = place.stiffness,
+                   .semi_axis_rolling = place.semi_rolling,
+                   .semi_axis_across = place.semi_across,
+                   .rx = place.rx,
+                   .film_shape = p->rib_film == TRB_RIB_FILM_NEEDLE ? trb_film_needle_shape(shape) : trb_film_point_shape(shape),
+                   .film_rigid = p->rib_film > 0.0 ? 0.0 : trb_film_point_rigid_factor(shape),
+                   .roughness = p->roughness_rib};
+  if (race == TRB_RACE_OUTER) rib->face.place += g->centre_plane; /* places of the outer ring are from the origin */
+  return TRB_OK;
+}
+
+/* A tapered bearing has the first one alone. */
+static trb_status fill_ribs(trb_model *m, trb_message *message)
+{
+  static const int of[][2] = {
+      {TRB_RACE_INNER, TRB_END_LARGE}, {TRB_RACE_INNER, TRB_END_SMALL}, {TRB_RACE_OUTER, TRB_END_LARGE}, {TRB_RACE_OUTER, TRB_END_SMALL}};
+  const int n = trb_has_cylinders(m) ? (int)(sizeof of / sizeof of[0]) : 1;
+  for (int i = 0; i < n; i++) {
+    const trb_status status = fill_rib(m, of[i][0], of[i][1], message);
+    if (status != TRB_OK) return status;
+  }
+  return TRB_OK;
+}
+
 static void fill_constants(trb_model *m)
 {
   const trb_params   *p = &m->params;
@@ -153,20 +197,6 @@ static void fill_constants(trb_model *m)
   /* mean speed of the surfaces in pure rolling for a unit of the rings' relative speed */
   m->replenishment = p->replenishment / (g->outer_race_radius * g->cage_speed_ratio);
   m->log_thermal = log(p->viscosity * trb_max(p->temperature_coefficient, 1e-30) / p->conductivity);
-  m->back_rib = (trb_rib){.face = m->surfaces.rib,
-                          .race = m->surfaces.race[TRB_RACE_INNER],
-                          .end = m->surfaces.large_end,
-                          .normal_lean = fabs(sin(g->rib_normal_angle - g->roller_axis_angle)),
-                          .edge_low = p->rib_edge_low,
-                          .edge_high = p->rib_edge_high,
-                          .stiffness = g->rib_stiffness,
-                          .semi_axis_rolling = g->rib_semi_axis_rolling,
-                          .semi_axis_across = g->rib_semi_axis_across,
-                          .rx = g->rib_rx,
-                          .film_shape = p->rib_film == TRB_RIB_FILM_NEEDLE ? trb_film_needle_shape(g->rib_ry / g->rib_rx)
-                                                                           : trb_film_point_shape(g->rib_ry / g->rib_rx),
-                          .film_rigid = p->rib_film > 0.0 ? 0.0 : trb_film_point_rigid_factor(g->rib_ry / g->rib_rx),
-                          .roughness = p->roughness_rib};
   const int dry = p->lubrication == TRB_LUBRICATION_DRY, full = p->lubrication == TRB_LUBRICATION_FULL;
   m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);
   m->pocket_friction = dry ? p->dry_friction > 0.0 : !(full && p->traction == TRB_TRACTION_NONE);
@@ -298,7 +328,7 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   fill_constants(m);
   fill_land(m);
   trb_pockets_place(m);
-  return TRB_OK;
+  return fill_ribs(m, message);
 }
 
 trb_status trb_model_create(const trb_params *params, const double *deviation, int n_deviations, const trb_face *faces, int n_faces,

@@ -9,7 +9,7 @@
 #include "bearing/geometry.h"
 #include "bearing/modes.h"
 #include "bearing/params.h"
-#include "bearing/surfaces.h"
+#include "bearing/ribs.h"
 #include "surface/polygon.h"
 
 enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };
@@ -103,16 +103,16 @@ typedef struct trb_model {
   trb_pocket_face *faces;      /* all faces, grouped by pocket */
   int             *first_face; /* per pocket, n_rollers + 1 entries: its faces are [first, next first) */
   /* constants of the laws */
-  double        log_modulus;            /* ln E' */
-  double        log_palmgren;           /* ln of the load per length of roller and ring at d = 1 m */
-  double        pocket_palmgren;        /* load per length of roller and cage at d = 1 m */
-  double        wall_stiffness;         /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
-  double        axis_sine, axis_cosine; /* of the roller axis' angle */
-  double        log_g;                  /* ln G */
-  double        log_viscosity;          /* ln eta0 */
-  double        log_thermal;            /* ln(eta0 beta/k') */
-  double        replenishment;          /* decline of the film's supply at a raceway with its mean speed, s/m */
-  trb_rib       back_rib;
+  double        log_modulus;                   /* ln E' */
+  double        log_palmgren;                  /* ln of the load per length of roller and ring at d = 1 m */
+  double        pocket_palmgren;               /* load per length of roller and cage at d = 1 m */
+  double        wall_stiffness;                /* stiffness of roller end against a wall of the cage: force = k d^1.5 */
+  double        axis_sine, axis_cosine;        /* of the roller axis' angle */
+  double        log_g;                         /* ln G */
+  double        log_viscosity;                 /* ln eta0 */
+  double        log_thermal;                   /* ln(eta0 beta/k') */
+  double        replenishment;                 /* decline of the film's supply at a raceway with its mean speed, s/m */
+  trb_rib       rib[TRB_N_RACES][TRB_N_ENDS];  /* conical ribs, by the raceway of their ring and the end that they meet */
   trb_ring_body ring[TRB_N_RACES];             /* rings, by their raceway, where they have coordinates */
   trb_guide     guide[TRB_N_RACES];            /* lands, by the raceway of their ring */
   trb_frame    *pocket_axes;                   /* per pocket: n, t, a of the nominal roller, in the cage's body */
@@ -131,6 +131,9 @@ typedef struct trb_model {
   trb_form      form;                          /* of surfaces off their true form */
   int           n_losses;                      /* entries of the list of losses (bearing/losses.h) that have a quadrature */
 } trb_model;
+
+/* Whether rollers and raceways are cylinders. */
+static inline int trb_has_cylinders(const trb_model *model) { return model->params.cup_half_angle == 0.0; }
 
 /* Distance of the farthest sphere of the flank from the centre of mass of its roller, m. */
 double trb_chain_length(const trb_model *model);

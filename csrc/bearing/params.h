@@ -13,7 +13,7 @@
 #define TRB_PARAMS(X) \
   /* bearing geometry */ \
   X(n_rollers,                "count",      3,      200,    "number of rollers Z") \
-  X(cup_half_angle,           "rad",    0.01,   0.8,    "half angle of the cup (outer) raceway cone") \
+  X(cup_half_angle,           "rad",    0,      0.8,    "half angle of the cup (outer) raceway cone; 0: rollers and raceways are cylinders") \
   X(roller_diameter,          "m",      1e-4,   1.0,    "Dwe: roller diameter at mid length, perpendicular to its axis") \
   X(effective_length,         "m",      1e-4,   1.0,    "Lwe: effective length of the roller's contact line") \
   X(total_length,             "m",      1e-4,   1.0,    "length of the roller over its ends, centred on the effective length") \
@@ -26,6 +26,11 @@
   X(cage_youngs_modulus,      "Pa",     1e8,    1e13,   "Young's modulus of the cage's faces") \
   X(cage_poisson_ratio,       "1",      0,      0.4999, "Poisson's ratio of the cage's faces") \
   X(sphere_ratio,             "1",      0.05,   0.999,  "large-end sphere radius over the apex distance of the roller's large end") \
+  X(end_radius,               "m",      0,      1e3,    "radius of the sphere of the large end, of a cylinder of both ends; 0: it follows from sphere_ratio") \
+  X(radial_clearance,         "m",      0,      0.01,   "radial internal clearance of a cylindrical bearing: way of one ring across the other") \
+  X(rib_clearance,            "m",      0,      0.1,    "nominal gap between a cylindrical roller's end and each rib") \
+  X(outer_rib,                "choice",      0,      1,      "cylindrical rollers: large ends (towards +z) against a rib of the outer ring") \
+  X(outer_front_rib,          "choice",      0,      1,      "cylindrical rollers: small ends (towards -z) against a rib of the outer ring") \
   X(rib_contact_height,       "m",      0,      0.1,    "height of the nominal rib contact above the inner raceway, perpendicular to it") \
   X(rib_edge_low,             "m",      0,      0.1,    "height of the back-face rib's lower edge above the raceway") \
   X(rib_edge_high,            "m",      0,      0.1,    "height of the back-face rib's upper edge above the raceway") \

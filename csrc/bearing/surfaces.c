@@ -4,23 +4,15 @@
 
 /* In the axial plane the raceway touches the flank where it is 1/2 Dwe off the roller's axis, across that axis, and goes on along the raceway
  * to the roller-centre plane: 1/2 Dpw +- 1/2 Dwe [cos(alpha_m) +- sin(alpha_m) tan(alpha)], which the difference of both angles, nu, makes
- * 1/2 Dpw +- 1/2 Dwe cos(nu)/cos(alpha). */
+ * 1/2 Dpw +- 1/2 Dwe cos(nu)/cos(alpha). Both raceways of a cylindrical bearing stand back by a quarter of its radial internal clearance. */
 trb_cone trb_raceway_cone(const trb_params *params, const trb_geometry *geometry, int race, double place)
 {
   const double side = race == TRB_RACE_OUTER ? 1.0 : -1.0,
                angle = race == TRB_RACE_OUTER ? params->cup_half_angle : geometry->cone_half_angle;
-  const double radius = 0.5 * params->pitch_diameter + side * 0.5 * params->roller_diameter * cos(geometry->roller_half_angle) / cos(angle);
+  const double radius = 0.5 * params->pitch_diameter +
+                        side * 0.5 * params->roller_diameter * cos(geometry->roller_half_angle) / cos(angle) +
+                        side * 0.25 * params->radial_clearance;
   return trb_cone_of(place, radius, angle, side);
-}
-
-/* The nominal sphere of the large end touches the face at the nominal contact. */
-static trb_cone rib_face(const trb_geometry *g)
-{
-  const double sphere = g->large_end_station - g->sphere_radius; /* its centre, from mid length */
-  return (trb_cone){.place = sphere * cos(g->roller_axis_angle) + g->sphere_radius * cos(g->rib_normal_angle),
-                    .radius = g->rib_contact_radius,
-                    .cosine = sin(g->rib_normal_angle),
-                    .sine = -cos(g->rib_normal_angle)};
 }
 
 /* Edges of the front rib: circles about the inner ring's axis on the face that is parallel to the nominal roller's small end. */
@@ -40,9 +32,9 @@ void trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, 
   const trb_geometry *g = geometry;
   surfaces->race[TRB_RACE_OUTER] = trb_raceway_cone(params, g, TRB_RACE_OUTER, g->centre_plane);
   surfaces->race[TRB_RACE_INNER] = trb_raceway_cone(params, g, TRB_RACE_INNER, 0.0);
-  surfaces->rib = rib_face(g);
   surfaces->flank = trb_cone_of(-g->roller_mass_offset, 0.5 * params->roller_diameter, g->roller_half_angle, -1.0);
   surfaces->large_end = (trb_sphere){g->large_end_station - g->sphere_radius - g->roller_mass_offset, g->sphere_radius};
+  surfaces->other_end = (trb_sphere){g->small_end_station + g->sphere_radius - g->roller_mass_offset, g->sphere_radius};
   surfaces->small_end = g->small_end_station - g->roller_mass_offset;
   place_front_rib(params, g, surfaces);
 }

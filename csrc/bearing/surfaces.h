@@ -13,11 +13,11 @@ enum { TRB_RACE_OUTER = 0, TRB_RACE_INNER = 1, TRB_N_RACES = 2 };
 typedef struct trb_surfaces {
   /* of the rings, about their axes; places from the origin for the outer ring, from the roller-centre plane for the inner one */
   trb_cone   race[TRB_N_RACES];
-  trb_cone   rib;          /* face of the inner ring's back-face rib */
-  trb_circle front_rib[2]; /* edges of its front rib */
+  trb_circle front_rib[2]; /* edges of the plane front rib of the inner ring */
   /* of a roller, about its axis; places from its centre of mass */
   trb_cone   flank;     /* without profile and deviation; its reference plane is mid length */
   trb_sphere large_end; /* sphere of the large end */
+  trb_sphere other_end; /* the same at the other end, of a cylinder */
   double     small_end; /* plane of the small end, m */
 } trb_surfaces;
 

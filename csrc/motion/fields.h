@@ -46,6 +46,16 @@ typedef enum trb_field_kind {
   F(X, rib,       height,          "m",   "height of the rib contact above the raceway") \
   F(X, rib,       overhang,        "1",   "share of the rib's contact ellipse (along the face) that lies beyond the rib's edges")
 
+/* The same at the ribs that only cylindrical bearings have. */
+#define TRB_OUTER_RIB_FIELDS(F, X) \
+  F(X, outer_rib,       load,           "N",  "normal load, end towards +z on the rib of the outer ring") \
+  F(X, outer_front_rib, load,           "N",  "normal load, end towards -z on the rib of the outer ring") \
+  F(X, outer_rib,       pressure,       "Pa", "largest Hertz pressure at the rib of the outer ring, end towards +z") \
+  F(X, outer_front_rib, pressure,       "Pa", "largest Hertz pressure at the rib of the outer ring, end towards -z") \
+  F(X, outer_rib,       film_parameter, "1",  "film parameter Lambda at the rib of the outer ring, end towards +z") \
+  F(X, outer_front_rib, film_parameter, "1",  "film parameter Lambda at the rib of the outer ring, end towards -z")
+
+#define TRB_FIELD_OF_OUTER_RIB(X, pair, quantity, unit, text) X(pair##_##quantity, outer_ribs, ROLLER, unit, text)
 #define TRB_FIELD_OF_CONTACT(X, pair, quantity, unit, text) X(pair##_##quantity, contacts, ROLLER, unit, text)
 
 /* Of the cage on the land of a ring (contact/contact.h); zero without one. */
@@ -83,6 +93,7 @@ typedef enum trb_field_kind {
   X(roller_skew,                 rollers,  ROLLER,      "rad",   "skew: axis turned in the tangential direction") \
   X(roller_tilt,                 rollers,  ROLLER,      "rad",   "tilt: axis turned in the axial plane, against the nominal axis") \
   TRB_CONTACT_FIELDS(TRB_FIELD_OF_CONTACT, X) \
+  TRB_OUTER_RIB_FIELDS(TRB_FIELD_OF_OUTER_RIB, X) \
   X(pocket_force,                pocket,   POCKET_FACE, "N",     "normal force between roller and each face of its pocket") \
   X(pocket_friction,             pocket,   POCKET_FACE, "N",     "magnitude of the friction force at each face") \
   X(ring_position,               ring,     VEC3,        "m",     "displacement of the inner ring") \

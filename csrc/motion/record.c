@@ -165,14 +165,14 @@ static const struct {
   int    field;
 } contact_fields[] = {
 #define ROW(X, pair, quantity, unit, text) {offsetof(trb_contact_view, quantity), TRB_PAIR_##pair, TRB_FIELD_AT_##pair##_##quantity},
-    TRB_CONTACT_FIELDS(ROW, 0)
+    TRB_CONTACT_FIELDS(ROW, 0) TRB_OUTER_RIB_FIELDS(ROW, 0)
 #undef ROW
 };
 
 static void put_contacts(writer *w, int j)
 {
   trb_contact_view views[TRB_N_PAIRS] = {{0}};
-  for (int row = 0; row < TRB_N_PAIRS; row++) {
+  for (int row = 0; row < TRB_N_PAIRS && row < w->d->system->n_pairs; row++) {
     const trb_pair *pair = &w->d->system->pairs[row];
     if (pair->kind->view != NULL) pair->kind->view(w->d->model, pair, &w->seen, j, &views[row]);
   }

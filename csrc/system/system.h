@@ -19,7 +19,7 @@ typedef struct trb_surface {
   const void *is;
 } trb_surface;
 
-enum { TRB_MOST_SURFACES = 16 };
+enum { TRB_MOST_SURFACES = 20 };
 
 /* Where the entries of a system lie in a state, which may hold those of other systems, too (system/assembly.h). */
 typedef struct trb_layout {

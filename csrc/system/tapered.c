@@ -22,6 +22,10 @@ enum {
   INNER_LAND,
   OUTER_LAND,
   WHOLE_CAGE,
+  N_TAPERED_SURFACES,
+  OTHER_END = N_TAPERED_SURFACES,
+  OUTER_BACK_FACE,
+  OUTER_FRONT_FACE,
   N_SURFACES
 };
 
@@ -52,14 +56,14 @@ static void add_bodies(trb_system *s)
 static void add_surfaces(trb_system *s)
 {
   const trb_model *m = s->model;
-  s->n_surfaces = N_SURFACES;
+  s->n_surfaces = trb_has_cylinders(m) ? N_SURFACES : N_TAPERED_SURFACES;
   s->surfaces[FLANK] = (trb_surface){"flank", TRB_ROLLERS, TRB_SHAPE_FLANK, m};
   s->surfaces[LARGE_END] = (trb_surface){"large end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.large_end};
   s->surfaces[SMALL_END] = (trb_surface){"small end", TRB_ROLLERS, TRB_SHAPE_PLANE, &m->surfaces.small_end};
   s->surfaces[ROLLER] = (trb_surface){"roller", TRB_ROLLERS, TRB_SHAPE_NONE, NULL};
   s->surfaces[OUTER_RACE] = (trb_surface){"outer raceway", TRB_BODY_OUTER_RING, TRB_SHAPE_RACE, &m->race[TRB_RACE_OUTER]};
   s->surfaces[INNER_RACE] = (trb_surface){"inner raceway", TRB_BODY_INNER_RING, TRB_SHAPE_RACE, &m->race[TRB_RACE_INNER]};
-  s->surfaces[BACK_FACE] = (trb_surface){"back-face rib", TRB_BODY_INNER_RING, TRB_SHAPE_CONE, &m->back_rib};
+  s->surfaces[BACK_FACE] = (trb_surface){"back-face rib", TRB_BODY_INNER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_INNER][TRB_END_LARGE]};
   s->surfaces[FRONT_FACE] = (trb_surface){"front rib", TRB_BODY_INNER_RING, TRB_SHAPE_CIRCLES, m->surfaces.front_rib};
   s->surfaces[OIL] = (trb_surface){"mixture of oil and air", TRB_BODY_OIL, TRB_SHAPE_NONE, NULL};
   s->surfaces[POCKETS] = (trb_surface){"pockets", TRB_BODY_CAGE, TRB_SHAPE_POCKETS, m};
@@ -67,6 +71,13 @@ static void add_surfaces(trb_system *s)
   s->surfaces[INNER_LAND] = (trb_surface){"land of the inner ring", TRB_BODY_INNER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_INNER]};
   s->surfaces[OUTER_LAND] = (trb_surface){"land of the outer ring", TRB_BODY_OUTER_RING, TRB_SHAPE_LAND, &m->guide[TRB_RACE_OUTER]};
   s->surfaces[WHOLE_CAGE] = (trb_surface){"cage", TRB_BODY_CAGE, TRB_SHAPE_NONE, NULL};
+  if (!trb_has_cylinders(m)) return;
+  s->surfaces[FRONT_FACE] = (trb_surface){"front rib", TRB_BODY_INNER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_INNER][TRB_END_SMALL]};
+  s->surfaces[OTHER_END] = (trb_surface){"sphere of the small end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.other_end};
+  s->surfaces[OUTER_BACK_FACE] =
+      (trb_surface){"rib of the outer ring at the large ends", TRB_BODY_OUTER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_OUTER][TRB_END_LARGE]};
+  s->surfaces[OUTER_FRONT_FACE] =
+      (trb_surface){"rib of the outer ring at the small ends", TRB_BODY_OUTER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_OUTER][TRB_END_SMALL]};
 }
 
 #define SLIDES(name) {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_##name), [TRB_BY_DAMPING] = TRB_BOOK(TRB_LOSS_damping)}
@@ -123,6 +134,14 @@ static const trb_pair rows[TRB_N_PAIRS] = {
                             .text = "end faces of the cage in the mixture of oil and air",
                             .surface = {WHOLE_CAGE, OIL},
                             .books = {.loss = {[TRB_BY_SLIDING] = TRB_BOOK(TRB_LOSS_drag)}}},
+    [TRB_PAIR_outer_rib] = {.kind = &trb_pair_rib,
+                            .text = "roller's large end on the rib of the outer ring",
+                            .surface = {LARGE_END, OUTER_BACK_FACE},
+                            .books = {.loss = SLIDES(rib)}},
+    [TRB_PAIR_outer_front_rib] = {.kind = &trb_pair_rib,
+                                  .text = "roller's small end on the rib of the outer ring",
+                                  .surface = {OTHER_END, OUTER_FRONT_FACE},
+                                  .books = {.loss = SLIDES(front_rib)}},
 };
 
 /* Which pairs the effects of the scene leave on. */
@@ -132,6 +151,8 @@ static int is_on(const trb_model *m, int pair)
   switch (pair) {
   case TRB_PAIR_rib: return p->back_rib > 0.0;
   case TRB_PAIR_front_rib: return p->front_rib > 0.0;
+  case TRB_PAIR_outer_rib: return p->outer_rib > 0.0;
+  case TRB_PAIR_outer_front_rib: return p->outer_front_rib > 0.0;
   case TRB_PAIR_drag: return p->oil_fill > 0.0 && p->drag_coefficient > 0.0;
   case TRB_PAIR_pocket: return m->first_face[m->n_rollers] > 0;
   case TRB_PAIR_inner_land: return p->with_cage > 0.0 && p->guidance == TRB_GUIDANCE_INNER_LAND;
@@ -146,11 +167,15 @@ static void add_pairs(trb_system *s)
 #define TRB_PAIR_NAME(name) #name,
   static const char *const names[TRB_N_PAIRS] = {TRB_PAIRS(TRB_PAIR_NAME)};
 #undef TRB_PAIR_NAME
-  s->n_pairs = TRB_N_PAIRS;
-  for (int i = 0; i < TRB_N_PAIRS; i++) {
+  s->n_pairs = trb_has_cylinders(s->model) ? TRB_N_PAIRS : TRB_N_TAPERED_PAIRS;
+  for (int i = 0; i < s->n_pairs; i++) {
     s->pairs[i] = rows[i];
     s->pairs[i].name = names[i];
     s->pairs[i].on = is_on(s->model, i);
+  }
+  if (trb_has_cylinders(s->model)) { /* both ends are spheres */
+    s->pairs[TRB_PAIR_front_rib].kind = &trb_pair_rib;
+    s->pairs[TRB_PAIR_front_rib].surface[0] = OTHER_END;
   }
   if (!(s->model->pocket_film > 0.0)) return;
   s->pairs[TRB_PAIR_pocket].kind = &trb_pair_pocket_with_film;

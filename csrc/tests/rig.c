@@ -36,6 +36,13 @@ trb_params rig_params(void)
   return p;
 }
 
+trb_params rig_cylinder(void)
+{
+  trb_params p = rig_params();
+  p.cup_half_angle = 0.0, p.end_radius = 0.7, p.rib_clearance = 20e-6, p.outer_rib = p.outer_front_rib = 1;
+  return p;
+}
+
 static void put(double *to, trb_vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
 static void box(trb_face *f, double u0, double u1, double v0, double v1)

@@ -12,6 +12,8 @@ enum { RIG_FACES = 4, RIG_SLICES = 24 };
 
 /* 30310 with its oil at 60 C, effects of the paper, logarithmic profile, 24 uniform slices. */
 trb_params rig_params(void);
+/* The same with cylinders for cones: all four ribs, a little clearance along the axis. */
+trb_params rig_cylinder(void);
 /* Two bars and two end walls, as the plays Cpr 0.25 mm, Cpc 0.12 mm and axial 0.4 mm give them. */
 void rig_faces(const trb_params *params, trb_face faces[RIG_FACES]);
 /* A model of the parameters with the rig's faces and equal rollers; ends the program where that fails. */

@@ -145,5 +145,7 @@ int main(void)
   check_scene(&p);
   test_limits();
   test_lean();
+  p = rig_cylinder();
+  check_scene(&p);
   return check_report();
 }

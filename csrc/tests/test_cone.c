@@ -1,7 +1,7 @@
 /* Cones with a radius at a reference plane: against formulas that go by the apex, brute force, and what a cylinder must give. */
 #include "surface/cone.h"
 
-#include "bearing/surfaces.h"
+#include "bearing/ribs.h"
 #include "check.h"
 #include "rig.h"
 
@@ -117,8 +117,11 @@ static void test_of_a_bearing(void)
   /* raceways through the apex */
   CHECK_RELATIVE(s.race[TRB_RACE_OUTER].radius, g.centre_plane * tan(p.cup_half_angle), 1e-13);
   CHECK_RELATIVE(s.race[TRB_RACE_INNER].radius, g.centre_plane * tan(g.cone_half_angle), 1e-13);
-  const trb_vec3      end = trb_axpy(x, s.large_end.place, axis), from = trb_sub(end, trb_cone_point(&s.rib, inner, k));
-  const trb_cone_foot foot = trb_cone_at(&s.rib, k, from);
+  trb_rib_place rib;
+  CHECK(trb_place_rib(&p, &g, TRB_RACE_INNER, TRB_END_LARGE, &rib, NULL) == TRB_OK);
+  const trb_cone      face = trb_rib_face(&rib, TRB_END_LARGE);
+  const trb_vec3      end = trb_axpy(x, s.large_end.place, axis), from = trb_sub(end, trb_cone_point(&face, inner, k));
+  const trb_cone_foot foot = trb_cone_at(&face, k, from);
   const trb_vec3      contact = trb_axpy(end, s.large_end.radius, foot.normal);
   CHECK_NEAR(foot.beyond, -s.large_end.radius, 1e-16);
   CHECK_NEAR(contact.x, g.rib_contact_radius, 1e-15);

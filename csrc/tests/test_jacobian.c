@@ -138,5 +138,7 @@ int main(void)
   check_both(&p, 4930.0);
   p = rig_params(), p.pocket_film = 50e-6;
   for (int i = 0; i < 3; i++) check_both(&p, 4930.0);
+  p = rig_cylinder();
+  for (int i = 0; i < 3; i++) check_both(&p, 4930.0);
   return check_report();
 }

@@ -40,9 +40,8 @@ static void check_depths(const trb_dynamics *d, const trb_loads *loads)
 
 /* Random states of a misaligned, displaced bearing, half of its rollers unloaded, and random steps and turns of the frame from there; steps: 1 or
  * 0. */
-static void walk(double aside, double lean, int steps, double farthest, double *held, double *tightest)
+static void walk(trb_params params, double aside, double lean, int steps, double farthest, double *held, double *tightest)
 {
-  const trb_params params = rig_params();
   trb_system      *system = rig_system(&params);
   const trb_model *m = system->model;
   trb_motion      *motion;
@@ -92,17 +91,25 @@ static void walk(double aside, double lean, int steps, double farthest, double *
 
 int main(void)
 {
-  double held = 0.0, tightest = 0.0, by_turns = 0.0;
-  walk(0.0, 0.0, 1, 1e-3, &held, &tightest);
-  walk(40e-6, 0.0, 1, 1e-3, &held, &tightest);
-  walk(20e-6, 1e-3, 1, 1e-3, &held, &tightest);
-  walk(20e-6, 1e-3, 1, 0.1, &held, &tightest);
-  walk(0.0, 5e-3, 0, 0.1, &held, &by_turns);
+  double           held = 0.0, tightest = 0.0, by_turns = 0.0;
+  const trb_params p = rig_params(), cylinder = rig_cylinder();
+  walk(p, 0.0, 0.0, 1, 1e-3, &held, &tightest);
+  walk(p, 40e-6, 0.0, 1, 1e-3, &held, &tightest);
+  walk(p, 20e-6, 1e-3, 1, 1e-3, &held, &tightest);
+  walk(p, 20e-6, 1e-3, 1, 0.1, &held, &tightest);
+  walk(p, 0.0, 5e-3, 0, 0.1, &held, &by_turns);
   /* the bound is used, and not so wide that it would always hold */
   CHECK(held > 3000.0 && tightest > 0.25);
   CHECK(tightest <= 0.5);
   /* nor is that of a misaligned ring alone */
   fprintf(stderr, "by turns %g tightest %g\n", by_turns, tightest);
   CHECK(by_turns > 0.2 && by_turns <= 0.5);
+  /* four ribs, whose spheres have far centres */
+  held = tightest = 0.0;
+  walk(cylinder, 0.0, 0.0, 1, 1e-3, &held, &tightest);
+  walk(cylinder, 40e-6, 0.0, 1, 1e-3, &held, &tightest);
+  walk(cylinder, 20e-6, 1e-3, 1, 1e-3, &held, &tightest);
+  walk(cylinder, 20e-6, 1e-3, 1, 0.1, &held, &tightest);
+  CHECK(held > 1000.0 && tightest > 0.25 && tightest <= 0.5);
   return check_report();
 }

@@ -408,7 +408,7 @@ int main(void)
   unsigned tried = test_rows();
   guidance = TRB_GUIDANCE_OUTER_LAND;
   tried |= test_rows();
-  CHECK(tried == (1U << TRB_N_PAIRS) - 1U);
+  CHECK(tried == (1U << TRB_N_TAPERED_PAIRS) - 1U);
   guidance = TRB_GUIDANCE_ROLLERS;
   test_switches();
   test_guidance();

@@ -15,7 +15,7 @@ static unsigned long long seed = 31;
 /* A rib at the outer ring, whose face bears the nominal sphere where the face of the back rib does, with a share of its stiffness. */
 static trb_rib rib_at_outer_ring(const trb_model *m, double share)
 {
-  trb_rib rib = m->back_rib;
+  trb_rib rib = m->rib[TRB_RACE_INNER][TRB_END_LARGE];
   rib.face.place += m->geometry.centre_plane; /* places of the outer ring are from the apex */
   rib.race = m->surfaces.race[TRB_RACE_OUTER];
   rib.stiffness *= share;

@@ -412,5 +412,10 @@ int main(void)
     test_bend(&p);
   }
   test_chosen(&p);
+  p = rig_cylinder();
+  test_origin(&p);
+  test_order(&p);
+  test_reach(&p);
+  test_under_way(&p);
   return check_report();
 }

@@ -37,11 +37,11 @@ def test_interval(length: float, speed: Any, every: float) -> None:
 def test_groups_of_very_long_runs() -> None:
     short = keeping.kept_by_default(12.5, 3000.0, None, None)
     long = keeping.kept_by_default(13.0, 3000.0, None, None)
-    usual = tuple(group for group in GROUPS if group != "housing")
+    usual = tuple(group for group in GROUPS if group not in keeping.OPTIONAL)
     assert short["save_groups"] == usual
     assert set(usual) - set(long["save_groups"]) == {"contacts", "pocket"}
     assert keeping.kept_by_default(1e4, 3000.0, 1e-4, None) == {"save_every": 1e-4, "save_groups": usual}
-    assert keeping.kept_by_default(1e4, 3000.0, 1e-4, None, housing=True)["save_groups"] == GROUPS
+    assert keeping.kept_by_default(1e4, 3000.0, 1e-4, None, optional=keeping.OPTIONAL)["save_groups"] == GROUPS
     assert keeping.kept_by_default(1e4, 3000.0, None, ["cage"])["save_groups"] == ("cage",)
     assert "without the groups contacts, pocket" in keeping.said(1e-3, long["save_groups"])
 

@@ -27,6 +27,7 @@ from trbdyn.model.flatten import (
     elastic_entries,
     housing_entries,
     lubricant_entries,
+    rib_entries,
     ring_entries,
 )
 from trbdyn.run.options import ACCURACY, RunOptions, Tolerances
@@ -96,7 +97,7 @@ def test_help_comes_without_numpy_and_pydantic() -> None:
 
 def test_every_parameter_of_the_core_has_an_input() -> None:
     given = {**bearing_entries(trb.cases.rig_30310()), **lubricant_entries(trb.lubricants.vg100())}
-    given |= effects_entries(trb.Effects())
+    given |= effects_entries(trb.Effects()) | rib_entries(trb.cases.rig_30310(), trb.Effects())
     of_housing = housing_entries(trb.cases.paper_30310())
     given |= ring_entries(trb.cases.paper_30310()) | elastic_entries(trb.cases.paper_30310()) | of_housing
     named = {

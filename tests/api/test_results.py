@@ -48,7 +48,19 @@ def write(path: Path, run: Any, scene: Any, *, chunk: int = 500, finish: bool = 
 def test_the_header_has_all_fields(header_fields: list[tuple[str, ...]]) -> None:
     assert len(header_fields) == len({row[0] for row in header_fields}) > 70
     assert header_fields[0][0] == "time"
-    groups = ("time", "cage", "rollers", "contacts", "pocket", "ring", "housing", "torque", "power", "energy")
+    groups = (
+        "time",
+        "cage",
+        "rollers",
+        "contacts",
+        "outer_ribs",
+        "pocket",
+        "ring",
+        "housing",
+        "torque",
+        "power",
+        "energy",
+    )
     assert tuple(dict.fromkeys(row[1] for row in header_fields)) == groups
 
 

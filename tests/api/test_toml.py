@@ -30,7 +30,7 @@ def parse(extra: str = "", bearing: str = "") -> tuple[Scene, RunOptions]:
 
 class TestShipped:
     def test_names(self) -> None:
-        assert set(shipped_cases()) == {"rig_30310", "bearing_32216"}
+        assert set(shipped_cases()) == {"rig_30310", "bearing_32216", "bearing_nj210"}
         assert find_case("rig_30310") == find_case("rig_30310.toml")
         with pytest.raises(InputError, match="did you mean 'rig_30310'"):
             find_case("rig_30130")

@@ -376,6 +376,12 @@ def test_nothing_is_forgotten() -> None:
         "boundary_decay",
         "lambda_full",
         "lambda_boundary",
+        # of cylindrical bearings (test_cylindrical.py)
+        "end_radius",
+        "radial_clearance",
+        "rib_clearance",
+        "outer_rib",
+        "outer_front_rib",
     }
     here |= {"damping", "conductivity", "temperature_coefficient", "damping_race", "damping_cage", "cage_inertia_axial"}
     here |= {"cage_inertia_transverse", "front_rib_clearance"}

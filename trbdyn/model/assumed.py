@@ -50,6 +50,11 @@ RIG: Final[dict[str, float]] = {
 }
 """Numbers of the 30310 rig (m, kg, kg m2, kg/m3, N, N/m^1.5), to which assumed ones are in proportion."""
 
+END_RADIUS: Final = 50.0
+"""Radius of the ends of cylindrical rollers over their diameter: the ribs' faces then open by 0.4 degrees."""
+RIB_CLEARANCE: Final = 1.5e-3
+"""Gap between the end of a cylindrical roller and each rib over the roller's diameter."""
+
 _WITH_DIAMETER: Final = {
     "ribs": ("contact_height", "front_clearance", "front_low", "front_high"),
     "cage": ("play_radial", "play_circumferential", "play_axial", "bar_width", "wall_half_width"),
@@ -102,6 +107,9 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     }
     made["roller"] = {"total_length": total, "end_stiffness": RIG["end_stiffness"] * math.sqrt(across)}
     made["roller"]["density"] = size.get("roller_density", RIG["density"])
+    cylinder = size["cup_half_angle_deg"] == 0.0
+    made["roller"]["end_radius"] = END_RADIUS * size["diameter"] if cylinder else 0.0
+    made["ribs"]["clearance"] = RIB_CLEARANCE * size["diameter"] if cylinder else 0.0
     made["roller.profile"] = {"load": RIG["load"] * (across * along)}
     height = size.get("contact_height", made["ribs"]["contact_height"]) / RIG["contact_height"]
     made["ribs"] |= {name: RIG[name] * height for name in ("edge_low", "edge_high")}
@@ -110,11 +118,13 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     made["cage"] |= cage_inertias(mass, pitch, along)
     end = _small_end_radius({**size, "total_length": total})
     end = end if end > 0.0 else math.inf  # a roller beyond the apex: the core reports it
+    # the rails of a cylindrical bearing's cage stay clear of the outer ring's ribs
+    free = 0.5 * size["diameter"] - made["ribs"]["edge_high"] if cylinder else end
     made["cage"] |= {
         "mass": mass,
         "rail_offset": RIG["rail_offset"] * along,
         "wall_inner": min(RIG["wall_inner"] * across, 0.3 * end),
-        "wall_outer": min(RIG["wall_outer"] * across, 0.9 * end),
+        "wall_outer": min(RIG["wall_outer"] * across, 0.9 * free),
     }
     clearance = size.get("clearance", RIG["land_clearance"] * across)
     made["land"] = {
@@ -228,7 +238,8 @@ def _size(found: Values, given: Mapping[str, Values]) -> dict[str, float] | None
             number = as_number(value)
         except ValueError:
             number = math.nan
-        if math.isfinite(number) and 0.0 < number < 1e6:
+        least = 0.0 if name != "cup_half_angle_deg" else -1e-300  # zero: cylindrical rollers
+        if math.isfinite(number) and least < number < 1e6:
             size[name] = number
         elif name in wanted:
             return None

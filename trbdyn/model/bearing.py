@@ -1,8 +1,9 @@
-"""Tapered roller bearings by their catalogue numbers.
+"""Tapered and cylindrical roller bearings by their catalogue numbers.
 
-Cup, cone and roller cones share one apex; everything else follows from these numbers (`Bearing.geometry`). Lengths in
-m, densities in kg/m3; angles in degrees where a field is called ``*_deg``. What is not given is assumed in
-proportion to the bearing's size (`trbdyn.model.assumed`) and listed by `Bearing.assumed`; change it where you know better.
+Cup, cone and roller cones share one apex, or all are cylinders (``cup_half_angle_deg = 0``); everything else follows from
+these numbers (`Bearing.geometry`). Lengths in m, densities in kg/m3; angles in degrees where a field is called ``*_deg``.
+What is not given is assumed in proportion to the bearing's size (`trbdyn.model.assumed`) and listed by `Bearing.assumed`;
+change it where you know better.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Final, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,18 @@ __all__ = [
 ]
 
 
+_TAPERED_RIBS: Final = frozenset({("inner", "large"), ("inner", "small")})
+_OUTER_RIBS: Final = frozenset({("outer", "large"), ("outer", "small")})
+_RIBS: Final[dict[str | None, frozenset[tuple[str, str]]]] = {
+    None: _TAPERED_RIBS,
+    "NU": _OUTER_RIBS,
+    "NJ": _OUTER_RIBS | {("inner", "large")},
+    "NUP": _OUTER_RIBS | _TAPERED_RIBS,
+    "N": _TAPERED_RIBS,
+}
+"""Ribs by the type of a bearing; None: tapered."""
+
+
 class Ribs(Model):
     """Back-face rib (against the large ends) and front-face rib of the inner ring. Heights are above the raceway,
     perpendicular to it. What is not given is assumed in proportion to the 30310 rig.
@@ -64,6 +77,12 @@ class Ribs(Model):
         face is perpendicular to the roller's axis.
     front_low, front_high : float
         Heights of the front rib's edges (m); by default 0.3/14 and 2/14 of the roller's diameter.
+    flanges : {'NU', 'NJ', 'NUP', 'N'}, optional
+        Which ribs a cylindrical bearing has, by its type in ISO 15; it must be given there, and nowhere else. NU: two of the
+        outer ring. NJ: these, and one of the inner ring, against the ends towards +z. NUP: two of each ring. N: two of the inner
+        ring. All have the contact height and the edges above; `front_clearance`, `front_low` and `front_high` are for cones.
+    clearance : float
+        Gap between a cylindrical roller in the middle and each rib (m); by default 1.5e-3 of the roller's diameter.
     """
 
     _assumed: ClassVar[bool] = True
@@ -74,6 +93,13 @@ class Ribs(Model):
     front_clearance: Annotated[Number, parameter("front_rib_clearance")] = RIG["front_clearance"]
     front_low: Annotated[Number, parameter("front_rib_low")] = RIG["front_low"]
     front_high: Annotated[Number, parameter("front_rib_high", gt=0)] = RIG["front_high"]
+    flanges: Literal["NU", "NJ", "NUP", "N"] | None = None
+    clearance: Annotated[Number, parameter("rib_clearance")] = 0.0
+
+    @property
+    def places(self) -> frozenset[tuple[str, str]]:
+        """Of which ring, and against which end of the rollers they are; the large end of a cylinder is the one towards +z."""
+        return _RIBS[self.flanges]
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -171,15 +197,15 @@ class Cage(Model):
 
 
 class Bearing(Model):
-    """A single-row tapered roller bearing. What is not needed below (rollers, pitch diameter, cup's angle) has a default in
-    proportion to the bearing's size, listed by `assumed`.
+    """A single-row tapered or cylindrical roller bearing. What is not needed below (rollers, pitch diameter, cup's angle) has a
+    default in proportion to the bearing's size, listed by `assumed`.
 
     Parameters
     ----------
     n_rollers : int
         Z, number of rollers.
     cup_half_angle_deg : float
-        alpha_o, half angle of the outer raceway's cone (deg).
+        alpha_o, half angle of the outer raceway's cone (deg), from 0.6; 0: rollers and raceways are cylinders.
     pitch_diameter : float
         Dpw, pitch diameter at the rollers' mid length (m).
     roller : Roller
@@ -194,6 +220,8 @@ class Bearing(Model):
         Roughness of the contacts.
     land : Land
         The land of a ring that guides the cage, where one does.
+    radial_clearance : float
+        Radial internal clearance of a cylindrical bearing in operation (m); 0 by default: rollers and rings just touch.
     name : str
         Name in titles and files.
     ratings : Ratings
@@ -220,7 +248,7 @@ class Bearing(Model):
     """
 
     n_rollers: Annotated[Whole, parameter("n_rollers")]
-    cup_half_angle_deg: Annotated[Number, unit("deg", ge=0.6, le=45)]
+    cup_half_angle_deg: Annotated[Number, unit("deg", ge=0, le=45)]
     pitch_diameter: Annotated[Number, parameter("pitch_diameter")]
     roller: Roller
     ribs: Ribs = Ribs()
@@ -228,6 +256,7 @@ class Bearing(Model):
     material: Material = Material()
     roughness: Roughness = Roughness()
     land: Land = Land()
+    radial_clearance: Annotated[Number, parameter("radial_clearance")] = 0.0
     name: Annotated[str, Field(min_length=1)] = "bearing"
     ratings: Ratings = Ratings()
     estimates: tuple[Estimated, ...] = ()
@@ -325,9 +354,7 @@ class Bearing(Model):
 
     @property
     def estimated(self) -> tuple[Estimated, ...]:
-        """Inputs that are estimated, with their bands and sources; one that was changed since is no longer among
-        them.
-        """
+        """Inputs that are estimated, with their bands and sources, but for those that were changed since."""
         return tuple(entry for entry in self.estimates if self._still(entry))
 
     def _still(self, entry: Estimated) -> bool:
@@ -379,10 +406,8 @@ class Bearing(Model):
 
     @property
     def assumed(self) -> dict[str, float]:
-        """Inputs that were not given: value by path, such as ``{"cage.bar_width": 0.003}``. Lengths in m, SI units.
-
-        Those that follow from the bearing's size, and those that were estimated from a catalogue page; `estimated` gives
-        the band and the source of the latter.
+        """Inputs that were not given: value by path, such as ``{"cage.bar_width": 0.003}`` (SI units). They follow from the
+        bearing's size, or were estimated from a catalogue page; `estimated` gives the band and the source of the latter.
         """
         return assumed_inputs(self) | {entry.path: float(entry.value) for entry in self.estimated}
 
@@ -395,7 +420,12 @@ class Bearing(Model):
         roller = self.roller
         return (
             f"{self.name}: {self.n_rollers} rollers of {1e3 * roller.diameter:.4g} x {1e3 * roller.effective_length:.4g} mm on a "
-            f"pitch circle of {1e3 * self.pitch_diameter:.4g} mm, half angle of the cup {self.cup_half_angle_deg:.4g} deg"
+            f"pitch circle of {1e3 * self.pitch_diameter:.4g} mm, "
+            + (
+                f"cylindrical, {self.ribs.flanges}"
+                if self.is_cylindrical
+                else f"half angle of the cup {self.cup_half_angle_deg:.4g} deg"
+            )
         )
 
     def _shown(self) -> Shown:
@@ -453,9 +483,7 @@ class Bearing(Model):
 
     @property
     def slot_names(self) -> tuple[str, ...]:
-        """Name of each slot of the pockets, in order: the columns of pocket forces in results; empty where no face has
-        the slot.
-        """
+        """Name of each slot of the pockets, in order: the columns of pocket forces; empty where no face has the slot."""
         faces = [face for _, face in self.pocket_faces()]
         names = [""] * (1 + max(face.slot for face in faces))
         for face in faces:
@@ -470,8 +498,35 @@ class Bearing(Model):
         given = self.roller.diameter_deviation
         return np.zeros(self.n_rollers) if given is None else np.array(given)
 
+    @property
+    def is_cylindrical(self) -> bool:
+        """Whether rollers and raceways are cylinders."""
+        return self.cup_half_angle_deg == 0.0
+
+    def _check_kind(self) -> None:
+        """What only tapered, and what only cylindrical bearings have."""
+        if self.is_cylindrical:
+            if self.ribs.flanges is None:
+                allowed = "must be given where cup_half_angle_deg = 0: 'NU', 'NJ', 'NUP' or 'N'"
+                raise InputError.of(("ribs", "flanges"), None, allowed)
+            return
+        if self.cup_half_angle_deg < LEAST_CONE_DEG:
+            allowed = f"must be 0, for cylindrical rollers, or from {LEAST_CONE_DEG:g} to 45 (deg)"
+            raise InputError.of("cup_half_angle_deg", self.cup_half_angle_deg, allowed)
+        for path, value in (
+            (("ribs", "flanges"), self.ribs.flanges),
+            (("ribs", "clearance"), self.ribs.clearance or None),
+            (("radial_clearance",), self.radial_clearance or None),
+        ):
+            if value is not None:
+                allowed = (
+                    "must not be given for tapered rollers: only cylindrical bearings, cup_half_angle_deg = 0, have it"
+                )
+                raise InputError.of(path, value, allowed)
+
     @model_validator(mode="after")
     def _check(self) -> Self:
+        self._check_kind()
         given = self.roller.diameter_deviation
         if given is not None and len(given) != self.n_rollers:
             limit = f"must have one entry for each roller, {self.n_rollers}"
@@ -506,6 +561,9 @@ class Bearing(Model):
         if problems:
             raise InputError(problems)
 
+
+LEAST_CONE_DEG: Final = 0.6
+"""Smallest half angle of the cup of a tapered bearing (deg)."""
 
 _OF_BODY: Final = ("mass", "offset", "inertia_axial", "inertia_transverse")
 """What follows from the body of a cage."""

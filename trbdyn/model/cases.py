@@ -18,11 +18,13 @@ __all__ = [
     "OPERATING_POINTS",
     "OperatingPoint",
     "bearing_32216",
+    "bearing_nj210",
     "cage_body_30310",
     "paper_30310",
     "rig_30310",
     "scene_30310",
     "scene_32216",
+    "scene_nj210",
 ]
 
 
@@ -208,6 +210,40 @@ def scene_32216(
     return _scene(bearing_32216, 50.0, speed_rpm, axial_load, radial_load, changes)
 
 
+def bearing_nj210() -> Bearing:
+    """A cylindrical NJ 210 (50 x 90 x 20 mm, ISO 15) with its ribs: two of the outer ring, one of the inner ring.
+
+    Raceways of 59.5 and 81.5 mm, as catalogues have them (F and E), give rollers of 11 mm; 16 of them with an effective length of
+    10.6 mm have the static rating of 69.5 kN (ISO 76). Number and length, ends, ribs and cage are estimates.
+    """
+    return Bearing(
+        name="NJ 210",
+        n_rollers=16,
+        cup_half_angle_deg=0.0,
+        pitch_diameter=70.5e-3,
+        radial_clearance=20e-6,
+        roller=Roller(diameter=11e-3, effective_length=10.6e-3, total_length=11e-3),
+        ribs=Ribs(flanges="NJ"),
+    )
+
+
+def scene_nj210(
+    speed_rpm: float = 3000.0, axial_load: float = 500.0, radial_load: float = 5000.0, **changes: Any
+) -> Scene:
+    """The NJ 210: VG100 at 60 C, effects as by default (`Effects.standard`).
+
+    Parameters
+    ----------
+    speed_rpm : float
+        Speed of the inner ring (rpm).
+    axial_load, radial_load : float
+        Loads (N); the axial one is carried by a rib of each ring.
+    **changes
+        Other fields of `Scene`.
+    """
+    return _scene(bearing_nj210, 60.0, speed_rpm, axial_load, radial_load, changes)
+
+
 def _scene(
     make: Callable[[], Bearing],
     temperature_c: float,
@@ -222,5 +258,9 @@ def _scene(
     return Scene(bearing, speed_rpm=speed_rpm, axial_load=axial_load, radial_load=radial_load, **fields)
 
 
-BEARINGS: Final[dict[str, Callable[[], Bearing]]] = {"30310": rig_30310, "32216": bearing_32216}
+BEARINGS: Final[dict[str, Callable[[], Bearing]]] = {
+    "30310": rig_30310,
+    "32216": bearing_32216,
+    "nj210": bearing_nj210,
+}
 """Shipped bearings by name, as TOML cases call for them."""

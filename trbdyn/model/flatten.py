@@ -140,8 +140,6 @@ def effects_entries(effects: Effects) -> Entries:
         "rib_turning": Entry(("rib_turning",), float(effects.rib_turning)),
         "rolling_resistance": Entry(("rolling_resistance",), float(rolling and ROLLING_LAWS[effects.rolling_law])),
         "rolling_pressure_force": Entry(("rolling_pressure_force",), float(rolling and effects.rolling_pressure_force)),
-        "back_rib": Entry(("back_rib",), float(effects.back_rib)),
-        "front_rib": Entry(("front_rib",), float(effects.front_rib)),
         "rib_film": Entry(("rib_film",), RIB_FILMS[effects.rib_film]),
         "pocket_bars": Entry(("pocket_bars",), float(effects.pocket_bars)),
         "pocket_ends": Entry(("pocket_ends",), float(effects.pocket_ends)),
@@ -218,10 +216,27 @@ def scene_entries(scene: Scene) -> Entries:
         "land_clearance": land,
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
+        **prefixed("effects", rib_entries(scene.bearing, scene.effects)),
         "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **ring_entries(scene),
         **housing_entries(scene),
         **elastic_entries(scene),
+    }
+
+
+def rib_entries(bearing: Bearing, effects: Effects) -> Entries:
+    """Which ribs act, by their names in the core's table: those that the bearing has, where the effects let them act; paths start
+    at the effects.
+    """
+    there = bearing.ribs.places
+    return {
+        name: Entry((effect,), float(acts and place in there))
+        for name, effect, acts, place in (
+            ("back_rib", "back_rib", effects.back_rib, ("inner", "large")),
+            ("front_rib", "front_rib", effects.front_rib, ("inner", "small")),
+            ("outer_rib", "back_rib", effects.back_rib, ("outer", "large")),
+            ("outer_front_rib", "front_rib", effects.front_rib, ("outer", "small")),
+        )
     }
 
 

@@ -12,7 +12,9 @@ from trbdyn import _core
 
 @dataclass(frozen=True)
 class Geometry:
-    """Derived geometry of a bearing whose cup, cone and rollers share one apex. SI units; angles in radians.
+    """Derived geometry of a bearing whose cup, cone and rollers share one apex, or are cylinders. SI units; angles in radians.
+
+    Cylinders have no apex: distances from it are then from the middle of the bearing.
 
     Attributes
     ----------
@@ -23,7 +25,7 @@ class Geometry:
     cone_half_angle : float
         alpha_i: half angle of the cone (inner) raceway (rad).
     apex_to_mid : float
-        Rc: apex to roller mid length along its axis (m).
+        Rc: apex to roller mid length along its axis; 0 for cylindrical rollers (m).
     apex_to_large_end : float
         Apex to the large end of the effective length (m).
     outer_race_radius : float

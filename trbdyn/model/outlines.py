@@ -6,7 +6,7 @@ the cage behind its faces) has usual proportions.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,7 +27,38 @@ def _on_race(bearing: Bearing, half_angle: float, station: float, height: float 
     return np.array([distance * sine + height * cosine, distance * cosine - height * sine - geometry.centre_plane])
 
 
+def _cylindrical(bearing: Bearing, ring: Literal["inner", "outer"]) -> list[Array]:
+    """Outline of a ring of a cylindrical bearing: its raceway first, from the small to the large ends, then round its body."""
+    roller, ribs, geometry = bearing.roller, bearing.ribs, bearing.geometry
+    out = 1.0 if ring == "outer" else -1.0  # from the rollers into the ring
+    race = 0.5 * (bearing.pitch_diameter + out * (roller.diameter + 0.5 * bearing.radial_clearance))
+    half, size, round_end = 0.5 * roller.total_length, roller.diameter, geometry.sphere_radius
+    sine = out * (0.5 * roller.diameter + 0.25 * bearing.radial_clearance - ribs.contact_height) / round_end
+    cosine = np.sqrt(1.0 - sine**2)
+    body = race + out * 0.3 * size if ring == "outer" else max(race - 0.35 * size, 0.4 * race)
+    ends: dict[str, list[tuple[float, float]]] = {}
+    for end, along in (("small", -1.0), ("large", 1.0)):
+        if (ring, end) not in ribs.places:
+            edge = along * 1.06 * half
+            ends[end] = [(race, edge), (body, edge)]
+            continue
+        contact = np.array(
+            [
+                0.5 * bearing.pitch_diameter + round_end * sine,
+                along * (half - round_end * (1.0 - cosine) + ribs.clearance),
+            ]
+        )
+        face = -out * np.array([cosine, -along * sine])
+        foot, top = (contact + (height - ribs.contact_height) * face for height in (0.0, ribs.edge_high))
+        back = float(foot[1]) + along * 0.28 * size
+        ends[end] = [(race, float(foot[1])), (float(top[0]), float(top[1])), (float(top[0]), back), (body, back)]
+    outline = [ends["small"][0], *ends["large"], *ends["small"][:0:-1]]
+    return [np.array(corner) for corner in outline]
+
+
 def cup_outline(bearing: Bearing) -> list[Array]:
+    if bearing.is_cylindrical:
+        return _cylindrical(bearing, "outer")
     roller = bearing.roller
     half = 0.5 * roller.total_length
     small, large = (
@@ -38,6 +69,8 @@ def cup_outline(bearing: Bearing) -> list[Array]:
 
 
 def cone_outline(bearing: Bearing) -> list[Array]:
+    if bearing.is_cylindrical:
+        return _cylindrical(bearing, "inner")
     geometry, roller, ribs = bearing.geometry, bearing.roller, bearing.ribs
     size, angle = roller.diameter, geometry.cone_half_angle
     front_station = geometry.small_end_station - ribs.front_clearance

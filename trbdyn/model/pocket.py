@@ -225,7 +225,7 @@ def _gap(face: Face, geometry: Geometry) -> float:
     half_angle = geometry.roller_half_angle
     half_length = geometry.apex_to_large_end - geometry.apex_to_mid
     stations = np.linspace(-half_length, half_length, _FLANK_STATIONS)
-    radii = (geometry.apex_to_mid + stations) * np.tan(half_angle)
+    radii = 0.25 * (geometry.large_end_diameter + geometry.small_end_diameter) + stations * np.tan(half_angle)
     centres = np.zeros((_FLANK_STATIONS, 3))
     centres[:, 2] = stations + radii * np.tan(half_angle)
     return float(np.min(face.distance(centres) - radii / np.cos(half_angle)))

@@ -80,7 +80,7 @@ class Scatter(Model):
 
 
 class Roller(Model):
-    """A tapered roller.
+    """A tapered roller; a cylindrical one where the half angle of the cup is zero.
 
     Parameters
     ----------
@@ -101,6 +101,9 @@ class Roller(Model):
         Random deviations, one for each roller.
     sphere_ratio : float
         Radius of the large end's sphere over the distance from the apex to the large end (1); assumed.
+    end_radius : float
+        Radius of the sphere of the large end, of a cylindrical roller of both ends (m). By default 0 for a tapered one, whose
+        radius follows from `sphere_ratio`; 50 times the diameter for a cylindrical one; assumed.
     end_stiffness : float
         k of roller end against a flat of the ring, force = k d^1.5 (N/m^1.5); against the cage's walls in the ratio of
         the composite moduli. By default 1e10 times the root of the diameter over that of the 30310 rig; assumed.
@@ -118,6 +121,7 @@ class Roller(Model):
     diameter_deviation: tuple[Annotated[Number, unit("m", ge=-1e-3, le=1e-3)], ...] | None = None
     diameter_scatter: Scatter | None = None
     sphere_ratio: Annotated[Number, parameter("sphere_ratio")] = 0.90
+    end_radius: Annotated[Number, parameter("end_radius")] = 0.0
     end_stiffness: Annotated[Number, parameter("end_stiffness")] = RIG["end_stiffness"]
     material: Material | None = None
 

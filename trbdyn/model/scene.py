@@ -61,8 +61,8 @@ def oil_by_name(given: Any) -> Any:
 class Scene(Model):
     """One bearing, what acts on it, and how it starts. Every quantity is a number or a `History`.
 
-    Frame: origin at the common apex of the cones; z along the bearing axis towards the rollers' large ends; positive
-    speed about +z. Loads act on the inner ring.
+    Frame: origin at the common apex of the cones, or in the middle of a cylindrical bearing; z along the bearing axis towards the
+    rollers' large ends; positive speed about +z. Loads act on the inner ring.
 
     Parameters
     ----------
@@ -428,7 +428,9 @@ class Scene(Model):
         self._check_held()
         if self.unloaded == "rests" and z:
             raise InputError.of("unloaded", "rests", "must be 'refused' where displacement gives the axial position")
-        if self.unloaded == "refused" and not z:
+        if self.bearing.is_cylindrical:
+            self._check_cylindrical()
+        elif self.unloaded == "refused" and not z:
             self._check_capacity()
 
     def _check_held(self) -> None:
@@ -442,6 +444,29 @@ class Scene(Model):
                 path: Path = (field, int(place[:-1])) if place else (field,)
                 limit = "must be constant where the ring is held at an equilibrium; set ring = 'follows'"
                 raise InputError.of(path, quantity, limit)
+
+    def _check_cylindrical(self) -> None:
+        """What is not known of cylindrical bearings, and what holds their rings along the axis."""
+        for name, given, usual in (("growth", self.growth, None), ("unloaded", self.unloaded, "refused")):
+            if given != usual:
+                allowed = f"must be {usual!r} for cylindrical rollers: it is made for rollers that a cup's slope holds"
+                raise InputError.of(name, given, allowed)
+        if self.ring_is_placed[2]:
+            return
+        flanges, supported = (
+            self.bearing.ribs.flanges,
+            self.ring_body is not None and self.ring_body.support_axial > 0.0,
+        )
+        axial = [value_at(self.axial_load, time) for time in knot_times([self.axial_load], self.start.time)]
+        if min(axial) > 0.0 and flanges in ("NU", "N") and not supported:
+            allowed = f"must be 0: a bearing {flanges} has no ribs that would carry it, but NJ and NUP have (N)"
+            raise InputError.of("axial_load", self.axial_load, allowed)
+        if min(axial) <= 0.0 and not supported:
+            allowed = (
+                "must be > 0 for a bearing NJ or NUP, as nothing else holds its ring along the axis; or give its axial position, "
+                "displacement = (None, None, 0.0), or a free ring a support, ring_body.support_axial (N)"
+            )
+            raise InputError.of("axial_load", self.axial_load, allowed)
 
     def _check_capacity(self) -> None:
         slope = math.tan(math.radians(self.bearing.cup_half_angle_deg))

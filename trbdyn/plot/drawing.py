@@ -79,7 +79,9 @@ def roller_outline(bearing: Bearing) -> Array:
     geometry = bearing.geometry
     half = 0.5 * bearing.roller.total_length
     stations = np.linspace(-half, half, 41)
-    radius = (geometry.apex_to_mid + stations) * np.tan(geometry.roller_half_angle) - profile_drop(bearing, stations)
+    radius = (
+        0.5 * bearing.roller.diameter + stations * np.tan(geometry.roller_half_angle) - profile_drop(bearing, stations)
+    )
     upper, lower = (np.stack([stations, side * radius], axis=1) for side in (1.0, -1.0))
     inside = np.linspace(1.0, -1.0, 15)[1:-1] * radius[-1]
     end = geometry.sphere_centre - geometry.apex_to_mid + np.sqrt(geometry.sphere_radius**2 - inside**2)
@@ -91,7 +93,7 @@ def placed(bearing: Bearing, points: Array) -> Array:
     geometry = bearing.geometry
     cosine, sine = np.cos(geometry.roller_axis_angle), np.sin(geometry.roller_axis_angle)
     along, outward = points.T
-    r = geometry.apex_to_mid * sine + along * sine + outward * cosine
+    r = 0.5 * bearing.pitch_diameter + along * sine + outward * cosine
     z = along * cosine - outward * sine
     return 1e3 * np.stack([z, r], axis=1)
 
@@ -119,9 +121,18 @@ def _dimensions(bearing: Bearing, ax: Axes) -> None:
     measure(np.array([[mid[0], 0.0], mid]), f"Dpw/2 {5e2 * bearing.pitch_diameter:.5g}", (5, -20))
     lines = [
         f"Z = {bearing.n_rollers} rollers",
-        f"cup half angle {bearing.cup_half_angle_deg:.4g}°",
-        f"cone half angle {np.degrees(geometry.cone_half_angle):.4g}°",
-        f"roller half angle {np.degrees(geometry.roller_half_angle):.4g}°",
+        *(
+            (
+                f"cylindrical, {bearing.ribs.flanges}",
+                f"radial internal clearance {1e6 * bearing.radial_clearance:.3g} µm",
+            )
+            if bearing.is_cylindrical
+            else (
+                f"cup half angle {bearing.cup_half_angle_deg:.4g}°",
+                f"cone half angle {np.degrees(geometry.cone_half_angle):.4g}°",
+                f"roller half angle {np.degrees(geometry.roller_half_angle):.4g}°",
+            )
+        ),
         f"rib contact {1e3 * bearing.ribs.contact_height:.3g} mm above the raceway",
         "lengths in mm",
     ]
@@ -161,7 +172,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         end.plot(size * np.cos(around), size * np.sin(around), color="black", linewidth=1.0)
         end.plot(0, 0, marker="+", color=GREY)
         stations = np.linspace(-0.5, 0.5, 3) * roller.total_length
-        radius = 1e3 * (geometry.apex_to_mid + stations) * np.tan(geometry.roller_half_angle)
+        radius = 1e3 * (0.5 * roller.diameter + stations * np.tan(geometry.roller_half_angle))
         outline = np.concatenate([np.stack([1e3 * stations, radius], 1), np.stack([1e3 * stations, -radius], 1)[::-1]])
         top.add_patch(Polygon(outline, facecolor=ROLLER, edgecolor="black", linewidth=1.0))
         for index, face in enumerate(faces):

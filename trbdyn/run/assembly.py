@@ -248,8 +248,8 @@ class AssemblySimulation:
             )
             raise InputError.of(("run", "checkpoint_every"), options.checkpoint_every, limit)
         end = options.end_time(speed, self._reached)
-        housing = any(seat.scene.housing is not None for seat in self.seats.values())
-        kept = keeping.kept_by_default(end - self._reached, speed, save_every, save_groups, housing=housing)  # type: ignore[arg-type]
+        optional = keeping.groups_of(seat.scene for seat in self.seats.values())
+        kept = keeping.kept_by_default(end - self._reached, speed, save_every, save_groups, optional=optional)  # type: ignore[arg-type]
         options = options.replace(**kept)
         assert options.save_every is not None
         times = output_times(self._reached, end, options.save_every)

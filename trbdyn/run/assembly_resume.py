@@ -13,7 +13,7 @@ from trbdyn.results.assembly_file import description_in
 from trbdyn.run import checkpoint
 from trbdyn.run.assembly import AssemblySimulation
 from trbdyn.run.assembly_run import AssemblyRun, motions_digest, older_parts, subject_of
-from trbdyn.run.keeping import kept_by_default
+from trbdyn.run.keeping import groups_of, kept_by_default
 from trbdyn.run.revive import revive
 from trbdyn.run.running import output_times
 
@@ -49,9 +49,9 @@ def resume_assembly(
         make=AssemblySimulation,
         motion=motions_digest,
     )
-    housing = any(seat.scene.housing is not None for seat in sim.seats.values())
+    optional = groups_of(seat.scene for seat in sim.seats.values())
     speed = sim._first.turning_rpm
-    kept = kept_by_default(found.end - found.start, speed, options.save_every, options.save_groups, housing=housing)
+    kept = kept_by_default(found.end - found.start, speed, options.save_every, options.save_groups, optional=optional)
     times = output_times(found.start, found.end, kept["save_every"])
     if found.done >= times.size:
         where = checkpoint.checkpoint_path(output)

@@ -9,10 +9,13 @@ group peaks. What is given explicitly is kept as it is given.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.model.motion import History, values_of
 from trbdyn.run.options import GROUPS, Group
+
+if TYPE_CHECKING:
+    from trbdyn.model.scene import Scene
 
 A_TURN: Final = 32
 """Records a turn of the shaft at its highest speed."""
@@ -28,8 +31,14 @@ MANY: Final = 20_000
 """Records beyond which the groups `DETAILS` are left out by default."""
 DETAILS: Final[tuple[Group, ...]] = ("contacts", "pocket")
 
-HOUSING: Final[Group] = "housing"
-"""Group that is kept by default where the outer ring moves with a housing."""
+OPTIONAL: Final[tuple[Group, ...]] = ("housing", "outer_ribs")
+"""Groups of what few bearings have, and which are kept there by default: of a housing that moves, of ribs of the outer ring."""
+
+
+def groups_of(scenes: Iterable[Scene]) -> tuple[Group, ...]:
+    """Those of the groups `OPTIONAL` that one scene at least has."""
+    has = [{"housing": scene.housing is not None, "outer_ribs": scene.bearing.is_cylindrical} for scene in scenes]
+    return tuple(group for group in OPTIONAL if any(there[group] for there in has))
 
 
 def interval(length: float, speed_rpm: float | History) -> float:
@@ -47,7 +56,7 @@ def kept_by_default(
     save_every: float | None,
     save_groups: Sequence[Group] | None,
     *,
-    housing: bool = False,
+    optional: Sequence[Group] = (),
 ) -> dict[str, Any]:
     """``save_every`` and ``save_groups`` of a run, by default where they are not given.
 
@@ -61,8 +70,8 @@ def kept_by_default(
         Time between records (s), as given.
     save_groups : sequence of str, optional
         Groups of quantities, as given.
-    housing : bool
-        Whether the outer ring moves with a housing: else there is nothing to keep of it.
+    optional : sequence of str
+        Groups of what few bearings have, as far as there is something to keep (`groups_of`).
     """
     every = interval(length, speed_rpm) if save_every is None else save_every
     if save_groups is not None:
@@ -70,12 +79,12 @@ def kept_by_default(
         groups = tuple(save_groups) if isinstance(save_groups, Iterable) else save_groups
         return {"save_every": every, "save_groups": groups}
     many = save_every is None and length / every > MANY * (1.0 + 1e-9)
-    left = (*(DETAILS if many else ()), *(() if housing else (HOUSING,)))
+    left = (*(DETAILS if many else ()), *(group for group in OPTIONAL if group not in optional))
     return {"save_every": every, "save_groups": tuple(group for group in GROUPS if group not in left)}
 
 
 def said(save_every: float, groups: Sequence[str]) -> str:
     """What is kept, in words; what is left out is named."""
-    left = [group for group in GROUPS if group not in groups and group not in ("time", HOUSING)]
+    left = [group for group in GROUPS if group not in groups and group not in ("time", *OPTIONAL)]
     words = f"a record every {1e3 * save_every:.4g} ms of bearing time"
     return words + (f", without the groups {', '.join(left)}" if left else ", all groups")

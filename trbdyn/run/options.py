@@ -13,7 +13,18 @@ from trbdyn.model.motion import MAX_TIME, History
 from trbdyn.model.shaft import time_to_turn
 
 Group = Literal[
-    "time", "cage", "rollers", "contacts", "pocket", "ring", "housing", "torque", "power", "energy", "peaks"
+    "time",
+    "cage",
+    "rollers",
+    "contacts",
+    "pocket",
+    "ring",
+    "housing",
+    "outer_ribs",
+    "torque",
+    "power",
+    "energy",
+    "peaks",
 ]
 GROUPS: Final[tuple[Group, ...]] = (
     "time",
@@ -23,6 +34,7 @@ GROUPS: Final[tuple[Group, ...]] = (
     "pocket",
     "ring",
     "housing",
+    "outer_ribs",
     "torque",
     "power",
     "energy",

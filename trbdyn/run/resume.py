@@ -16,7 +16,7 @@ from trbdyn.results.result import Result, load
 from trbdyn.results.sources import FileSource
 from trbdyn.run import checkpoint
 from trbdyn.run.assembly_resume import is_of_assembly, resume_assembly
-from trbdyn.run.keeping import kept_by_default
+from trbdyn.run.keeping import groups_of, kept_by_default
 from trbdyn.run.revive import revive
 from trbdyn.run.running import Callback, Run, output_times
 from trbdyn.run.simulation import Simulation
@@ -99,7 +99,7 @@ def resume(
             sim.scene.turning_rpm,
             options.save_every,
             options.save_groups,
-            housing=sim.scene.housing is not None,
+            optional=groups_of([sim.scene]),
         )
         times = output_times(found.start, found.end, kept["save_every"])
         if found.done >= times.size:

@@ -24,7 +24,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.model.start import State as State
 from trbdyn.results.result import Result
 from trbdyn.run.estimate import Estimate, estimate
-from trbdyn.run.keeping import kept_by_default
+from trbdyn.run.keeping import groups_of, kept_by_default
 from trbdyn.run.options import Group, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
 from trbdyn.run.system import System, system_of
@@ -385,7 +385,7 @@ class Simulation(Displayed):
             self.scene.turning_rpm,
             save_every,
             save_groups,
-            housing=self.scene.housing is not None,
+            optional=groups_of([self.scene]),
         )
         options = options.replace(**kept)
         times = output_times(self._reached, end, kept["save_every"])

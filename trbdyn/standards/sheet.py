@@ -113,7 +113,7 @@ class Rating(Displayed):
         n (rpm).
     dynamic_rating, static_rating, fatigue_limit : float
         C, C0 and Cu (N).
-    e, Y, Y0 : float
+    e, Y, Y0 : float or None
         Factors (1).
     equivalent_load, smallest_load, static_equivalent_load : float
         P, least load, P0 (N).
@@ -151,9 +151,9 @@ class Rating(Displayed):
     dynamic_rating: float
     static_rating: float
     fatigue_limit: float
-    e: float
-    Y: float
-    Y0: float
+    e: float | None
+    Y: float | None
+    Y0: float | None
     equivalent_load: float
     load_ratio: float | None
     smallest_load: float
@@ -304,9 +304,17 @@ def sheet(
     pitch, angle = bearing.pitch_diameter, math.radians(bearing.cup_half_angle_deg)
     C, C0, Cu, e, Y, Y0 = _factors(scene, notes)
     axial, radial, speed = abs(loading.axial_load), loading.radial_load, abs(loading.speed_rpm)
-    P = iso281.equivalent_load(radial, axial, e=e, Y=Y)
-    P0 = iso281.static_equivalent_load(radial, axial, Y0=Y0)
-    notes["equivalent_load"] = "Fr" if axial <= e * radial else "0.4 Fr + Y Fa"
+    if e is None or Y is None or Y0 is None:
+        P = P0 = radial
+        notes["equivalent_load"] = "Fr (ISO 281, contact angle 0)"
+        if axial > 0.0:
+            said.append(
+                f"the axial load {axial:.4g} N acts on ribs alone, which ISO 281 does not rate: look at rib pressures and losses"
+            )
+    else:
+        P = iso281.equivalent_load(radial, axial, e=e, Y=Y)
+        P0 = iso281.static_equivalent_load(radial, axial, Y0=Y0)
+        notes["equivalent_load"] = "Fr" if axial <= e * radial else "0.4 Fr + Y Fa"
     smallest = iso281.SMALLEST_LOAD_SHARE * C
     notes["smallest_load"] = "0.02 C"
     if smallest > P:
@@ -391,8 +399,12 @@ def sheet(
     )
 
 
-def _factors(scene: Scene, notes: dict[str, str]) -> tuple[float, float, float, float, float, float]:
-    """C, C0, Cu, e, Y and Y0: of the catalogue, else by the standards from the rollers and the cup's angle."""
+def _factors(
+    scene: Scene, notes: dict[str, str]
+) -> tuple[float, float, float, float | None, float | None, float | None]:
+    """C, C0, Cu, e, Y and Y0: of the catalogue, else by the standards from the rollers and the cup's angle; a cylindrical bearing
+    has none of the last three.
+    """
     bearing, known = scene.bearing, scene.bearing.ratings
     slope = math.tan(math.radians(bearing.cup_half_angle_deg))
     sizes: dict[str, Any] = {
@@ -404,19 +416,25 @@ def _factors(scene: Scene, notes: dict[str, str]) -> tuple[float, float, float, 
     }
     C = known.dynamic or rating_iso281(**sizes)
     C0 = known.static or rating_iso76(**sizes)
-    # a catalogue that tells one of e and Y: the other one by e Y = 0.6
-    e = known.e or (0.6 / known.Y if known.Y is not None else 1.5 * slope)
-    Y = known.Y or (0.6 / known.e if known.e is not None else 0.4 / slope)
+    limit = known.fatigue_limit or iso281.fatigue_limit(C0, bearing.pitch_diameter)
     for name, value, how in (
         ("dynamic_rating", known.dynamic, "ISO 281 from the rollers, b_m = 1.1"),
         ("static_rating", known.static, "ISO 76 from the rollers"),
         ("fatigue_limit", known.fatigue_limit, "C0/8.2 (ISO 281, B.3.3)"),
+    ):
+        notes[name] = "catalogue" if value is not None else how
+    if bearing.is_cylindrical:
+        return C, C0, limit, None, None, None
+    # a catalogue that tells one of e and Y: the other one by e Y = 0.6
+    e = known.e or (0.6 / known.Y if known.Y is not None else 1.5 * slope)
+    Y = known.Y or (0.6 / known.e if known.e is not None else 0.4 / slope)
+    for name, value, how in (
         ("e", known.e, "1.5 tan(alpha), or 0.6/Y"),
         ("Y", known.Y, "0.4 cot(alpha), or 0.6/e"),
         ("Y0", known.Y0, "0.55 Y, that is 0.22 cot(alpha)"),
     ):
         notes[name] = "catalogue" if value is not None else how
-    return C, C0, known.fatigue_limit or iso281.fatigue_limit(C0, bearing.pitch_diameter), e, Y, known.Y0 or 0.55 * Y
+    return C, C0, limit, e, Y, known.Y0 or 0.55 * Y
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from trbdyn.model.defect_rows import form_rows
 from trbdyn.model.flatten import (
     block_of,
     diameter_deviation,
-    effects_entries,
     face_rows,
     input_error_of_core,
     parameter_block,
@@ -50,5 +49,5 @@ def normal_contacts(scene: Scene) -> _core.Model:
     quiet = {"lubrication": "full_film", "traction": "none", "thermal": False}
     quiet |= {"rolling_resistance": False, "rolling_pressure_force": False}
     rigid = scene.replace(elastic_cage=None)
-    entries = {**scene_entries(rigid), **effects_entries(scene.effects.replace(**quiet))}
+    entries = scene_entries(rigid.replace(effects=scene.effects.replace(**quiet)))
     return _core.Model(block_of(entries), diameter_deviation(scene), face_rows(scene))

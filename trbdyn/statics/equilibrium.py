@@ -170,7 +170,7 @@ class EquilibriumSolver:
         except _core.CoreLoadError as error:
             # starts that were not tried yet: without the guess, and where the axial position is given with play
             trials: list[tuple[Array, Array | None]] = [(load.displacement, None)] if guess is not None else []
-            if load.displacement[2] > 0.0:
+            if load.displacement[2] > 0.0 or self.scene.bearing.radial_clearance > 0.0:
                 trials.append((self._pushed(load), self._along_cup(float(load.displacement[2]))))
             for trial, guessed in trials if displacement is None else []:
                 with contextlib.suppress(_core.CoreLoadError):
@@ -220,7 +220,7 @@ class EquilibriumSolver:
     def _check_reach(self, load: RingLoad, time: float) -> None:
         """Refuse a radial load that no rollers at these angles can carry: their normal loads would have to pull."""
         radial = float(np.hypot(*load.force[:2]))
-        if not radial > 0.0 or not self.scene.effects.back_rib:
+        if not radial > 0.0 or not self.scene.effects.back_rib or self.scene.bearing.is_cylindrical:
             return
         most = most_radial_load(self.scene, -float(load.force[2]), time)
         reach = most * _reach(self.angles, math.atan2(load.force[1], load.force[0]))
@@ -263,6 +263,7 @@ class EquilibriumSolver:
         """A guess of the ring's place: where its axial position is given with play, pushed to the side by its load."""
         place, push = load.displacement.copy(), float(np.hypot(*load.force[:2]))
         gap = max(place[2], 0.0) * math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
+        gap += 0.5 * self.scene.bearing.radial_clearance
         if push > 0.0:
             place[:2] = np.where(load.fixed[:2] > 0.0, place[:2], gap * load.force[:2] / push)
         return place
@@ -280,7 +281,7 @@ def least_axial_load(scene: Scene, time: float = 0.0) -> float:
     its large end, and there against the rib, whose normal lies at the angle theta to the bearing axis: the inner
     raceway carries nothing at Fa = Z Fc tan(alpha_o) / [1 + tan(theta) tan(alpha_o)].
     """
-    if not scene.effects.back_rib:
+    if not scene.effects.back_rib or scene.bearing.is_cylindrical:
         return 0.0
     geometry = scene.bearing.geometry
     orbit = scene.orbit_speed(time)

@@ -152,7 +152,7 @@ def _roller(bearing: Bearing, stations: Array) -> Mesh:
     geometry, roller = bearing.geometry, bearing.roller
     slope, offset = np.tan(geometry.roller_half_angle), geometry.roller_mass_offset
     drop = profile_drop(bearing, stations)
-    radius = (geometry.apex_to_mid + stations) * slope
+    radius = 0.5 * roller.diameter + stations * slope
     angles = np.linspace(0.0, 2.0 * np.pi, AROUND + 1)
     rows = np.stack([radius, stations - offset], axis=1)
     outward = np.broadcast_to([np.cos(geometry.roller_half_angle), -np.sin(geometry.roller_half_angle)], rows.shape)
@@ -163,7 +163,7 @@ def _roller(bearing: Bearing, stations: Array) -> Mesh:
     # large end: a sphere about the point on the axis that the model uses; rounded corners join it to the flank
     top, bottom = 0.5 * roller.total_length, geometry.small_end_station
     last, first = rows[-1] - [drop[-1], 0.0], rows[0] - [drop[0], 0.0]
-    rim = 0.96 * (geometry.apex_to_mid + top) * slope
+    rim = 0.96 * (0.5 * roller.diameter + top * slope)
     centre = geometry.sphere_centre - geometry.apex_to_mid - offset
     r = np.linspace(0.0, rim, 7)
     sphere = np.stack([r, centre + np.sqrt(geometry.sphere_radius**2 - r**2)], axis=1)
@@ -198,7 +198,7 @@ def pocket_frame(bearing: Bearing, pocket: int) -> tuple[Array, Array]:
     cosine, sine = np.cos(geometry.roller_axis_angle), np.sin(geometry.roller_axis_angle)
     rotation = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
     axes = np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
-    return rotation @ np.array([geometry.apex_to_mid * sine, 0.0, 0.0]), axes @ rotation.T
+    return rotation @ np.array([0.5 * bearing.pitch_diameter, 0.0, 0.0]), axes @ rotation.T
 
 
 def _faces(bearing: Bearing) -> tuple[FaceMesh, ...]:
@@ -299,7 +299,7 @@ def _rail(bearing: Bearing, band: tuple[float, float, float, float, float]) -> M
     low, high, near, far, shift = band
     geometry = bearing.geometry
     cosine, sine = np.cos(geometry.roller_axis_angle), np.sin(geometry.roller_axis_angle)
-    origin = geometry.apex_to_mid * sine
+    origin = 0.5 * bearing.pitch_diameter
 
     def place(n: float, a: float) -> tuple[float, float]:
         return origin + n * cosine + a * sine, a * cosine - n * sine

@@ -1,0 +1,208 @@
+"""Cylindrical roller bearings, whose half angle is zero: geometry, equilibrium and motion against formulas for cylinders."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import brentq, root
+
+import trbdyn as trb
+from trbdyn.model.contact_line import stations
+
+Array = NDArray[np.float64]
+PLACED = (None, None, 0.0)
+
+
+def bearing(flanges: str = "NU", clearance: float = 20e-6, **changes: Any) -> trb.Bearing:
+    """16 rollers of 11 mm, of straight profile."""
+    own = {"diameter": 11e-3, "effective_length": 10.6e-3, "profile": trb.Profile(kind="straight")}
+    return trb.Bearing(
+        n_rollers=16,
+        cup_half_angle_deg=0.0,
+        pitch_diameter=70.5e-3,
+        radial_clearance=clearance,
+        roller=trb.Roller(**{**own, **changes.pop("roller", {})}),
+        ribs=trb.Ribs(flanges=flanges, **changes.pop("ribs", {})),  # type: ignore[arg-type]
+        **changes,
+    )
+
+
+def scene(flanges: str = "NU", clearance: float = 20e-6, **changes: Any) -> trb.Scene:
+    if flanges in ("NU", "N"):
+        changes = {"displacement": PLACED, **changes}
+    else:
+        changes = {"axial_load": 500.0, **changes}
+    given = {"bearing": bearing(flanges, clearance), "speed_rpm": 3000.0, "radial_load": 4000.0}
+    return trb.Scene(**(given | changes))
+
+
+def test_geometry_of_cylinders() -> None:
+    geometry, density = bearing().geometry, 7810.0
+    radius, total, pitch = 5.5e-3, bearing().roller.total_length, 70.5e-3
+    mass = density * math.pi * radius**2 * total
+    assert geometry.roller_half_angle == geometry.roller_axis_angle == geometry.cone_half_angle == 0.0
+    assert geometry.apex_to_mid == geometry.centre_plane == geometry.roller_mass_offset == 0.0
+    assert geometry.roller_mass == pytest.approx(mass, rel=1e-12)
+    assert geometry.roller_inertia_axial == pytest.approx(0.5 * mass * radius**2, rel=1e-12)
+    assert geometry.roller_inertia_transverse == pytest.approx(mass * (radius**2 / 4 + total**2 / 12), rel=1e-12)
+    assert geometry.cage_speed_ratio == pytest.approx(0.5 * (1.0 - 11.0 / 70.5), rel=1e-12)
+    assert geometry.outer_equivalent_radius == pytest.approx(1.0 / (1.0 / radius - 2.0 / (pitch + 11e-3)), rel=1e-12)
+    assert geometry.inner_equivalent_radius == pytest.approx(1.0 / (1.0 / radius + 2.0 / (pitch - 11e-3)), rel=1e-12)
+    assert geometry.sphere_radius == pytest.approx(50 * 11e-3)
+
+
+def load_of(depth: float | Array, of: trb.Bearing) -> Any:
+    """Palmgren's load of a roller, spread evenly along it."""
+    length, modulus = of.roller.effective_length, of.geometry.effective_modulus
+    return 0.356 * modulus * length ** (8.0 / 9.0) * np.maximum(depth, 0.0) ** (10.0 / 9.0)
+
+
+@pytest.mark.parametrize("clearance", [0.0, 20e-6, 80e-6])
+@pytest.mark.parametrize("radial_load", [500.0, 20000.0])
+def test_equilibrium_of_a_radial_load(clearance: float, radial_load: float) -> None:
+    """Against the balance of each roller between two raceways, and of the ring on all of them, solved by SciPy."""
+    under = scene("NU", clearance, radial_load=radial_load)
+    found = trb.Simulation(under).equilibrium
+    geometry = under.bearing.geometry
+    orbit = geometry.cage_speed_ratio * 100.0 * math.pi
+
+    races = [0.5 * (70.5e-3 + side * (11e-3 + 0.5 * clearance)) for side in (1.0, -1.0)]
+
+    def push(place: Array, angle: float) -> Array:
+        """Force of the roller at an angle on an inner ring at a place."""
+        outward = np.array([math.cos(angle), math.sin(angle)])
+
+        def inner(radius: float) -> tuple[float, Array]:
+            apart = radius * outward - place
+            distance = float(np.linalg.norm(apart))
+            return float(load_of(races[1] + 5.5e-3 - distance, under.bearing)), apart / distance
+
+        def unbalanced(radius: float) -> float:
+            load, normal = inner(radius)
+            outer = load_of(radius + 5.5e-3 - races[0], under.bearing)
+            return float(load * (normal @ outward) + geometry.roller_mass * orbit**2 * radius - outer)
+
+        half = 0.5 * under.bearing.pitch_diameter
+        load, normal = inner(brentq(unbalanced, half - 1e-3, half + 1e-3, xtol=1e-16))
+        return -load * normal
+
+    def missing(place: Array) -> Array:
+        total = sum((push(place, angle) for angle in found.angles), np.zeros(2))
+        return total + np.array([0.0, radial_load])
+
+    place = root(missing, found.displacement[:2], tol=1e-13, options={"factor": 0.1}).x
+    np.testing.assert_allclose(found.displacement[:2], place, rtol=1e-6, atol=1e-11)
+    loads = [np.linalg.norm(push(place, angle)) for angle in found.angles]
+    np.testing.assert_allclose(found.inner_load, loads, rtol=1e-5, atol=1e-6 * radial_load)
+    np.testing.assert_allclose(found.displacement[2:], 0.0)
+    np.testing.assert_allclose(found.rollers[:, 1:], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("flanges", ["NJ", "NUP"])
+def test_ribs_carry_the_axial_load(flanges: str) -> None:
+    """One rib of each ring at every roller, whose couple the raceways take up by their uneven load."""
+    sim = trb.Simulation(scene(flanges))
+    seen, geometry = sim.contacts(), sim.scene.bearing.geometry
+    lean = math.cos(geometry.rib_normal_angle)
+    assert seen["rib_load"].sum() * lean == pytest.approx(500.0, rel=1e-5)
+    assert seen["outer_front_rib_load"].sum() * lean == pytest.approx(500.0, rel=1e-5)
+    np.testing.assert_array_equal(seen["outer_rib_load"], 0.0)
+    np.testing.assert_array_equal(seen["front_rib_load"], 0.0)
+    heavy = np.argmax(seen["rib_load"])
+    per_length, weight = (seen[f"raceway_{name}"][:, heavy] for name in ("load_per_length", "weight"))
+    height = 0.5 * sim.scene.bearing.roller.diameter - sim.scene.bearing.ribs.contact_height
+    couple = 2.0 * seen["rib_load"][heavy] * lean * height
+    # raceways: the outer one is loaded more towards one end, the inner one towards the other
+    moments = np.sum(per_length * weight * stations(sim.scene), axis=-1)
+    assert abs(moments[0] - moments[1]) == pytest.approx(couple, rel=0.1)
+    assert np.sign(moments[0]) == -np.sign(moments[1])
+
+
+@pytest.mark.parametrize("flanges", ["NU", "NJ", "NUP", "N"])
+def test_it_rolls_at_the_kinematic_speed(flanges: str) -> None:
+    """Rollers under load roll, take the cage along, and the energies close."""
+    result = trb.Simulation(scene(flanges, 0.0, speed_rpm=1500.0)).run(revolutions=2.0)
+    summary = result.summary()
+    assert result.success
+    ratio = result.scene.bearing.geometry.cage_speed_ratio
+    assert result.cage_speed_ratio == pytest.approx(ratio, rel=5e-3)
+    assert abs(summary["energy_closure"]) < 1e-3
+    loaded = result["inner_load"][-1] > 500.0  # others have just come, and still slide
+    spin = -result["roller_spin_speed"][-1][loaded] / result["shaft_speed"][-1]
+    np.testing.assert_allclose(spin, result.scene.bearing.geometry.roller_spin_ratio, rtol=5e-3)
+
+
+def test_energy_without_friction() -> None:
+    """Kinetic and elastic energy and the works are conserved where nothing loses any."""
+    quiet = trb.Effects.frictionless().replace(gravity=False, bodies="rollers")
+    sim = trb.Simulation(scene("NJ", effects=quiet, misalignment_x=2e-4), accuracy="reference")
+    result = sim.run(duration=4e-3, save_every=1e-4)
+    energy = result["kinetic_energy"] + result["elastic_energy"] - result["work_shaft"] - result["work_ring"]
+    assert np.ptp(energy) < 1e-5 * float(np.abs(result["elastic_energy"]).max())
+    assert (
+        max(abs(float(result[f"loss_{name}"][-1])) for name in ("traction_outer", "rib", "front_rib", "damping"))
+        < 1e-12
+    )
+
+
+def test_tangents_and_exact_forces_agree() -> None:
+    """A run whose forces of raceways and ribs are followed by tangents, and one in which all are evaluated."""
+    quiet = scene("NUP", effects=trb.Effects(bodies="rollers"), misalignment_x=2e-4, moment_y=None)
+    runs = [trb.Simulation(quiet, rings_share=share).run(revolutions=0.5) for share in (0.1, 1e-9)]
+    lost = [sum(float(run[name][-1]) for name in ("loss_rolling", "loss_traction_inner", "loss_rib")) for run in runs]
+    assert lost[0] == pytest.approx(lost[1], rel=2e-4)
+
+
+def test_a_free_ring_floats_between_ribs() -> None:
+    """A ring that is free goes through the clearance along its axis until ribs carry its load."""
+    body = trb.RingBody(mass=1.0, inertia_axial=5e-4, inertia_transverse=4e-4)
+    free = scene("NJ", ring="free", ring_body=body)
+    result = trb.Simulation(free).run(revolutions=1.0)
+    assert result.success
+    assert abs(result.summary()["energy_closure"]) < 1e-3
+    # the inner ring's rib goes to its rollers, and these to the rib of the outer ring; the ring leans a little, too
+    gap = free.bearing.ribs.clearance
+    assert -3.0 * gap < float(result["ring_position"][:, 2].mean()) < -2.0 * gap
+    assert float(result["rib_load"].sum(axis=1).mean()) == pytest.approx(500.0, rel=0.05)
+
+
+def test_records_of_the_outer_ribs() -> None:
+    """Cylindrical bearings have them, tapered ones do not."""
+    own = trb.Simulation(scene("NJ")).run(duration=1e-3)
+    other = trb.Simulation(trb.cases.scene_30310()).run(duration=1e-3)
+    assert "outer_ribs" in own.groups
+    assert "outer_ribs" not in other.groups
+    assert float(own["outer_front_rib_load"].sum(axis=1)[0]) == pytest.approx(500.0, rel=1e-3)
+    assert float(own["outer_front_rib_pressure"].max()) > 5e7
+
+
+def test_the_rating_is_that_of_a_radial_bearing() -> None:
+    rating = trb.rating(scene("NJ"))
+    assert rating.equivalent_load == pytest.approx(4000.0)
+    assert rating.e is rating.Y is rating.Y0 is None
+    assert any("ribs" in said for said in rating.warnings)
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: bearing(None), "ribs.flanges"),  # type: ignore[arg-type]
+        (lambda: scene("NU", axial_load=100.0, displacement=None), "no ribs that would carry"),
+        (lambda: scene("NUP", axial_load=0.0), "displacement = (None, None, 0.0)"),
+        (lambda: scene("NU", unloaded="rests", displacement=None), "cylindrical rollers"),
+        (lambda: trb.cases.rig_30310().replace(radial_clearance=1e-5), "must not be given for tapered"),
+        (
+            lambda: trb.cases.rig_30310().replace(cup_half_angle_deg=0.3),
+            "must be 0, for cylindrical rollers, or from 0.6",
+        ),
+        (lambda: trb.cases.rig_30310().replace(cup_half_angle_deg=0.0), "ribs.flanges"),
+    ],
+)
+def test_what_is_refused(make: Any, says: str) -> None:
+    with pytest.raises(trb.InputError, match=r".") as found:
+        make()
+    assert says in str(found.value)
