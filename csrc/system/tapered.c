@@ -22,12 +22,14 @@ enum {
   INNER_LAND,
   OUTER_LAND,
   WHOLE_CAGE,
-  N_TAPERED_SURFACES,
-  OTHER_END = N_TAPERED_SURFACES,
+  OTHER_END,
   OUTER_BACK_FACE,
   OUTER_FRONT_FACE,
   N_SURFACES
 };
+
+/* Of tapered bearings. */
+enum { N_TAPERED_SURFACES = OTHER_END };
 
 static void add_bodies(trb_system *s)
 {

@@ -14,9 +14,9 @@ enum {
 #define TRB_PAIR_ENUM(name) TRB_PAIR_##name,
   TRB_PAIRS(TRB_PAIR_ENUM)
 #undef TRB_PAIR_ENUM
-      TRB_N_PAIRS,
-  TRB_N_TAPERED_PAIRS = TRB_PAIR_outer_rib
+      TRB_N_PAIRS
 };
+enum { TRB_N_TAPERED_PAIRS = TRB_PAIR_outer_rib };
 
 /* model: must live as long as the system; freed by trb_system_free. */
 trb_status trb_system_tapered(const trb_model *model, trb_system **system, trb_message *message);
