@@ -95,10 +95,12 @@ class Model:
         loads: bool = False,
         stiffness: bool = False,
         outer_speed: float = 0.0,
+        rough: bool = False,
     ) -> dict[str, Any]:
         """Static equilibrium at speed. load (5,): force (3) and moment about x, y (2) on the ring; fixed (5,): 1 where
         `displacement` (dx, dy, dz, rx, ry) is prescribed; angles (Z,) of the rollers; rollers (4 Z,): with `displacement` a
-        guess close to the solution, from which loads are given as 0 without `loads`. Gives displacement (5,), reaction (5,):
+        guess close to the solution, from which loads are given as 0 without `loads`, or with `rough` any guess. Gives
+        displacement (5,), reaction (5,):
         what holds the ring against its rollers, on_other (5,): their force and moment on the other ring, energy:
         the ring's potential; rollers (Z, 4: r, z, tilt, skew offsets), loads (Z, 3:
         outer, inner, rib), residual, iterations; with `stiffness` that of the ring (5, 5) and follow (Z, 20): slopes of each

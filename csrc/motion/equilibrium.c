@@ -22,6 +22,9 @@ enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
  * moves. */
 #define TRB_USUAL_CONTACT 1e9
 #define TRB_LOOSE_SHARE 1e-9
+/* Share of it that holds cylindrical rollers in the middle between their ribs, where in a bearing friction does: a thousandth of a newton over
+ * their clearance. */
+#define TRB_MIDDLE_SHARE 1e-8
 /* Steps of differences. */
 #define TRB_STEP_LENGTH 1e-10
 #define TRB_STEP_ANGLE 1e-8
@@ -75,6 +78,14 @@ static void place(solver *s, const double *rollers, const double *displacement)
   }
 }
 
+/* Adds the force that leads a cylindrical roller back along its axis; gives its potential. */
+static double keep_in_the_middle(double z, double *force)
+{
+  const double stiffness = TRB_MIDDLE_SHARE * TRB_USUAL_CONTACT;
+  *force -= stiffness * z;
+  return 0.5 * stiffness * z * z;
+}
+
 /* Generalised forces on rollers and ring at a place; gives the potential. */
 static double evaluate(solver *s, const double *rollers, const double *displacement, double *forces, double *ring)
 {
@@ -100,6 +111,7 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
     /* tilt turns about the tangent of the orbit, skew against the normal n of the roller's frame */
     f[2] = l->moment.y - gyro;
     f[3] = -trb_dot(l->moment, r->frame.n) - spin * sin(rollers[N * j + 3]);
+    if (trb_has_cylinders(m)) energy += keep_in_the_middle(rollers[N * j + 1], &f[1]);
     for (int i = 0; i < N; i++)
       if (s->held[i]) f[i] = 0.0;
     energy += s->d->loads[j].elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[N * j + 2] -
@@ -433,14 +445,21 @@ static trb_status condense(solver *s, trb_message *message)
   return TRB_OK;
 }
 
+/* Cylindrical rollers have a rib at either end. */
+static int between_ribs(const trb_params *p)
+{
+  return (p->back_rib > 0.0 || p->outer_rib > 0.0) && (p->front_rib > 0.0 || p->outer_front_rib > 0.0);
+}
+
 trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, trb_message *message)
 {
   const trb_model *m = system->model;
   const size_t     n = (size_t)m->n_rollers;
   solver           s = {.m = m, .e = e};
-  /* without a pair that seats it nothing but friction holds a roller along its axis; in planar motion it does not skew */
-  s.held[1] = !trb_system_seats(system);
-  s.held[3] = m->params.planar > 0.0;
+  /* without a pair that seats it nothing but friction holds a roller along its axis, and a cylinder without ribs at both ends; in planar motion
+   * it does not skew, nor does a cylinder but by friction */
+  s.held[1] = !trb_system_seats(system) || (trb_has_cylinders(m) && !between_ribs(&m->params));
+  s.held[3] = m->params.planar > 0.0 || trb_has_cylinders(m);
   trb_status status = trb_dynamics_create(system, NULL, "scalar", &s.d, message);
   if (status != TRB_OK) return status;
   enum { DOUBLES = N + R + N + R + N * N + N * R + N * R + N * (R + 1) + N + N };

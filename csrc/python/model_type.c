@@ -234,16 +234,17 @@ static PyObject *columns(const double *values, int rows, int width)
 
 static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
 {
-  static char *names[] = {"load", "fixed", "displacement", "shaft_speed", "angles", "rollers", "loads", "stiffness", "outer_speed", NULL};
+  static char     *names[] = {"load",  "fixed",     "displacement", "shaft_speed", "angles", "rollers",
+                              "loads", "stiffness", "outer_speed",  "rough",       NULL};
   const trb_model *m = ((model_object *)self)->model;
   PyObject        *load, *fixed, *displacement, *angles, *rollers = Py_None;
   trb_equilibrium  e = {0};
   trb_message      message = {TRB_OK, ""};
   double           held[TRB_RING_FREEDOMS];
-  int              with_loads = 0, with_stiffness = 0;
+  int              with_loads = 0, with_stiffness = 0, rough = 0;
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS] = {0};
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Oppd", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
-                                   &with_loads, &with_stiffness, &e.carried_speed))
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOOdO|Oppdp", names, &load, &fixed, &displacement, &e.shaft_speed, &angles, &rollers,
+                                   &with_loads, &with_stiffness, &e.carried_speed, &rough))
     return NULL;
   if (read_doubles(load, "load", TRB_RING_FREEDOMS, e.load) != 0 || read_doubles(fixed, "fixed", TRB_RING_FREEDOMS, held) != 0 ||
       read_doubles(displacement, "displacement", TRB_RING_FREEDOMS, e.displacement) != 0)
@@ -255,14 +256,15 @@ static PyObject *equilibrium(PyObject *self, PyObject *args, PyObject *keywords)
   e.angles = block;
   e.rollers = block + n;
   PyObject *out = NULL;
-  e.warm = rollers != Py_None;
+  const int guessed = rollers != Py_None;
+  e.warm = guessed && !rough;
   double *const loads = e.rollers + TRB_ROLLER_FREEDOMS * n;
   double *const follow = loads + TRB_EQUILIBRIUM_LOADS * n;
   e.loads = e.warm && !with_loads ? NULL : loads;
   e.stiffness = with_stiffness ? stiffness : NULL;
   e.follow = follow;
   if (read_doubles(angles, "angles", m->n_rollers, e.angles) == 0 &&
-      (!e.warm || read_doubles(rollers, "rollers", TRB_ROLLER_FREEDOMS * m->n_rollers, e.rollers) == 0)) {
+      (!guessed || read_doubles(rollers, "rollers", TRB_ROLLER_FREEDOMS * m->n_rollers, e.rollers) == 0)) {
     trb_status status;
     Py_BEGIN_ALLOW_THREADS
     status = trb_equilibrium_solve(((model_object *)self)->system, &e, &message);

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.model.cases import bearing_32216, rig_30310
+from trbdyn.model.cases import bearing_32216, bearing_nj210, rig_30310
 from trbdyn.model.lubricants import iso_vg, vg100
 
 Table = dict[str, Any]
@@ -84,6 +84,11 @@ ORDINARY: Table = {
     "waves_on": None,
     "waves": 12,
     "wave_height": 3e-7,
+    "flanges": None,
+    "axial_share": 0.0,
+    "radial_clearance": 20e-6,
+    "rib_clearance": 16e-6,
+    "end_radius": 0.55,
 }
 """What a table that says nothing means; shrinking a failure leads back to these."""
 
@@ -299,7 +304,29 @@ def pitted(rng: np.random.Generator) -> Table:
     return table
 
 
+def cylindrical(rng: np.random.Generator) -> Table:
+    """Cylindrical rollers: all types of ribs, loose or tight, round or nearly flat ends. The load that others have along the axis
+    acts across it, and a share of it along the axis where ribs can carry it.
+    """
+    table = _one_of(rng, usual, light, wide, guided, filmed, free, outer, housed, pitted)(rng)
+    for name in ("displacement_x", "back_rib"):
+        table.pop(name, None)
+    table |= {"flanges": _one_of(rng, "NU", "NJ", "NUP", "N"), "bearing": "nj210"}
+    if table["flanges"] in ("NJ", "NUP"):
+        table |= {"axial_share": _log(rng, 0.01, 0.5), "front_rib": True}
+    options: dict[str, Any] = {
+        "radial_clearance": lambda: _one_of(rng, 0.0, _log(rng, 1e-6, 2e-4)),
+        "rib_clearance": lambda: _one_of(rng, 0.0, _log(rng, 1e-6, 3e-4)),
+        "end_radius": lambda: _log(rng, 0.03, 20.0),
+    }
+    for name, make_one in options.items():
+        if rng.random() < 0.4:
+            table[name] = make_one()
+    return table
+
+
 KINDS = {
+    "cylindrical": cylindrical,
     "pitted": pitted,
     "housed": housed,
     "outer": outer,
@@ -335,7 +362,6 @@ def make(table: Table) -> trb.Scene:
         scales = {"speed_rpm": 1.0 / length, "end_speed_rpm": 1.0 / length, "axial_load": load, "end_axial_load": load}
         scales |= {f"displacement_{axis}": length for axis in "xyz"}
         t |= {name: t[name] * scale for name, scale in scales.items() if t[name] is not None}
-    slope = math.tan(math.radians(bearing.cup_half_angle_deg))
     fields: Table = {
         "lubricant": vg100(t["temperature_c"]) if t["oil"] is None else iso_vg(t["oil"], t["temperature_c"]),
         "effects": _effects(t),
@@ -344,9 +370,12 @@ def make(table: Table) -> trb.Scene:
         "misalignment_x": t["misalignment_x"],
         "misalignment_y": t["misalignment_y"],
     }
-    if t["displacement_x"] is not None:
+    if t["flanges"] is not None:
+        fields |= _across(t)
+    elif t["displacement_x"] is not None:
         fields["displacement"] = (t["displacement_x"], t["displacement_y"], t["displacement_z"])
     else:
+        slope = math.tan(math.radians(bearing.cup_half_angle_deg))
         lowest = min(t["axial_load"], (t["ring_mass"] is None and t["end_axial_load"]) or math.inf)
         if t["repeating"] == "axial_load":
             lowest *= 1.0 - t["repeating_share"]
@@ -359,12 +388,29 @@ def make(table: Table) -> trb.Scene:
             fields["rotating_load"] = trb.RotatingLoad(t["rotating_share"] * lowest / slope, turns=t["rotating_turns"])
         if t["end_axial_load"] is not None or t["rotating_share"] > 0.0 or t["repeating"] == "axial_load":
             fields["ring"] = "follows"
-        if t["ring_mass"] is not None:
-            fields |= _free_ring(t, bearing)
+    if t["ring_mass"] is not None:
+        fields |= _free_ring(t, bearing)
     if t["housing_mass"] is not None:
         fields["housing"] = _housing(t, bearing)
     fields["defects"] = _defects(t, bearing)
     return trb.Scene(bearing, start=_start_of(t), **fields)
+
+
+def _across(t: Table) -> Table:
+    """Loads of a cylindrical bearing, and what holds its ring along the axis where no rib does."""
+    fields: Table = {
+        "radial_load": _quantity(t, "axial_load", t["axial_load"], t["end_axial_load"]),
+        "radial_direction_deg": t["direction_deg"],
+    }
+    if t["axial_share"] > 0.0:
+        fields["axial_load"] = t["axial_share"] * t["axial_load"]
+    elif t["ring_mass"] is None:
+        fields["displacement"] = (None, None, t["displacement_z"])
+    if t["rotating_share"] > 0.0:
+        fields["rotating_load"] = trb.RotatingLoad(t["rotating_share"] * t["axial_load"], turns=t["rotating_turns"])
+    if t["end_axial_load"] is not None or t["rotating_share"] > 0.0 or t["repeating"] == "axial_load":
+        fields["ring"] = "follows"
+    return fields
 
 
 def _free_ring(t: Table, bearing: trb.Bearing) -> Table:
@@ -378,6 +424,8 @@ def _free_ring(t: Table, bearing: trb.Bearing) -> Table:
     body = body.replace(
         unbalance=t["unbalance_share"] * t["axial_load"] / max(speed, 10.0) ** 2, damping=t["ring_damping"]
     )
+    if t["flanges"] is not None and t["axial_share"] == 0.0:
+        body = body.replace(support_axial=1e7 * size)
     moment = t["moment_share"] * t["axial_load"] * 0.1 * pitch
     torque = None if t["torque"] is None else t["torque"] * 5e-3 * t["axial_load"] * pitch
     return {"ring": "free", "ring_body": body, "moment_x": moment, "moment_y": 0.0, "torque": torque}
@@ -423,6 +471,11 @@ def _defects(t: Table, bearing: trb.Bearing) -> tuple[trb.Pit | trb.Waviness, ..
 def _bearing(t: Table) -> trb.Bearing:
     if t["bearing"] in CATALOGUE:
         bearing = trb.Bearing.from_catalogue(**CATALOGUE[t["bearing"]], name=t["bearing"])
+    elif t["flanges"] is not None:
+        bearing = bearing_nj210()
+        ribs = bearing.ribs.replace(flanges=t["flanges"], clearance=t["rib_clearance"])
+        roller = bearing.roller.replace(end_radius=t["end_radius"])
+        bearing = bearing.replace(ribs=ribs, roller=roller, radial_clearance=t["radial_clearance"])
     else:
         bearing = rig_30310() if t["bearing"] == "30310" else bearing_32216()
     cage = bearing.cage

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.optimize import brentq, root
+from scipy.optimize import brentq
 
 import trbdyn as trb
 from trbdyn.model.contact_line import stations
@@ -64,7 +64,7 @@ def load_of(depth: float | Array, of: trb.Bearing) -> Any:
 @pytest.mark.parametrize("clearance", [0.0, 20e-6, 80e-6])
 @pytest.mark.parametrize("radial_load", [500.0, 20000.0])
 def test_equilibrium_of_a_radial_load(clearance: float, radial_load: float) -> None:
-    """Against the balance of each roller between two raceways, and of the ring on all of them, solved by SciPy."""
+    """Where the ring stands, each roller in balance between two raceways, solved by SciPy, pushes it as the load asks."""
     under = scene("NU", clearance, radial_load=radial_load)
     found = trb.Simulation(under).equilibrium
     geometry = under.bearing.geometry
@@ -90,14 +90,9 @@ def test_equilibrium_of_a_radial_load(clearance: float, radial_load: float) -> N
         load, normal = inner(brentq(unbalanced, half - 1e-3, half + 1e-3, xtol=1e-16))
         return -load * normal
 
-    def missing(place: Array) -> Array:
-        total = sum((push(place, angle) for angle in found.angles), np.zeros(2))
-        return total + np.array([0.0, radial_load])
-
-    place = root(missing, found.displacement[:2], tol=1e-13, options={"factor": 0.1}).x
-    np.testing.assert_allclose(found.displacement[:2], place, rtol=1e-6, atol=1e-11)
-    loads = [np.linalg.norm(push(place, angle)) for angle in found.angles]
-    np.testing.assert_allclose(found.inner_load, loads, rtol=1e-5, atol=1e-6 * radial_load)
+    pushes = np.array([push(found.displacement[:2], angle) for angle in found.angles])
+    np.testing.assert_allclose(pushes.sum(axis=0), [0.0, -radial_load], atol=1e-6 * radial_load)
+    np.testing.assert_allclose(found.inner_load, np.linalg.norm(pushes, axis=1), rtol=1e-5, atol=1e-6 * radial_load)
     np.testing.assert_allclose(found.displacement[2:], 0.0)
     np.testing.assert_allclose(found.rollers[:, 1:], 0.0, atol=1e-9)
 

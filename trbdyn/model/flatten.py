@@ -366,10 +366,13 @@ def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
         force += weight
         moment += arm * np.array([-weight[1], weight[0]])
     turns = (value_at(scene.misalignment_x, time), value_at(scene.misalignment_y, time))
+    fixed = np.array([float(held) for held in scene.ring_is_placed])
+    if scene.bearing.is_cylindrical and force[2] == 0.0:
+        fixed[2] = 1.0  # nothing pushes a free ring, or holds it: it begins in the middle
     return RingLoad(
         force=force,
         moment=moment,
-        fixed=np.array([float(held) for held in scene.ring_is_placed]),
+        fixed=fixed,
         displacement=np.array([*(0.0 if place is None else value_at(place, time) for place in places), *turns]),
         shaft_speed=value_at(scene.speed_rpm, time) * math.pi / 30.0,
         outer_speed=value_at(scene.outer_speed_rpm, time) * math.pi / 30.0,

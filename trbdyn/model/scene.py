@@ -461,6 +461,10 @@ class Scene(Model):
         if min(axial) > 0.0 and flanges in ("NU", "N") and not supported:
             allowed = f"must be 0: a bearing {flanges} has no ribs that would carry it, but NJ and NUP have (N)"
             raise InputError.of("axial_load", self.axial_load, allowed)
+        for name in ("back_rib", "front_rib"):
+            if max(axial) > 0.0 and not getattr(self.effects, name):
+                allowed = "must be true with an axial load on cylindrical rollers: a rib of each ring carries it"
+                raise InputError.of(("effects", name), False, allowed)
         if min(axial) <= 0.0 and not supported:
             allowed = (
                 "must be > 0 for a bearing NJ or NUP, as nothing else holds its ring along the axis; or give its axial position, "

@@ -155,22 +155,26 @@ class EquilibriumSolver:
         displacement: Array | None,
     ) -> Equilibrium:
         fixed = load.fixed if displacement is None else np.ones(5)
-        place, rollers = load.displacement if displacement is None else displacement, None
+        place, rollers, rough = load.displacement if displacement is None else displacement, None, False
         if guess is not None:
             first, second = guess
             near = first.displacement + share * (second.displacement - first.displacement)
             place = np.where(fixed > 0.0, place, near)
             rollers = (first.rollers + share * (second.rollers - first.rollers)).ravel()
+        elif displacement is None and self.scene.bearing.is_cylindrical:
+            (place, rollers), rough = self._touching(load), True
         force = np.concatenate([load.force, load.moment])
         if displacement is None and not load.fixed[:3].any():
             self._check_reach(load, time)
         found = None
         try:
-            found = self._balanced(load, force, fixed, place, rollers)
+            found = self._balanced(load, force, fixed, place, rollers, rough=rough)
         except _core.CoreLoadError as error:
             # starts that were not tried yet: without the guess, and where the axial position is given with play
             trials: list[tuple[Array, Array | None]] = [(load.displacement, None)] if guess is not None else []
-            if load.displacement[2] > 0.0 or self.scene.bearing.radial_clearance > 0.0:
+            if self.scene.bearing.is_cylindrical:
+                trials.append((load.displacement, None))
+            elif load.displacement[2] > 0.0:
                 trials.append((self._pushed(load), self._along_cup(float(load.displacement[2]))))
             for trial, guessed in trials if displacement is None else []:
                 with contextlib.suppress(_core.CoreLoadError):
@@ -209,12 +213,20 @@ class EquilibriumSolver:
             raise LoadError(_why_not(self.scene, time, said, 0.0))
 
     def _balanced(
-        self, load: RingLoad, force: Array, fixed: Array, place: Array, rollers: Array | None, with_loads: bool = False
+        self,
+        load: RingLoad,
+        force: Array,
+        fixed: Array,
+        place: Array,
+        rollers: Array | None,
+        with_loads: bool = False,
+        *,
+        rough: bool = False,
     ) -> dict[str, Any]:
-        """The core's equilibrium at the speeds of a load."""
+        """The core's equilibrium at the speeds of a load; rough: rollers that are given are not close to it."""
         speeds = load.shaft_speed, load.outer_speed
         return self.model.equilibrium(
-            force, fixed, place, speeds[0], self.angles, rollers, with_loads, outer_speed=speeds[1]
+            force, fixed, place, speeds[0], self.angles, rollers, with_loads, outer_speed=speeds[1], rough=rough
         )
 
     def _check_reach(self, load: RingLoad, time: float) -> None:
@@ -263,10 +275,29 @@ class EquilibriumSolver:
         """A guess of the ring's place: where its axial position is given with play, pushed to the side by its load."""
         place, push = load.displacement.copy(), float(np.hypot(*load.force[:2]))
         gap = max(place[2], 0.0) * math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
-        gap += 0.5 * self.scene.bearing.radial_clearance
         if push > 0.0:
             place[:2] = np.where(load.fixed[:2] > 0.0, place[:2], gap * load.force[:2] / push)
         return place
+
+    def _touching(self, load: RingLoad) -> tuple[Array, Array]:
+        """A guess for cylinders, which have play: the ring moved by the clearances and by about what contacts give way, the
+        rollers between the raceways where these are close, and else on the outer one; shapes (5,) and (4 Z,).
+        """
+        bearing, geometry = self.scene.bearing, self.scene.bearing.geometry
+        place, radial, axial = load.displacement.copy(), load.force[:2], max(-float(load.force[2]), 0.0)
+        push, clearance, count = float(np.hypot(*radial)), bearing.radial_clearance, bearing.n_rollers
+        line = 0.356 * geometry.effective_modulus * bearing.roller.effective_length ** (8.0 / 9.0)
+        if push > 0.0:
+            moved = 0.5 * clearance + 2.0 * (5.0 * push / (count * line)) ** 0.9
+            place[:2] = np.where(load.fixed[:2] > 0.0, place[:2], moved * radial / push)
+        along = bearing.ribs.clearance + (axial / (count * geometry.rib_stiffness)) ** (2.0 / 3.0)
+        if axial > 0.0 and not load.fixed[2]:
+            place[2] = -2.0 * along
+        closed = place[0] * np.cos(self.angles) + place[1] * np.sin(self.angles)
+        rollers = np.zeros((count, 4))
+        rollers[:, 0] = np.maximum(0.5 * closed, 0.25 * clearance)
+        rollers[:, 1] = 0.5 * place[2]
+        return place, rollers.ravel()
 
     def _along_cup(self, shift: float) -> Array:
         """Rollers that went along the cup by this axial distance (m), as a guess."""
@@ -326,6 +357,9 @@ def _why_not(scene: Scene, time: float, said: str, largest: float) -> str:
             f"no equilibrium{when} with the ring held at z = {place:g} m under a radial load of {radial:g} N: "
             f"{'move it towards -z, so that rollers and rings touch' if place >= 0.0 else 'the load is too large'}; {said}"
         )
+    if scene.bearing.is_cylindrical:
+        moments = f", moments {load.moment[0]:g} and {load.moment[1]:g} N m" if np.any(load.moment) else ""
+        return f"no equilibrium{when} under axial_load = {axial:g} N, radial load {radial:g} N{moments}; {said}"
     least = least_axial_load(scene, time)
     if axial < least:
         return (
