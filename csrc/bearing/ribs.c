@@ -4,6 +4,11 @@
 
 #include "laws/hertz.h"
 
+int trb_between_ribs(const trb_params *p)
+{
+  return (p->back_rib > 0.0 || p->outer_rib > 0.0) && (p->front_rib > 0.0 || p->outer_front_rib > 0.0);
+}
+
 trb_sphere trb_end_sphere(const trb_geometry *g, int end)
 {
   if (end == TRB_END_LARGE) return (trb_sphere){g->large_end_station - g->sphere_radius, g->sphere_radius};

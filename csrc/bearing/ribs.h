@@ -23,6 +23,9 @@ typedef struct trb_rib_place {
 trb_status trb_place_rib(const trb_params *params, const trb_geometry *geometry, int race, int end, trb_rib_place *place,
                          trb_message *message);
 
+/* Whether cylindrical rollers have a rib at either end. */
+int trb_between_ribs(const trb_params *params);
+
 /* The sphere of a roller's end, from mid length. */
 trb_sphere trb_end_sphere(const trb_geometry *geometry, int end);
 

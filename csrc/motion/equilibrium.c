@@ -445,12 +445,6 @@ static trb_status condense(solver *s, trb_message *message)
   return TRB_OK;
 }
 
-/* Cylindrical rollers have a rib at either end. */
-static int between_ribs(const trb_params *p)
-{
-  return (p->back_rib > 0.0 || p->outer_rib > 0.0) && (p->front_rib > 0.0 || p->outer_front_rib > 0.0);
-}
-
 trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, trb_message *message)
 {
   const trb_model *m = system->model;
@@ -458,7 +452,7 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
   solver           s = {.m = m, .e = e};
   /* without a pair that seats it nothing but friction holds a roller along its axis, and a cylinder without ribs at both ends; in planar motion
    * it does not skew, nor does a cylinder but by friction */
-  s.held[1] = !trb_system_seats(system) || (trb_has_cylinders(m) && !between_ribs(&m->params));
+  s.held[1] = !trb_system_seats(system) || (trb_has_cylinders(m) && !trb_between_ribs(&m->params));
   s.held[3] = m->params.planar > 0.0 || trb_has_cylinders(m);
   trb_status status = trb_dynamics_create(system, NULL, "scalar", &s.d, message);
   if (status != TRB_OK) return status;
