@@ -91,14 +91,13 @@ trb_status trb_detail_create(const trb_model *m, const trb_pair *pairs, int n_pa
   trb_detail  *d = calloc(1, sizeof *d);
   *detail = NULL;
   if (d == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
-  for (int i = 0; i < n_pairs; i++) d->n_points += pairs[i].kind->is_point;
+  for (int i = 0; i < n_pairs; i++) d->n_contacts += pairs[i].kind->contact != TRB_CONTACT_NONE;
   d->lanes = calloc(lane_total(m), sizeof(double));
-  d->raceway = calloc(TRB_N_RACES * rollers, sizeof *d->raceway);
-  d->points = calloc((size_t)d->n_points * rollers + 1, sizeof *d->points);
+  d->contacts = calloc((size_t)d->n_contacts * rollers + 1, sizeof *d->contacts);
   d->pocket_force = calloc(slots, sizeof(double));
   d->pocket_friction = calloc(slots, sizeof(double));
   d->pocket_interference = calloc(slots, sizeof(double));
-  if (!d->lanes || !d->raceway || !d->points || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
+  if (!d->lanes || !d->contacts || !d->pocket_force || !d->pocket_friction || !d->pocket_interference) {
     trb_detail_free(d);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for contact details");
   }
@@ -110,8 +109,7 @@ void trb_detail_free(trb_detail *detail)
 {
   if (detail == NULL) return;
   free(detail->lanes);
-  free(detail->raceway);
-  free(detail->points);
+  free(detail->contacts);
   free(detail->pocket_force);
   free(detail->pocket_friction);
   free(detail->pocket_interference);
@@ -122,8 +120,7 @@ void trb_detail_clear(const trb_model *m, trb_detail *detail)
 {
   const size_t rollers = (size_t)m->n_rollers, slots = rollers * (size_t)m->n_slots;
   if (detail->lanes != NULL) memset(detail->lanes, 0, lane_total(m) * sizeof(double));
-  memset(detail->raceway, 0, TRB_N_RACES * rollers * sizeof *detail->raceway);
-  memset(detail->points, 0, (size_t)detail->n_points * rollers * sizeof *detail->points);
+  memset(detail->contacts, 0, (size_t)detail->n_contacts * rollers * sizeof *detail->contacts);
   memset(detail->pocket_force, 0, slots * sizeof(double));
   memset(detail->pocket_friction, 0, slots * sizeof(double));
   for (size_t i = 0; i < slots && detail->pocket_interference != NULL; i++) detail->pocket_interference[i] = -INFINITY;

@@ -96,7 +96,8 @@ typedef struct trb_instant {
   const unsigned        *apart;   /* n_rollers: bits of the pairs that are proven not to touch; NULL: none is */
 } trb_instant;
 
-/* A point contact, as users look into it. X(name, unit, text) */
+/* A point contact, as users look into it; a line contact has the same of its nodes: sums, largest values, and means weighted by load.
+ * X(name, unit, text) */
 #define TRB_POINT_FIELDS(X) \
   X(interference,       "m",    "interference of the undeformed surfaces") \
   X(load,               "N",    "normal load") \
@@ -114,11 +115,16 @@ typedef struct trb_instant {
   X(height,             "m",    "height of the contact above the raceway") \
   X(overhang,           "1",    "share of the ellipse beyond the rib's edges")
 
-typedef struct trb_point_detail {
+/* A roller's contact with a ring, as records, peaks and users see it; what one kind does not have stays zero. */
+typedef struct trb_contact {
 #define TRB_POINT_MEMBER(name, unit, text) double name;
   TRB_POINT_FIELDS(TRB_POINT_MEMBER)
 #undef TRB_POINT_MEMBER
-} trb_point_detail;
+  double traction; /* tangential force on the roller in the orbit's direction, N */
+  /* how far it holds, where a look asks for it */
+  double way;   /* displacement that changes the load by a share, m; negative: unknown */
+  double speed; /* change of velocity that changes film or damping by a share, m/s */
+} trb_contact;
 
 /* The cage on the land of a ring, as users look into it. F(X, name, unit, text) */
 #define TRB_LAND_FIELDS(F, X) \
@@ -136,21 +142,15 @@ typedef struct trb_land_detail {
 #undef TRB_LAND_MEMBER
 } trb_land_detail;
 
-/* A roller's contact as records see it: what one contact has, the others leave at zero. */
-typedef struct trb_contact_view {
-  double load, pressure, film, film_parameter, slide_roll, traction, friction, height, overhang;
-} trb_contact_view;
-
 /* Intermediate quantities, stored if a caller wants to look at them; NULL while integrating. */
 typedef struct trb_detail {
-  double           *lanes;               /* [lane field][race][roller][node of n_lanes]; or NULL: the views alone */
-  trb_contact_view *raceway;             /* [race][roller] */
-  trb_point_detail *points;              /* [pair with a point contact, in their order][roller] */
-  double           *pocket_force;        /* [roller][slot], N */
-  double           *pocket_friction;     /* [roller][slot], N */
-  double           *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
-  trb_land_detail   land;
-  int               n_points; /* pairs with a point contact */
+  double         *lanes;               /* [lane field][race][roller][node of n_lanes]; or NULL: the contacts alone */
+  trb_contact    *contacts;            /* [pair of the rollers with a ring, in their order][roller] */
+  double         *pocket_force;        /* [roller][slot], N */
+  double         *pocket_friction;     /* [roller][slot], N */
+  double         *pocket_interference; /* [roller][slot], largest; negative: smallest gap found, m; or NULL: forces alone */
+  trb_land_detail land;
+  int             n_contacts; /* such pairs */
 } trb_detail;
 
 /* Slopes of the wrench on a roller, about its centre of mass, with its motion relative to the other body: one column for a translation

@@ -10,7 +10,7 @@
 #include "surface/circle.h"
 
 static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_pair *pair, int row,
-                        trb_counters *counters, trb_loads *to, trb_point_detail *c)
+                        trb_counters *counters, trb_loads *to, trb_contact *c)
 {
   const trb_vec3   a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
   const trb_circle circle = ((const trb_circle *)pair->own)[edge];
@@ -48,12 +48,12 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
 {
   for (int i = 0; i < batch->n; i++)
     for (int k = 0; k < at->n; k++) {
-      const int        j = at->chosen[k];
-      trb_point_detail c = {0};
+      const int   j = at->chosen[k];
+      trb_contact c = {0};
       for (int edge = 0; edge < 2; edge++)
         edge_on_end(m, &at->rollers[j], &trb_pair_ring(batch->pairs[i], at)[j], edge, batch->pairs[i], batch->index[i], &work->counters,
                     &loads[j], &c);
-      if (detail != NULL) trb_pair_points(m, batch->pairs[i], detail)[j] = c;
+      if (detail != NULL) trb_pair_contacts(m, batch->pairs[i], detail)[j] = c;
     }
 }
 
@@ -74,18 +74,14 @@ static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 }
 
 static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                    trb_detail *detail, double share, trb_contact_look *looks)
+                    trb_detail *detail, double share)
 {
   evaluate(m, at, batch, work, loads, detail);
   for (int k = 0; k < at->n * batch->n; k++) {
-    const trb_point_detail *c = &trb_pair_points(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
-    looks[k] = (trb_contact_look){.load = c->load, .way = c->interference > 0.0 ? -1.0 : trb_look_way(c, share), .speed = INFINITY};
+    trb_contact *c = &trb_pair_contacts(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
+    c->way = c->interference > 0.0 ? -1.0 : trb_look_way(c, share);
+    c->speed = INFINITY;
   }
-}
-
-static void view_of(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view)
-{
-  *view = (trb_contact_view){.load = trb_pair_points(m, pair, detail)[roller].load};
 }
 
 /* Its own parameters: two circles (surface/circle.h), the edges of the face. */
@@ -93,9 +89,8 @@ const trb_pair_kind trb_pair_front_rib = {.name = "end on a plane rib",
                                           .shape = {TRB_SHAPE_PLANE, TRB_SHAPE_CIRCLES},
                                           .pace = TRB_PACE_SLOW,
                                           .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
-                                          .is_point = 1,
+                                          .contact = TRB_CONTACT_POINT,
                                           .evaluate = evaluate,
                                           .margin = margin_of,
                                           .hold = hold_of,
-                                          .look = look_at,
-                                          .view = view_of};
+                                          .look = look_at};

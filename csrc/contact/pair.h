@@ -52,23 +52,13 @@ typedef struct trb_workspace {
   trb_counters       counters; /* of this workspace */
 } trb_workspace;
 
-/* A roller's contact as peaks see it, and how far it holds. */
-typedef struct trb_contact_look {
-  double load;           /* N */
-  double pressure;       /* largest, Pa */
-  double film_parameter; /* mean weighted by load */
-  double way;            /* displacement that changes the load by a share, m; negative: unknown */
-  double speed;          /* change of velocity that changes film or damping by a share, m/s */
-} trb_contact_look;
-
 /* The pairs of a batch, all chosen rollers at once; added to the loads. detail may be NULL. */
 typedef void trb_pair_evaluate(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
                                trb_detail *detail);
-/* The same for peaks; looks: a row of batch->n a chosen roller; share: see trb_contact_look. Loads are scratch. */
+/* What peaks read of the chosen rollers' contacts, into the detail: load, pressure, film parameter, and how far they hold; share: by which a load
+ * may change. Loads are scratch. */
 typedef void trb_pair_look(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                           trb_detail *detail, double share, trb_contact_look *looks);
-/* A roller's contact out of a detail. */
-typedef void trb_pair_view(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view);
+                           trb_detail *detail, double share);
 /* Load between one roller and the other body of a fast pair. The load is written only where they may touch, or if the detail asks for
  * interferences; the same holds for the slopes, which may be NULL. Forces are added to those in the detail. */
 typedef trb_gaps trb_pair_touch(const trb_model *m, const trb_pair *pair, const trb_instant *at, int roller, trb_counters *counters,
@@ -99,13 +89,16 @@ typedef enum trb_shape {
   TRB_SHAPE_LAND      /* that guides it: trb_guide */
 } trb_shape;
 
+/* What a pair of a roller with a ring touches in. */
+typedef enum trb_contact_form { TRB_CONTACT_NONE, TRB_CONTACT_LINE, TRB_CONTACT_POINT } trb_contact_form;
+
 typedef struct trb_pair_kind {
   const char        *name;
   trb_shape          shape[2];   /* of the surfaces that it joins */
   trb_pace           pace;       /* of pairs with a roller */
   int                seats;      /* 1: under load it holds a roller along the roller's axis */
   unsigned           mechanisms; /* by which it loses energy: TRB_LOSES of each */
-  int                is_point;   /* 1: a point contact, which has a row of details */
+  trb_contact_form   contact;    /* of a roller with a ring: it has a row of contacts in details */
   trb_pair_evaluate *evaluate;
   /* of slow pairs */
   trb_margin_arm (*margin)(const trb_model *m, const trb_pair *pair);
@@ -113,7 +106,6 @@ typedef struct trb_pair_kind {
   double (*depth)(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring);
   trb_hold_arms (*hold)(const trb_model *m, const trb_pair *pair);
   trb_pair_look *look;
-  trb_pair_view *view;
   /* whether surfaces may be off their true form where a roller is; azimuth: of the roller, turned: of the ring, spin: of the roller, rad; NULL:
    * they never are */
   int (*uneven)(const trb_model *m, const trb_pair *pair, int roller, double azimuth, double turned, double spin);
@@ -144,7 +136,7 @@ struct trb_pair {
   int                  surface[2]; /* numbers of the surfaces in the system */
   int                  a, b;       /* and of their bodies; a is TRB_ROLLERS where there is a roller */
   int                  on;         /* 0: an effect of the scene leaves it out, and nothing evaluates it */
-  int                  point;      /* number of its row of details, of a point contact */
+  int                  contact;    /* number of its row of contacts in details */
   const void          *own;        /* parameters, as its kind says */
   trb_bookings         books;
 };
@@ -169,7 +161,7 @@ static inline double trb_look_speed(const trb_model *m, double mean_speed, doubl
 }
 
 /* How far a point contact, with a load that goes with the interference to the power 1.5, or without a load, may go. */
-static inline double trb_look_way(const trb_point_detail *c, double share)
+static inline double trb_look_way(const trb_contact *c, double share)
 {
   return c->interference > 0.0 ? share * c->interference / 1.5 : -c->interference;
 }
@@ -177,10 +169,10 @@ static inline double trb_look_way(const trb_point_detail *c, double share)
 /* The pose of a pair's other body in the frame of each roller. */
 static inline const trb_ring_pose *trb_pair_ring(const trb_pair *pair, const trb_instant *at) { return at->bodies[pair->b].in_frame; }
 
-/* Its row of details, one a roller. */
-static inline trb_point_detail *trb_pair_points(const trb_model *m, const trb_pair *pair, const trb_detail *detail)
+/* Its row of contacts, one a roller. */
+static inline trb_contact *trb_pair_contacts(const trb_model *m, const trb_pair *pair, const trb_detail *detail)
 {
-  return detail->points + (size_t)pair->point * (size_t)m->n_rollers;
+  return detail->contacts + (size_t)pair->contact * (size_t)m->n_rollers;
 }
 
 /* variant: name of a kernel variant, "" for the fastest that this machine runs. */

@@ -65,9 +65,9 @@ typedef struct contact {
 } contact;
 
 /* Sums over the nodes of a contact, which are the lanes from `first` on; means are weighted by load. */
-static trb_contact_view sum_of(const trb_model *m, const trb_lanes *l, int first)
+static trb_contact sum_of(const trb_model *m, const trb_lanes *l, int first)
 {
-  trb_contact_view out = {0};
+  trb_contact out = {0};
   for (int k = first; k < first + m->n_nodes; k++) {
     const double q = l->load[k];
     if (!(q > 0.0)) continue;
@@ -107,7 +107,7 @@ static void fill_detail(const trb_model *m, const contact *contacts, const trb_l
   for (int c = 0; c < n; c++) {
     if (!outputs[c].loaded) continue;
     const size_t place = (size_t)nodes_of(contacts[c].pair)->race * (size_t)m->n_rollers + (size_t)contacts[c].roller;
-    detail->raceway[place] = sum_of(m, lanes, first);
+    trb_pair_contacts(m, contacts[c].pair, detail)[contacts[c].roller] = sum_of(m, lanes, first);
     if (detail->lanes != NULL) copy_lanes_of(m, lanes, first, place, detail);
     first += m->n_lanes;
   }
@@ -159,12 +159,12 @@ static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 }
 
 static void look_at_race(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work, double share,
-                         trb_contact_look *look)
+                         trb_contact *look)
 {
   const trb_lanes *l = work->lanes;
   double           parameter = 0.0, slope = 0.0, slowest = INFINITY;
   trb_race_output  out;
-  *look = (trb_contact_look){.way = -1.0};
+  *look = (trb_contact){.way = -1.0};
   raceway_of(m, at, roller, pair, work, &out);
   for (int k = 0; out.loaded && k < m->n_nodes; k++) {
     const double q = l->load[k];
@@ -182,17 +182,14 @@ static void look_at_race(const trb_model *m, const trb_instant *at, int roller, 
 }
 
 static void look_at_races(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                          trb_detail *detail, double share, trb_contact_look *looks)
+                          trb_detail *detail, double share)
 {
   (void)loads;
-  (void)detail;
   for (int k = 0; k < at->n; k++)
-    for (int i = 0; i < batch->n; i++) look_at_race(m, at, at->chosen[k], batch->pairs[i], work, share, &looks[k * batch->n + i]);
-}
-
-static void view_of(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view)
-{
-  *view = detail->raceway[nodes_of(pair)->race * m->n_rollers + roller];
+    for (int i = 0; i < batch->n; i++) {
+      const int roller = at->chosen[k];
+      look_at_race(m, at, roller, batch->pairs[i], work, share, &trb_pair_contacts(m, batch->pairs[i], detail)[roller]);
+    }
 }
 
 /* Its own parameters: trb_race_nodes. */
@@ -201,10 +198,10 @@ const trb_pair_kind trb_pair_raceway = {.name = "flank on a raceway",
                                         .pace = TRB_PACE_SLOW,
                                         .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_ROLLING) |
                                                       TRB_LOSES(TRB_BY_ROLLING_PRESSURE) | TRB_LOSES(TRB_BY_DAMPING),
+                                        .contact = TRB_CONTACT_LINE,
                                         .evaluate = evaluate,
                                         .margin = margin_of,
                                         .hold = hold_of,
                                         .look = look_at_races,
-                                        .view = view_of,
                                         .uneven = is_uneven,
                                         .change = change_of};

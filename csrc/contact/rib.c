@@ -25,10 +25,9 @@ static double overhang(const trb_rib *rib, double load, double height)
 }
 
 static void fill_detail(const trb_model *m, const trb_rib *rib, const trb_ring_pose *ring, int lane, const trb_lanes *l,
-                        const trb_race_output *out, trb_point_detail *c)
+                        const trb_race_output *out, trb_contact *c)
 {
-  *c = (trb_point_detail){.interference = l->interference[lane],
-                          .height = height_of(rib, ring, trb_v(l->px[lane], l->py[lane], l->pz[lane]))};
+  *c = (trb_contact){.interference = l->interference[lane], .height = height_of(rib, ring, trb_v(l->px[lane], l->py[lane], l->pz[lane]))};
   if (!out->loaded) return;
   c->load = -trb_dot(out->force, trb_v(l->nx[lane], l->ny[lane], l->nz[lane]));
   c->pressure = l->pressure[lane];
@@ -56,7 +55,7 @@ static void evaluate_one(const trb_model *m, const trb_instant *at, const trb_pa
     const int              j = at->chosen[k];
     const trb_race_output *out = &outputs[k];
     trb_loads             *to = &loads[j];
-    if (detail != NULL) fill_detail(m, rib_of(pair), &ring[j], k, work->lanes, out, &trb_pair_points(m, pair, detail)[j]);
+    if (detail != NULL) fill_detail(m, rib_of(pair), &ring[j], k, work->lanes, out, &trb_pair_contacts(m, pair, detail)[j]);
     to->margin[row] = out->depth;
     if (!out->loaded) continue;
     const trb_load load = trb_load_of_output(out);
@@ -110,30 +109,14 @@ static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 }
 
 static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
-                    trb_detail *detail, double share, trb_contact_look *looks)
+                    trb_detail *detail, double share)
 {
   evaluate(m, at, batch, work, loads, detail);
   for (int k = 0; k < at->n * batch->n; k++) {
-    const trb_point_detail *c = &trb_pair_points(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
-    looks[k] = (trb_contact_look){.load = c->load,
-                                  .pressure = c->pressure,
-                                  .film_parameter = c->film_parameter,
-                                  .way = trb_look_way(c, share),
-                                  .speed = c->load > 0.0 ? trb_look_speed(m, c->mean_speed, share) : (double)INFINITY};
+    trb_contact *c = &trb_pair_contacts(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
+    c->way = trb_look_way(c, share);
+    c->speed = c->load > 0.0 ? trb_look_speed(m, c->mean_speed, share) : (double)INFINITY;
   }
-}
-
-static void view_of(const trb_model *m, const trb_pair *pair, const trb_detail *detail, int roller, trb_contact_view *view)
-{
-  const trb_point_detail *c = &trb_pair_points(m, pair, detail)[roller];
-  *view = (trb_contact_view){.load = c->load,
-                             .pressure = c->pressure,
-                             .film = c->film,
-                             .film_parameter = c->film_parameter,
-                             .slide_roll = c->slide_roll,
-                             .friction = c->friction,
-                             .height = c->height,
-                             .overhang = c->overhang};
 }
 
 /* Its own parameters: trb_rib. */
@@ -142,10 +125,9 @@ const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
                                     .pace = TRB_PACE_SLOW,
                                     .seats = 1,
                                     .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
-                                    .is_point = 1,
+                                    .contact = TRB_CONTACT_POINT,
                                     .evaluate = evaluate,
                                     .margin = margin_of,
                                     .depth = depth_of,
                                     .hold = hold_of,
-                                    .look = look_at,
-                                    .view = view_of};
+                                    .look = look_at};

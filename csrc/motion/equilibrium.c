@@ -381,10 +381,8 @@ static trb_status read_loads(solver *s, trb_message *message)
   trb_contact_slow(s->m, &at, s->d->work, s->d->loads, detail);
   for (int j = 0; j < s->m->n_rollers; j++)
     for (int row = 0; row < TRB_EQUILIBRIUM_LOADS; row++) {
-      const trb_pair  *pair = &system->pairs[row];
-      trb_contact_view view = {0};
-      pair->kind->view(s->m, pair, detail, j, &view);
-      s->e->loads[TRB_EQUILIBRIUM_LOADS * j + row] = view.load;
+      const trb_contact *contact = &trb_pair_contacts(s->m, &system->pairs[row], detail)[j];
+      s->e->loads[TRB_EQUILIBRIUM_LOADS * j + row] = contact->load;
     }
   trb_detail_free(detail);
   return TRB_OK;

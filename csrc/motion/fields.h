@@ -21,7 +21,7 @@ typedef enum trb_field_kind {
   TRB_FIELD_MODE         /* (modes,)  */
 } trb_field_kind;
 
-/* Quantities of the rollers' contacts with the rings: F(X, pair, quantity, unit, text). Field <pair>_<quantity> is `quantity` of the view
+/* Quantities of the rollers' contacts with the rings: F(X, pair, quantity, unit, text). Field <pair>_<quantity> is `quantity` of the contact
  * of that row of the table of pairs (contact/pair.h). */
 #define TRB_CONTACT_FIELDS(F, X) \
   F(X, outer,     load,            "N",   "normal load, roller on outer raceway") \

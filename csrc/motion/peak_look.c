@@ -21,7 +21,7 @@ static const struct {
   int            quantity;
   trb_peak_sense sense;
 } contact_peaks[] = {
-#define ROW(X, pair, quantity, sense) {TRB_PAIR_##pair, offsetof(trb_contact_look, quantity), TRB_PEAK_##pair##_##quantity, TRB_PEAK_##sense},
+#define ROW(X, pair, quantity, sense) {TRB_PAIR_##pair, offsetof(trb_contact, quantity), TRB_PEAK_##pair##_##quantity, TRB_PEAK_##sense},
     TRB_PEAK_CONTACTS(ROW, 0)
 #undef ROW
 };
@@ -115,14 +115,13 @@ static double turn_of(const trb_peak_look *p, int j, const double *y)
 }
 
 /* A roller's contacts of a batch, looked at: values are written, and how far they hold. */
-static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, const trb_contact_look *looks, const double *y,
-                double *values)
+static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, const double *y, double *values)
 {
   const trb_model *m = &p->normal;
   const trb_batch *b = &p->d->work->batches[batch];
   double           way = INFINITY, speed = INFINITY;
   for (int i = 0; i < b->n; i++) {
-    const trb_contact_look *look = &looks[i];
+    const trb_contact *look = &trb_pair_contacts(m, b->pairs[i], p->detail)[j];
     way = fmin(way, look->way);
     speed = fmin(speed, look->speed);
     for (size_t q = 0; q < sizeof contact_peaks / sizeof contact_peaks[0]; q++) {
@@ -158,7 +157,6 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
   trb_dynamics    *d = p->d;
   trb_instant      at = trb_dynamics_instant(d);
   int              chosen[TRB_TILE_LANES];
-  trb_contact_look looks[TRB_TILE_LANES * TRB_MOST_TOGETHER];
 
   const trb_hold_ring ring = trb_hold_ring_of(d->system, d->bodies);
   at.chosen = chosen;
@@ -177,9 +175,9 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
       chosen[at.n++] = j;
     }
     if (at.n == 0) continue;
-    batch->pairs[0]->kind->look(m, &at, batch, d->work, d->loads, p->detail, TRB_PEAK_SHARE, looks);
+    batch->pairs[0]->kind->look(m, &at, batch, d->work, d->loads, p->detail, TRB_PEAK_SHARE);
     for (int k = 0; k < at.n; k++) {
-      put(p, &ring, i, chosen[k], &looks[k * batch->n], y, values);
+      put(p, &ring, i, chosen[k], y, values);
       if (d->uneven[chosen[k]]) p->holds[i * z + chosen[k]].way = -1.0;
     }
   }

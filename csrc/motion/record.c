@@ -158,26 +158,27 @@ static void put_roller(writer *w, int j, const double *y, double spin_offset)
   PUT(roller_tilt, j) = y[TRB_ROLLER_tilt];
 }
 
-/* Where each quantity of a contact is in its view, and goes in a record. */
+/* Where each quantity of a contact is, and goes in a record. */
 static const struct {
   size_t from;
   int    pair;
   int    field;
 } contact_fields[] = {
-#define ROW(X, pair, quantity, unit, text) {offsetof(trb_contact_view, quantity), TRB_PAIR_##pair, TRB_FIELD_AT_##pair##_##quantity},
+#define ROW(X, pair, quantity, unit, text) {offsetof(trb_contact, quantity), TRB_PAIR_##pair, TRB_FIELD_AT_##pair##_##quantity},
     TRB_CONTACT_FIELDS(ROW, 0) TRB_OUTER_RIB_FIELDS(ROW, 0)
 #undef ROW
 };
 
 static void put_contacts(writer *w, int j)
 {
-  trb_contact_view views[TRB_N_PAIRS] = {{0}};
-  for (int row = 0; row < TRB_N_PAIRS && row < w->d->system->n_pairs; row++) {
-    const trb_pair *pair = &w->d->system->pairs[row];
-    if (pair->kind->view != NULL) pair->kind->view(w->d->model, pair, &w->seen, j, &views[row]);
+  for (size_t i = 0; i < sizeof contact_fields / sizeof contact_fields[0]; i++) {
+    const int pair = contact_fields[i].pair, there = pair < w->d->system->n_pairs;
+    double   *to = &w->at[contact_fields[i].field][j];
+    *to = 0.0;
+    if (!there) continue;
+    const trb_contact *contact = &trb_pair_contacts(w->d->model, &w->d->system->pairs[pair], &w->seen)[j];
+    *to = *(const double *)((const char *)contact + contact_fields[i].from);
   }
-  for (size_t i = 0; i < sizeof contact_fields / sizeof contact_fields[0]; i++)
-    w->at[contact_fields[i].field][j] = *(const double *)((const char *)&views[contact_fields[i].pair] + contact_fields[i].from);
 }
 
 /* Of the cage on the land of a ring. */

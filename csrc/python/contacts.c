@@ -25,12 +25,12 @@ static int put_detail(const trb_system *system, const trb_detail *detail, PyObje
     (void)PyOS_snprintf(key, sizeof key, "raceway_%s", lanes[f]);
     if (trb_put(out, key, array) != 0) return -1;
   }
-  const int count = (int)(sizeof(trb_point_detail) / sizeof(double));
+  const int count = (int)(sizeof points / sizeof points[0]);
   for (int f = 0; f < system->n_pairs * count; f++) {
     const trb_pair *pair = &system->pairs[f / count];
-    if (!pair->kind->is_point) continue;
-    const trb_point_detail *from = trb_pair_points(m, pair, detail);
-    PyObject               *array = trb_vector(NULL, m->n_rollers);
+    if (pair->kind->contact != TRB_CONTACT_POINT) continue;
+    const trb_contact *from = trb_pair_contacts(m, pair, detail);
+    PyObject          *array = trb_vector(NULL, m->n_rollers);
     if (array == NULL) return -1;
     for (int j = 0; j < m->n_rollers; j++) ((double *)PyArray_DATA((PyArrayObject *)array))[j] = ((const double *)&from[j])[f % count];
     char key[64];

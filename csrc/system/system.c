@@ -109,7 +109,7 @@ static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_mes
 
 trb_status trb_system_finish(trb_system *s, trb_message *message)
 {
-  int points = 0, n_rollers = s->model->n_rollers;
+  int contacts = 0, n_rollers = s->model->n_rollers;
   s->n_moving = 0;
   s->layout = (trb_layout){.n_rollers = n_rollers, .hub = n_rollers * TRB_ROLLER_SIZE};
   for (int b = 0; b < s->n_bodies; b++) {
@@ -132,8 +132,8 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
     trb_status status = join(s, pair, message);
     if (status == TRB_OK && pair->on) status = check_books(s, pair, message);
     if (status != TRB_OK) return status;
-    pair->point = points;
-    points += pair->kind->is_point;
+    pair->contact = contacts;
+    contacts += pair->kind->contact != TRB_CONTACT_NONE;
   }
   s->layout.spin = trb_state_main_size(s);
   s->layout.quadrature = s->layout.spin + n_rollers;

@@ -34,8 +34,8 @@ static void near_vector(const char *what, const char *variant, trb_vec3 value, t
 static void compare(const trb_system *system, const char *variant, const trb_dynamics *exact, const trb_dynamics *other,
                     const trb_detail *detail)
 {
-  const trb_model        *m = system->model;
-  const trb_point_detail *ribs = trb_pair_points(m, &system->pairs[TRB_PAIR_rib], detail);
+  const trb_model   *m = system->model;
+  const trb_contact *ribs = trb_pair_contacts(m, &system->pairs[TRB_PAIR_rib], detail);
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_loads *a = &exact->loads[j], *b = &other->loads[j];
     double           load = 1.0, deepest = 0.0, speed = 1e-3;

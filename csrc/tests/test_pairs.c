@@ -108,7 +108,10 @@ static int is_hub(int row) { return pair_of(row)->kind->between != NULL; }
 static int is_land(int row) { return is_hub(row) && pair_of(row)->kind->approach != NULL; }
 
 /* Whether the bodies of a row touch: only then there is an interference. */
-static int is_contact(int row) { return pair_of(row)->kind->view != NULL || pair_of(row)->kind->touch != NULL || is_land(row); }
+static int is_contact(int row)
+{
+  return pair_of(row)->kind->contact != TRB_CONTACT_NONE || pair_of(row)->kind->touch != NULL || is_land(row);
+}
 
 /* a - b = c - d within a share of the largest of the four, and how much a pair makes of it. */
 static double check_share(const char *what, double a, double b, double c, double d, double share, double floor)

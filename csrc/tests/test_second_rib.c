@@ -62,10 +62,10 @@ static void test_forces(void)
   }
   double carried = 0.0;
   for (int j = 0; j < 12; j++) {
-    const trb_point_detail *first = &trb_pair_points(both->model, &both->pairs[TRB_PAIR_rib], detail)[j];
-    const trb_point_detail *other = &trb_pair_points(both->model, &both->pairs[row], detail)[j];
-    const trb_vec3          more = trb_sub(d[1]->loads[j].on[TRB_BODY_OUTER_RING].force, d[0]->loads[j].on[TRB_BODY_OUTER_RING].force);
-    const trb_vec3          less = trb_sub(d[1]->loads[j].roller.force, d[0]->loads[j].roller.force);
+    const trb_contact *first = &trb_pair_contacts(both->model, &both->pairs[TRB_PAIR_rib], detail)[j];
+    const trb_contact *other = &trb_pair_contacts(both->model, &both->pairs[row], detail)[j];
+    const trb_vec3     more = trb_sub(d[1]->loads[j].on[TRB_BODY_OUTER_RING].force, d[0]->loads[j].on[TRB_BODY_OUTER_RING].force);
+    const trb_vec3     less = trb_sub(d[1]->loads[j].roller.force, d[0]->loads[j].roller.force);
     CHECK_NEAR(other->interference, first->interference, 1e-15);
     CHECK_NEAR(other->load, 0.5 * first->load, 1e-8 * first->load);
     CHECK_NEAR(trb_norm(trb_add(more, less)), 0.0, 1e-9 * first->load);
