@@ -17,7 +17,8 @@ import trbdyn as trb
 from trbdyn import observables
 from trbdyn.model.cases import paper_30310
 from trbdyn.results.confidence import AVERAGES, _as_means, confidence
-from trbdyn.results.summary import LABELS, averages, table
+from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.summary import averages, table
 from trbdyn.run.until import Until
 from trbdyn.run.watch import Watch
 
@@ -211,7 +212,7 @@ def test_the_summary_of_a_run_has_error_bars_that_later_windows_keep() -> None:
     result = trb.Simulation(scene, accuracy="fast").run(duration=2.0, save_every=1e-3)
     values = result.summary()
     widths = values["confidence"]
-    assert set(widths) <= set(AVERAGES) <= set(LABELS)
+    assert set(widths) <= set(AVERAGES) <= set(QUANTITIES)
     assert {"torque", "pocket_duty", "orbit_radius_over_cpr", "cage_speed_ratio"} <= set(widths)
     assert "batches" in values["confidence_note"]
     assert f"± {widths['torque']:.2g}" in table(values)

@@ -11,7 +11,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.results.summary import LABELS
+from trbdyn.results.quantities import QUANTITIES
 from trbdyn.study.what_matters import Influence, Sensitivity
 
 
@@ -85,7 +85,7 @@ def test_a_simulation_and_a_result_show_what_they_are(simulation: trb.Simulation
     assert ["accuracy", "fast"] in [row[:2] for row in shown]
     assert "2000 rpm" in repr(simulation)
     shown = cells(result)
-    words, unit = LABELS["torque"]
+    words, unit, _ = QUANTITIES["torque"]
     assert [words, f"{result.summary()['torque']:.5g}", unit] in [row[:3] for row in shown]
     assert "success" in repr(result)
 

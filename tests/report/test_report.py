@@ -15,10 +15,10 @@ from trbdyn.cli import main
 from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
 from trbdyn.reporting.bias import Bias, biases
+from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import field_texts, rows
-from trbdyn.reporting.meanings import CAPTIONS, MEANINGS
 from trbdyn.reporting.verdict import verdict
-from trbdyn.results import summary
+from trbdyn.results.quantities import QUANTITIES
 from trbdyn.run import estimate
 
 
@@ -49,7 +49,7 @@ def cells(text: str, words: str) -> list[str]:
 def test_numbers_units_and_meanings(text: str, result: trb.Result) -> None:
     values = result.summary()
     for key in ("torque", "outer_load_mean", "film_parameter_inner", "pocket_force_peak", "power_loss"):
-        words, unit = summary.LABELS[key]
+        words, unit, _ = QUANTITIES[key]
         number, shown_unit, meaning = cells(text, words)
         assert float(number) == pytest.approx(values[key], rel=1e-3)
         assert shown_unit == unit
@@ -59,7 +59,7 @@ def test_numbers_units_and_meanings(text: str, result: trb.Result) -> None:
 
 
 def test_every_entry_of_the_summary_and_every_picture_has_its_sentence() -> None:
-    assert set(summary.LABELS) <= set(MEANINGS)
+    assert all(quantity.meaning.endswith(".") for quantity in QUANTITIES.values())
     assert set(PICTURES) <= set(CAPTIONS)
 
 
@@ -155,16 +155,16 @@ def test_films_have_one_limit_in_sentences_and_pictures(result: trb.Result) -> N
         if len(set(line.get_ydata())) == 1 and len(line.get_ydata()) == 2
     ]
     assert result.scene.effects.friction.lambda_full in marked
-    assert "above 3" not in " ".join([*MEANINGS.values(), *CAPTIONS.values()])
+    assert "above 3" not in " ".join([*(quantity.meaning for quantity in QUANTITIES.values()), *CAPTIONS.values()])
 
 
 def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(result: trb.Result, tmp_path: Path) -> None:
     """Each number whose bias stands in the table of accuracy has it in its row, whatever its name."""
     listed = biases(result)
-    assert set(listed) <= set(summary.LABELS)
+    assert set(listed) <= set(QUANTITIES)
     assert "pocket_force_p95" in listed
     text = trb.report(result, tmp_path / "r.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
-    said = cells(text, summary.LABELS["pocket_force_p95"][0])[-1]
+    said = cells(text, QUANTITIES["pocket_force_p95"].words)[-1]
     assert html.escape(str(listed["pocket_force_p95"])) in said
     assert str(Bias(-0.08, 0.04, "fast", "")) == "With accuracy 'fast' it is 4 to 12 % too low."
     assert str(Bias(0.38, 0.08, "fast", "")) == "With accuracy 'fast' it is 30 to 46 % too high."

@@ -10,7 +10,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.reporting import converter, save_pdf
-from trbdyn.results import summary
+from trbdyn.results.quantities import QUANTITIES
 
 WIDTHS = (420, 1000, 1400)
 
@@ -93,7 +93,7 @@ def test_values_stand_in_the_pdf(long_run: trb.Result, pages: tuple[Path, Path],
     for name in ("torque", "orbit_radius_over_cpr", "pocket_force_peak", "power_loss", "cage_speed_ratio"):
         shown = f"{values[name]:.4g}" + (f" ± {widths[name]:.2g}" if name in widths else "")
         assert shown in text, (name, shown)
-        assert summary.LABELS[name][0].split()[0] in text
+        assert QUANTITIES[name].words.split()[0] in text
     for name in ("torque_note", "confidence_note"):
         assert values[name][1:20] in text
 

@@ -52,7 +52,7 @@ def add_ensemble_parser(commands: Any, parents: Sequence[argparse.ArgumentParser
 
 
 def _ensemble(options: argparse.Namespace) -> int:
-    from trbdyn.results.summary import LABELS
+    from trbdyn.results.quantities import QUANTITIES
     from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
     from trbdyn.study.uncertainty import Band, checked_bands, uncertainty
 
@@ -61,8 +61,8 @@ def _ensemble(options: argparse.Namespace) -> int:
     if options.designs < FEWEST_DRAWS:
         raise InputError.of("--designs", options.designs, f"must be at least {FEWEST_DRAWS}")
     for name in options.predict:  # before the runs, which take long
-        if not any(name == label or name.startswith(f"{label}_") for label in LABELS):
-            raise InputError.of("--predict", name, unknown_name(name, LABELS))
+        if not any(name == label or name.startswith(f"{label}_") for label in QUANTITIES):
+            raise InputError.of("--predict", name, unknown_name(name, QUANTITIES))
     folder = options.output or f"{Path(options.case).stem}_ensemble"
     try:
         found = uncertainty(

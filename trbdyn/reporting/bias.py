@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from trbdyn.results.summary import LABELS
+from trbdyn.results.quantities import QUANTITIES
 from trbdyn.run import estimate
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def biases(result: Result) -> dict[str, Bias]:
     for name in found:
         share, width = found[name], found.get(f"{name}_half_width")
         entries = BIASES.get(name, (name.removeprefix("bias_"),))
-        if share is None or not set(entries) <= set(LABELS) or abs(share) + (width or 0.0) < LEAST:
+        if share is None or not set(entries) <= set(QUANTITIES) or abs(share) + (width or 0.0) < LEAST:
             continue
         bias = Bias(share, math.nan if width is None else width, preset, where, UNITS.get(name, ""))
         out |= dict.fromkeys(entries, bias)

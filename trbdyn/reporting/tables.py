@@ -12,8 +12,8 @@ from typing import Any, Final
 
 from trbdyn.reporting.bias import Bias
 from trbdyn.reporting.inputs import Row
-from trbdyn.reporting.meanings import MEANINGS
-from trbdyn.results.summary import LABELS, UNPRINTED
+from trbdyn.results.quantities import QUANTITIES
+from trbdyn.results.summary import UNPRINTED
 
 SENTENCES: Final = ("_note", "_reason")
 """Ends of the names of entries that are sentences."""
@@ -53,7 +53,7 @@ def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases
     """Every number of the summaries with its interval, unit and meaning; below them the notes."""
     body: list[str] = []
     notes: list[str] = []
-    for key, (words, unit) in LABELS.items():
+    for key, (words, unit, meaning) in QUANTITIES.items():
         values = [entry.get(key) for entry in summaries]
         if all(value is None for value in values):
             continue
@@ -65,7 +65,7 @@ def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases
             body += _parts(words, unit, values)
         else:
             widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
-            body.append(_number(words, unit, values, widths, MEANINGS.get(key, ""), _said(key, values, biases, names)))
+            body.append(_number(words, unit, values, widths, meaning, _said(key, values, biases, names)))
     measured = dict.fromkeys(bias.measured for listed in biases for bias in listed.values())
     notes += [f"<dt>What the integration's accuracy does to numbers</dt><dd>{safe(text)}</dd>" for text in measured]
     heads = _heads("quantity", *(names if len(summaries) > 1 else ("value",)), "unit", "what it means")

@@ -24,104 +24,13 @@ from trbdyn.errors import FileError, TrbError
 from trbdyn.model.motion import is_constant
 from trbdyn.results import observables, peak_band
 from trbdyn.results.confidence import confidence
+from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.ranges import rolling_note
 from trbdyn.standards.sheet import at_equilibrium, sheet
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
     from trbdyn.results.result import Result
-
-LABELS: dict[str, tuple[str, str]] = {
-    "success": ("finished", ""),
-    "message": ("how it ended", ""),
-    "revolutions": ("revolutions of the shaft, or of the outer ring where the shaft rests", ""),
-    "duration": ("bearing time", "s"),
-    "settled": ("settled", ""),
-    "settling": ("settling: settled, drifting or unknown", ""),
-    "settling_reason": ("why it is not known to have settled", ""),
-    "settling_time_scale": ("time scale of the drift", "s"),
-    "settling_needed": ("length of a run expected to tell", "s"),
-    "creep_time": ("time of the rollers' creep", "s"),
-    "window_start": ("averages from", "s"),
-    "window_end": ("averages to", "s"),
-    "speed_rpm": ("shaft speed", "rpm"),
-    "outer_speed_rpm": ("outer ring's speed", "rpm"),
-    "cage_speed_ratio": ("cage speed / shaft speed", ""),
-    "cage_speed_ratio_kinematic": ("the same, pure rolling", ""),
-    "cage_slip": ("slip of the roller set", ""),
-    "cage_motion": ("cage motion", ""),
-    "orbit_radius_over_cpr": ("orbit radius of the cage about its mean place, rms / Cpr", ""),
-    "orbit_radius_over_cpr_p05": ("    5 %", ""),
-    "orbit_radius_over_cpr_p95": ("    95 %", ""),
-    "axis_distance_over_cpr": ("distance of the cage from the bearing axis, mean / Cpr", ""),
-    "axis_distance_over_cpr_p05": ("    5 %", ""),
-    "axis_distance_over_cpr_p95": ("    95 %", ""),
-    "whirl_ratio": ("whirl frequency / cage frequency", ""),
-    "whirl_frequency": ("whirl frequency", "Hz"),
-    "whirl_coherence": ("share of turning in the cage centre's motion", ""),
-    "speed_deviation_ratio": ("cage centre speed, deviation / mean", ""),
-    "axial_over_clearance": ("axial position / axial play", ""),
-    "running_play_radial": ("radial play of the warm, turning cage", "m"),
-    "running_play_circumferential": ("circumferential play of the warm, turning cage", "m"),
-    "cage_deflection": ("displacement of a pocket's face by the cage's deformation, largest", "m"),
-    "tilt_rms": ("cage tilt, rms", "rad"),
-    "lean_mean": ("tilt to the side of the cage's displacement, mean", "rad"),
-    "spacing_std_deg": ("roller spacing, deviation", "deg"),
-    "pocket_force_p95": ("pocket force, 95 % in contact", "N"),
-    "pocket_force_peak": ("pocket force, largest at any step", "N"),
-    "pocket_force_peak_low": ("the same with other starts or accuracies, at least", "N"),
-    "pocket_force_peak_high": ("the same with other starts or accuracies, at most", "N"),
-    "pocket_impacts": ("impacts in the pockets", ""),
-    "pocket_impulse_peak": ("largest impulse of one impact", "N s"),
-    "land_force_peak": ("force of the land on the cage, largest at any step", "N"),
-    "land_gap_min": ("gap between cage and land, smallest at any step", "m"),
-    "pocket_duty": ("share of time that a pocket is touched", ""),
-    "outer_load_mean": ("load a roller, outer raceway", "N"),
-    "inner_load_mean": ("load a roller, inner raceway", "N"),
-    "rib_load_mean": ("load a roller, back-face rib", "N"),
-    "outer_pressure_max": ("largest pressure at any step, outer raceway", "Pa"),
-    "inner_pressure_max": ("largest pressure at any step, inner raceway", "Pa"),
-    "rib_pressure_max": ("largest pressure at any step, rib", "Pa"),
-    "equivalent_load": ("equivalent dynamic load P (ISO 281)", "N"),
-    "basic_life_hours": ("basic rating life L10h (ISO 281)", "h"),
-    "modified_life_hours": ("modified rating life Lnmh (ISO 281)", "h"),
-    "reference_life_hours": ("basic reference rating life L10rh (ISO 16281)", "h"),
-    "modified_reference_life_hours": ("modified reference rating life Lnmrh (ISO 16281)", "h"),
-    "smallest_load": ("smallest load, so that rollers roll", "N"),
-    "speed_over_limit": ("speed over the catalogue's limiting speed", ""),
-    "static_safety": ("static safety C0/P0 (ISO 76)", ""),
-    "viscosity_ratio": ("viscosity ratio kappa (ISO 281)", ""),
-    "film_parameter_outer": ("film parameter, outer raceway", ""),
-    "film_parameter_inner": ("film parameter, inner raceway", ""),
-    "film_parameter_rib": ("film parameter, rib", ""),
-    "film_parameter_outer_min": ("smallest film parameter, outer raceway", ""),
-    "film_parameter_inner_min": ("smallest film parameter, inner raceway", ""),
-    "film_parameter_rib_min": ("smallest film parameter, rib", ""),
-    "skew_rms": ("roller skew, rms", "rad"),
-    "torque": ("friction torque of the shaft", "N m"),
-    "torque_outer": ("friction torque on the outer ring", "N m"),
-    "drag_share": ("share of the oil's drag in the torque", ""),
-    "power_loss": ("power loss", "W"),
-    "energy_closure": ("energy audit: residual / dissipated work", ""),
-    "energy_residual": ("energy audit: residual", "J"),
-    "steps": ("steps", ""),
-    "rhs_evaluations": ("evaluations of the equations of motion", ""),
-    "wall_s": ("wall time", "s"),
-    "wall_s_per_revolution": ("wall time a revolution", "s"),
-    "confidence_note": ("About the numbers behind ±", ""),
-    "accuracy_note": ("About the accuracy", ""),
-    "confidence": ("half width of the 95 % confidence interval", ""),
-    "torque_note": ("Why the torques of the rings differ", ""),
-    "rolling_note": ("About rolling resistance", ""),
-    "power_split": ("power loss by mechanism", "W"),
-    "torque_by_loss": ("the same as friction torque of the shaft", "N m"),
-    "torque_split": ("forces on the inner ring that make this torque", "N m"),
-}
-"""Words and units of the summary's entries, in the order of the table.
-
-Cpr is the radial play of the cage, one-sided. A force on the inner ring that makes torque need not lose power: traction passes on
-what rolling resistance takes at the outer raceway. So the shares of ``torque_split`` differ from those of ``torque_by_loss``.
-"""
 
 RATINGS: Final = (
     "equivalent_load",
@@ -167,7 +76,8 @@ def summary(result: Result) -> Summary:
     Returns
     -------
     Summary
-        A dictionary: numbers by the names of `LABELS`, SI units; ``torque_split`` and ``power_split`` are dictionaries.
+        A dictionary: numbers by the names of `trbdyn.results.quantities.QUANTITIES`, SI units; ``torque_split`` and
+        ``power_split`` are dictionaries.
     """
     out: dict[str, Any] = {"success": result.success, "message": result.message}
     out |= {"revolutions": result.revolutions, "duration": result.duration}
@@ -178,7 +88,7 @@ def summary(result: Result) -> Summary:
     out |= {} if "assembly" in result.meta else _ratings(result.scene)
     out |= _cost(result)
     out["accuracy_note"] = result.meta.get("accuracy") or None
-    return Summary({name: clean(out.get(name)) for name in LABELS})
+    return Summary({name: clean(out.get(name)) for name in QUANTITIES})
 
 
 def _running_plays(scene: Scene) -> dict[str, Any]:
@@ -463,7 +373,7 @@ def shown(values: Mapping[str, Any]) -> Shown:
     """A summary as a table: words, number, unit, and the name in the summary."""
     rows: list[tuple[str, ...]] = []
     notes: list[str] = []
-    for name, (words, unit) in LABELS.items():
+    for name, (words, unit, _) in QUANTITIES.items():
         value = values.get(name)
         if value is None or name in UNPRINTED:
             continue

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from trbdyn.base.own_files import file_path, write_whole
 from trbdyn.errors import FileError
 from trbdyn.model.scene import Scene
-from trbdyn.results.summary import LABELS
+from trbdyn.results.quantities import QUANTITIES
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Study
 from trbdyn.study.index import Entry
@@ -131,10 +131,10 @@ def _stacked(values: Sequence[Any]) -> NDArray[Any]:
 
 
 def _attributes(name: str) -> dict[str, str]:
-    if name.startswith("confidence_") and name.removeprefix("confidence_") in LABELS:
-        words, unit = LABELS[name.removeprefix("confidence_")]
+    if name.startswith("confidence_") and name.removeprefix("confidence_") in QUANTITIES:
+        words, unit, _ = QUANTITIES[name.removeprefix("confidence_")]
         return {"long_name": f"{words.strip()}: half width of the 95 % confidence interval", "units": unit or "1"}
-    for label, (words, unit) in LABELS.items():
+    for label, (words, unit, _) in QUANTITIES.items():
         if name == label or (name.startswith(f"{label}_") and label.endswith(("_split", "_by_loss"))):
             return {"long_name": words.strip() or label, "units": unit or "1"}
     return {}

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, unknown_name
-from trbdyn.results.summary import LABELS
+from trbdyn.results.quantities import QUANTITIES
 from trbdyn.study.uncertainty import Band, Uncertainty
 
 if TYPE_CHECKING:
@@ -201,7 +201,7 @@ def surrogate(found: Uncertainty, quantity: str, *, seed: int = 0) -> Surrogate:
     errors = _unseen(unit, values, seed, fit.kernel_)
     return Surrogate(
         quantity=quantity,
-        unit=LABELS.get(quantity, ("", ""))[1],
+        unit=QUANTITIES[quantity].unit if quantity in QUANTITIES else "",
         bands=found.bands,
         draws=len(values),
         error=float(np.sqrt(np.mean(errors**2))),

@@ -21,7 +21,7 @@ from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.lubricants import supply_of
 from trbdyn.model.scene import Scene
-from trbdyn.results.summary import LABELS
+from trbdyn.results.quantities import QUANTITIES as SUMMARY
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Base, Case, Study
 from trbdyn.study.drawn_bearing import belongs_together
@@ -381,7 +381,7 @@ def _spread(name: str, value: float, values: Array, bands: Sequence[Band], unit:
     low, high = np.quantile(values, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
     found, rest = first_order(unit, values)
     shares = {band.path: float(share) for band, share in zip(bands, found, strict=False)}
-    unit_text = LABELS.get(name, ("", ""))[1]
+    unit_text = SUMMARY[name].unit if name in SUMMARY else ""
     return Spread(name, unit_text, float(value), float(values.mean()), float(low), float(high), shares, rest)
 
 
