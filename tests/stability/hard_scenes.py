@@ -145,6 +145,12 @@ def from_state(change: Callable[[StateView, trb.Scene], None], **fields: Any) ->
     return scene.replace(start=trb.Start.state(vector))
 
 
+def cylindrical(flanges: Any, speed_rpm: float, clearance: float, **fields: Any) -> trb.Scene:
+    bearing = trb.cases.bearing_nj210()
+    bearing = bearing.replace(ribs=bearing.ribs.replace(flanges=flanges), radial_clearance=clearance)
+    return trb.Scene(bearing, speed_rpm=speed_rpm, **fields)
+
+
 def smaller_rollers(count: int) -> trb.Bearing:
     """As many rollers as fit round the pitch circle, if they are small enough."""
     bearing = rig_30310()
@@ -874,6 +880,18 @@ HARD: tuple[Hard, ...] = (
         "elastic_cage_of_steel",
         "a cage that collides with its rollers rings at 20 frequencies up to 11 kHz, hardly damped",
         lambda: elastic_cage(trb.Material.steel(), 3000.0),
+    ),
+    Hard(
+        "cylindrical_without_axial_hold",
+        "an NU 210 at 15 000 rpm under 20 kN with 60 um of clearance: half of the rollers are thrown against the outer raceway",
+        lambda: cylindrical("NU", 15000.0, 60e-6, radial_load=20000.0, displacement=(None, None, 0.0)),
+        slow=True,
+    ),
+    Hard(
+        "cylindrical_on_its_ribs",
+        "an NJ 210 that carries 3 kN along its axis and 5 kN across it on a ring tilted by 0.5 mrad: ribs tilt all rollers",
+        lambda: cylindrical("NJ", 3000.0, 20e-6, radial_load=5000.0, axial_load=3000.0, misalignment_x=5e-4),
+        slow=True,
     ),
 )
 """Every hard scene."""
