@@ -165,6 +165,27 @@ def test_a_free_ring_floats_between_ribs() -> None:
     assert float(result["rib_load"].sum(axis=1).mean()) == pytest.approx(500.0, rel=0.05)
 
 
+def test_the_floating_side_of_a_shaft() -> None:
+    """A pair of tapered bearings carries all of the axial load; the shaft is in balance, and runs."""
+    shaft = trb.Shaft.hollow_cylinder(mass=8.0, outer_diameter=0.05, length=0.4)
+    gear = trb.ShaftLoad(position=0.12, force=(900.0, -3000.0, 800.0))
+    pair = trb.Assembly.pair(
+        trb.cases.rig_30310(), "back to back", spread=0.06, end_play=-20e-6, shaft=shaft, speed_rpm=3000, loads=[gear]
+    )
+    seat = trb.ShaftBearing(bearing("NU"), position=0.2, small_ends="left", name="floating")
+    whole = pair.replace(bearings=(*pair.bearings, seat))
+    found = trb.equilibrium(whole)
+    loads = {name: found[name] for name in ("left", "right", "floating")}
+    radial = 3000.0 + 8.0 * 9.80665
+    assert loads["floating"].radial_load > 500.0
+    assert abs(loads["floating"].axial_load) < 1.0
+    assert abs(loads["left"].axial_load - loads["right"].axial_load) == pytest.approx(800.0, rel=2e-3)
+    assert sum(load.radial_load for load in loads.values()) > math.hypot(900.0, radial) * 0.999
+    result = trb.AssemblySimulation(whole).run(revolutions=0.2)
+    assert abs(result["floating"].summary()["energy_closure"]) < 1e-2
+    assert "outer_ribs" in result["floating"].groups
+
+
 def test_records_of_the_outer_ribs() -> None:
     """Cylindrical bearings have them, tapered ones do not."""
     own = trb.Simulation(scene("NJ")).run(duration=1e-3)

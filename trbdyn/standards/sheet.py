@@ -63,6 +63,9 @@ class RatingRow:
         return _digits(self.value)
 
 
+RATED_AS_RADIAL: Final = 1e-3
+"""Axial over radial load of a cylindrical bearing up to which nothing is said of it: a ring that leans makes as much."""
+
 _ROWS: Final[dict[str, tuple[str, str, str]]] = {
     "axial_load": ("axial load", "Fa", "N"),
     "radial_load": ("radial load", "Fr", "N"),
@@ -307,7 +310,7 @@ def sheet(
     if e is None or Y is None or Y0 is None:
         P = P0 = radial
         notes["equivalent_load"] = "Fr (ISO 281, contact angle 0)"
-        if axial > 0.0:
+        if axial > RATED_AS_RADIAL * radial:
             said.append(
                 f"the axial load {axial:.4g} N acts on ribs alone, which ISO 281 does not rate: look at rib pressures and losses"
             )
