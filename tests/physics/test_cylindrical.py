@@ -12,6 +12,8 @@ from scipy.optimize import brentq
 
 import trbdyn as trb
 from trbdyn.model.contact_line import stations
+from trbdyn.model.outlines import cone_outline, cup_outline
+from trbdyn.viewer.meshes import ears
 
 Array = NDArray[np.float64]
 PLACED = (None, None, 0.0)
@@ -201,6 +203,21 @@ def test_the_rating_is_that_of_a_radial_bearing() -> None:
     assert rating.equivalent_load == pytest.approx(4000.0)
     assert rating.e is rating.Y is rating.Y0 is None
     assert any("ribs" in said for said in rating.warnings)
+
+
+@pytest.mark.parametrize("flanges", ["NU", "NJ", "NUP", "N"])
+def test_rings_are_drawn_whole(flanges: str) -> None:
+    """Triangles fill the section of a ring with its ribs, which no point of it sees as a whole."""
+
+    def area(corners: Array) -> float:
+        x, y = corners.T
+        return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+    for outline in (cup_outline(bearing(flanges)), cone_outline(bearing(flanges))):
+        corners = np.array(outline)
+        filled = ears(corners)
+        assert len(filled) == len(corners) - 2
+        assert sum(area(corners[list(triangle)]) for triangle in filled) == pytest.approx(area(corners), rel=1e-9)
 
 
 @pytest.mark.parametrize(

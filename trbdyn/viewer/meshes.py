@@ -97,15 +97,33 @@ def _facing(mesh: Mesh) -> Mesh:
 
 
 def _cap(corners: Array, angle: float, sign: float) -> Mesh:
-    """A flat end of a revolved outline, whose triangles fan from its middle: right for outlines that see it."""
-    middle = corners.mean(axis=0)
-    points = np.vstack([middle, corners])
-    position = np.stack([points[:, 0] * np.cos(angle), points[:, 0] * np.sin(angle), points[:, 1]], axis=1)
+    """A flat end of a revolved outline."""
+    position = np.stack([corners[:, 0] * np.cos(angle), corners[:, 0] * np.sin(angle), corners[:, 1]], axis=1)
     normal = np.broadcast_to(sign * np.array([-np.sin(angle), np.cos(angle), 0.0]), position.shape)
-    count = corners.shape[0]
-    ring = np.arange(count)
-    index = np.stack([np.zeros(count, int), 1 + ring, 1 + (ring + 1) % count], axis=1)
-    return _facing(Mesh(position, np.array(normal), index))
+    return _facing(Mesh(position, np.array(normal), np.array(ears(corners))))
+
+
+def ears(corners: Array) -> list[tuple[int, int, int]]:
+    """Triangles that fill an outline without crossings, shape (k, 2): corners that cut off no other one are taken away in turn."""
+
+    def turns(a: int, b: int, c: int) -> float:
+        (ax, ay), (bx, by), (cx, cy) = corners[a], corners[b], corners[c]
+        return float((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
+
+    left = list(range(len(corners)))
+    sense = np.sign(sum(turns(0, k, k + 1) for k in range(1, len(corners) - 1)))
+    out: list[tuple[int, int, int]] = []
+    while len(left) > 3:
+        for place, b in enumerate(left):
+            a, c = left[place - 1], left[(place + 1) % len(left)]
+            inside = [min(sense * turns(a, b, p), sense * turns(b, c, p), sense * turns(c, a, p)) for p in left]
+            if sense * turns(a, b, c) > 0.0 and not any(s > 0.0 for s in inside):
+                out.append((a, b, c))
+                left.pop(place)
+                break
+        else:
+            break
+    return [*out, (left[0], left[1], left[2])]
 
 
 def join(parts: list[Mesh]) -> Mesh:
