@@ -104,7 +104,7 @@ def _cap(corners: Array, angle: float, sign: float) -> Mesh:
 
 
 def ears(corners: Array) -> list[tuple[int, int, int]]:
-    """Triangles that fill an outline without crossings, shape (k, 2): corners that cut off no other one are taken away in turn."""
+    """Triangles that fill an outline without crossings, shape (k, 2): corners that cut off no other one go in turn."""
 
     def turns(a: int, b: int, c: int) -> float:
         (ax, ay), (bx, by), (cx, cy) = corners[a], corners[b], corners[c]
