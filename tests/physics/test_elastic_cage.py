@@ -241,6 +241,11 @@ def test_what_does_not_go_together_is_refused(tmp_path: Path) -> None:
     path = modes.save(tmp_path / "modes.h5")
     with pytest.raises(InputError, match="n_modes = 9 : must be <= 4"):
         Simulation(scene(trb.ElasticCage(n_modes=9, file=str(path))))
+    for bars in ((12,), tuple(range(10))):
+        with pytest.raises(InputError, match=r"elastic_cage\.cracked_bars = .* from 0 to 11, and leave 3 whole bars"):
+            scene(trb.ElasticCage(n_modes=4, cracked_bars=bars))
+    with pytest.raises(InputError, match="whose modes know its cracks"):
+        trb.ElasticCage(n_modes=4, file=str(path), cracked_bars=(1,))
     known = scene(trb.ElasticCage(n_modes=4, file=str(path)))
     assert Scene.from_json(known.to_json()) == known
     Simulation(known)

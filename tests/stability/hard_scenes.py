@@ -248,7 +248,7 @@ def housing(mass: float, stiffness: float) -> trb.Housing:
     return block.replace(support_radial=stiffness, support_axial=0.5 * stiffness, support_tilt=1e-3 * stiffness)
 
 
-def elastic_cage(material: trb.Material, speed_rpm: float) -> trb.Scene:
+def elastic_cage(material: trb.Material, speed_rpm: float, cracked_bars: tuple[int, ...] = ()) -> trb.Scene:
     """A cage with 20 modes, damped by a hundredth of the critical damping, that begins near its rollers."""
     plays = {"play_radial": 0.25e-3, "play_circumferential": 0.12e-3}
     made = trb.Cage(**plays, body=trb.cases.cage_body_30310(), material=material)
@@ -257,7 +257,7 @@ def elastic_cage(material: trb.Material, speed_rpm: float) -> trb.Scene:
         speed_rpm=speed_rpm,
         axial_load=4930.0,
         start=trb.Start.whirl(0.9),
-        elastic_cage=trb.ElasticCage(n_modes=20, damping_ratio=0.01),
+        elastic_cage=trb.ElasticCage(n_modes=20, damping_ratio=0.01, cracked_bars=cracked_bars),
     )
 
 
@@ -880,6 +880,12 @@ HARD: tuple[Hard, ...] = (
         "elastic_cage_of_steel",
         "a cage that collides with its rollers rings at 20 frequencies up to 11 kHz, hardly damped",
         lambda: elastic_cage(trb.Material.steel(), 3000.0),
+    ),
+    Hard(
+        "elastic_cage_with_a_cracked_bar",
+        "a bar of a whirling cage is cracked through at one root: it hangs at the other rim, and rollers strike it",
+        lambda: elastic_cage(trb.Material.steel(), 3000.0, (5,)),
+        slow=True,
     ),
     Hard(
         "cylindrical_without_axial_hold",

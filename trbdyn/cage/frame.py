@@ -8,6 +8,7 @@ together: a share of that length is taken as rigid (`RIGID_SHARE`).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -29,6 +30,8 @@ assumed.
 """
 RIGID: Final = 1e3
 """Factor of Young's modulus that stands for rigid."""
+CRACKED: Final = 1e-6
+"""Factor of Young's modulus of the beam in which a bar is cracked through."""
 ENDS: Final = ("small", "large")
 SIDES: Final = ("trailing", "leading")
 SURFACES: Final = ("outer", "inner")
@@ -95,7 +98,14 @@ class CageFrame:
         return self.at_faces.reshape(-1, self.at_faces.shape[2]).T.copy()
 
 
-def cage_frame(bearing: Bearing, *, rim_elements: int = 4, bar_elements: int = 6, shear: bool = True) -> CageFrame:
+def cage_frame(
+    bearing: Bearing,
+    *,
+    rim_elements: int = 4,
+    bar_elements: int = 6,
+    shear: bool = True,
+    cracked_bars: Sequence[int] = (),
+) -> CageFrame:
     """The frame of a bearing's cage.
 
     Parameters
@@ -108,6 +118,8 @@ def cage_frame(bearing: Bearing, *, rim_elements: int = 4, bar_elements: int = 6
         Beams of a bar: even, 2 to 20.
     shear : bool
         Whether shear deforms the beams (Timoshenko); False: Euler's beams.
+    cracked_bars : sequence of int
+        Bars that are cracked through at their root at the small end; bar k lies behind pocket k in the direction of rotation.
 
     Returns
     -------
@@ -141,13 +153,21 @@ def cage_frame(bearing: Bearing, *, rim_elements: int = 4, bar_elements: int = 6
         raise InputError.of(("bearing", "cage", "material", "density"), None, "must be given (kg/m3)")
     made = Elasticity(material.youngs_modulus, material.poisson_ratio, material.density, shear)
     wall = Wall.of(bearing, body)
-    return _Builder(bearing, wall, made, rim_elements, bar_elements).build()
+    return _Builder(bearing, wall, made, rim_elements, bar_elements, frozenset(cracked_bars)).build()
 
 
 class _Builder:
-    def __init__(self, bearing: Bearing, wall: Wall, made: Elasticity, rim_elements: int, bar_elements: int) -> None:
+    def __init__(
+        self,
+        bearing: Bearing,
+        wall: Wall,
+        made: Elasticity,
+        rim_elements: int,
+        bar_elements: int,
+        cracked: frozenset[int],
+    ) -> None:
         self.bearing, self.wall, self.made = bearing, wall, made
-        self.rim_elements, self.bar_elements = rim_elements, bar_elements
+        self.rim_elements, self.bar_elements, self.cracked = rim_elements, bar_elements, cracked
         self.nodes: list[FloatArray] = []
         self.beams: list[Beam] = []
 
@@ -224,9 +244,8 @@ class _Builder:
             if place == self.bar_elements - 1:
                 arms[1] = self._point(float(stations[-1]), angle) - self.nodes[large]
             width = wall.bar_width(float(0.5 * (stations[place] + stations[place + 1])))
-            self.beams.append(
-                Beam(numbers[place], numbers[place + 1], arms[0], arms[1], side, Section(width, wall.thickness))
-            )
+            section, stiffer = Section(width, wall.thickness), CRACKED if place == 0 and k in self.cracked else 1.0
+            self.beams.append(Beam(numbers[place], numbers[place + 1], arms[0], arms[1], side, section, stiffer))
         return tuple(range(first, len(self.beams)))
 
     def _at_face(

@@ -70,7 +70,12 @@ def _modes(bearing: Bearing, elastic: ElasticCage) -> CageModes:
 
 @lru_cache(maxsize=8)
 def _natural(bearing: Bearing, elastic: ElasticCage) -> tuple[CageFrame, FloatArray, FloatArray]:
-    built = cage_frame(bearing, rim_elements=elastic.rim_elements, bar_elements=elastic.bar_elements)
+    built = cage_frame(
+        bearing,
+        rim_elements=elastic.rim_elements,
+        bar_elements=elastic.bar_elements,
+        cracked_bars=elastic.cracked_bars,
+    )
     return built, *built.frame.natural(elastic.n_modes)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Self
 
 from pydantic import Field, model_validator
 
@@ -14,6 +14,10 @@ from trbdyn.model.core_table import parameter
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
+
+
+LEAST_WHOLE_BARS: Final = 3
+"""Bars that hold both rims of a cracked cage together."""
 
 
 class ElasticCage(Model):
@@ -28,6 +32,9 @@ class ElasticCage(Model):
         Damping of every mode over the critical one (1); by default that of the cage's material, or of the file.
     rim_elements, bar_elements : int
         Beams of a rim along a window, and of a bar: even numbers. They have no meaning for modes of a file.
+    cracked_bars : tuple of int
+        Bars of the frame of beams that are cracked through at their root at the small end; bar k lies behind pocket k in the
+        direction of rotation. The surfaces of a crack pass through each other.
     file : str, optional
         File of modes that `trbdyn.cage.modes.CageModes.save`, or a finite-element program's script, has written. Without it the
         modes are those of a frame of beams, made from ``bearing.cage.body`` and the cage's material.
@@ -54,6 +61,7 @@ class ElasticCage(Model):
     damping_ratio: Annotated[Number | None, unit("1", ge=0.0, lt=1.0)] = None
     rim_elements: Annotated[Whole, unit("1", ge=2, le=20)] = 4
     bar_elements: Annotated[Whole, unit("1", ge=2, le=20)] = 6
+    cracked_bars: tuple[Annotated[Whole, unit("1", ge=0)], ...] = ()
     file: Annotated[str | None, Field(min_length=1)] = None
     file_sha256: Annotated[str | None, Field(min_length=64, max_length=64)] = None
 
@@ -62,6 +70,10 @@ class ElasticCage(Model):
         for name in ("rim_elements", "bar_elements"):
             if getattr(self, name) % 2:
                 raise InputError.of(name, getattr(self, name), "must be even")
+        if self.file is not None and self.cracked_bars:
+            raise InputError.of(
+                "cracked_bars", self.cracked_bars, "must not be given with a file, whose modes know its cracks"
+            )
         if self.file is None and self.file_sha256 is not None:
             raise InputError.of("file_sha256", self.file_sha256, "must not be given without a file")
         if self.file is not None and self.file_sha256 is None:
@@ -105,6 +117,10 @@ def check_elastic_cage(scene: Scene) -> None:
     if cage.body is None:
         limit = "must be given where elastic_cage has no file: beams need rims and bars (trb.CageBody)"
         raise InputError.of(("bearing", "cage", "body"), None, limit)
+    whole = scene.bearing.n_rollers - len(set(elastic.cracked_bars))
+    if any(bar >= scene.bearing.n_rollers for bar in elastic.cracked_bars) or whole < LEAST_WHOLE_BARS:
+        limit = f"must be numbers from 0 to {scene.bearing.n_rollers - 1}, and leave {LEAST_WHOLE_BARS} whole bars"
+        raise InputError.of(("elastic_cage", "cracked_bars"), elastic.cracked_bars, limit)
     for name, needed in (("density", True), ("damping_ratio", elastic.damping_ratio is None)):
         if needed and getattr(scene.bearing.cage_material, name) is None:
             limit = "must be given: natural modes of the cage need it"
