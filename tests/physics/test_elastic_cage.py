@@ -307,11 +307,33 @@ def test_stress_is_that_of_the_frame_where_nothing_vibrates() -> None:
 def test_damage_of_a_run() -> None:
     """Cycles of a sine are counted as such; a run tells its worst point, and a rigid cage has no stress."""
     sine = np.sin(2.0 * np.pi * np.arange(1001) / 100.0)
-    one = CageStress(np.arange(1001.0), 5e6 * np.stack([sine, 2.0 * sine], axis=1), ("a", "b"), np.zeros((2, 3)), True)
+    series, force = 5e6 * np.stack([sine, 2.0 * sine], axis=1), np.zeros((1001, 12, 2))
+    influence = np.zeros((24, 2))
+    influence[7], influence[10] = 1e6, 5e5  # Pa/N: pocket 3, trailing bar; pocket 5, leading bar
+    one = CageStress(
+        time=np.arange(1001.0),
+        stress=series,
+        point_name=("a", "b"),
+        point_place=np.zeros((2, 3)),
+        is_complete=True,
+        force=force,
+        face_name=("leading_bar", "trailing_bar"),
+        influence=influence,
+        period=20.0,
+    )
     damage = one.damage(reference_range=1e7, reference_cycles=1e4, slope=5.0)
     assert damage == pytest.approx([10.0 / 1e4, 32.0 * 10.0 / 1e4], rel=0.06)  # a half cycle at either end is smaller
     with pytest.raises(InputError, match="slope = 0"):
         one.damage(reference_range=1e7, reference_cycles=1e4, slope=0.0)
+    # the largest stress is 10 MPa at 25 s
+    assert one.cause.startswith("no contact within a period")
+    force[10:15, 3, 1], force[12, 3, 1], force[25, 4, 0] = 5.0, 8.0, 100.0
+    hit = "roller 3 on the trailing bar of pocket 3, in contact from 10 s on: its 8 N at 12 s would make 80 %"
+    assert one.cause == f"{hit} of the stress at rest; the rest is vibration"
+    force[20:40, 5, 0] = 7.0
+    assert one.cause.startswith(
+        "roller 5 on the leading bar of pocket 5, in contact from 20 s on: its 7 N at 25 s would make 35 %"
+    )
     start = trb.Start(kind="whirl", eccentricity=0.95)
     run = Simulation(scene(trb.ElasticCage(n_modes=6), start=start)).run(duration=4e-3, save_every=2e-5)
     found = run.cage_stress()
@@ -319,5 +341,6 @@ def test_damage_of_a_run() -> None:
     name, _, size = found.worst
     assert "end" in name
     assert abs(size) > 1e5
+    assert "of pocket" in found.cause
     with pytest.raises(InputError, match="elastic_cage = None"):
         Simulation(scene(None)).run(duration=1e-4).cage_stress()

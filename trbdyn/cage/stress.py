@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,13 @@ from trbdyn.cage.simulated import cage_modes, frame_displacements
 from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
+    from trbdyn.model.pocket import Face
     from trbdyn.model.scene import Scene
 
 FloatArray = NDArray[np.float64]
+
+ACTS_NOW: Final = 0.3
+"""Share of a stress from which a contact that acts at that time is said to make it."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,6 +46,14 @@ class CageStress:
         Where they are in the cage's frame (m).
     is_complete : bool
         Whether the static part of the modes that are left out is in it; it is not where the modes come from a file.
+    force : ndarray, shape (T, Z, S)
+        Normal forces on the faces of the pockets (N).
+    face_name : tuple of str, length S
+        Names of the faces, by their slot.
+    influence : ndarray, shape (Z S, P)
+        Stress at rest for a unit force on each face (Pa/N), times the notch factor.
+    period : float
+        Period of the lowest mode (s).
     """
 
     time: FloatArray
@@ -49,6 +61,10 @@ class CageStress:
     point_name: tuple[str, ...]
     point_place: FloatArray
     is_complete: bool
+    force: FloatArray
+    face_name: tuple[str, ...]
+    influence: FloatArray
+    period: float
 
     def __repr__(self) -> str:
         name, time, stress = self.worst
@@ -60,6 +76,31 @@ class CageStress:
         """Name of the point with the largest stress by magnitude, its time (s), and the stress (Pa)."""
         at, point = np.unravel_index(int(np.argmax(np.abs(self.stress))), self.stress.shape)
         return self.point_name[point], float(self.time[at]), float(self.stress[at, point])
+
+    @property
+    def cause(self) -> str:
+        """Which contact made the largest stress: the one that would make most of it at rest, by its force at that time; or, where
+        none makes `ACTS_NOW` of it, by its largest force within `period` before.
+        """
+        at, point = np.unravel_index(int(np.argmax(np.abs(self.stress))), self.stress.shape)
+        size, flat = float(self.stress[at, point]), self.force.reshape(len(self.force), -1)
+        shares = flat * self.influence[:, point] / size if size else np.zeros_like(flat)
+        acts = float(shares[at].max()) >= ACTS_NOW
+        first = int(at) if acts else int(np.searchsorted(self.time, self.time[at] - self.period))
+        later, contact = divmod(int(np.argmax(shares[first : at + 1])), shares.shape[1])
+        moment = first + later
+        share = float(shares[moment, contact])
+        if share <= 0.0:
+            return "no contact within a period of the lowest mode before: the cage vibrates from earlier on"
+        pocket, slot = divmod(contact, self.force.shape[2])
+        apart = np.flatnonzero(flat[:moment, contact] == 0.0)
+        began = int(apart[-1]) + 1 if apart.size else 0
+        said = (
+            f"roller {pocket} on the {self.face_name[slot].replace('_', ' ')} of pocket {pocket}, in contact from "
+            f"{self.time[began]:.6g} s on: its {flat[moment, contact]:.4g} N at {self.time[moment]:.6g} s would make "
+            f"{100.0 * share:.0f} % of the stress at rest"
+        )
+        return said if acts else f"{said}; the rest is vibration"
 
     def damage(self, *, reference_range: float, reference_cycles: float, slope: float) -> FloatArray:
         """Damage by Miner's sum at every point, shape (P,), from rainflow cycles and the S-N line N = Nr (S/Sr)^-k; 1: broken.
@@ -163,27 +204,55 @@ def cage_stress(
     """
     if not (math.isfinite(notch_factor) and notch_factor > 0.0):
         raise InputError.of("notch_factor", notch_factor, "must be > 0 (1)")
-    modes = cage_modes(scene)
-    stress = amplitude @ modes.stress
+    modes, slots = cage_modes(scene), force.shape[2]
+    stress, influence = amplitude @ modes.stress, _at_rest(scene, modes, slots)
     elastic = scene.elastic_cage
     assert elastic is not None  # cage_modes has looked
     is_complete = elastic.file is None
     if is_complete:
-        stress += force.reshape(len(force), -1) @ _left_out(scene, modes, force.shape[2])
-    return CageStress(time, notch_factor * stress, modes.point_name, modes.point_place, is_complete)
+        whole = _whole(scene, modes, slots)
+        stress += force.reshape(len(force), -1) @ (whole - influence)
+        influence = whole
+    return CageStress(
+        time=time,
+        stress=notch_factor * stress,
+        point_name=modes.point_name,
+        point_place=modes.point_place,
+        is_complete=is_complete,
+        force=force,
+        face_name=scene.bearing.slot_names,
+        influence=notch_factor * influence,
+        period=1.0 / float(modes.frequency[0]),
+    )
 
 
-def _left_out(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
-    """Static stress that the modes which are left out carry for a unit force on each face of each pocket, shape (Z S, P)."""
+def _faces(scene: Scene) -> list[tuple[int, Face]]:
+    """Every face of every pocket, in the order of the modes' shapes."""
     bearing = scene.bearing
+    return [(pocket, face) for pocket in range(bearing.n_rollers) for face in bearing.pocket_of(pocket).faces]
+
+
+def _by_slot(scene: Scene, slots: int, stress: FloatArray) -> FloatArray:
+    """Stress for each face, shape (F, P), by pockets and slots, shape (Z S, P)."""
+    found = np.zeros((scene.bearing.n_rollers, slots, stress.shape[1]))
+    for at, (pocket, face) in enumerate(_faces(scene)):
+        found[pocket, face.slot] = stress[at]
+    return found.reshape(-1, stress.shape[1])
+
+
+def _at_rest(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
+    """Static stress that the modes carry for a unit force on each face of each pocket, shape (Z S, P)."""
+    push = np.stack([-face.normal for _, face in _faces(scene)])  # the roller pushes against the face
+    pull = np.einsum("mfi,fi->mf", modes.shape[:, :, :3], push)
+    still = pull / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)[:, None]
+    return _by_slot(scene, slots, still.T @ modes.stress)
+
+
+def _whole(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
+    """The same of the whole frame of beams."""
     built, _ = frame_displacements(scene, np.zeros(len(modes.frequency)))
     loads = built.loads_of_faces()
-    push = np.stack([-face.normal for _, face in built.faces])  # the roller pushes against the face
-    forces = np.stack([loads[:, 6 * at : 6 * at + 3] @ push[at] for at in range(len(push))], axis=1)
-    whole = built.stress(built.frame.static(forces))
-    pull = np.einsum("mfi,fi->mf", modes.shape[:, :, :3], push)
-    at_rest = pull / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)[:, None]
-    found = np.zeros((bearing.n_rollers, slots, len(modes.point_name)))
-    for at, (pocket, face) in enumerate(built.faces):
-        found[pocket, face.slot] = whole[:, at] - at_rest[:, at] @ modes.stress
-    return found.reshape(-1, len(modes.point_name))
+    forces = np.stack(
+        [loads[:, 6 * at : 6 * at + 3] @ -face.normal for at, (_, face) in enumerate(built.faces)], axis=1
+    )
+    return _by_slot(scene, slots, built.stress(built.frame.static(forces)).T)
