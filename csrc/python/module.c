@@ -109,8 +109,8 @@ static const struct {
 };
 #define LENGTH(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
-TABLE(parameter_table, TRB_N_PARAMS, "(ssdds)", trb_param_table[i].name, trb_param_table[i].unit, trb_param_table[i].lower,
-      trb_param_table[i].upper, trb_param_table[i].text)
+TABLE(parameter_table, TRB_N_PARAMS, "(ssddss)", trb_param_table[i].name, trb_param_table[i].unit, trb_param_table[i].lower,
+      trb_param_table[i].upper, trb_param_table[i].text, trb_param_table[i].part)
 TABLE(face_table, LENGTH(face_columns), "(siss)", face_columns[i].name, face_columns[i].count, face_columns[i].unit, face_columns[i].text)
 TABLE(motion_table, LENGTH(channels), "(sss)", channels[i].name, channels[i].unit, channels[i].text)
 TABLE(field_table, TRB_N_FIELDS, "(sssss)", trb_field_table[i].name, trb_field_table[i].group, trb_field_kind_name(trb_field_table[i].kind),
@@ -198,7 +198,7 @@ static PyObject *version(PyObject *module, PyObject *none)
 }
 
 static PyMethodDef functions[] = {
-    {"parameter_table", parameter_table, METH_NOARGS, "(name, unit, lower, upper, text) of the parameter block."},
+    {"parameter_table", parameter_table, METH_NOARGS, "(name, unit, lower, upper, text, part) of the parameter block."},
     {"face_table", face_table, METH_NOARGS, "(name, count, unit, text) of the columns of a pocket face."},
     {"motion_table", motion_table, METH_NOARGS, "(name, unit, text) of the channels of prescribed motion."},
     {"field_table", field_table, METH_NOARGS, "(name, group, kind, unit, text) of every recorded quantity."},

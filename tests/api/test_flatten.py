@@ -112,7 +112,7 @@ class TestFlatten:
 
     def test_tables_that_differ_are_an_error(self, scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
         table = _core.parameter_table()
-        monkeypatch.setattr(_core, "parameter_table", lambda: [*table, ("novelty", "1", 0.0, 1.0, "")])
+        monkeypatch.setattr(_core, "parameter_table", lambda: [*table, ("novelty", "1", 0.0, 1.0, "", "bearing")])
         with pytest.raises(RuntimeError, match="novelty"):
             flatten.parameter_block(scene)
         monkeypatch.setattr(_core, "parameter_table", lambda: table[1:])
@@ -121,7 +121,8 @@ class TestFlatten:
 
     def test_range_of_the_table_is_told_in_the_users_terms(self, scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
         table = [
-            (n, u, 1.0, 9.0, t) if n == "cage_mass" else (n, u, a, b, t) for n, u, a, b, t in _core.parameter_table()
+            (n, u, 1.0, 9.0, t, p) if n == "cage_mass" else (n, u, a, b, t, p)
+            for n, u, a, b, t, p in _core.parameter_table()
         ]
         monkeypatch.setattr(_core, "parameter_table", lambda: table)
         with pytest.raises(InputError, match=r"bearing\.cage\.mass = 0\.2 : must be from 1 to 9 \(kg\)"):

@@ -120,12 +120,35 @@ def test_every_parameter_of_the_core_has_an_input() -> None:
     assert set(given) | {"outer_turns"} == set(PARAMETERS)  # follows from the scene's outer_speed_rpm
 
 
+def test_the_numbers_of_a_model_belong_to_one_part() -> None:
+    """The core's table says whose each number is; a model has those of one part, and a housing those of a ring that moves."""
+    parts = {}
+    for model in kinds_of(Model):
+        extras = (field.json_schema_extra for field in model.model_fields.values())
+        named = {extra["parameter"] for extra in extras if isinstance(extra, dict) and "parameter" in extra}
+        if named:
+            parts[model.__name__] = {PARAMETERS[name].part for name in named}
+    assert {name: len(found) for name, found in parts.items() if len(found) != 1} == {}
+    expected = {
+        "Bearing": "bearing",
+        "Roller": "roller",
+        "Ribs": "rib",
+        "Cage": "cage",
+        "Land": "land",
+        "Lubricant": "oil",
+    }
+    assert {name: next(iter(parts[name])) for name in expected} == expected
+    assert {row.part for row in PARAMETERS.values()} == {found for one in parts.values() for found in one} | {
+        "outer_ring"
+    }
+
+
 def test_ranges_and_units_are_those_of_the_core() -> None:
     code = """
 import trbdyn._core as core
 rows = core.parameter_table()
-core.parameter_table = lambda: [(n, "furlong" if n == "crown_radius" else u, 7.0 if n == "crown_radius" else a, b, t)
-                                for n, u, a, b, t in rows]
+core.parameter_table = lambda: [(n, "furlong" if n == "crown_radius" else u, 7.0 if n == "crown_radius" else a, b, t, p)
+                                for n, u, a, b, t, p in rows]
 import trbdyn as trb
 try:
     trb.Profile.crowned(5.0)

@@ -28,6 +28,8 @@ class Parameter:
         Smallest and largest allowed value.
     text : str
         What it is.
+    part : str
+        Whose it is: of the bearing, a roller, a rib, the cage and so on.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Parameter:
     lower: float
     upper: float
     text: str
+    part: str
 
 
 PARAMETERS: Final = {row[0]: Parameter(*row) for row in _core.parameter_table()}

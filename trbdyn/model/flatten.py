@@ -170,7 +170,7 @@ def block_of(entries: Mapping[str, Entry], *, partial: bool = False) -> FloatArr
             entries[name].value,
             f"must be from {lower:g} to {upper:g}{'' if unit == '1' else f' ({unit})'}",
         )
-        for name, unit, lower, upper, _ in table
+        for name, unit, lower, upper, *_ in table
         if name in entries and not lower <= entries[name].value <= upper
     ]
     if problems:
