@@ -48,7 +48,7 @@ trb_status trb_place_rib(const trb_params *p, const trb_geometry *g, int race, i
   const double sine = (inner ? p->rib_contact_height - height : height - p->rib_contact_height) / g->sphere_radius;
   if (!(fabs(sine) < 1.0))
     return trb_fail(message, TRB_ERR_GEOMETRY,
-                    "rib_contact_height = %g m: the large end's sphere (radius %g m) does not touch the rib there", p->rib_contact_height,
+                    "rib_contact_height = %g m: the sphere of the end (radius %g m) does not touch the rib there", p->rib_contact_height,
                     g->sphere_radius);
   place->normal_angle = angle + asin(sine);
   place->radius = 0.5 * p->pitch_diameter + sphere.place * sin(g->roller_axis_angle) + g->sphere_radius * sin(place->normal_angle);
@@ -60,7 +60,7 @@ trb_status trb_place_rib(const trb_params *p, const trb_geometry *g, int race, i
   place->curvature_radius = place->radius / sin(place->normal_angle);
   const double curvature = 1.0 / g->sphere_radius - 1.0 / place->curvature_radius;
   if (!(curvature > 0.0))
-    return trb_fail(message, TRB_ERR_GEOMETRY, "%s = %g: the large end (radius %g m) is flatter than the rib (%g m)",
+    return trb_fail(message, TRB_ERR_GEOMETRY, "%s = %g: the end (radius %g m) is flatter than the rib (%g m)",
                     p->end_radius > 0.0 ? "end_radius" : "sphere_ratio", p->end_radius > 0.0 ? p->end_radius : p->sphere_ratio,
                     g->sphere_radius, place->curvature_radius);
   place->rx = 1.0 / curvature;

@@ -227,6 +227,11 @@ def test_rings_are_drawn_whole(flanges: str) -> None:
         (lambda: scene("NU", axial_load=100.0, displacement=None), "no ribs that would carry"),
         (lambda: scene("NUP", axial_load=0.0), "displacement = (None, None, 0.0)"),
         (lambda: scene("NU", unloaded="rests", displacement=None), "cylindrical rollers"),
+        (
+            lambda: bearing("NU", ribs={"front_high": 2e-3}),
+            "ribs.front_high = 0.002 : must not be given for cylindrical",
+        ),
+        (lambda: bearing("NU", roller={"sphere_ratio": 0.9}), "roller.sphere_ratio = 0.9"),
         (lambda: trb.cases.rig_30310().replace(radial_clearance=1e-5), "must not be given for tapered"),
         (
             lambda: trb.cases.rig_30310().replace(cup_half_angle_deg=0.3),
