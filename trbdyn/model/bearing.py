@@ -509,13 +509,10 @@ class Bearing(Model):
             if self.ribs.flanges is None:
                 allowed = "must be given where cup_half_angle_deg = 0: 'NU', 'NJ', 'NUP' or 'N'"
                 raise InputError.of(("ribs", "flanges"), None, allowed)
-            for path, given in (
-                *((("ribs", name), name in self.ribs.model_fields_set) for name in _OF_CONES),
-                (("roller", "sphere_ratio"), "sphere_ratio" in self.roller.model_fields_set),
-            ):
-                if given:
+            for part, name in _OF_CONES:
+                if name in (own := getattr(self, part)).model_fields_set:
                     allowed = "must not be given for cylindrical rollers: their ends and ribs have end_radius and ribs.clearance"
-                    raise InputError.of(path, getattr(getattr(self, path[0]), path[1]), allowed)
+                    raise InputError.of((part, name), getattr(own, name), allowed)
             return
         if self.cup_half_angle_deg < LEAST_CONE_DEG:
             allowed = f"must be 0, for cylindrical rollers, or from {LEAST_CONE_DEG:g} to 45 (deg)"
@@ -569,8 +566,13 @@ class Bearing(Model):
             raise InputError(problems)
 
 
-_OF_CONES: Final = ("front_clearance", "front_low", "front_high")
-"""Numbers of the plane front rib, which only tapered bearings have."""
+_OF_CONES: Final = (
+    ("ribs", "front_clearance"),
+    ("ribs", "front_low"),
+    ("ribs", "front_high"),
+    ("roller", "sphere_ratio"),
+)
+"""Numbers of the plane front rib and of an end whose sphere the apex scales: only tapered bearings have them."""
 LEAST_CONE_DEG: Final = 0.6
 """Smallest half angle of the cup of a tapered bearing (deg)."""
 
