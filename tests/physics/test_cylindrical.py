@@ -167,6 +167,21 @@ def test_a_free_ring_floats_between_ribs() -> None:
     assert float(result["rib_load"].sum(axis=1).mean()) == pytest.approx(500.0, rel=0.05)
 
 
+def test_a_free_ring_that_no_rib_holds() -> None:
+    """A vertical shaft on an NU sinks upon its support, where skewed rollers push it to and fro, and the load of an NJ may drop to
+    zero for a while.
+    """
+    body = trb.RingBody(mass=2.0, inertia_axial=5e-4, inertia_transverse=4e-4)
+    on_support = body.replace(support_axial=2e5, damping=200.0)
+    hung = scene("NU", displacement=None, ring="free", ring_body=on_support, gravity=(0.0, 0.0, -9.80665))
+    place = trb.Simulation(hung).run(duration=0.04)["ring_position"][:, 2]
+    sink = 2.0 * 9.80665 / 2e5
+    assert abs(float(place[0])) < 1e-9
+    assert -3.0 * sink < float(place.min()) < -0.3 * sink
+    load = trb.History.step((2e-3, 6e-3), (500.0, 0.0, 500.0))
+    assert trb.Simulation(scene("NJ", axial_load=load, ring="free", ring_body=body)).run(duration=8e-3).success
+
+
 def test_the_floating_side_of_a_shaft() -> None:
     """A pair of tapered bearings carries all of the axial load; the shaft is in balance, and runs."""
     shaft = trb.Shaft.hollow_cylinder(mass=8.0, outer_diameter=0.05, length=0.4)

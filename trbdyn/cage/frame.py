@@ -20,7 +20,7 @@ from trbdyn.cage.beams import Beam, Elasticity, Frame, Section, at_end_of_arm, l
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.cage_body import Wall
-from trbdyn.model.pocket import Face
+from trbdyn.model.pocket import Face, every_face
 
 FloatArray = NDArray[np.float64]
 
@@ -175,9 +175,7 @@ class _Builder:
         joints, middles = zip(*(self._rim(end) for end in ENDS), strict=True)
         bars = [self._bar(k, joints[0][k], joints[1][k]) for k in range(self.wall.n_pockets)]
         frame = Frame.of(np.array(self.nodes), self.beams, self.made)
-        faces = tuple(
-            (pocket, face) for pocket in range(self.wall.n_pockets) for face in self.bearing.pocket_of(pocket).faces
-        )
+        faces = tuple(every_face(self.bearing))
         at_faces = np.stack([self._at_face(pocket, face, bars, middles, frame) for pocket, face in faces])
         corners = [
             f"pocket {(k + (side == 'leading')) % self.wall.n_pockets}, {'trailing' if side == 'leading' else 'leading'} bar, "

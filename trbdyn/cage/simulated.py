@@ -13,6 +13,7 @@ from trbdyn.cage.frame import CageFrame, cage_frame
 from trbdyn.cage.modes import CageModes
 from trbdyn.errors import InputError
 from trbdyn.model.elastic_cage import ElasticCage, digest_of
+from trbdyn.model.pocket import every_face
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -110,17 +111,28 @@ def mode_rows(scene: Scene) -> FloatArray:
     """
     if scene.elastic_cage is None:
         return np.zeros((0, 1))
-    modes, bearing = cage_modes(scene), scene.bearing
+    modes, shapes = cage_modes(scene), shapes_by_slot(scene)
+    assert modes.coriolis is not None  # zeros where it is not known
+    head = np.stack([2.0 * np.pi * modes.frequency, modes.damping_ratio, modes.modal_mass], axis=1)
+    return np.ascontiguousarray(np.hstack([head, shapes.reshape(len(head), -1), modes.coriolis]))
+
+
+def shapes_by_slot(scene: Scene) -> FloatArray:
+    """Shapes of the modes at the faces of the bearing's pockets, shape (M, Z, S, 6); the faces are known by their names.
+
+    Raises
+    ------
+    InputError
+        If the modes do not know a face of a pocket.
+    """
+    modes, faces = cage_modes(scene), every_face(scene.bearing)
     places = {key: place for place, key in enumerate(zip(modes.face_pocket, modes.face_name, strict=True))}
-    faces = [(pocket, face) for pocket in range(bearing.n_rollers) for face in bearing.pocket_of(pocket).faces]
     slots = 1 + max(face.slot for _, face in faces)
-    shapes = np.zeros((len(modes.frequency), bearing.n_rollers, slots, 6))
+    shapes = np.zeros((len(modes.frequency), scene.bearing.n_rollers, slots, 6))
     for pocket, face in faces:
         place = places.get((pocket, face.name))
         if place is None:
             limit = f"must have shapes at face '{face.name}' of pocket {pocket}, as the bearing has it"
             raise InputError.of(("elastic_cage", "file"), modes.source, limit)
         shapes[:, pocket, face.slot] = modes.shape[:, place]
-    assert modes.coriolis is not None  # zeros where it is not known
-    head = np.stack([2.0 * np.pi * modes.frequency, modes.damping_ratio, modes.modal_mass], axis=1)
-    return np.ascontiguousarray(np.hstack([head, shapes.reshape(len(head), -1), modes.coriolis]))
+    return shapes

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.cage.modes import CageModes
-from trbdyn.cage.simulated import cage_modes, frame_displacements
+from trbdyn.cage.simulated import cage_modes, frame_displacements, shapes_by_slot
 from trbdyn.errors import InputError
+from trbdyn.model.pocket import every_face
 
 if TYPE_CHECKING:
-    from trbdyn.model.pocket import Face
     from trbdyn.model.scene import Scene
 
 FloatArray = NDArray[np.float64]
@@ -205,7 +205,7 @@ def cage_stress(
     if not (math.isfinite(notch_factor) and notch_factor > 0.0):
         raise InputError.of("notch_factor", notch_factor, "must be > 0 (1)")
     modes, slots = cage_modes(scene), force.shape[2]
-    stress, influence = amplitude @ modes.stress, _at_rest(scene, modes, slots)
+    stress, influence = amplitude @ modes.stress, _at_rest(scene, modes)
     elastic = scene.elastic_cage
     assert elastic is not None  # cage_modes has looked
     is_complete = elastic.file is None
@@ -226,26 +226,15 @@ def cage_stress(
     )
 
 
-def _faces(scene: Scene) -> list[tuple[int, Face]]:
-    """Every face of every pocket, in the order of the modes' shapes."""
-    bearing = scene.bearing
-    return [(pocket, face) for pocket in range(bearing.n_rollers) for face in bearing.pocket_of(pocket).faces]
-
-
-def _by_slot(scene: Scene, slots: int, stress: FloatArray) -> FloatArray:
-    """Stress for each face, shape (F, P), by pockets and slots, shape (Z S, P)."""
-    found = np.zeros((scene.bearing.n_rollers, slots, stress.shape[1]))
-    for at, (pocket, face) in enumerate(_faces(scene)):
-        found[pocket, face.slot] = stress[at]
-    return found.reshape(-1, stress.shape[1])
-
-
-def _at_rest(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
+def _at_rest(scene: Scene, modes: CageModes) -> FloatArray:
     """Static stress that the modes carry for a unit force on each face of each pocket, shape (Z S, P)."""
-    push = np.stack([-face.normal for _, face in _faces(scene)])  # the roller pushes against the face
-    pull = np.einsum("mfi,fi->mf", modes.shape[:, :, :3], push)
+    shapes = shapes_by_slot(scene)
+    push = np.zeros((*shapes.shape[1:3], 3))
+    for pocket, face in every_face(scene.bearing):
+        push[pocket, face.slot] = -face.normal  # the roller pushes against the face
+    pull = np.einsum("mzsi,zsi->mzs", shapes[..., :3], push).reshape(len(shapes), -1)
     still = pull / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)[:, None]
-    return _by_slot(scene, slots, still.T @ modes.stress)
+    return np.asarray(still.T @ modes.stress)
 
 
 def _whole(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
@@ -255,4 +244,8 @@ def _whole(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
     forces = np.stack(
         [loads[:, 6 * at : 6 * at + 3] @ -face.normal for at, (_, face) in enumerate(built.faces)], axis=1
     )
-    return _by_slot(scene, slots, built.stress(built.frame.static(forces)).T)
+    stress = built.stress(built.frame.static(forces))
+    found = np.zeros((scene.bearing.n_rollers, slots, len(modes.point_name)))
+    for at, (pocket, face) in enumerate(built.faces):
+        found[pocket, face.slot] = stress[:, at]
+    return found.reshape(-1, len(modes.point_name))

@@ -238,8 +238,8 @@ def _size(found: Values, given: Mapping[str, Values]) -> dict[str, float] | None
             number = as_number(value)
         except ValueError:
             number = math.nan
-        least = 0.0 if name != "cup_half_angle_deg" else -1e-300  # zero: cylindrical rollers
-        if math.isfinite(number) and least < number < 1e6:
+        cylinders = name == "cup_half_angle_deg" and number == 0.0
+        if cylinders or (math.isfinite(number) and 0.0 < number < 1e6):
             size[name] = number
         elif name in wanted:
             return None

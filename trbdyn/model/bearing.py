@@ -30,7 +30,7 @@ from trbdyn.model.flatten import bearing_geometry
 from trbdyn.model.geometry import Geometry
 from trbdyn.model.land import Land
 from trbdyn.model.material import Material, Roughness
-from trbdyn.model.pocket import Face, OtherPocket, Pocket
+from trbdyn.model.pocket import Face, OtherPocket, Pocket, every_face
 from trbdyn.model.pocket_shapes import default_pocket
 from trbdyn.model.ratings import Ratings
 from trbdyn.model.roller import Profile, Roller, Scatter
@@ -100,6 +100,10 @@ class Ribs(Model):
     def places(self) -> frozenset[tuple[str, str]]:
         """Of which ring, and against which end of the rollers they are; the large end of a cylinder is the one towards +z."""
         return _RIBS[self.flanges]
+
+    def carry(self, force: float) -> bool:
+        """Whether ribs of a cylindrical bearing carry an axial force on the inner ring (N): NJ one towards -z, NUP either."""
+        return force < 0.0 if self.flanges == "NJ" else self.flanges == "NUP" and force != 0.0
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -479,7 +483,7 @@ class Bearing(Model):
         """Every face of every pocket: (pocket, face); pocket -1 stands for all of them."""
         if not self.cage.other_pockets:
             return [(-1, face) for face in self.pocket.faces]
-        return [(index, face) for index in range(self.n_rollers) for face in self.pocket_of(index).faces]
+        return every_face(self)
 
     @property
     def slot_names(self) -> tuple[str, ...]:

@@ -115,7 +115,8 @@ class Effects(Model):
     starvation_factor : float
         Factor of every film thickness, and of rolling resistance (1).
     back_rib, front_rib : bool
-        Roller ends against the ribs of the inner ring.
+        Large and small ends of the rollers against the ribs of the inner ring; of a cylindrical bearing against those of both
+        rings, towards +z and towards -z.
     rib_film : {'max', 'pe', 'needle'}
         Film at the back-face rib: the thicker of piezoviscous-elastic and isoviscous-rigid, or the former, or that of a contact
         that is long along rolling (Aihara).

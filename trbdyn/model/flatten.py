@@ -367,8 +367,8 @@ def ring_load(scene: Scene, time: float = 0.0) -> RingLoad:
         moment += arm * np.array([-weight[1], weight[0]])
     turns = (value_at(scene.misalignment_x, time), value_at(scene.misalignment_y, time))
     fixed = np.array([float(held) for held in scene.ring_is_placed])
-    if scene.bearing.is_cylindrical and force[2] == 0.0:
-        fixed[2] = 1.0  # nothing pushes a free ring, or holds it: it begins in the middle
+    if scene.bearing.is_cylindrical and not scene.bearing.ribs.carry(float(force[2])):
+        fixed[2] = 1.0  # no rib holds a free ring: it begins in the middle, and its support takes up what pushes it
     return RingLoad(
         force=force,
         moment=moment,

@@ -7,7 +7,7 @@ right-handed.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from pydantic import Field, model_validator
 from trbdyn.base.validation import Flag, Model, Number, Ratio, Vector3, Whole, unit
 from trbdyn.errors import InputError, Problem
 from trbdyn.model.geometry import Geometry
+
+if TYPE_CHECKING:
+    from trbdyn.model.bearing import Bearing
 
 MAX_VERTICES = 12
 _UNIT_TOLERANCE = 1e-9
@@ -209,6 +212,11 @@ class OtherPocket(Model):
 
     index: Annotated[Whole, unit("1", ge=0)]
     pocket: Pocket
+
+
+def every_face(bearing: Bearing) -> list[tuple[int, Face]]:
+    """Every face of every pocket of a bearing's cage: (pocket, face)."""
+    return [(pocket, face) for pocket in range(bearing.n_rollers) for face in bearing.pocket_of(pocket).faces]
 
 
 def _cross(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -457,7 +457,11 @@ class Scene(Model):
             self.bearing.ribs.flanges,
             self.ring_body is not None and self.ring_body.support_axial > 0.0,
         )
-        axial = [value_at(self.axial_load, time) for time in knot_times([self.axial_load], self.start.time)]
+        # no load needs to hold a free ring later; a state says where it is
+        times = [self.start.time] if self.ring == "free" else knot_times([self.axial_load], self.start.time)
+        if self.ring == "free" and self.start.kind == "state":
+            return
+        axial = [value_at(self.axial_load, time) for time in times]
         if min(axial) > 0.0 and flanges in ("NU", "N") and not supported:
             allowed = f"must be 0: a bearing {flanges} has no ribs that would carry it, but NJ and NUP have (N)"
             raise InputError.of("axial_load", self.axial_load, allowed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
@@ -26,20 +26,7 @@ Group = Literal[
     "energy",
     "peaks",
 ]
-GROUPS: Final[tuple[Group, ...]] = (
-    "time",
-    "cage",
-    "rollers",
-    "contacts",
-    "pocket",
-    "ring",
-    "housing",
-    "outer_ribs",
-    "torque",
-    "power",
-    "energy",
-    "peaks",
-)
+GROUPS: Final[tuple[Group, ...]] = get_args(Group)
 
 
 class Tolerances(Model):

@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator
 
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
+from trbdyn.model.bearing import Ribs
 from trbdyn.model.heat import PARTS, HeatPaths
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ SURFACES: Final = {"outer_ring": 0.25, "inner_ring": 0.25, "rollers": 0.5}
 """What the temperature of films is made of: each film lies between a ring and the rollers."""
 
 
-def heat_of(losses: Mapping[str, float], oil_share: float) -> dict[str, float]:
+def heat_of(losses: Mapping[str, float], oil_share: float, ribs: Ribs | None = None) -> dict[str, float]:
     """Heat that each node gets (W).
 
     Parameters
@@ -32,6 +33,9 @@ def heat_of(losses: Mapping[str, float], oil_share: float) -> dict[str, float]:
         Power by mechanism (W), as `Result.power_split`. Rolling resistance is that of both raceways, half each.
     oil_share : float
         `HeatPaths.oil_share`.
+    ribs : Ribs, optional
+        Ribs of the bearing: the heat of those against one end of the rollers is that of the rings that have them, in equal
+        parts. By default they are those of a tapered bearing, at the inner ring.
     """
     got = dict.fromkeys(PARTS, 0.0)
 
@@ -46,8 +50,13 @@ def heat_of(losses: Mapping[str, float], oil_share: float) -> dict[str, float]:
             film(0.5 * power, "inner_ring")
         elif name == "traction_outer":
             film(power, "outer_ring")
-        elif name in ("traction_inner", "rib", "front_rib"):
+        elif name == "traction_inner":
             film(power, "inner_ring")
+        elif name in ("rib", "front_rib"):
+            end = "large" if name == "rib" else "small"
+            rings = sorted(ring for ring, at in (ribs or Ribs()).places if at == end)
+            for ring in rings:
+                film(power / len(rings), f"{ring}_ring")
         elif name == "drag":
             got["oil"] += power
         elif name in ("pocket", "pocket_film", "land", "land_film", "vibration"):
@@ -112,7 +121,13 @@ class LossCurves:
 
 
 def rise(
-    paths: HeatPaths, losses: LossCurves, capacities: Mapping[str, float], duration: float, points: int
+    paths: HeatPaths,
+    losses: LossCurves,
+    capacities: Mapping[str, float],
+    duration: float,
+    points: int,
+    *,
+    ribs: Ribs | None = None,
 ) -> xarray.Dataset:
     """Temperatures over time from those without losses; see `Thermal.warming`."""
     import xarray
@@ -130,7 +145,7 @@ def rise(
     held = np.array([capacities[name] for name in PARTS])
 
     def rates(_: float, nodes: Array) -> Array:
-        heat = heat_of(losses(film_temperature(dict(zip(PARTS, nodes, strict=True)))), paths.oil_share)
+        heat = heat_of(losses(film_temperature(dict(zip(PARTS, nodes, strict=True)))), paths.oil_share, ribs)
         return (outside + np.array([heat[name] for name in PARTS]) - matrix @ nodes) / held
 
     start = network(paths, dict.fromkeys(PARTS, 0.0))

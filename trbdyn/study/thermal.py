@@ -115,7 +115,8 @@ class Thermal(Displayed):
         InputError
             If a number is missing or not allowed.
         """
-        return rise(self.paths, LossCurves(self.known), heat_capacities, duration, points)
+        ribs = self.scene.bearing.ribs
+        return rise(self.paths, LossCurves(self.known), heat_capacities, duration, points, ribs=ribs)
 
     def picture(self, path: str | Path | None = None) -> Any:
         """Draw the balance of heat made and given off, and the temperatures with their bands.
@@ -244,7 +245,7 @@ def _balanced(runs: _Runs, paths: HeatPaths) -> dict[str, float]:
 
     def excess(film: float, losses: Callable[[float, Mapping[str, float]], dict[str, float]] = runs.losses) -> float:
         nonlocal nodes
-        nodes = network(paths, heat_of(losses(film, nodes), paths.oil_share))
+        nodes = network(paths, heat_of(losses(film, nodes), paths.oil_share, runs.scene.bearing.ribs))
         return film_temperature(nodes) - film
 
     low = max(film_temperature(network(paths, dict.fromkeys(PARTS, 0.0))), runs.coldest)
@@ -275,7 +276,7 @@ def _bands(runs: _Runs, paths: HeatPaths, film: float, seed: int) -> dict[str, t
         drawn = paths.replace(**changes, oil_share=float(row[-1]))
 
         def nodes_at(t: float, drawn: HeatPaths = drawn) -> dict[str, float]:
-            return network(drawn, heat_of(curves(t), drawn.oil_share))
+            return network(drawn, heat_of(curves(t), drawn.oil_share, runs.scene.bearing.ribs))
 
         def excess(t: float) -> float:
             return film_temperature(nodes_at(t)) - t
