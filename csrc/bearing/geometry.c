@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "base/vec3.h"
-#include "bearing/ribs.h"
+#include "laws/hertz.h"
 
 const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY] = {
 #define TRB_GEOMETRY_INFO(name, unit, text) {#name, unit, text},
@@ -70,7 +70,58 @@ static void derive_mass(const trb_params *p, trb_geometry *g)
   g->roller_centre_height = g->centre_plane + g->roller_mass_offset * cos(g->roller_axis_angle);
 }
 
-/* The rib of the inner ring against the large ends (bearing/ribs.h). */
+double trb_end_sphere(const trb_geometry *g, int end)
+{
+  return end == TRB_END_LARGE ? g->large_end_station - g->sphere_radius : g->small_end_station + g->sphere_radius;
+}
+
+static void fill_contact(const trb_geometry *g, trb_rib_place *place)
+{
+  const trb_hertz_point hertz = trb_hertz_point_constants(place->rx, place->ry, g->effective_modulus);
+  const int             rolling_is_long = place->rx > place->ry;
+  place->ellipticity = hertz.ellipticity;
+  place->stiffness = hertz.stiffness;
+  place->semi_rolling = rolling_is_long ? hertz.semi_long : hertz.semi_short;
+  place->semi_across = rolling_is_long ? hertz.semi_short : hertz.semi_long;
+}
+
+/* The end's nominal sphere just touches a cone face at the given height above the raceway (docs/theory/geometry.md#rib-of-the-inner-ring); the
+ * face of a cylindrical bearing stands back from there by its clearance. */
+trb_status trb_place_rib(const trb_params *p, const trb_geometry *g, int race, int end, trb_rib_place *place, trb_message *message)
+{
+  const int    inner = race == TRB_RACE_INNER, cylinder = p->cup_half_angle == 0.0;
+  const double outward = end == TRB_END_LARGE ? 1.0 : -1.0, angle = inner ? g->cone_half_angle : p->cup_half_angle;
+  const double sphere = trb_end_sphere(g, end);
+  /* mid length is nearest to the inner raceway by the roller's radius there, and a quarter of the internal clearance */
+  const double height =
+      0.5 * p->roller_diameter * cos(g->roller_half_angle) + sphere * sin(g->roller_half_angle) + 0.25 * p->radial_clearance;
+  if (!(p->rib_contact_height < g->large_end_diameter))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: must be below the roller's large-end diameter, %g m",
+                    p->rib_contact_height, g->large_end_diameter);
+  const double sine = (inner ? p->rib_contact_height - height : height - p->rib_contact_height) / g->sphere_radius;
+  if (!(fabs(sine) < 1.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY,
+                    "rib_contact_height = %g m: the sphere of the end (radius %g m) does not touch the rib there", p->rib_contact_height,
+                    g->sphere_radius);
+  place->normal_angle = angle + asin(sine);
+  place->radius = 0.5 * p->pitch_diameter + sphere * sin(g->roller_axis_angle) + g->sphere_radius * sin(place->normal_angle);
+  place->along = sphere * cos(g->roller_axis_angle) + outward * g->sphere_radius * cos(place->normal_angle) + outward * p->rib_clearance;
+  if (!((cylinder || place->normal_angle > 0.0) && fabs(place->normal_angle) < 1.5))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "rib_contact_height = %g m: the rib's face would not close towards the roller",
+                    p->rib_contact_height);
+  place->curvature_radius = place->radius / sin(place->normal_angle);
+  const double curvature = 1.0 / g->sphere_radius - 1.0 / place->curvature_radius;
+  if (!(curvature > 0.0))
+    return trb_fail(message, TRB_ERR_GEOMETRY, "%s = %g: the end (radius %g m) is flatter than the rib (%g m)",
+                    p->end_radius > 0.0 ? "end_radius" : "sphere_ratio", p->end_radius > 0.0 ? p->end_radius : p->sphere_ratio,
+                    g->sphere_radius, place->curvature_radius);
+  place->rx = 1.0 / curvature;
+  place->ry = g->sphere_radius;
+  fill_contact(g, place);
+  return TRB_OK;
+}
+
+/* The rib of the inner ring against the large ends. */
 static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *message)
 {
   trb_rib_place    rib;

@@ -62,6 +62,28 @@ enum { TRB_N_GEOMETRY = (int)(sizeof(trb_geometry) / sizeof(double)) };
 
 extern const trb_geometry_info trb_geometry_table[TRB_N_GEOMETRY];
 
+/* The ring that has a raceway or a rib, and the end of a roller; of a cylinder the large end is the one towards +z. */
+enum { TRB_RACE_OUTER = 0, TRB_RACE_INNER = 1, TRB_N_RACES = 2 };
+enum { TRB_END_SMALL = 0, TRB_END_LARGE = 1, TRB_N_ENDS = 2 };
+
+/* Where a rib is, and the shape of its contact. */
+typedef struct trb_rib_place {
+  double normal_angle;              /* of the face's normal, from the bearing axis outward, rad */
+  double radius;                    /* of the nominal contact from the bearing axis, m */
+  double along;                     /* its axial position from the roller-centre plane, m */
+  double curvature_radius;          /* of the face around the ring, m; negative: convex */
+  double rx, ry;                    /* equivalent radii along and across rolling, m */
+  double ellipticity, stiffness;    /* of the Hertz contact: 1, N/m^1.5 */
+  double semi_rolling, semi_across; /* its semi-axes, per cube root of load, m/N^(1/3) */
+} trb_rib_place;
+
+/* race: of the ring that has the rib. A tapered bearing has one, at the inner ring against the large ends; a cylindrical one up to four. */
+trb_status trb_place_rib(const trb_params *params, const trb_geometry *geometry, int race, int end, trb_rib_place *place,
+                         trb_message *message);
+
+/* Centre of the sphere of a roller's end, from mid length along its axis, m. */
+double trb_end_sphere(const trb_geometry *geometry, int end);
+
 /* E' = 2/[(1-v1^2)/E1 + (1-v2^2)/E2]; bodies of the same material are taken by themselves, without its rounding. */
 double trb_composite_modulus(double e1, double v1, double e2, double v2);
 

@@ -13,8 +13,8 @@
   F(X, traction_inner,   TAKES,  1, "by sliding at the inner raceway") \
   F(X, rolling,          EITHER, 1, "by rolling resistance") \
   F(X, rolling_pressure, EITHER, 1, "by the rolling film's pressure force, which may also give energy") \
-  F(X, rib,              TAKES,  1, "at the back-face rib") \
-  F(X, front_rib,        TAKES,  1, "at the front rib") \
+  F(X, rib,              TAKES,  1, "at the back-face rib; of cylindrical rollers at all ribs against the ends towards +z") \
+  F(X, front_rib,        TAKES,  1, "at the front rib; of cylindrical rollers at all ribs against the ends towards -z") \
   F(X, pocket,           TAKES,  1, "by friction in the pockets") \
   F(X, damping,          TAKES,  1, "by normal damping") \
   F(X, drag,             TAKES,  p->oil_fill > 0.0, "by drag of the oil on rollers and cage") \

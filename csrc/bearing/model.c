@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "bearing/pockets.h"
-#include "laws/film.h"
+#include "bearing/ribs.h"
 #include "laws/line_contact.h"
 #include "laws/profile.h"
 
@@ -141,45 +141,6 @@ static void fill_land(trb_model *m)
   m->land_place = p->land_offset - p->cage_offset;
   m->land_palmgren = exp(trb_line_log_load(0.0, modulus, p->land_width));
   m->land_film = m->film && p->land_fill > 0.0;
-}
-
-static trb_status fill_rib(trb_model *m, int race, int end, trb_message *message)
-{
-  const trb_params   *p = &m->params;
-  const trb_geometry *g = &m->geometry;
-  trb_rib_place       place;
-  const trb_status    status = trb_place_rib(p, g, race, end, &place, message);
-  if (status != TRB_OK) return status;
-  const double shape = place.ry / place.rx;
-  trb_rib     *rib = &m->rib[race][end];
-  *rib = (trb_rib){.face = trb_rib_face(&place, end),
-                   .race = m->surfaces.race[race],
-                   .end = end == TRB_END_LARGE ? m->surfaces.large_end : m->surfaces.other_end,
-                   .normal_lean = fabs(sin(place.normal_angle - g->roller_axis_angle)),
-                   .edge_low = p->rib_edge_low,
-                   .edge_high = p->rib_edge_high,
-                   .stiffness = place.stiffness,
-                   .semi_axis_rolling = place.semi_rolling,
-                   .semi_axis_across = place.semi_across,
-                   .rx = place.rx,
-                   .film_shape = p->rib_film == TRB_RIB_FILM_NEEDLE ? trb_film_needle_shape(shape) : trb_film_point_shape(shape),
-                   .film_rigid = p->rib_film > 0.0 ? 0.0 : trb_film_point_rigid_factor(shape),
-                   .roughness = p->roughness_rib};
-  if (race == TRB_RACE_OUTER) rib->face.place += g->centre_plane; /* places of the outer ring are from the origin */
-  return TRB_OK;
-}
-
-/* A tapered bearing has the first one alone. */
-static trb_status fill_ribs(trb_model *m, trb_message *message)
-{
-  static const int of[][2] = {
-      {TRB_RACE_INNER, TRB_END_LARGE}, {TRB_RACE_INNER, TRB_END_SMALL}, {TRB_RACE_OUTER, TRB_END_LARGE}, {TRB_RACE_OUTER, TRB_END_SMALL}};
-  const int n = trb_has_cylinders(m) ? (int)(sizeof of / sizeof of[0]) : 1;
-  for (int i = 0; i < n; i++) {
-    const trb_status status = fill_rib(m, of[i][0], of[i][1], message);
-    if (status != TRB_OK) return status;
-  }
-  return TRB_OK;
 }
 
 static void fill_constants(trb_model *m)
@@ -328,7 +289,7 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
   fill_constants(m);
   fill_land(m);
   trb_pockets_place(m);
-  return fill_ribs(m, message);
+  return trb_ribs_fill(m, message);
 }
 
 trb_status trb_model_create(const trb_params *params, const double *deviation, int n_deviations, const trb_face *faces, int n_faces,

@@ -9,7 +9,7 @@
 #include "bearing/geometry.h"
 #include "bearing/modes.h"
 #include "bearing/params.h"
-#include "bearing/ribs.h"
+#include "bearing/surfaces.h"
 #include "surface/polygon.h"
 
 enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };

@@ -12,147 +12,147 @@
 
 #define TRB_PARAMS(X) \
   /* bearing geometry */ \
-  X(bearing, n_rollers,                "count",      3,      200,    "number of rollers Z") \
-  X(bearing, cup_half_angle,           "rad",    0,      0.8,    "half angle of the cup (outer) raceway cone; 0: rollers and raceways are cylinders") \
-  X(roller, roller_diameter,          "m",      1e-4,   1.0,    "Dwe: roller diameter at mid length, perpendicular to its axis") \
-  X(roller, effective_length,         "m",      1e-4,   1.0,    "Lwe: effective length of the roller's contact line") \
-  X(roller, total_length,             "m",      1e-4,   1.0,    "length of the roller over its ends, centred on the effective length") \
-  X(bearing, pitch_diameter,           "m",      1e-3,   10.0,   "Dpw: pitch diameter at roller mid length") \
-  X(roller, roller_density,           "kg/m3",  100,    30000,  "density of the rollers") \
-  X(bearing, youngs_modulus,           "Pa",     1e8,    1e13,   "Young's modulus of the rings") \
-  X(bearing, poisson_ratio,            "1",      0,      0.4999, "Poisson's ratio of the rings") \
-  X(roller, roller_youngs_modulus,    "Pa",     1e8,    1e13,   "Young's modulus of the rollers") \
-  X(roller, roller_poisson_ratio,     "1",      0,      0.4999, "Poisson's ratio of the rollers") \
-  X(cage, cage_youngs_modulus,      "Pa",     1e8,    1e13,   "Young's modulus of the cage's faces") \
-  X(cage, cage_poisson_ratio,       "1",      0,      0.4999, "Poisson's ratio of the cage's faces") \
-  X(roller, sphere_ratio,             "1",      0.05,   0.999,  "large-end sphere radius over the apex distance of the roller's large end") \
-  X(roller, end_radius,               "m",      0,      1e3,    "radius of the sphere of the large end, of a cylinder of both ends; 0: it follows from sphere_ratio") \
-  X(bearing, radial_clearance,         "m",      0,      0.01,   "radial internal clearance of a cylindrical bearing: way of one ring across the other") \
-  X(rib, rib_clearance,            "m",      0,      0.1,    "nominal gap between a cylindrical roller's end and each rib") \
-  X(rib, outer_rib,                "choice",      0,      1,      "cylindrical rollers: large ends (towards +z) against a rib of the outer ring") \
-  X(rib, outer_front_rib,          "choice",      0,      1,      "cylindrical rollers: small ends (towards -z) against a rib of the outer ring") \
-  X(rib, rib_contact_height,       "m",      0,      0.1,    "height of the nominal rib contact above the inner raceway, perpendicular to it") \
-  X(rib, rib_edge_low,             "m",      0,      0.1,    "height of the back-face rib's lower edge above the raceway") \
-  X(rib, rib_edge_high,            "m",      0,      0.1,    "height of the back-face rib's upper edge above the raceway") \
-  X(rib, front_rib_clearance,      "m",      0,      0.1,    "nominal gap between the roller's small end and the front rib") \
-  X(rib, front_rib_low,            "m",      0,      0.1,    "height of the front rib's lower edge above the raceway") \
-  X(rib, front_rib_high,           "m",      0,      0.1,    "height of the front rib's upper edge above the raceway") \
-  X(roller, end_stiffness,            "N/m^1.5",1,      1e14,   "stiffness of roller end against a flat of the ring: force = k d^1.5; of the cage: times E' ratio") \
-  X(roughness, roughness_raceway,        "m",      1e-10,  1e-3,   "composite rms roughness of roller and raceway") \
-  X(roughness, roughness_rib,            "m",      1e-10,  1e-3,   "composite rms roughness of roller end and rib") \
-  X(roughness, roughness_pocket,         "m",      1e-10,  1e-3,   "composite rms roughness of roller and pocket: the film between them is no thinner") \
+  X(bearing,    n_rollers,                 "count",     3,      200,    "number of rollers Z") \
+  X(bearing,    cup_half_angle,            "rad",       0,      0.8,    "half angle of the cup (outer) raceway cone; 0: rollers and raceways are cylinders") \
+  X(roller,     roller_diameter,           "m",         1e-4,   1.0,    "Dwe: roller diameter at mid length, perpendicular to its axis") \
+  X(roller,     effective_length,          "m",         1e-4,   1.0,    "Lwe: effective length of the roller's contact line") \
+  X(roller,     total_length,              "m",         1e-4,   1.0,    "length of the roller over its ends, centred on the effective length") \
+  X(bearing,    pitch_diameter,            "m",         1e-3,   10.0,   "Dpw: pitch diameter at roller mid length") \
+  X(roller,     roller_density,            "kg/m3",     100,    30000,  "density of the rollers") \
+  X(bearing,    youngs_modulus,            "Pa",        1e8,    1e13,   "Young's modulus of the rings") \
+  X(bearing,    poisson_ratio,             "1",         0,      0.4999, "Poisson's ratio of the rings") \
+  X(roller,     roller_youngs_modulus,     "Pa",        1e8,    1e13,   "Young's modulus of the rollers") \
+  X(roller,     roller_poisson_ratio,      "1",         0,      0.4999, "Poisson's ratio of the rollers") \
+  X(cage,       cage_youngs_modulus,       "Pa",        1e8,    1e13,   "Young's modulus of the cage's faces") \
+  X(cage,       cage_poisson_ratio,        "1",         0,      0.4999, "Poisson's ratio of the cage's faces") \
+  X(roller,     sphere_ratio,              "1",         0.05,   0.999,  "large-end sphere radius over the apex distance of the roller's large end") \
+  X(roller,     end_radius,                "m",         0,      1e3,    "radius of the sphere of the large end, of a cylinder of both ends; 0: it follows from sphere_ratio") \
+  X(bearing,    radial_clearance,          "m",         0,      0.01,   "radial internal clearance of a cylindrical bearing: way of one ring across the other") \
+  X(rib,        rib_clearance,             "m",         0,      0.1,    "nominal gap between a cylindrical roller's end and each rib") \
+  X(rib,        outer_rib,                 "choice",    0,      1,      "cylindrical rollers: large ends (towards +z) against a rib of the outer ring") \
+  X(rib,        outer_front_rib,           "choice",    0,      1,      "cylindrical rollers: small ends (towards -z) against a rib of the outer ring") \
+  X(rib,        rib_contact_height,        "m",         0,      0.1,    "height of the nominal rib contact above the inner raceway, perpendicular to it") \
+  X(rib,        rib_edge_low,              "m",         0,      0.1,    "height of the back-face rib's lower edge above the raceway") \
+  X(rib,        rib_edge_high,             "m",         0,      0.1,    "height of the back-face rib's upper edge above the raceway") \
+  X(rib,        front_rib_clearance,       "m",         0,      0.1,    "nominal gap between the roller's small end and the front rib") \
+  X(rib,        front_rib_low,             "m",         0,      0.1,    "height of the front rib's lower edge above the raceway") \
+  X(rib,        front_rib_high,            "m",         0,      0.1,    "height of the front rib's upper edge above the raceway") \
+  X(roller,     end_stiffness,             "N/m^1.5",   1,      1e14,   "stiffness of roller end against a flat of the ring: force = k d^1.5; of the cage: times E' ratio") \
+  X(roughness,  roughness_raceway,         "m",         1e-10,  1e-3,   "composite rms roughness of roller and raceway") \
+  X(roughness,  roughness_rib,             "m",         1e-10,  1e-3,   "composite rms roughness of roller end and rib") \
+  X(roughness,  roughness_pocket,          "m",         1e-10,  1e-3,   "composite rms roughness of roller and pocket: the film between them is no thinner") \
   /* roller profile and quadrature along the contact */ \
-  X(roller, profile,                  "choice",      0,      2,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic") \
-  X(roller, crown_radius,             "m",      1e-3,   1e9,    "radius of the crowning arc") \
-  X(roller, profile_k1,               "1",      0,      100,    "K1 of the logarithmic profile") \
-  X(roller, profile_k2,               "1",      0.001,  1,      "K2 of the logarithmic profile") \
-  X(roller, profile_zm,               "m",      0,      1e-3,   "zm of the logarithmic profile: drop at the end") \
-  X(roller, profile_load,             "N",      1e-3,   1e9,    "design load Q of the logarithmic profile") \
-  X(effects, quadrature,               "choice",      0,      1,      "nodes along the contact: 0 uniform slices, 1 Gauss-Legendre") \
-  X(effects, n_slices,                 "count",      1,      200,    "number of slices or nodes along a contact line") \
+  X(roller,     profile,                   "choice",    0,      2,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic") \
+  X(roller,     crown_radius,              "m",         1e-3,   1e9,    "radius of the crowning arc") \
+  X(roller,     profile_k1,                "1",         0,      100,    "K1 of the logarithmic profile") \
+  X(roller,     profile_k2,                "1",         0.001,  1,      "K2 of the logarithmic profile") \
+  X(roller,     profile_zm,                "m",         0,      1e-3,   "zm of the logarithmic profile: drop at the end") \
+  X(roller,     profile_load,              "N",         1e-3,   1e9,    "design load Q of the logarithmic profile") \
+  X(effects,    quadrature,                "choice",    0,      1,      "nodes along the contact: 0 uniform slices, 1 Gauss-Legendre") \
+  X(effects,    n_slices,                  "count",     1,      200,    "number of slices or nodes along a contact line") \
   /* cage */ \
-  X(cage, cage_mass,                "kg",     1e-6,   1e4,    "mass of the cage") \
-  X(cage, cage_inertia_axial,       "kg m2",  1e-12,  1e6,    "moment of inertia about the cage's axis") \
-  X(cage, cage_inertia_transverse,  "kg m2",  1e-12,  1e6,    "moment of inertia about a transverse axis through the cage's centre of mass") \
-  X(cage, cage_offset,              "m",      -1,     1,      "axial position of the cage's centre of mass from the roller-centre plane") \
-  X(cage, cage_rail_offset,         "m",      -1,     1,      "axial position of the large-end rail (where the sensors look) from the roller-centre plane") \
-  X(cage, cage_face_inner,          "m",      0,      10.0,   "inner radius of the cage's end faces") \
-  X(cage, cage_face_outer,          "m",      0,      10.0,   "outer radius of the cage's end faces") \
-  X(cage, cage_modes,               "count",      0,      100,    "number of natural modes by which the cage deforms; 0: it is rigid") \
+  X(cage,       cage_mass,                 "kg",        1e-6,   1e4,    "mass of the cage") \
+  X(cage,       cage_inertia_axial,        "kg m2",     1e-12,  1e6,    "moment of inertia about the cage's axis") \
+  X(cage,       cage_inertia_transverse,   "kg m2",     1e-12,  1e6,    "moment of inertia about a transverse axis through the cage's centre of mass") \
+  X(cage,       cage_offset,               "m",         -1,     1,      "axial position of the cage's centre of mass from the roller-centre plane") \
+  X(cage,       cage_rail_offset,          "m",         -1,     1,      "axial position of the large-end rail (where the sensors look) from the roller-centre plane") \
+  X(cage,       cage_face_inner,           "m",         0,      10.0,   "inner radius of the cage's end faces") \
+  X(cage,       cage_face_outer,           "m",         0,      10.0,   "outer radius of the cage's end faces") \
+  X(cage,       cage_modes,                "count",     0,      100,    "number of natural modes by which the cage deforms; 0: it is rigid") \
   /* land that guides the cage */ \
-  X(land, land_offset,              "m",      -1,     1,      "axial position of the middle of the cage's guiding surface from the roller-centre plane") \
-  X(land, land_inner_radius,        "m",      1e-4,   10.0,   "radius of the inner ring's land") \
-  X(land, land_outer_radius,        "m",      1e-4,   10.0,   "radius of the outer ring's land") \
-  X(land, land_width,               "m",      1e-5,   1.0,    "width of the cage's guiding surface") \
-  X(land, land_clearance,           "m",      1e-7,   0.1,    "radial clearance between cage and land") \
-  X(land, land_contact_film,        "m",      1e-9,   1e-2,   "film height below which cage and land touch") \
-  X(land, land_fill,                "1",      0,      1,      "share of the guiding surface's width that is filled with oil") \
+  X(land,       land_offset,               "m",         -1,     1,      "axial position of the middle of the cage's guiding surface from the roller-centre plane") \
+  X(land,       land_inner_radius,         "m",         1e-4,   10.0,   "radius of the inner ring's land") \
+  X(land,       land_outer_radius,         "m",         1e-4,   10.0,   "radius of the outer ring's land") \
+  X(land,       land_width,                "m",         1e-5,   1.0,    "width of the cage's guiding surface") \
+  X(land,       land_clearance,            "m",         1e-7,   0.1,    "radial clearance between cage and land") \
+  X(land,       land_contact_film,         "m",         1e-9,   1e-2,   "film height below which cage and land touch") \
+  X(land,       land_fill,                 "1",         0,      1,      "share of the guiding surface's width that is filled with oil") \
   /* outer ring with its housing, where both are free to move */ \
-  X(outer_ring, outer_free,               "choice",      0,      1,      "1: the outer ring moves with its housing") \
-  X(outer_ring, outer_mass,               "kg",     0,      1e5,    "mass of the outer ring and its housing") \
-  X(outer_ring, outer_inertia_axial,      "kg m2",  0,      1e6,    "their moment of inertia about the axis") \
-  X(outer_ring, outer_inertia_transverse, "kg m2",  0,      1e6,    "their moment of inertia about a transverse axis through the centre of mass") \
-  X(outer_ring, outer_offset,             "m",      -10,    10,     "axial position of their centre of mass from the roller-centre plane") \
-  X(outer_ring, outer_damping,            "N s/m",  0,      1e9,    "damping between them and the surroundings, of translations") \
-  X(outer_ring, outer_damping_turns,      "N m s",  0,      1e9,    "damping between them and the surroundings, of turns about transverse axes") \
-  X(outer_ring, outer_support_radial,     "N/m",    0,      1e13,   "stiffness of their support, across the axis") \
-  X(outer_ring, outer_support_axial,      "N/m",    0,      1e13,   "stiffness of the support along the axis") \
-  X(outer_ring, outer_support_tilt,       "N m",    0,      1e12,   "stiffness of the support against tilt, per radian") \
-  X(outer_ring, outer_support_position,   "m",      -100,   100,    "axial position of the support from the roller-centre plane") \
-  X(outer_ring, outer_turns,              "choice",      0,      1,      "1: the outer ring turns at a prescribed speed") \
+  X(outer_ring, outer_free,                "choice",    0,      1,      "1: the outer ring moves with its housing") \
+  X(outer_ring, outer_mass,                "kg",        0,      1e5,    "mass of the outer ring and its housing") \
+  X(outer_ring, outer_inertia_axial,       "kg m2",     0,      1e6,    "their moment of inertia about the axis") \
+  X(outer_ring, outer_inertia_transverse,  "kg m2",     0,      1e6,    "their moment of inertia about a transverse axis through the centre of mass") \
+  X(outer_ring, outer_offset,              "m",         -10,    10,     "axial position of their centre of mass from the roller-centre plane") \
+  X(outer_ring, outer_damping,             "N s/m",     0,      1e9,    "damping between them and the surroundings, of translations") \
+  X(outer_ring, outer_damping_turns,       "N m s",     0,      1e9,    "damping between them and the surroundings, of turns about transverse axes") \
+  X(outer_ring, outer_support_radial,      "N/m",       0,      1e13,   "stiffness of their support, across the axis") \
+  X(outer_ring, outer_support_axial,       "N/m",       0,      1e13,   "stiffness of the support along the axis") \
+  X(outer_ring, outer_support_tilt,        "N m",       0,      1e12,   "stiffness of the support against tilt, per radian") \
+  X(outer_ring, outer_support_position,    "m",         -100,   100,    "axial position of the support from the roller-centre plane") \
+  X(outer_ring, outer_turns,               "choice",    0,      1,      "1: the outer ring turns at a prescribed speed") \
   /* inner ring, where it is free to move */ \
-  X(inner_ring, ring_free,                "choice",      0,      2,      "inner ring: 0 as prescribed, 1 free at a prescribed speed, 2 free, turned by a torque") \
-  X(inner_ring, ring_mass,                "kg",     0,      1e5,    "mass of the inner ring and what turns with it") \
-  X(inner_ring, ring_inertia_axial,       "kg m2",  0,      1e6,    "its moment of inertia about the axis") \
-  X(inner_ring, ring_inertia_transverse,  "kg m2",  0,      1e6,    "its moment of inertia about a transverse axis through the centre of mass") \
-  X(inner_ring, ring_offset,              "m",      -10,    10,     "axial position of its centre of mass from the roller-centre plane") \
-  X(inner_ring, ring_unbalance,           "kg m",   0,      1e3,    "its unbalance: mass times radius") \
-  X(inner_ring, ring_unbalance_angle,     "rad",    -7,     7,      "angle of the unbalance from the x axis at shaft angle 0") \
-  X(inner_ring, ring_damping,             "N s/m",  0,      1e9,    "damping between it and the surroundings, of translations") \
-  X(inner_ring, ring_damping_turns,       "N m s",  0,      1e9,    "damping between it and the surroundings, of turns about transverse axes") \
-  X(inner_ring, ring_support_radial,      "N/m",    0,      1e13,   "stiffness of a support of it, across the axis; a support carries nothing at the start") \
-  X(inner_ring, ring_support_axial,       "N/m",    0,      1e13,   "stiffness of the support along the axis") \
-  X(inner_ring, ring_support_tilt,        "N m",    0,      1e12,   "stiffness of the support against tilt, per radian") \
-  X(inner_ring, ring_support_position,    "m",      -100,   100,    "axial position of the support from the roller-centre plane") \
-  X(inner_ring, ring_carried,             "choice",      0,      1,      "1: the ring is part of the body of the first bearing's ring: both sit on one shaft") \
-  X(inner_ring, ring_shift,               "m",      -1,     1,      "its axial displacement where the shaft of which it is part stands at zero: preload or end play") \
-  X(inner_ring, ring_turned,              "choice",      0,      1,      "1: the bearing sits on the shaft the other way round: its axes are the shaft's, turned by half a turn about x") \
+  X(inner_ring, ring_free,                 "choice",    0,      2,      "inner ring: 0 as prescribed, 1 free at a prescribed speed, 2 free, turned by a torque") \
+  X(inner_ring, ring_mass,                 "kg",        0,      1e5,    "mass of the inner ring and what turns with it") \
+  X(inner_ring, ring_inertia_axial,        "kg m2",     0,      1e6,    "its moment of inertia about the axis") \
+  X(inner_ring, ring_inertia_transverse,   "kg m2",     0,      1e6,    "its moment of inertia about a transverse axis through the centre of mass") \
+  X(inner_ring, ring_offset,               "m",         -10,    10,     "axial position of its centre of mass from the roller-centre plane") \
+  X(inner_ring, ring_unbalance,            "kg m",      0,      1e3,    "its unbalance: mass times radius") \
+  X(inner_ring, ring_unbalance_angle,      "rad",       -7,     7,      "angle of the unbalance from the x axis at shaft angle 0") \
+  X(inner_ring, ring_damping,              "N s/m",     0,      1e9,    "damping between it and the surroundings, of translations") \
+  X(inner_ring, ring_damping_turns,        "N m s",     0,      1e9,    "damping between it and the surroundings, of turns about transverse axes") \
+  X(inner_ring, ring_support_radial,       "N/m",       0,      1e13,   "stiffness of a support of it, across the axis; a support carries nothing at the start") \
+  X(inner_ring, ring_support_axial,        "N/m",       0,      1e13,   "stiffness of the support along the axis") \
+  X(inner_ring, ring_support_tilt,         "N m",       0,      1e12,   "stiffness of the support against tilt, per radian") \
+  X(inner_ring, ring_support_position,     "m",         -100,   100,    "axial position of the support from the roller-centre plane") \
+  X(inner_ring, ring_carried,              "choice",    0,      1,      "1: the ring is part of the body of the first bearing's ring: both sit on one shaft") \
+  X(inner_ring, ring_shift,                "m",         -1,     1,      "its axial displacement where the shaft of which it is part stands at zero: preload or end play") \
+  X(inner_ring, ring_turned,               "choice",    0,      1,      "1: the bearing sits on the shaft the other way round: its axes are the shaft's, turned by half a turn about x") \
   /* lubricant */ \
-  X(oil, viscosity,                "Pa s",   1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \
-  X(oil, pressure_coefficient,     "1/Pa",   0,      1e-6,   "alpha0: pressure-viscosity coefficient, used by the films") \
-  X(oil, temperature_coefficient,  "1/K",    0,      1,      "beta: -d ln(eta0)/dt") \
-  X(oil, conductivity,             "W/mK",   1e-4,   1e3,    "k': thermal conductivity of the oil") \
-  X(oil, temperature,              "C",      -80,    400,    "oil temperature") \
-  X(oil, viscosity_law,            "choice",      0,      2,      "pressure law of viscosity: 0 Dicke, 1 Roelands, 2 Barus (capped)") \
-  X(oil, dicke_a,                  "bar",    1e-3,   1e6,    "Dicke: constant term") \
-  X(oil, dicke_b,                  "bar/C",  -1e4,   1e4,    "Dicke: factor of temperature") \
-  X(oil, dicke_c,                  "1",      0,      1e3,    "Dicke: factor of pressure") \
-  X(oil, dicke_d,                  "1/C",    -1,     1,      "Dicke: factor of pressure times temperature") \
-  X(oil, viscosity_exponent_cap,   "1",      1,      60,     "largest exponent ln(eta/eta0) of the Roelands and Barus laws") \
-  X(oil, eyring_stress,            "Pa",     1e3,    1e9,    "tau0: characteristic shear stress") \
-  X(oil, shear_modulus_floor,      "Pa",     1,      1e10,   "smallest limiting shear modulus Ginf") \
-  X(oil, oil_density,              "kg/m3",  1,      3000,   "density of the oil") \
-  X(effects, starvation_factor,        "1",      1e-4,   1,      "factor of every film thickness and of rolling resistance") \
-  X(effects, replenishment,            "s/rad",  0,      1,      "decline of the film's supply with the speed of the rings: factor exp(-c speed) of films and rolling resistance on raceways") \
+  X(oil,        viscosity,                 "Pa s",      1e-9,   1e6,    "eta0: dynamic viscosity at ambient pressure") \
+  X(oil,        pressure_coefficient,      "1/Pa",      0,      1e-6,   "alpha0: pressure-viscosity coefficient, used by the films") \
+  X(oil,        temperature_coefficient,   "1/K",       0,      1,      "beta: -d ln(eta0)/dt") \
+  X(oil,        conductivity,              "W/mK",      1e-4,   1e3,    "k': thermal conductivity of the oil") \
+  X(oil,        temperature,               "C",         -80,    400,    "oil temperature") \
+  X(oil,        viscosity_law,             "choice",    0,      2,      "pressure law of viscosity: 0 Dicke, 1 Roelands, 2 Barus (capped)") \
+  X(oil,        dicke_a,                   "bar",       1e-3,   1e6,    "Dicke: constant term") \
+  X(oil,        dicke_b,                   "bar/C",     -1e4,   1e4,    "Dicke: factor of temperature") \
+  X(oil,        dicke_c,                   "1",         0,      1e3,    "Dicke: factor of pressure") \
+  X(oil,        dicke_d,                   "1/C",       -1,     1,      "Dicke: factor of pressure times temperature") \
+  X(oil,        viscosity_exponent_cap,    "1",         1,      60,     "largest exponent ln(eta/eta0) of the Roelands and Barus laws") \
+  X(oil,        eyring_stress,             "Pa",        1e3,    1e9,    "tau0: characteristic shear stress") \
+  X(oil,        shear_modulus_floor,       "Pa",        1,      1e10,   "smallest limiting shear modulus Ginf") \
+  X(oil,        oil_density,               "kg/m3",     1,      3000,   "density of the oil") \
+  X(effects,    starvation_factor,         "1",         1e-4,   1,      "factor of every film thickness and of rolling resistance") \
+  X(effects,    replenishment,             "s/rad",     0,      1,      "decline of the film's supply with the speed of the rings: factor exp(-c speed) of films and rolling resistance on raceways") \
   /* friction */ \
-  X(friction, lambda_boundary,          "1",      0,      100,    "film parameter below which friction is boundary") \
-  X(friction, lambda_full,              "1",      1e-3,   100,    "film parameter above which friction is full film") \
-  X(friction, asperity_factor,          "1",      0,      1000,   "B of exp(-B Lambda^C) at raceways") \
-  X(friction, asperity_exponent,        "1",      0.01,   10,     "C of exp(-B Lambda^C) at raceways") \
-  X(friction, rib_asperity_factor,      "1",      0,      1000,   "B of exp(-B Lambda^C) at ribs") \
-  X(friction, rib_asperity_exponent,    "1",      0.01,   10,     "C of exp(-B Lambda^C) at ribs") \
-  X(friction, boundary_limit,           "1",      0,      10,     "boundary friction at large slip (0.1)") \
-  X(friction, boundary_slope,           "1",      0,      1e4,    "slope term of boundary friction (22.28)") \
-  X(friction, boundary_decay,           "1",      1e-3,   1e5,    "decay of boundary friction (181.46)") \
-  X(friction, dry_friction,             "1",      0,      10,     "Coulomb friction coefficient of dry contacts and of traction 'coulomb'") \
-  X(friction, coulomb_speed,            "m/s",    1e-9,   10,     "sliding speed over which Coulomb friction turns smoothly through zero") \
-  X(friction, cage_entrainment_speed,   "m/s",    1e-6,   100,    "ue: speed that guards the slide-roll ratio where surfaces do not roll") \
-  X(friction, speed_floor,              "m/s",    1e-12,  1,      "smallest mean speed in films and slide-roll ratios (smooth)") \
-  X(friction, thermal_floor,            "1",      1e-6,   0.9,    "smallest thermal film reduction factor (smooth)") \
-  X(friction, rolling_blend,            "1",      1e-6,   0.9,    "half width in h_PE/h_IR over which rolling resistance sets in") \
-  X(effects, oil_fill,                 "1",      0,      1,      "share of oil in the mixture of oil and air round the rollers; 0: no drag") \
-  X(effects, drag_coefficient,         "1",      0,      20,     "Cd: drag coefficient of a roller across its axis") \
-  X(effects, pocket_film,              "m",      0,      1e-2,   "gap between roller and bar in which the oil makes a film; 0: no film") \
-  X(effects, damping_race,             "s/m",    0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
-  X(effects, damping_cage,             "s/m",    0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
+  X(friction,   lambda_boundary,           "1",         0,      100,    "film parameter below which friction is boundary") \
+  X(friction,   lambda_full,               "1",         1e-3,   100,    "film parameter above which friction is full film") \
+  X(friction,   asperity_factor,           "1",         0,      1000,   "B of exp(-B Lambda^C) at raceways") \
+  X(friction,   asperity_exponent,         "1",         0.01,   10,     "C of exp(-B Lambda^C) at raceways") \
+  X(friction,   rib_asperity_factor,       "1",         0,      1000,   "B of exp(-B Lambda^C) at ribs") \
+  X(friction,   rib_asperity_exponent,     "1",         0.01,   10,     "C of exp(-B Lambda^C) at ribs") \
+  X(friction,   boundary_limit,            "1",         0,      10,     "boundary friction at large slip (0.1)") \
+  X(friction,   boundary_slope,            "1",         0,      1e4,    "slope term of boundary friction (22.28)") \
+  X(friction,   boundary_decay,            "1",         1e-3,   1e5,    "decay of boundary friction (181.46)") \
+  X(friction,   dry_friction,              "1",         0,      10,     "Coulomb friction coefficient of dry contacts and of traction 'coulomb'") \
+  X(friction,   coulomb_speed,             "m/s",       1e-9,   10,     "sliding speed over which Coulomb friction turns smoothly through zero") \
+  X(friction,   cage_entrainment_speed,    "m/s",       1e-6,   100,    "ue: speed that guards the slide-roll ratio where surfaces do not roll") \
+  X(friction,   speed_floor,               "m/s",       1e-12,  1,      "smallest mean speed in films and slide-roll ratios (smooth)") \
+  X(friction,   thermal_floor,             "1",         1e-6,   0.9,    "smallest thermal film reduction factor (smooth)") \
+  X(friction,   rolling_blend,             "1",         1e-6,   0.9,    "half width in h_PE/h_IR over which rolling resistance sets in") \
+  X(effects,    oil_fill,                  "1",         0,      1,      "share of oil in the mixture of oil and air round the rollers; 0: no drag") \
+  X(effects,    drag_coefficient,          "1",         0,      20,     "Cd: drag coefficient of a roller across its axis") \
+  X(effects,    pocket_film,               "m",         0,      1e-2,   "gap between roller and bar in which the oil makes a film; 0: no film") \
+  X(effects,    damping_race,              "s/m",       0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
+  X(effects,    damping_cage,              "s/m",       0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
   /* effects */ \
-  X(effects, with_cage,                "choice",      0,      1,      "0 rollers only, 1 rollers and cage") \
-  X(effects, planar,                   "choice",      0,      1,      "1: axial positions and tilts are frozen") \
-  X(effects, lubrication,              "choice",      0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
-  X(effects, traction,                 "choice",      0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
-  X(effects, thermal,                  "choice",      0,      2,      "thermal reduction of films: 0 off, 1 Gupta, 2 Aihara") \
-  X(effects, mixed_law,                "choice",      0,      1,      "share of boundary friction: 0 the sixth power (2), 1 exp(-B Lambda^C)") \
-  X(effects, rolling_resistance,       "choice",      0,      5,      "EHL rolling resistance: 0 off, 1 Zhou-Hoeprich, 2 Goksem-Hargreaves, 3 Aihara, 4 Matsuyama, 5 Biboulet-Houpert") \
-  X(effects, rolling_pressure_force,   "choice",      0,      1,      "pressure force of the rolling film on the roller") \
-  X(effects, back_rib,                 "choice",      0,      1,      "large end against the back-face rib") \
-  X(effects, front_rib,                "choice",      0,      1,      "small end against the front rib") \
-  X(effects, rib_film,                 "choice",      0,      2,      "film at the rib: 0 the thicker of PE and IR, 1 PE, 2 PE of a needle") \
-  X(effects, rib_turning,              "choice",      0,      1,      "1: sliding at the ribs turns within the contact") \
-  X(effects, pocket_bars,              "choice",      0,      1,      "flank against the pocket's faces") \
-  X(effects, pocket_ends,              "choice",      0,      1,      "roller ends against the pocket's faces") \
-  X(effects, pocket_edges,             "choice",      0,      1,      "faces end at their outline (0: faces are unbounded planes)") \
-  X(effects, guidance,                 "choice",      0,      2,      "what guides the cage: 0 rollers, 1 land of the inner ring, 2 land of the outer ring") \
-  X(effects, damping,                  "choice",      0,      1,      "Hunt-Crossley normal damping")
+  X(effects,    with_cage,                 "choice",    0,      1,      "0 rollers only, 1 rollers and cage") \
+  X(effects,    planar,                    "choice",    0,      1,      "1: axial positions and tilts are frozen") \
+  X(effects,    lubrication,               "choice",    0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
+  X(effects,    traction,                  "choice",    0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \
+  X(effects,    thermal,                   "choice",    0,      2,      "thermal reduction of films: 0 off, 1 Gupta, 2 Aihara") \
+  X(effects,    mixed_law,                 "choice",    0,      1,      "share of boundary friction: 0 the sixth power (2), 1 exp(-B Lambda^C)") \
+  X(effects,    rolling_resistance,        "choice",    0,      5,      "EHL rolling resistance: 0 off, 1 Zhou-Hoeprich, 2 Goksem-Hargreaves, 3 Aihara, 4 Matsuyama, 5 Biboulet-Houpert") \
+  X(effects,    rolling_pressure_force,    "choice",    0,      1,      "pressure force of the rolling film on the roller") \
+  X(effects,    back_rib,                  "choice",    0,      1,      "large end against the back-face rib") \
+  X(effects,    front_rib,                 "choice",    0,      1,      "small end against the front rib") \
+  X(effects,    rib_film,                  "choice",    0,      2,      "film at the rib: 0 the thicker of PE and IR, 1 PE, 2 PE of a needle") \
+  X(effects,    rib_turning,               "choice",    0,      1,      "1: sliding at the ribs turns within the contact") \
+  X(effects,    pocket_bars,               "choice",    0,      1,      "flank against the pocket's faces") \
+  X(effects,    pocket_ends,               "choice",    0,      1,      "roller ends against the pocket's faces") \
+  X(effects,    pocket_edges,              "choice",    0,      1,      "faces end at their outline (0: faces are unbounded planes)") \
+  X(effects,    guidance,                  "choice",    0,      2,      "what guides the cage: 0 rollers, 1 land of the inner ring, 2 land of the outer ring") \
+  X(effects,    damping,                   "choice",    0,      1,      "Hunt-Crossley normal damping")
 
 typedef struct trb_params {
 #define TRB_PARAM_MEMBER(part, name, unit, lower, upper, text) double name;

@@ -15,6 +15,13 @@ trb_cone trb_raceway_cone(const trb_params *params, const trb_geometry *geometry
   return trb_cone_of(place, radius, angle, side);
 }
 
+trb_cone trb_rib_face(const trb_rib_place *place, int end)
+{
+  const double outward = end == TRB_END_LARGE ? 1.0 : -1.0;
+  return (trb_cone){
+      .place = place->along, .radius = place->radius, .cosine = sin(place->normal_angle), .sine = -outward * cos(place->normal_angle)};
+}
+
 /* Edges of the front rib: circles about the inner ring's axis on the face that is parallel to the nominal roller's small end. */
 static void place_front_rib(const trb_params *p, const trb_geometry *g, trb_surfaces *s)
 {
@@ -33,8 +40,8 @@ void trb_surfaces_build(const trb_params *params, const trb_geometry *geometry, 
   surfaces->race[TRB_RACE_OUTER] = trb_raceway_cone(params, g, TRB_RACE_OUTER, g->centre_plane);
   surfaces->race[TRB_RACE_INNER] = trb_raceway_cone(params, g, TRB_RACE_INNER, 0.0);
   surfaces->flank = trb_cone_of(-g->roller_mass_offset, 0.5 * params->roller_diameter, g->roller_half_angle, -1.0);
-  surfaces->large_end = (trb_sphere){g->large_end_station - g->sphere_radius - g->roller_mass_offset, g->sphere_radius};
-  surfaces->other_end = (trb_sphere){g->small_end_station + g->sphere_radius - g->roller_mass_offset, g->sphere_radius};
+  for (int end = 0; end < TRB_N_ENDS; end++)
+    surfaces->end[end] = (trb_sphere){trb_end_sphere(g, end) - g->roller_mass_offset, g->sphere_radius};
   surfaces->small_end = g->small_end_station - g->roller_mass_offset;
   place_front_rib(params, g, surfaces);
 }

@@ -148,7 +148,10 @@ static void flank_on_face(const trb_model *m, const trb_pocket_face *f, trb_pock
   }
 }
 
-static trb_vec3 end_sphere(const trb_model *m, const trb_pocket_view *p) { return trb_axpy(p->x, m->surfaces.large_end.place, p->a); }
+static trb_vec3 end_sphere(const trb_model *m, const trb_pocket_view *p)
+{
+  return trb_axpy(p->x, m->surfaces.end[TRB_END_LARGE].place, p->a);
+}
 
 static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int exact, trb_counters *counters,
                               trb_load *load, trb_pocket_sums *sums)

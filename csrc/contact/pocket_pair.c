@@ -36,7 +36,7 @@ static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
   const trb_geometry *g = &m->geometry;
   const double        offset = fabs(g->roller_mass_offset), chain = trb_chain_length(m);
   const double        length = fmax(fabs(g->small_end_station), fabs(g->large_end_station)) + offset;
-  const double        sphere = fabs(m->surfaces.large_end.place);
+  const double        sphere = fabs(m->surfaces.end[TRB_END_LARGE].place);
   const double flanks = pocket_size(m, 1) + offset + trb_clearance_play(m), ends = pocket_size(m, 0) + offset + trb_clearance_play(m);
   arms[TRB_GAP_FLANK] = arms_from(m, chain, flanks, fmax(chain, flanks));
   arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));
@@ -49,7 +49,7 @@ static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
 static void ways_of(const trb_model *m, int roller, double *ways)
 {
   const trb_modes *modes = &m->modes;
-  const double     extent[TRB_N_GAPS] = {trb_chain_length(m), 0.05 * fabs(m->surfaces.large_end.place)};
+  const double     extent[TRB_N_GAPS] = {trb_chain_length(m), 0.05 * fabs(m->surfaces.end[TRB_END_LARGE].place)};
   for (int i = 0; i < TRB_N_GAPS * modes->n; i++) ways[i] = 0.0;
   for (int f = m->first_face[roller]; f < m->first_face[roller + 1]; f++) {
     const trb_polygon *p = &m->faces[f].surface;

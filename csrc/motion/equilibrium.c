@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bearing/ribs.h"
 #include "system/system.h"
 
 /* Near the largest radial load hardly loaded rollers let go and are caught again, and Newton's method is slow: from USUAL_STEPS on it ends
@@ -364,8 +365,9 @@ static trb_status iterate(solver *s, double *step_rollers, double *step_ring, tr
   return trb_fail(
       message, TRB_ERR_LOAD,
       "no equilibrium: after %d steps %g N stay unbalanced under force (%g, %g, %g) N, moment (%g, %g) N m; the bearing cannot carry this "
-      "load (an axial load towards -z must seat the rollers)",
-      e->iterations, off, e->load[0], e->load[1], e->load[2], e->load[3], e->load[4]);
+      "load%s",
+      e->iterations, off, e->load[0], e->load[1], e->load[2], e->load[3], e->load[4],
+      trb_has_cylinders(s->m) ? "" : " (an axial load towards -z must seat the rollers)");
 }
 
 /* Normal loads of the contacts at the solution. */

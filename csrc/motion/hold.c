@@ -11,7 +11,7 @@ trb_hold_ring trb_hold_ring_of(const trb_system *system, const trb_body_at *bodi
   const trb_model *m = system->model;
   const double     outside = 2.0 * m->geometry.roller_centre_radius;
   /* what meets the ring, and the centres of its curvature: that of the large end is far away, near the axis */
-  const double  far = outside + fabs(m->surfaces.large_end.place) + m->params.total_length;
+  const double  far = outside + fabs(m->surfaces.end[TRB_END_LARGE].place) + m->params.total_length;
   trb_hold_ring most = {.far = far, .n = system->n_moving};
   for (int k = 0; k < most.n; k++) most.moving[k] = bodies[system->moving[k]].ring;
   for (int b = 0; b < system->n_bodies; b++) {

@@ -60,7 +60,7 @@ static void add_surfaces(trb_system *s)
   const trb_model *m = s->model;
   s->n_surfaces = trb_has_cylinders(m) ? N_SURFACES : N_TAPERED_SURFACES;
   s->surfaces[FLANK] = (trb_surface){"flank", TRB_ROLLERS, TRB_SHAPE_FLANK, m};
-  s->surfaces[LARGE_END] = (trb_surface){"large end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.large_end};
+  s->surfaces[LARGE_END] = (trb_surface){"large end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.end[TRB_END_LARGE]};
   s->surfaces[SMALL_END] = (trb_surface){"small end", TRB_ROLLERS, TRB_SHAPE_PLANE, &m->surfaces.small_end};
   s->surfaces[ROLLER] = (trb_surface){"roller", TRB_ROLLERS, TRB_SHAPE_NONE, NULL};
   s->surfaces[OUTER_RACE] = (trb_surface){"outer raceway", TRB_BODY_OUTER_RING, TRB_SHAPE_RACE, &m->race[TRB_RACE_OUTER]};
@@ -75,7 +75,7 @@ static void add_surfaces(trb_system *s)
   s->surfaces[WHOLE_CAGE] = (trb_surface){"cage", TRB_BODY_CAGE, TRB_SHAPE_NONE, NULL};
   if (!trb_has_cylinders(m)) return;
   s->surfaces[FRONT_FACE] = (trb_surface){"front rib", TRB_BODY_INNER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_INNER][TRB_END_SMALL]};
-  s->surfaces[OTHER_END] = (trb_surface){"sphere of the small end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.other_end};
+  s->surfaces[OTHER_END] = (trb_surface){"sphere of the small end", TRB_ROLLERS, TRB_SHAPE_SPHERE, &m->surfaces.end[TRB_END_SMALL]};
   s->surfaces[OUTER_BACK_FACE] =
       (trb_surface){"rib of the outer ring at the large ends", TRB_BODY_OUTER_RING, TRB_SHAPE_CONE, &m->rib[TRB_RACE_OUTER][TRB_END_LARGE]};
   s->surfaces[OUTER_FRONT_FACE] =

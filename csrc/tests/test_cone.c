@@ -1,7 +1,7 @@
 /* Cones with a radius at a reference plane: against formulas that go by the apex, brute force, and what a cylinder must give. */
 #include "surface/cone.h"
 
-#include "bearing/ribs.h"
+#include "bearing/surfaces.h"
 #include "check.h"
 #include "rig.h"
 
@@ -120,10 +120,10 @@ static void test_of_a_bearing(void)
   trb_rib_place rib;
   CHECK(trb_place_rib(&p, &g, TRB_RACE_INNER, TRB_END_LARGE, &rib, NULL) == TRB_OK);
   const trb_cone      face = trb_rib_face(&rib, TRB_END_LARGE);
-  const trb_vec3      end = trb_axpy(x, s.large_end.place, axis), from = trb_sub(end, trb_cone_point(&face, inner, k));
+  const trb_vec3      end = trb_axpy(x, s.end[TRB_END_LARGE].place, axis), from = trb_sub(end, trb_cone_point(&face, inner, k));
   const trb_cone_foot foot = trb_cone_at(&face, k, from);
-  const trb_vec3      contact = trb_axpy(end, s.large_end.radius, foot.normal);
-  CHECK_NEAR(foot.beyond, -s.large_end.radius, 1e-16);
+  const trb_vec3      contact = trb_axpy(end, s.end[TRB_END_LARGE].radius, foot.normal);
+  CHECK_NEAR(foot.beyond, -s.end[TRB_END_LARGE].radius, 1e-16);
   CHECK_NEAR(contact.x, g.rib_contact_radius, 1e-15);
   CHECK_NEAR(contact.z, g.rib_contact_z, 1e-15);
   CHECK_NEAR(-trb_cone_at(&s.race[TRB_RACE_INNER], k, trb_sub(contact, inner)).beyond, p.rib_contact_height, 2e-15);

@@ -168,7 +168,7 @@ def test_a_free_ring_floats_between_ribs() -> None:
 
 
 def test_a_free_ring_that_no_rib_holds() -> None:
-    """A vertical shaft on an NU sinks upon its support, where skewed rollers push it to and fro, and the load of an NJ may drop to
+    """A vertical shaft on an NU sinks upon its support, where skewed rollers push it about; the load of an NJ may drop to
     zero for a while.
     """
     body = trb.RingBody(mass=2.0, inertia_axial=5e-4, inertia_transverse=4e-4)
