@@ -124,7 +124,7 @@ trb_status trb_place_rib(const trb_params *p, const trb_geometry *g, int race, i
 /* The rib of the inner ring against the large ends. */
 static trb_status derive_rib(const trb_params *p, trb_geometry *g, trb_message *message)
 {
-  trb_rib_place    rib;
+  trb_rib_place    rib = {0};
   const trb_status status = trb_place_rib(p, g, TRB_RACE_INNER, TRB_END_LARGE, &rib, message);
   if (status != TRB_OK) return status;
   g->rib_normal_angle = rib.normal_angle;
