@@ -12,6 +12,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -77,6 +78,7 @@ SLOWER = (
     "python benchmarks/torque.py",
     "python benchmarks/ordinary.py",
 )
+TIME_GIVEN = re.compile(r"(?<=--minutes )[\d.]+")  # commands that work for as long as they are told to: here for some seconds
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
 PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"
 
@@ -116,11 +118,23 @@ def run(command: str, root: Path, timeout: float = 300.0) -> str:
     env = environment()
     if command.startswith("python "):
         env["PATH"] = f"{root / '.venv' / 'bin'}{os.pathsep}{env['PATH']}"
-    done = subprocess.run(
-        command, shell=True, cwd=root, env=env, capture_output=True, text=True, timeout=timeout, check=False
-    )
-    assert done.returncode == 0, f"{command}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
-    return done.stdout
+    with subprocess.Popen(
+        command,
+        shell=True,
+        cwd=root,
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as started:
+        try:
+            out, err = started.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            os.killpg(started.pid, signal.SIGKILL)  # with the processes that it has started itself
+            raise
+    assert started.returncode == 0, f"{command}\n{out[-2000:]}\n{err[-4000:]}"
+    return out
 
 
 def copy_of_checkout(folder: Path) -> Path:
@@ -221,7 +235,7 @@ def test_commands(command: str, root: Path) -> None:
         forget(root)
     if " resume " in command or " plot " in command or " info " in command:
         write_run(root)
-    run(command, root)
+    run(TIME_GIVEN.sub("0.01", command), root)
 
 
 def forget(root: Path) -> None:
