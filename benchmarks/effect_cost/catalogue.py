@@ -143,18 +143,18 @@ EFFECTS: Final = (
     ),
     Effect(
         "damping",
-        "Hunt and Crossley's damping",
+        "normal damping by films",
         {"damping": "off"},
-        {"damping": "hunt_crossley"},
+        {"damping": "film"},
         counters=("damping_nodes",),
         patch={
-            KERNEL: ((r"\n    if \(m->params\.damping > 0\.0 && m->params\.damping_race > 0\.0\) \{.*?\n    \}", ""),),
+            KERNEL: ((r"\n    if \(m->contact_damping > 0\.0\) \{.*?\n    \}", ""),),
             RIB: (
-                (r"\n  if \(m->params\.damping > 0\.0\) load \*= [^\n]*", ""),
-                (r"\n  if \(m->params\.damping > 0\.0\) counters[^\n]*", ""),
+                (r"\n  if \(m->contact_damping > 0\.0\) load \*= [^\n]*", ""),
+                (r"\n  if \(m->contact_damping > 0\.0\) counters[^\n]*", ""),
             ),
             "contact/friction.h": (
-                (r"return m->params\.damping > 0\.0 \? [^\n]*", "(void)m, (void)coefficient, (void)rate; return load;"),
+                (r"return load \* trb_max\(1\.0 \+ coefficient \* rate, 0\.0\);", "(void)coefficient, (void)rate; return load;"),
             ),
         },
     ),

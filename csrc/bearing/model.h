@@ -14,6 +14,7 @@
 
 enum { TRB_PART_FLANK = 0, TRB_PART_LARGE_END = 1, TRB_PART_SMALL_END = 2 };
 enum { TRB_LUBRICATION_DRY = 0, TRB_LUBRICATION_BOUNDARY = 1, TRB_LUBRICATION_MIXED = 2, TRB_LUBRICATION_FULL = 3 };
+enum { TRB_DAMPING_OFF = 0, TRB_DAMPING_HUNT_CROSSLEY = 1, TRB_DAMPING_FILM = 2 };
 enum { TRB_THERMAL_OFF = 0, TRB_THERMAL_GUPTA = 1, TRB_THERMAL_AIHARA = 2 };
 enum { TRB_RIB_FILM_MAX = 0, TRB_RIB_FILM_PE = 1, TRB_RIB_FILM_NEEDLE = 2 };
 enum { TRB_TRACTION_NONE = 0, TRB_TRACTION_COULOMB = 1, TRB_TRACTION_MURAKI_KIMURA = 2 };
@@ -126,6 +127,8 @@ typedef struct trb_model {
   int           friction;                      /* any friction at raceways and ribs at all */
   int           pocket_friction;               /* any friction in the pockets */
   int           film;                          /* films are needed */
+  double        contact_damping;               /* normal damping of raceways and ribs where the interference is small, s/m */
+  double        damping_fade;                  /* interference beside which it halves: 1 over it, 1/m; 0: it is constant */
   double        pocket_film;                   /* gap between roller and bar in which a film acts, m; 0: there is none */
   trb_modes     modes;                         /* of an elastic cage */
   trb_form      form;                          /* of surfaces off their true form */
@@ -134,6 +137,12 @@ typedef struct trb_model {
 
 /* Whether rollers and raceways are cylinders. */
 static inline int trb_has_cylinders(const trb_model *model) { return model->params.cup_half_angle == 0.0; }
+
+/* Coefficient of the normal damping of a contact with a ring at an interference, s/m (docs/theory/contacts.md#normal-damping). */
+static inline double trb_contact_damping(const trb_model *model, double interference)
+{
+  return model->contact_damping / (1.0 + model->damping_fade * (interference > 0.0 ? interference : 0.0));
+}
 
 /* Distance of the farthest sphere of the flank from the centre of mass of its roller, m. */
 double trb_chain_length(const trb_model *model);

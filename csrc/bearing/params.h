@@ -134,6 +134,8 @@
   X(effects,    drag_coefficient,          "1",         0,      20,     "Cd: drag coefficient of a roller across its axis") \
   X(effects,    pocket_film,               "m",         0,      1e-2,   "gap between roller and bar in which the oil makes a film; 0: no film") \
   X(effects,    damping_race,              "s/m",       0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
+  X(effects,    film_damping,              "s",         0,      1e-2,   "damping of raceway and rib contacts by their films, over the contact's load per interference") \
+  X(effects,    film_damping_depth,        "m",         1e-9,   1,      "interference beside which it does so; with less the film alone damps") \
   X(effects,    damping_cage,              "s/m",       0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
   /* effects */ \
   X(effects,    with_cage,                 "choice",    0,      1,      "0 rollers only, 1 rollers and cage") \
@@ -152,7 +154,7 @@
   X(effects,    pocket_ends,               "choice",    0,      1,      "roller ends against the pocket's faces") \
   X(effects,    pocket_edges,              "choice",    0,      1,      "faces end at their outline (0: faces are unbounded planes)") \
   X(effects,    guidance,                  "choice",    0,      2,      "what guides the cage: 0 rollers, 1 land of the inner ring, 2 land of the outer ring") \
-  X(effects,    damping,                   "choice",    0,      1,      "Hunt-Crossley normal damping")
+  X(effects,    damping,                   "choice",    0,      2,      "normal damping: 0 off, 1 Hunt-Crossley, 2 by films at raceways and ribs")
 
 typedef struct trb_params {
 #define TRB_PARAM_MEMBER(part, name, unit, lower, upper, text) double name;

@@ -38,10 +38,10 @@ static inline double trb_sliding_coefficient(const trb_model *m, double speed)
                                p->boundary_decay);
 }
 
-/* Hunt & Crossley, never pulling (docs/theory/contacts.md#normal-damping). */
-static inline double trb_damped(const trb_model *m, double load, double coefficient, double rate)
-{
-  return m->params.damping > 0.0 ? load * trb_max(1.0 + coefficient * rate, 0.0) : load;
-}
+/* Normal damping, never pulling (docs/theory/contacts.md#normal-damping). */
+static inline double trb_damped(double load, double coefficient, double rate) { return load * trb_max(1.0 + coefficient * rate, 0.0); }
+
+/* Its coefficient in pockets and at the land. */
+static inline double trb_cage_damping(const trb_model *m) { return m->params.damping > 0.0 ? m->params.damping_cage : 0.0; }
 
 #endif

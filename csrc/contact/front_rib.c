@@ -27,7 +27,7 @@ static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_
   const trb_vec3  normal = trb_scale(-1.0, a);
   const trb_touch touch =
       trb_touching(trb_add(r->v, trb_cross(r->omega, arm)), trb_add(ring->velocity, trb_cross(ring->omega, ring_arm)), normal);
-  const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d), q = trb_damped(m, elastic, m->params.damping_race, touch.rate);
+  const double   elastic = 0.5 * m->params.end_stiffness * d * sqrt(d), q = trb_damped(elastic, trb_contact_damping(m, d), touch.rate);
   const double   mu = m->pocket_friction ? trb_sliding_coefficient(m, touch.speed) : 0.0, drag = q * mu / touch.speed;
   const trb_vec3 force = trb_axpy(trb_scale(-q, normal), -drag, touch.sliding), torque = trb_cross(ring_arm, force);
   const trb_load load = {

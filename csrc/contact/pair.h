@@ -152,12 +152,11 @@ static inline void trb_add_load(const trb_pair *pair, const trb_load *load, trb_
     if (pair->books.torque[by] != 0) to->torque[pair->books.torque[by] - 1] += load->torque[by];
 }
 
-/* Change of velocity that films and damping of a contact with a ring may bear, m/s. */
-static inline double trb_look_speed(const trb_model *m, double mean_speed, double share)
+/* Change of velocity that films and damping of a contact with a ring may bear, m/s. damping: its coefficient, the mean over the load, s/m. */
+static inline double trb_look_speed(const trb_model *m, double mean_speed, double damping, double share)
 {
-  double speed = m->film ? share * mean_speed : (double)INFINITY;
-  if (m->params.damping > 0.0 && m->params.damping_race > 0.0) speed = fmin(speed, share / m->params.damping_race);
-  return speed;
+  const double speed = m->film ? share * mean_speed : (double)INFINITY;
+  return damping > 0.0 ? fmin(speed, share / damping) : speed;
 }
 
 /* How far a point contact, with a load that goes with the interference to the power 1.5, or without a load, may go. */

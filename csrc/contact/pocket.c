@@ -76,7 +76,7 @@ static void add_slopes(const trb_model *m, const trb_pocket_touch *c, const trb_
   const double   more = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed + step) : 0.0;
   const double   drag = q * mu / touch->speed, bend = q * (more / (touch->speed + step) - mu / touch->speed) / (step * touch->speed);
   const double   stiffness = c->exponent * q / c->interference,
-                 damping = q > 0.0 ? m->params.damping * m->params.damping_cage * c->elastic : 0.0;
+                 damping = q > 0.0 ? trb_cage_damping(m) * c->elastic : 0.0;
   const trb_vec3 load = trb_axpy(c->normal, mu / touch->speed, touch->sliding);
   const trb_vec3 units[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const trb_vec3 force = trb_axpy(trb_scale(-q, c->normal), -drag, touch->sliding);
@@ -98,7 +98,7 @@ static void push(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *
   const trb_vec3  arm = trb_sub(c->point, p->x), cage_arm = trb_sub(c->point, p->cage);
   const trb_touch touch =
       trb_touching(trb_add(p->v, trb_cross(p->omega, arm)), trb_add(p->cage_v, trb_cross(p->cage_omega, cage_arm)), c->normal);
-  const double q = trb_damped(m, c->elastic, m->params.damping_cage, touch.rate), factor = f->friction_factor;
+  const double q = trb_damped(c->elastic, trb_cage_damping(m), touch.rate), factor = f->friction_factor;
   double       mu = 0.0;
   if (m->pocket_friction) mu = factor * trb_sliding_coefficient(m, touch.speed);
   const double   drag = q * mu / touch.speed;

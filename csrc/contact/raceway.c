@@ -162,7 +162,7 @@ static void look_at_race(const trb_model *m, const trb_instant *at, int roller, 
                          trb_contact *look)
 {
   const trb_lanes *l = work->lanes;
-  double           parameter = 0.0, slope = 0.0, slowest = INFINITY;
+  double           parameter = 0.0, slope = 0.0, damping = 0.0, slowest = INFINITY;
   trb_race_output  out;
   *look = (trb_contact){.way = -1.0};
   raceway_of(m, at, roller, pair, work, &out);
@@ -172,10 +172,11 @@ static void look_at_race(const trb_model *m, const trb_instant *at, int roller, 
     look->load += q;
     look->pressure = fmax(look->pressure, l->pressure[k]);
     slope += TRB_PALMGREN_EXPONENT * q / l->interference[k];
+    damping += q * trb_contact_damping(m, l->interference[k]);
     slowest = fmin(slowest, l->mean_speed[k]);
     if (m->film) parameter += q * l->film_parameter[k];
   }
-  look->speed = trb_look_speed(m, slowest, share);
+  look->speed = trb_look_speed(m, slowest, look->load > 0.0 ? damping / look->load : 0.0, share);
   if (!(look->load > 0.0)) return;
   look->way = share * look->load / slope;
   look->film_parameter = parameter / look->load;

@@ -127,14 +127,13 @@ static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
-/* Hunt & Crossley: F = q (1 + c d_dot), never pulling. */
+/* F = q (1 + c d_dot), never pulling, with c of Hunt & Crossley or of a film. */
 static double pass_damping(const trb_model *m, int first, int n, trb_lanes *l)
 {
-  const double c = m->params.damping_race;
-  double       power = 0.0;
+  double power = 0.0;
   TRB_PADDED(n);
   for (int i = first; i < first + n; i++) {
-    const double damped = l->load[i] * trb_max(1.0 + c * l->approach[i], 0.0);
+    const double damped = l->load[i] * trb_max(1.0 + trb_contact_damping(m, l->interference[i]) * l->approach[i], 0.0);
     power += (damped - l->load[i]) * l->approach[i];
     l->load[i] = damped;
   }
@@ -283,7 +282,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   for (int c = 0; c < n_loaded; c++) {
     trb_race_output *out = &outputs[loaded[c]];
     out->elastic = sum_elastic(c * n, n, l);
-    if (m->params.damping > 0.0 && m->params.damping_race > 0.0) {
+    if (m->contact_damping > 0.0) {
       out->power_damping = pass_damping(m, c * n, n, l);
       counters->damping_nodes += n;
     }

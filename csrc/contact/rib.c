@@ -115,7 +115,7 @@ static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *
   for (int k = 0; k < at->n * batch->n; k++) {
     trb_contact *c = &trb_pair_contacts(m, batch->pairs[k % batch->n], detail)[at->chosen[k / batch->n]];
     c->way = trb_look_way(c, share);
-    c->speed = c->load > 0.0 ? trb_look_speed(m, c->mean_speed, share) : (double)INFINITY;
+    c->speed = c->load > 0.0 ? trb_look_speed(m, c->mean_speed, trb_contact_damping(m, c->interference), share) : (double)INFINITY;
   }
 }
 

@@ -107,7 +107,7 @@ static void sum_roller(const trb_model *m, const trb_roller_pose *r, const trb_r
                  sliding = trb_v(l->sx[j], l->sy[j], l->sz[j]);
   const double   elastic = l->load[j];
   double         load = elastic;
-  if (m->params.damping > 0.0) load *= trb_max(1.0 + m->params.damping_race * l->approach[j], 0.0);
+  if (m->contact_damping > 0.0) load *= trb_max(1.0 + trb_contact_damping(m, l->interference[j]) * l->approach[j], 0.0);
   const double   drag = load * l->friction_coefficient[j] / l->sliding_speed[j];
   const trb_vec3 force = trb_axpy(trb_scale(-load, normal), -drag, sliding), torque = trb_cross(trb_sub(point, ring->centre), force);
   out->loaded = 1;
@@ -152,7 +152,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_rib *rib, const trb_instant *
     pass_film_parameter(m, &kind, all, l);
   }
   if (m->friction) pass_friction(m, &kind, all, l, counters);
-  if (m->params.damping > 0.0) counters->damping_nodes += touching;
+  if (m->contact_damping > 0.0) counters->damping_nodes += touching;
   for (int j = 0; j < n; j++) {
     const trb_ring_pose *ring = &rings[at->chosen[j]];
     if (!(l->interference[j] > 0.0)) continue;

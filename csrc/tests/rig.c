@@ -30,7 +30,7 @@ trb_params rig_params(void)
   p.asperity_factor = 2.32, p.asperity_exponent = 0.97, p.rib_asperity_factor = 1.90, p.rib_asperity_exponent = 0.99;
   p.land_offset = 12e-3, p.land_inner_radius = 39.5e-3, p.land_outer_radius = 50.5e-3, p.land_width = 3e-3;
   p.land_clearance = 0.1e-3, p.land_contact_film = 1e-6, p.land_fill = 1;
-  p.rolling_blend = 0.1, p.damping_race = 0.1, p.damping_cage = 0.5;
+  p.rolling_blend = 0.1, p.damping_race = 0.1, p.damping_cage = 0.5, p.film_damping = 1e-5, p.film_damping_depth = 3e-7;
   p.with_cage = 1, p.lubrication = 2, p.traction = 2, p.thermal = 1, p.rolling_resistance = 1, p.back_rib = 1, p.front_rib = 1;
   p.pocket_bars = 1, p.pocket_ends = 1, p.pocket_edges = 1;
   return p;

@@ -178,7 +178,7 @@ def hardly_loaded(seed: int = 1) -> trb.Scene:
         axial_load=534.0,
         radial_load=1488.0,
         lubricant=trb.lubricants.vg100(48.0),
-        effects=trb.Effects.standard().replace(oil_fill=0.2),
+        effects=trb.Effects.standard().replace(oil_fill=0.2, damping="hunt_crossley"),
         start=trb.Start.unequal(seed),
     )
 

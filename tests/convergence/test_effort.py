@@ -69,7 +69,7 @@ MEASURED: dict[str, tuple[float, dict[str, Any], dict[str, Any], dict[str, float
         0.012,
         {"speed_rpm": trb.History.ramp(0.0, 0.01, -2000.0, 2000.0), "effects": Effects.standard()},
         USUAL,
-        {"steps": 1779, "iterations": 2.162, "setups": 163, "jacobians": 109, "refused": 23, "tangents": 0.046},
+        {"steps": 1483, "iterations": 2.213, "setups": 156, "jacobians": 98, "refused": 23, "tangents": 0.046},
     ),
     "explicit": (
         0.002,

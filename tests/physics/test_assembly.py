@@ -33,6 +33,7 @@ FRICTIONLESS = Effects.standard().replace(
     traction="none",
     rolling_resistance=False,
     rolling_pressure_force=False,
+    damping="hunt_crossley",
 )
 
 
@@ -155,7 +156,7 @@ def test_a_heavy_shaft_stands_still() -> None:
 def test_momentum() -> None:
     """What the outer rings, the only support, do to rollers and shaft is the change of their momentum."""
     shaft = STILL + np.array([2e-6, -1e-6, 3e-7, 1e-5, 2e-5])
-    effects = Effects.standard().replace(bodies="rollers", gravity=False)
+    effects = Effects.standard().replace(bodies="rollers", gravity=False, damping="hunt_crossley")
     simulation = pair(effects=effects, shaft=shaft)
     result = simulation.run(duration=2e-3, save_every=2e-6)
     velocity = np.diff(result.shaft_position, axis=0) / np.diff(result.time)[:, None]

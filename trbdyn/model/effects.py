@@ -141,10 +141,18 @@ class Effects(Model):
     drag_coefficient : float
         Cd of a roller that moves across its axis, on its diameter times its length (assumed; a cylinder alone has 1.0 to
         1.2). Acts where `oil_fill` is not 0.
-    damping : {'off', 'hunt_crossley'}
-        Normal damping of contacts, F = q (1 + c d_dot).
-    damping_race, damping_cage : float
-        c of raceways and ribs, and of pockets (s/m); assumed.
+    damping : {'off', 'hunt_crossley', 'film'}
+        Normal damping of contacts, F = q (1 + c d_dot), which never pulls. 'film': raceways and ribs are damped by their oil
+        films, c = t/(d + d0), as rolling bearings are by measurement; in scenes without films, which have nothing that damps so,
+        and in pockets c is constant, as with 'hunt_crossley'.
+    film_damping : float
+        t (s): the damping of a contact over its stiffness, about; Kramer (1993) gives 0.25e-5 to 2.5e-5 s for rolling bearings.
+    film_damping_depth : float
+        d0 (m; assumed): t/d0 is c of rollers that hardly any load presses on a raceway, which float on oil.
+    damping_race : float
+        c of raceways and ribs (s/m; assumed) where it is constant.
+    damping_cage : float
+        c of pockets and of the cage on its land (s/m; assumed).
     quadrature : {'uniform', 'gauss'}
         Nodes along a contact line: uniform slices or Gauss-Legendre nodes.
     n_slices : int
@@ -179,7 +187,9 @@ class Effects(Model):
     guidance: Literal["rollers", "inner_land", "outer_land"] = "rollers"
     oil_fill: Annotated[Number, parameter("oil_fill")] = 0.0
     drag_coefficient: Annotated[Number, parameter("drag_coefficient")] = 1.0
-    damping: Literal["off", "hunt_crossley"] = "hunt_crossley"
+    damping: Literal["off", "hunt_crossley", "film"] = "film"
+    film_damping: Annotated[Number, parameter("film_damping")] = 1e-5
+    film_damping_depth: Annotated[Number, parameter("film_damping_depth")] = 3e-7
     damping_race: Annotated[Number, parameter("damping_race")] = 0.1
     damping_cage: Annotated[Number, parameter("damping_cage")] = 0.5
     quadrature: Literal["uniform", "gauss"] = "gauss"
@@ -209,9 +219,19 @@ class Effects(Model):
             raise InputError.of("rolling_pressure_force", True, "needs rolling_resistance = True")
         if self.guidance != "rollers" and self.bodies == "rollers":
             raise InputError.of("guidance", self.guidance, "needs a cage: bodies = 'rollers_and_cage'")
+        self._check_damping()
         if self.n_slices == 1 and not self.back_rib:
             raise InputError.of("n_slices", 1, "must be >= 2 without back_rib: one slice lets rollers tilt freely")
         return self
+
+    def _check_damping(self) -> None:
+        """Coefficients of the law that is not chosen would act nowhere."""
+        by_films = self.damping == "film" and self.films
+        idle = ("damping_race",) if by_films else () if self.damping == "film" else ("film_damping", "film_damping_depth")
+        for name in idle:
+            if (value := getattr(self, name)) != type(self).model_fields[name].default:
+                where = "damping = 'film'" if name in ("film_damping", "film_damping_depth") else "damping = 'hunt_crossley'"
+                raise InputError.of(name, value, f"acts with {where} only; damping is {self.damping!r} here")
 
     @property
     def films(self) -> bool:

@@ -42,6 +42,7 @@ ROLLING_LAWS = {"zhou_hoeprich": 1, "goksem_hargreaves": 2, "aihara": 3, "matsuy
 RIB_FILMS = {"max": 0, "pe": 1, "needle": 2}
 THERMAL_LAWS = {"gupta": 1, "aihara": 2}
 MIXED_LAWS = {"power": 0, "exponential": 1}
+DAMPING = {"off": 0, "hunt_crossley": 1, "film": 2}
 GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
 PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
 
@@ -125,11 +126,12 @@ def effects_entries(effects: Effects) -> Entries:
     Effects of films are handed on as off where there are no films.
     """
     rolling = effects.films and effects.rolling_resistance
+    without_films = "off" if effects.damping == "off" else "hunt_crossley"
     return {
         **named_entries(effects),
         **named_entries(effects.friction, "friction"),
         "quadrature": Entry(("quadrature",), QUADRATURES[effects.quadrature]),
-        "damping": Entry(("damping",), float(effects.damping == "hunt_crossley")),
+        "damping": Entry(("damping",), DAMPING[effects.damping if effects.films else without_films]),
         "guidance": Entry(("guidance",), GUIDANCE[effects.guidance]),
         "with_cage": Entry(("bodies",), float(effects.bodies == "rollers_and_cage")),
         "planar": Entry(("planar",), float(effects.planar)),

@@ -67,7 +67,7 @@ SWITCHES: Final = (
         {"rolling_pressure_force": True, "rolling_resistance": True},
         needs_films=True,
     ),
-    Switch("damping of contacts", {"damping": "off"}, {"damping": "hunt_crossley"}),
+    Switch("damping of contacts", {"damping": "off"}, {"damping": "film"}),
     Switch("drag of the oil", {"oil_fill": 0.0}),
     Switch("films in the pockets", {"pocket_film": 0.0}),
     Switch("land that guides the cage", {"guidance": "rollers"}, needs_cage=True),
