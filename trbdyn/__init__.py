@@ -1,4 +1,4 @@
-"""Dynamics of tapered roller bearings: rollers, ribs and cage with six degrees of freedom, and lubricated contacts.
+"""Dynamics of tapered and cylindrical roller bearings: rollers, ribs and cage move freely, in lubricated contacts.
 
     import trbdyn as trb
 

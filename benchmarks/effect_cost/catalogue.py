@@ -154,7 +154,10 @@ EFFECTS: Final = (
                 (r"\n  if \(m->contact_damping > 0\.0\) counters[^\n]*", ""),
             ),
             "contact/friction.h": (
-                (r"return load \* trb_max\(1\.0 \+ coefficient \* rate, 0\.0\);", "(void)coefficient, (void)rate; return load;"),
+                (
+                    r"return load \* trb_max\(1\.0 \+ coefficient \* rate, 0\.0\);",
+                    "(void)coefficient, (void)rate; return load;",
+                ),
             ),
         },
     ),

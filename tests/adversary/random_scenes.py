@@ -37,6 +37,8 @@ ORDINARY: Table = {
     "play": 1.0,
     "scatter": 0.0,
     "damping": None,
+    "film_damping": None,
+    "film_damping_depth": 3e-7,
     "starvation": 1.0,
     "lubrication": None,
     "traction": None,
@@ -208,6 +210,16 @@ def light(rng: np.random.Generator) -> Table:
     return table | _start(rng)
 
 
+def damped(rng: np.random.Generator) -> Table:
+    """Films that damp raceways and ribs from a hundredth to ten times as much as usual, and from other interferences on."""
+    table = _one_of(rng, usual, light, cylindrical)(rng)
+    return table | {
+        "effects": "standard",
+        "film_damping": _log(rng, 1e-7, 1e-4),
+        "film_damping_depth": _log(rng, 1e-8, 1e-5),
+    }
+
+
 def repeating(rng: np.random.Generator) -> Table:
     """Speeds and loads that repeat, and loads that rotate, without end; runs that begin before t = 0 or long after it."""
     table = usual(rng) | {"speed_rpm": _log(rng, 100.0, 6000.0), "accuracy": _one_of(rng, "fast", "standard")}
@@ -336,6 +348,7 @@ KINDS = {
     "guided": guided,
     "filmed": filmed,
     "light": light,
+    "damped": damped,
     "repeating": repeating,
     "pieces": pieces,
 }
@@ -515,6 +528,8 @@ def _effects(t: Table) -> trb.Effects:
         changes["rolling_pressure_force"] = False
     if t["damping"] is not None:
         changes |= {"damping": "hunt_crossley", "damping_race": t["damping"], "damping_cage": t["damping"]}
+    if t["film_damping"] is not None:
+        changes |= {name: t[name] for name in ("film_damping", "film_damping_depth")}
     friction = {name: t[name] for name in ("dry_friction", "coulomb_speed") if t[name] is not None}
     if friction:
         changes["friction"] = effects.friction.replace(**friction)

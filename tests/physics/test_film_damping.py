@@ -95,9 +95,7 @@ def test_without_films_the_coefficient_is_constant(kit: SimpleNamespace) -> None
     """A dry contact has nothing that damps by a film."""
     dry = Effects.standard().replace(lubrication="dry", damping_race=3.0)
     scenery = {"displacement": (0.0, 0.0, -6e-5)}
-    film, constant = (
-        kit.simulate(dry.replace(damping=law), scenery=scenery) for law in ("film", "hunt_crossley")
-    )
+    film, constant = (kit.simulate(dry.replace(damping=law), scenery=scenery) for law in ("film", "hunt_crossley"))
     vector = kit.perturbed(film, 5)
     np.testing.assert_array_equal(film.derivative(vector), constant.derivative(vector))
 

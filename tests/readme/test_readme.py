@@ -78,7 +78,9 @@ SLOWER = (
     "python benchmarks/torque.py",
     "python benchmarks/ordinary.py",
 )
-TIME_GIVEN = re.compile(r"(?<=--minutes )[\d.]+")  # commands that work for as long as they are told to: here for some seconds
+TIME_GIVEN = re.compile(
+    r"(?<=--minutes )[\d.]+"
+)  # commands that work for as long as they are told to: here for some seconds
 HELPFUL = ("PYTHON", "MPL", "VIRTUAL_ENV", "MAKE", "MFLAGS", "PYTEST", "SLOW", "QUICK", "BENCH")
 PARTS = "tests/api/test_promises.py tests/api/test_laws_api.py tests/geometry/test_derived.py"
 

@@ -48,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def make_parser() -> argparse.ArgumentParser:
     """The parser of all commands."""
-    parser = Parser(prog="trbdyn", description="Dynamics of tapered roller bearings.")
+    parser = Parser(prog="trbdyn", description="Dynamics of tapered and cylindrical roller bearings.")
     parser.add_argument("--version", action="version", version=f"trbdyn {__version__}")
     debug = Parser(add_help=False)
     debug.add_argument("--debug", action="store_true", help="show where an error arose")

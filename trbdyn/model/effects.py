@@ -227,10 +227,16 @@ class Effects(Model):
     def _check_damping(self) -> None:
         """Coefficients of the law that is not chosen would act nowhere."""
         by_films = self.damping == "film" and self.films
-        idle = ("damping_race",) if by_films else () if self.damping == "film" else ("film_damping", "film_damping_depth")
+        idle = (
+            ("damping_race",) if by_films else () if self.damping == "film" else ("film_damping", "film_damping_depth")
+        )
         for name in idle:
             if (value := getattr(self, name)) != type(self).model_fields[name].default:
-                where = "damping = 'film'" if name in ("film_damping", "film_damping_depth") else "damping = 'hunt_crossley'"
+                where = (
+                    "damping = 'film'"
+                    if name in ("film_damping", "film_damping_depth")
+                    else "damping = 'hunt_crossley'"
+                )
                 raise InputError.of(name, value, f"acts with {where} only; damping is {self.damping!r} here")
 
     @property
