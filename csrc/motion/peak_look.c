@@ -108,6 +108,12 @@ void trb_peak_look_forget(trb_peak_look *look)
 /* Places of the values of a quantity. */
 static double *of(const trb_peak_look *p, int quantity, double *values) { return values + p->offset[quantity]; }
 
+/* Writes a value. The largest of all is kept: of a quantity whose smallest value is wanted, that is the one with the other sign. */
+static void write(const trb_peak_look *p, int quantity, int place, double value, double *values)
+{
+  of(p, quantity, values)[place] = trb_peak_quantities[quantity].sense == TRB_PEAK_LEAST ? -value : value;
+}
+
 /* Of a roller about the bearing's axis. */
 static double turn_of(const trb_peak_look *p, int j, const double *y)
 {
@@ -128,7 +134,7 @@ static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, c
       if (contact_peaks[q].pair != b->index[i]) continue;
       const double value = *(const double *)((const char *)look + contact_peaks[q].from);
       const int    there = contact_peaks[q].sense == TRB_PEAK_MOST || (m->film && look->load > 0.0);
-      of(p, contact_peaks[q].quantity, values)[j] = !there ? -(double)INFINITY : contact_peaks[q].sense == TRB_PEAK_LEAST ? -value : value;
+      write(p, contact_peaks[q].quantity, j, there ? value : (double)INFINITY, values);
     }
   }
   trb_hold_set(ring, y + trb_state_roller(p->d->system, j), turn_of(p, j, y), way, speed, &p->holds[batch * m->n_rollers + j]);
@@ -146,8 +152,8 @@ static void look_at_hub(trb_peak_look *p, double *values)
 {
   const trb_instant at = trb_dynamics_instant(p->d);
   if (p->d->work->n_hub > 0) trb_contact_hub(&p->normal, &at, p->d->work, &p->d->hub, p->detail);
-  *of(p, TRB_PEAK_land_force, values) = p->detail->land.force;
-  *of(p, TRB_PEAK_land_gap, values) = -p->detail->land.gap;
+  write(p, TRB_PEAK_land_force, 0, p->detail->land.force, values);
+  write(p, TRB_PEAK_land_gap, 0, p->detail->land.gap, values);
 }
 
 static void look_at_slow(trb_peak_look *p, const double *y, double *values)
@@ -208,9 +214,9 @@ static void look_at_places(const trb_peak_look *p, const double *y, double *valu
   for (int j = 0; j < z; j++) {
     const double *own = y + trb_state_roller(p->d->system, j), *next = y + trb_state_roller(p->d->system, (j + 1) % z);
     const double  spacing = trb_nominal_angle(&p->normal, 1) + (next[TRB_ROLLER_psi] - own[TRB_ROLLER_psi]);
-    of(p, TRB_PEAK_skew, values)[j] = fabs(own[TRB_ROLLER_skew]);
-    of(p, TRB_PEAK_spacing_largest, values)[j] = spacing;
-    of(p, TRB_PEAK_spacing_smallest, values)[j] = -spacing;
+    write(p, TRB_PEAK_skew, j, fabs(own[TRB_ROLLER_skew]), values);
+    write(p, TRB_PEAK_spacing_largest, j, spacing, values);
+    write(p, TRB_PEAK_spacing_smallest, j, spacing, values);
   }
 }
 

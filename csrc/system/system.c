@@ -93,6 +93,17 @@ static trb_status join(const trb_system *s, trb_pair *pair, trb_message *message
   return TRB_OK;
 }
 
+/* A contact of a roller with a ring is followed by tangents, which its margin bounds, and looked at for peaks, which hold for a while. */
+static trb_status check_contact(const trb_pair *pair, trb_message *message)
+{
+  const trb_pair_kind *kind = pair->kind;
+  if (kind->contact != TRB_CONTACT_NONE && kind->pace == TRB_PACE_SLOW && (!kind->margin || !kind->look || !kind->hold))
+    return trb_fail(message, TRB_ERR_INPUT,
+                    "pair %s: its kind '%s' is a contact of a roller with a ring, and must give margin, look and hold", pair->name,
+                    kind->name);
+  return TRB_OK;
+}
+
 /* Where a roller's part of the right-hand side has no room for a loss, the loss would be dropped. */
 static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_message *message)
 {
@@ -130,6 +141,7 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
   for (int i = 0; i < s->n_pairs; i++) {
     trb_pair  *pair = &s->pairs[i];
     trb_status status = join(s, pair, message);
+    if (status == TRB_OK) status = check_contact(pair, message);
     if (status == TRB_OK && pair->on) status = check_books(s, pair, message);
     if (status != TRB_OK) return status;
     pair->contact = contacts;

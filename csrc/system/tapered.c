@@ -28,8 +28,10 @@ enum {
   N_SURFACES
 };
 
-/* Of tapered bearings. */
+/* Of tapered bearings. What cylindrical bearings alone have comes last: a row behind it would be cut off without a word. */
 enum { N_TAPERED_SURFACES = OTHER_END };
+_Static_assert(OUTER_FRONT_FACE == N_SURFACES - 1, "put new surfaces before OTHER_END");
+_Static_assert(TRB_PAIR_outer_front_rib == TRB_N_PAIRS - 1, "put new pairs before outer_rib in TRB_PAIRS");
 
 static void add_bodies(trb_system *s)
 {

@@ -7,7 +7,7 @@
 /* Bodies. */
 enum { TRB_BODY_OUTER_RING, TRB_BODY_CAGE, TRB_BODY_INNER_RING, TRB_BODY_OIL, TRB_N_BODIES };
 
-/* Pairs, in the order in which they are evaluated: X(name). Only cylindrical bearings have the last two. */
+/* Pairs, in the order in which they are evaluated: X(name). Only cylindrical bearings have the last two: put new ones before. */
 #define TRB_PAIRS(X) X(outer) X(inner) X(rib) X(front_rib) X(drag) X(pocket) X(inner_land) X(outer_land) X(cage_drag) X(outer_rib) X(outer_front_rib)
 
 enum {

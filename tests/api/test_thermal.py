@@ -70,6 +70,9 @@ def test_every_loss_has_a_node(share: float) -> None:
     found = heat_of(losses, share)
     assert sum(found.values()) == pytest.approx(sum(losses.values()), rel=1e-14)
     assert heat_of({"rolling": 8.0}, 0.5) == {"outer_ring": 1.0, "inner_ring": 1.0, "rollers": 2.0, "oil": 4.0}
+    assert sum(heat_of({"support": 8.0, "unknown": 0.0}, 0.5).values()) == 0.0, "outside of the bearing; not there"
+    with pytest.raises(RuntimeError, match="which node gets the heat of the loss unknown"):
+        heat_of({"unknown": 1.0}, 0.5)
     assert heat_of({"rib": 8.0}, 0.0) == {"outer_ring": 0.0, "inner_ring": 4.0, "rollers": 4.0, "oil": 0.0}
     for flanges, outer in (("NU", 4.0), ("NJ", 2.0), ("N", 0.0)):
         found = heat_of({"rib": 8.0}, 0.0, trb.Ribs(flanges=flanges))

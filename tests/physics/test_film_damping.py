@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -56,16 +57,14 @@ def test_vibrations_decay_as_the_stiffness_says(kit: SimpleNamespace) -> None:
     turns = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))
     crossings = result.time[turns] - x[turns] * np.diff(result.time)[turns] / np.diff(x)[turns]
     frequency = 2.0 * np.pi / np.diff(crossings).mean()
-    tops = np.array([x[a:b].max() for a, b in zip(turns[:-1], turns[1:], strict=True)])
+    tops = np.array([x[a:b].max() for a, b in pairwise(turns)])
     rate = -np.polyfit(crossings[:-1], np.log(tops), 1)[0]
     loaded = sim.contacts()["raceway_interference"][:, 1].max(axis=-1)
     share = (loaded / (loaded + depth)).mean()
     assert 1.5e5 < frequency < 3.5e5
     assert rate == pytest.approx(time * share / (10.0 / 9.0) * frequency**2 / 2.0, rel=0.01)
 
-
-def test_hardly_loaded_contacts_are_damped_as_a_film_between_rigid_surfaces() -> None:
-    """Reynolds' equation of a cylinder and a plane, solved here: at 2 to 5 m/s the coefficient is on both sides of the assumed one."""
+    """Reynolds' equation of a cylinder and a plane, solved here: at 2 to 5 m/s it gives less and more than what is assumed."""
 
     def load(s: float) -> float:
         def slope(x: float, r: float) -> float:

@@ -107,7 +107,10 @@ def docstring(name: str, arguments: list[str], text: str) -> str:
     """The docstring of a law in numpydoc form: what it gives, then each argument with unit and meaning."""
     lines = [f"{text[0].upper()}{text[1:]}.", "", "Parameters", "----------"]
     for argument in arguments:
-        unit, meaning = OF_ONE_LAW.get((name, argument)) or ARGUMENTS[argument]
+        known = OF_ONE_LAW.get((name, argument)) or ARGUMENTS.get(argument)
+        if known is None:
+            raise RuntimeError(f"trbdyn/laws/texts.py does not say what the argument {argument} of the law {name} is")
+        unit, meaning = known
         word = meaning.split()[0]  # symbols keep their case
         said = f"{meaning[0].upper()}{meaning[1:]}" if word.isalpha() else meaning
         lines += [f"{argument} : array_like", f"    {said} ({unit})."]

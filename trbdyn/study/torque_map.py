@@ -17,6 +17,7 @@ from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.scene import Scene
+from trbdyn.results.fields import table
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Base, Case, Study
 from trbdyn.study.runner import run as run_study
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SOURCES: Final = (
+_USUAL: Final = (
     "rolling",
     "rib",
     "traction",
@@ -40,6 +41,8 @@ SOURCES: Final = (
     "support",
     "vibration",
 )
+_LOSSES: Final = tuple(field.name.removeprefix("loss_") for field in table() if field.name.startswith("loss_"))
+SOURCES: Final = (*_USUAL, *(name for name in _LOSSES if not name.startswith(_USUAL)))
 """Names of the shares of a torque. What a run calls rolling_pressure belongs to rolling, both raceways make traction, film and
 contact of a land are one."""
 FILMS: Final = ("film_parameter_inner", "film_parameter_rib")
@@ -342,7 +345,7 @@ def _shares(found: xarray.Dataset) -> Array:
         part = str(name).removeprefix("torque_by_loss_")
         if part == name:
             continue
-        kind = next((kind for kind in SOURCES if part.startswith(kind)), part)
+        kind = next(kind for kind in SOURCES if part.startswith(kind))
         sums[kind] += float(np.nan_to_num(value))
     return np.array([sums[name] for name in SOURCES])
 
