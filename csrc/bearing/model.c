@@ -162,9 +162,7 @@ static void fill_constants(trb_model *m)
   m->friction = !(dry && p->dry_friction <= 0.0) && !(full && p->traction == TRB_TRACTION_NONE);
   m->pocket_friction = dry ? p->dry_friction > 0.0 : !(full && p->traction == TRB_TRACTION_NONE);
   m->film = !dry && (p->lubrication != TRB_LUBRICATION_BOUNDARY) && (m->friction || p->rolling_resistance > 0.0);
-  m->contact_damping = p->damping == TRB_DAMPING_FILM ? p->film_damping / p->film_damping_depth :
-                       p->damping > 0.0               ? p->damping_race :
-                                                        0.0;
+  m->contact_damping = p->damping == TRB_DAMPING_FILM ? p->film_damping / p->film_damping_depth : p->damping > 0.0 ? p->damping_race : 0.0;
   m->damping_fade = p->damping == TRB_DAMPING_FILM ? 1.0 / p->film_damping_depth : 0.0;
   m->pocket_film = dry || p->lubrication == TRB_LUBRICATION_BOUNDARY ? 0.0 : p->pocket_film;
 }

@@ -75,8 +75,7 @@ static void add_slopes(const trb_model *m, const trb_pocket_touch *c, const trb_
   const double   step = 1e-6 * touch->speed, mu = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed) : 0.0;
   const double   more = m->pocket_friction ? factor * trb_sliding_coefficient(m, touch->speed + step) : 0.0;
   const double   drag = q * mu / touch->speed, bend = q * (more / (touch->speed + step) - mu / touch->speed) / (step * touch->speed);
-  const double   stiffness = c->exponent * q / c->interference,
-                 damping = q > 0.0 ? trb_cage_damping(m) * c->elastic : 0.0;
+  const double   stiffness = c->exponent * q / c->interference, damping = q > 0.0 ? trb_cage_damping(m) * c->elastic : 0.0;
   const trb_vec3 load = trb_axpy(c->normal, mu / touch->speed, touch->sliding);
   const trb_vec3 units[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const trb_vec3 force = trb_axpy(trb_scale(-q, c->normal), -drag, touch->sliding);

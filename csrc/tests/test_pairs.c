@@ -203,7 +203,7 @@ static void check_hub(int row, const seen *full, const seen *out, const seen *al
 
 static void check_loads(const trb_model *m, int row, const seen *full, const seen *out, const seen *alone)
 {
-  double elastic = 0.0, force = 0.0;
+  double elastic = 0.0, force = 0.0, moment = 0.0;
   for (int j = 0; j < m->n_rollers; j++) {
     const trb_loads *a = &full->loads[j], *b = &out->loads[j], *c = &alone->loads[j];
     CHECK_NEAR(a->elastic, b->elastic + c->elastic, 1e-12 * a->elastic);
@@ -211,10 +211,11 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
                1e-9 * (trb_norm(b->roller.force) + trb_norm(c->roller.force)) + 1e-9);
     elastic += c->elastic;
     force += trb_norm(c->roller.force);
+    moment += trb_norm(c->roller.moment);
     if (pair_of(row)->kind->margin == NULL) continue;
     CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
   }
-  if (!is_hub(row)) CHECK((elastic > 0.0) == is_contact(row) && force > 1.0);
+  if (!is_hub(row)) CHECK((elastic > 0.0) == is_contact(row) && (is_contact(row) ? force > 1.0 : force + moment > 0.0));
   CHECK(full->bounds == out->bounds + (pair_of(row)->kind->margin != NULL) && alone->bounds == full->bounds - out->bounds);
 }
 
