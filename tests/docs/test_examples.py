@@ -39,6 +39,13 @@ r = trb.Simulation(trb.cases.scene_30310(3000, 4930, effects=trb.Effects(skirt_d
 assert r["power_skirt"][-1] > 0.1 and r.energy_closure < 1e-3""",
 }
 """What each does, once it is built."""
+BUILT = """
+import sys
+sys.meta_path = [finder for finder in sys.meta_path if getattr(finder, "__module__", "").startswith("_frozen")]
+sys.path.insert(0, ".")
+import trbdyn as trb
+"""
+"""The package of this folder, and not the one that an editable installation finds wherever it is asked for."""
 
 
 @pytest.fixture
@@ -99,7 +106,7 @@ def test_it_does_what_the_page_says(example: Path, copy: Path) -> None:
     )
     assert tested.returncode == 0, tested.stdout[-4000:]
     done = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", "import trbdyn as trb" + SHOWN[example.stem]],
+        [sys.executable, "-W", "ignore", "-c", BUILT + SHOWN[example.stem]],
         cwd=copy / "there",
         env=env,
         capture_output=True,
