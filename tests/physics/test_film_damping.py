@@ -107,6 +107,18 @@ def test_without_films_the_coefficient_is_constant(kit: SimpleNamespace) -> None
         ({"damping": "off", "film_damping_depth": 1e-6}, "film_damping_depth"),
     ],
 )
-def test_a_coefficient_that_acts_nowhere_is_refused(changes: dict, field: str) -> None:
+def test_a_coefficient_that_would_act_nowhere_is_refused(changes: dict, field: str) -> None:
     with pytest.raises(InputError, match=rf"{field} = .*acts with damping"):
-        Effects(**changes)
+        Effects().replace(**changes)
+    with pytest.raises(InputError, match=rf"{field} = .*acts with damping"):
+        trb.cases.scene_30310(3000.0, 4930.0).replace({f"effects.{name}": value for name, value in changes.items()})
+    if "damping" not in changes:
+        with pytest.raises(InputError, match=rf"{field} = .*acts with damping"):
+            Effects(**changes)
+
+
+def test_laws_may_be_changed_whatever_was_given_to_another_one() -> None:
+    """Plans and studies switch damping off and on."""
+    effects = Effects(film_damping=2e-6).replace(damping="off").replace(damping="hunt_crossley", damping_race=2.0)
+    assert effects.replace(damping="film").film_damping == 2e-6
+    assert Effects(**effects.to_dict()) == effects

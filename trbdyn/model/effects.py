@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import model_validator
 
-from trbdyn.base.validation import Flag, Model, Number, Whole
+from trbdyn.base.validation import Flag, Model, Number, Whole, split_paths
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.core_table import parameter
 from trbdyn.model.lubricants.supply import OIL_SUPPLIES
+
+FILMED: Final = ("mixed", "full_film")
+"""Kinds of lubrication with films."""
 
 
 class Friction(Model):
@@ -68,6 +72,17 @@ class Friction(Model):
                 "lambda_full", self.lambda_full, f"must be > lambda_boundary, {self.lambda_boundary:g} (1)"
             )
         return self
+
+
+def _refuse_idle(damping: str, lubrication: str, given: Mapping[str, Any]) -> None:
+    """Coefficients that somebody gives, and that the law of damping does not use."""
+    if "damping_race" in given and damping == "film" and lubrication in FILMED:
+        raise InputError.of(
+            "damping_race", given["damping_race"], "acts with damping = 'hunt_crossley' only; damping is 'film' here"
+        )
+    for name in ("film_damping", "film_damping_depth"):
+        if name in given and damping != "film":
+            raise InputError.of(name, given[name], f"acts with damping = 'film' only; damping is {damping!r} here")
 
 
 class Effects(Model):
@@ -204,6 +219,8 @@ class Effects(Model):
             return values
         if values.get("rolling_resistance") is False and "rolling_pressure_force" not in values:
             values = {**values, "rolling_pressure_force": False}
+        if "damping" not in values:
+            _refuse_idle("film", values.get("lubrication", "mixed"), values)
         fill = values.get("oil_fill")
         if isinstance(fill, str):
             if fill not in OIL_SUPPLIES:
@@ -219,30 +236,20 @@ class Effects(Model):
             raise InputError.of("rolling_pressure_force", True, "needs rolling_resistance = True")
         if self.guidance != "rollers" and self.bodies == "rollers":
             raise InputError.of("guidance", self.guidance, "needs a cage: bodies = 'rollers_and_cage'")
-        self._check_damping()
         if self.n_slices == 1 and not self.back_rib:
             raise InputError.of("n_slices", 1, "must be >= 2 without back_rib: one slice lets rollers tilt freely")
         return self
 
-    def _check_damping(self) -> None:
-        """Coefficients of the law that is not chosen would act nowhere."""
-        by_films = self.damping == "film" and self.films
-        idle = (
-            ("damping_race",) if by_films else () if self.damping == "film" else ("film_damping", "film_damping_depth")
-        )
-        for name in idle:
-            if (value := getattr(self, name)) != type(self).model_fields[name].default:
-                where = (
-                    "damping = 'film'"
-                    if name in ("film_damping", "film_damping_depth")
-                    else "damping = 'hunt_crossley'"
-                )
-                raise InputError.of(name, value, f"acts with {where} only; damping is {self.damping!r} here")
+    def replace(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Self:
+        """As of every input; a coefficient of damping that would act nowhere is refused."""
+        fields = {**(self._changed(split_paths(changes)) if changes is not None else {}), **fields}
+        _refuse_idle(fields.get("damping", self.damping), fields.get("lubrication", self.lubrication), fields)
+        return super().replace(**fields)
 
     @property
     def films(self) -> bool:
         """Whether contacts have lubricant films."""
-        return self.lubrication in ("mixed", "full_film")
+        return self.lubrication in FILMED
 
     @classmethod
     def standard(cls) -> Self:
