@@ -21,7 +21,15 @@ FOUND = sorted((HERE / "found").glob("*.json"))
 
 def _seeds() -> list[Any]:
     """Five scenes of each kind; of those that take longer the quickest, and the others among the slow tests."""
-    quick = {"cylindrical": (1, 2), "light": (0,), "pair": (3,), "pieces": (0,), "pitted": (0, 4), "repeating": (2,)}
+    quick = {
+        "cylindrical": (1, 2),
+        "damped": (1, 2, 3),
+        "light": (0,),
+        "pair": (3,),
+        "pieces": (0,),
+        "pitted": (0, 4),
+        "repeating": (2,),
+    }
     quick |= {
         "filmed": (2, 3, 4),
         "free": (0, 1, 3, 4),
