@@ -74,6 +74,8 @@ static trb_status join(const trb_system *s, trb_pair *pair, trb_message *message
     if (at < 0 || at >= s->n_surfaces || s->surfaces[at].shape != pair->kind->shape[side])
       return trb_fail(message, TRB_ERR_INPUT, "pair %s: surface %d is none that a pair of the kind '%s' takes there", pair->name, at,
                       pair->kind->name);
+    if (s->surfaces[at].name == NULL)
+      return trb_fail(message, TRB_ERR_INPUT, "pair %s: surface %d has no row in this system", pair->name, at);
     if (s->surfaces[at].body < TRB_ROLLERS || s->surfaces[at].body >= s->n_bodies)
       return trb_fail(message, TRB_ERR_INPUT, "surface %s: body %d: must be from %d (the rollers) to %d", s->surfaces[at].name,
                       s->surfaces[at].body, TRB_ROLLERS, s->n_bodies - 1);
@@ -125,6 +127,7 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
   s->layout = (trb_layout){.n_rollers = n_rollers, .hub = n_rollers * TRB_ROLLER_SIZE};
   for (int b = 0; b < s->n_bodies; b++) {
     trb_body *body = &s->bodies[b];
+    if (body->kind == NULL) return trb_fail(message, TRB_ERR_INPUT, "body %d has no row in this system", b);
     if (body->size == 0) body->size = body->kind->size, body->coordinates = body->kind->coordinates;
     body->first = body->size > 0 ? trb_state_main_size(s) : -1;
     s->layout.hub_width += body->size;

@@ -30,8 +30,8 @@ enum {
 
 /* Of tapered bearings. What cylindrical bearings alone have comes last: a row behind it would be cut off without a word. */
 enum { N_TAPERED_SURFACES = OTHER_END };
-_Static_assert(OUTER_FRONT_FACE == N_SURFACES - 1, "put new surfaces before OTHER_END");
-_Static_assert(TRB_PAIR_outer_front_rib == TRB_N_PAIRS - 1, "put new pairs before outer_rib in TRB_PAIRS");
+_Static_assert(N_SURFACES - OTHER_END == 3, "put new surfaces before OTHER_END");
+_Static_assert(TRB_N_PAIRS - TRB_PAIR_outer_rib == 2, "put new pairs before outer_rib in TRB_PAIRS");
 
 static void add_bodies(trb_system *s)
 {
