@@ -389,6 +389,24 @@ static void test_refused(void)
   CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "pair pocket books what is lost by rolling, and loses nothing by it");
   *system = good;
+  /* a contact that would be followed across its onset, or whose peaks nobody could tell; rows that are not there */
+  const trb_pair_kind *const whole = system->pairs[TRB_PAIR_rib].kind;
+  trb_pair_kind              part[3] = {*whole, *whole, *whole};
+  part[0].margin = NULL, part[1].look = NULL, part[2].hold = NULL;
+  for (int i = 0; i < 3; i++) {
+    system->pairs[TRB_PAIR_rib].kind = &part[i];
+    CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+    CHECK_SAYS(message.text, "pair rib: its kind 'spherical end on a conical rib' is a contact of a roller with a ring");
+    *system = good;
+  }
+  system->bodies[TRB_BODY_OIL].kind = NULL;
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "has no row in this system");
+  *system = good;
+  system->surfaces[system->pairs[TRB_PAIR_rib].surface[1]].name = NULL;
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "pair rib: surface");
+  *system = good;
   /* surfaces */
   system->pairs[TRB_PAIR_rib].surface[1] = system->pairs[TRB_PAIR_outer].surface[1];
   CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
