@@ -47,6 +47,7 @@ WHOLE = {
     "make wheels",
     "make test",
     "make lint",
+    "make format",
     "make bench",
     "make stability",
     "make fuzz",
