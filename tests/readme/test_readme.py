@@ -76,6 +76,7 @@ SLOWER = (
     "python -m trbdyn plan ",
     "python -m trbdyn torque ",
     "python -m trbdyn sweep cage_mass -o study",
+    "python tests/adversary/adversary.py ",
     "python benchmarks/torque.py",
     "python benchmarks/ordinary.py",
 )
