@@ -128,7 +128,7 @@ typedef struct trb_model {
   int           pocket_friction;               /* any friction in the pockets */
   int           film;                          /* films are needed */
   double        contact_damping;               /* normal damping of raceways and ribs where the interference is small, s/m */
-  double        damping_fade;                  /* interference beside which it halves: 1 over it, 1/m; 0: it is constant */
+  double        damping_fade;                  /* 1 over the interference at which it has fallen to half, 1/m; 0: constant */
   double        pocket_film;                   /* gap between roller and bar in which a film acts, m; 0: there is none */
   trb_modes     modes;                         /* of an elastic cage */
   trb_form      form;                          /* of surfaces off their true form */

@@ -134,8 +134,8 @@
   X(effects,    drag_coefficient,          "1",         0,      20,     "Cd: drag coefficient of a roller across its axis") \
   X(effects,    pocket_film,               "m",         0,      1e-2,   "gap between roller and bar in which the oil makes a film; 0: no film") \
   X(effects,    damping_race,              "s/m",       0,      1e4,    "Hunt-Crossley damping of raceway and rib contacts") \
-  X(effects,    film_damping,              "s",         0,      1e-2,   "damping of raceway and rib contacts by their films, over the contact's load per interference") \
-  X(effects,    film_damping_depth,        "m",         1e-9,   1,      "interference beside which it does so; with less the film alone damps") \
+  X(effects,    film_damping,              "s",         0,      1e-2,   "t of the damping of raceways and ribs by films, whose coefficient is t/(interference + d0)") \
+  X(effects,    film_damping_depth,        "m",         1e-9,   1,      "d0 of the damping by films: interference at which the coefficient has fallen to half") \
   X(effects,    damping_cage,              "s/m",       0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
   /* effects */ \
   X(effects,    with_cage,                 "choice",    0,      1,      "0 rollers only, 1 rollers and cage") \

@@ -18,8 +18,8 @@ typedef enum trb_peak_take {
 } trb_peak_take;
 
 /* Of the rollers' contacts with the rings: F(X, pair, quantity, sense). <pair>_<quantity> is `quantity` of the look of that row of the table
- * of pairs (contact/pair.h); the smallest value is wanted of films, which are there in scenes with films and under a load only. Peaks are taken of a model without friction and rolling
- * resistance: a quantity of these would be zero. */
+ * of pairs (contact/pair.h); the smallest value is wanted of films, which are there in scenes with films and under a load only. Peaks are
+ * taken of a model without friction and rolling resistance: a quantity of these would be zero. */
 #define TRB_PEAK_CONTACTS(F, X) \
   F(X, outer,     load,            MOST) \
   F(X, inner,     load,            MOST) \

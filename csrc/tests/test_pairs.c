@@ -215,7 +215,7 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
     if (pair_of(row)->kind->margin == NULL) continue;
     CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
   }
-  if (!is_hub(row)) CHECK(is_contact(row) ? elastic > 0.0 && force > 1.0 : force + moment > 0.0);
+  if (!is_hub(row)) CHECK(is_contact(row) ? elastic > 0.0 && force > 1.0 : force > 1.0 || (force == 0.0 && moment > 1e-4));
   CHECK(full->bounds == out->bounds + (pair_of(row)->kind->margin != NULL) && alone->bounds == full->bounds - out->bounds);
 }
 

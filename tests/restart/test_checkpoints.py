@@ -292,6 +292,15 @@ def test_checkpoints_that_say_what_cannot_be_are_refused(broken: Path, changes: 
         trb.resume(broken)
 
 
+def test_a_checkpoint_of_a_core_that_takes_other_numbers_is_told_from_a_damaged_one(broken: Path) -> None:
+    change(checkpoint_path(broken), model="0" * 64)
+    with pytest.raises(FileError, match="is not the one that its model hash belongs to"):
+        trb.resume(broken)
+    change(checkpoint_path(broken), build="0" * 64)
+    with pytest.raises(FileError, match="another build wrote it.*run the scene again from its start"):
+        trb.resume(broken)
+
+
 @pytest.mark.parametrize(
     "changes",
     [

@@ -55,9 +55,10 @@ def revive(
         simulated, options = subject(), RunOptions.from_dict(found.options)
         if simulated.fingerprint != found.model:
             kind = type(simulated).__name__.lower()
-            raise FileError(
-                f"{where}: the checkpoint cannot be used: its {kind} is not the one that its model hash belongs to"
-            )
+            why = f"its {kind} is not the one that its model hash belongs to"
+            if found.build != checkpoint.build_digest():
+                why = f"another build wrote it, to which its {kind} meant other numbers; run the {kind} again from its start"
+            raise FileError(f"{where}: the checkpoint cannot be used: {why}")
         settings = {name: getattr(options, name) for name in RunOptions.model_fields if name not in OF_ONE_RUN}
         sim = make(simulated, instruction_set=variant, **settings)
         if found.build != checkpoint.build_digest():
