@@ -61,8 +61,10 @@ def copy(tmp_path: Path) -> Path:
 
 
 def apply(example: Path, folder: Path) -> None:
+    # within a repository git would pass over files of a folder that is not its own, without an error
+    env = os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent)}
     done = subprocess.run(
-        ["git", "apply", "--verbose", example], cwd=folder, capture_output=True, text=True, check=False
+        ["git", "apply", "--verbose", example], cwd=folder, env=env, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, f"{example.name} has to follow the sources: {done.stderr}"
 

@@ -297,7 +297,7 @@ def test_a_checkpoint_of_a_core_that_takes_other_numbers_is_told_from_a_damaged_
     with pytest.raises(FileError, match="is not the one that its model hash belongs to"):
         trb.resume(broken)
     change(checkpoint_path(broken), build="0" * 64)
-    with pytest.raises(FileError, match="another build wrote it.*run the scene again from its start"):
+    with pytest.raises(FileError, match=r"another build wrote it.*run the scene again from its start"):
         trb.resume(broken)
 
 
