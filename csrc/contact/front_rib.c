@@ -9,15 +9,19 @@
 #include "contact/pair.h"
 #include "surface/circle.h"
 
+static trb_circle_meeting meet(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, trb_circle circle)
+{
+  const trb_vec3 a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
+  return trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
+}
+
 static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_pair *pair, int row,
                         trb_counters *counters, trb_loads *to, trb_contact *c)
 {
-  const trb_vec3   a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
-  const trb_circle circle = ((const trb_circle *)pair->own)[edge];
-
-  const trb_circle_meeting meeting =
-      trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
-  const double d = meeting.depth;
+  const trb_vec3           a = r->frame.a;
+  const trb_circle         circle = ((const trb_circle *)pair->own)[edge];
+  const trb_circle_meeting meeting = meet(m, r, ring, circle);
+  const double             d = meeting.depth;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
   to->margin[row] = trb_min(to->margin[row], fabs(d));
@@ -65,6 +69,13 @@ static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
   return (trb_margin_arm){.arm = arm, .ring = arm + g->outer_race_radius + m->params.total_length};
 }
 
+static void depths_of(const trb_model *m, const trb_pair *pair, int roller, const trb_roller_pose *pose, const trb_ring_pose *ring,
+                      double *depths)
+{
+  (void)roller;
+  for (int edge = 0; edge < TRB_N_DEPTHS; edge++) depths[edge] = meet(m, pose, ring, ((const trb_circle *)pair->own)[edge]).depth;
+}
+
 /* The deepest point wanders round the end: the arm is that of the rib's edge. */
 static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
 {
@@ -92,5 +103,6 @@ const trb_pair_kind trb_pair_front_rib = {.name = "end on a plane rib",
                                           .contact = TRB_CONTACT_POINT,
                                           .evaluate = evaluate,
                                           .margin = margin_of,
+                                          .depths = depths_of,
                                           .hold = hold_of,
                                           .look = look_at};

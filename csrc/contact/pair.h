@@ -37,6 +37,9 @@ typedef struct trb_batch {
   int             n;
 } trb_batch;
 
+/* Interferences that tell how a contact with a ring has changed. */
+enum { TRB_N_DEPTHS = 2 };
+
 struct trb_lanes;
 struct trb_uneven;
 
@@ -102,8 +105,10 @@ typedef struct trb_pair_kind {
   trb_pair_evaluate *evaluate;
   /* of slow pairs */
   trb_margin_arm (*margin)(const trb_model *m, const trb_pair *pair);
-  /* interference out of the poses alone, the ring as the roller sees it, m; negative: the gap; NULL: it takes an evaluation */
-  double (*depth)(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring);
+  /* interferences out of the poses alone, the ring as the roller sees it, m; negative: gaps. Those of a line are at the ends of its nodes,
+   * those of edges at each; a point has one twice. NULL: they take an evaluation */
+  void (*depths)(const trb_model *m, const trb_pair *pair, int roller, const trb_roller_pose *pose, const trb_ring_pose *ring,
+                 double *depths);
   trb_hold_arms (*hold)(const trb_model *m, const trb_pair *pair);
   trb_pair_look *look;
   /* whether surfaces may be off their true form where a roller is; azimuth: of the roller, turned: of the ring, spin: of the roller, rad; NULL:

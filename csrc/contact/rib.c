@@ -56,7 +56,7 @@ static void evaluate_one(const trb_model *m, const trb_instant *at, const trb_pa
     const trb_race_output *out = &outputs[k];
     trb_loads             *to = &loads[j];
     if (detail != NULL) fill_detail(m, rib_of(pair), &ring[j], k, work->lanes, out, &trb_pair_contacts(m, pair, detail)[j]);
-    to->margin[row] = out->depth;
+    to->margin[row] = fabs(out->depth);
     if (!out->loaded) continue;
     const trb_load load = trb_load_of_output(out);
     trb_add_load(pair, &load, to);
@@ -85,12 +85,14 @@ static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
                           .sphere_offset = offset};
 }
 
-static double depth_of(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring)
+static void depths_of(const trb_model *m, const trb_pair *pair, int roller, const trb_roller_pose *pose, const trb_ring_pose *ring,
+                      double *depths)
 {
   const trb_rib *rib = rib_of(pair);
-  const trb_vec3 centre = trb_axpy(roller->x, rib->end.place, roller->frame.a);
-  return rib->end.radius +
-         trb_cone_at(&rib->face, ring->axis, trb_sub(centre, trb_cone_point(&rib->face, ring->centre, ring->axis))).beyond;
+  const trb_vec3 centre = trb_axpy(pose->x, rib->end.place, pose->frame.a), point = trb_cone_point(&rib->face, ring->centre, ring->axis);
+  (void)m;
+  (void)roller;
+  depths[0] = depths[1] = rib->end.radius + trb_cone_at(&rib->face, ring->axis, trb_sub(centre, point)).beyond;
 }
 
 /* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
@@ -128,6 +130,6 @@ const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
                                     .contact = TRB_CONTACT_POINT,
                                     .evaluate = evaluate,
                                     .margin = margin_of,
-                                    .depth = depth_of,
+                                    .depths = depths_of,
                                     .hold = hold_of,
                                     .look = look_at};

@@ -18,7 +18,7 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
     j->moved = calloc((size_t)trb_state_size(system), sizeof *j->moved);
     j->rates = trb_zeros(3 * width, sizeof *j->rates);
     j->changes = trb_zeros(width, sizeof *j->changes);
-    j->response = trb_zeros(width, sizeof *j->response);
+    j->response = trb_zeros(6 * width, sizeof *j->response);
     j->with = trb_zeros(width, sizeof *j->with);
     j->renewed = calloc((size_t)system->model->n_rollers, sizeof *j->renewed);
     if (j->moved == NULL || j->rates == NULL || j->changes == NULL || j->response == NULL || j->with == NULL || j->renewed == NULL)
@@ -123,16 +123,16 @@ static void respond(trb_jacobian *jac, int b, const double *y, const double *sti
     const double unit[6] = {c == 0, c == 1, c == 2, c == 3, c == 4, c == 5}, size = c < 3 ? force : force * arm * arm;
     trb_wrench   load = {trb_scale(size, trb_v(unit[0], unit[1], unit[2])), trb_scale(size, trb_v(unit[3], unit[4], unit[5]))};
     body_rates(d, b, y, &load, jac->rates);
-    for (int i = 0; i < body->size; i++) jac->response[first + i][c] = (jac->rates[first + i] - still[first + i]) / size;
+    for (int i = 0; i < body->size; i++) jac->response[6 * first + c * body->size + i] = (jac->rates[first + i] - still[first + i]) / size;
   }
 }
 
-/* Adds a body's response to a wrench. */
-static void add_response(const trb_jacobian *jac, int first, int size, const trb_wrench *load, double *rates)
+/* Adds the first rates of a body's response to a wrench: its force, then its moment. */
+static void add_response(const trb_jacobian *jac, const trb_body *body, int n, const double *wrench, double *restrict rates)
 {
-  const double of[6] = {load->force.x, load->force.y, load->force.z, load->moment.x, load->moment.y, load->moment.z};
-  for (int i = 0; i < size; i++)
-    for (int q = 0; q < 6; q++) rates[i] += of[q] * jac->response[first + i][q];
+  const double *of = jac->response + 6 * (body->first - trb_state_hub(jac->d->system));
+  for (int q = 0; q < 6; q++, of += body->size)
+    for (int i = 0; i < n; i++) rates[i] += wrench[q] * of[i];
 }
 
 /* Adds the columns of the hub that belong to the modes of a body, in closed form: they change loads, and themselves. */
@@ -143,9 +143,10 @@ static void modal_columns(trb_jacobian *jac, int b, const double *y, const doubl
   const int           first = body->first - trb_state_hub(d->system), rigid = trb_rigid_coordinates(body);
   respond(jac, b, y, still);
   for (int c = rigid; c < body->size; c++) {
-    double *column = arrow->hub + (first + c) * arrow->room + first;
+    double *column = arrow->hub + (first + c) * arrow->room + first, change[TRB_RING_OUT];
     body->kind->slopes(body, &d->bodies[b].pose, c, column);
-    add_response(jac, first, rigid, &jac->changes[first + c], column);
+    trb_ring_reaction(&jac->changes[first + c], change);
+    add_response(jac, body, rigid, change, column);
   }
 }
 
@@ -205,18 +206,10 @@ static void prepare_rings(trb_jacobian *jac, const double *y, const double *stil
       own[c] = was + h;
       body->kind->ring(d->model, body, &d->drive, own, &moved);
       own[c] = was;
-      jac->with[first + c] = difference_of(&moved, &d->bodies[b].ring, 1.0 / h);
+      moved = difference_of(&moved, &d->bodies[b].ring, 1.0 / h);
+      trb_ring_inputs(&moved, &d->drive, jac->with[first + c]);
     }
   }
-}
-
-/* Change of the reaction with a column of slopes, in R. */
-static trb_wrench reaction_of(const trb_ring_tangent *tangent, const double (*columns)[TRB_RING_OUT], const double *inputs, int n)
-{
-  double sum[TRB_RING_OUT] = {0};
-  for (int c = 0; c < n; c++)
-    for (int i = 0; i < TRB_RING_OUT; i++) sum[i] += inputs[c] * columns[c][i];
-  return trb_ring_wrench(tangent, sum);
 }
 
 /* Borders of a roller to the rings with coordinates, and its part of the slopes of their loads. */
@@ -231,23 +224,18 @@ static void fill_rings(trb_jacobian *jac, int j, trb_arrow *arrow)
     const int               first = body->first - trb_state_hub(d->system);
     const trb_ring_tangent *tangent = trb_tangents_ring(jac->tangents, j, k);
     const trb_ring_slopes  *slopes = trb_tangents_ring_slopes(jac->tangents, j, k);
-    const trb_drive        *drive = &d->drive;
-    const double            cosine = drive->cosine * tangent->cosine - drive->sine * tangent->sine;
-    const double            sine = drive->sine * tangent->cosine + drive->cosine * tangent->sine, one = 1.0;
-    const trb_wrench        now = trb_ring_wrench(tangent, tangent->value);
+    const trb_wrench        now = trb_ring_wrench(tangent->value);
     trb_add_wrench(&d->on_body[b], &now);
     trb_arrow_add_parts(arrow, leaf_of(d, j), parts_of(d, b));
-    for (int c = 0; c < TRB_NR; c++) {
-      const trb_wrench w = reaction_of(tangent, &slopes->reaction[c], &one, 1);
-      add_response(jac, first, body->size, &w, border->from + c * arrow->room + first);
-    }
+    for (int c = 0; c < TRB_NR; c++) add_response(jac, body, body->size, slopes->reaction[c], border->from + c * arrow->room + first);
     for (int c = 0; c < body->size; c++) {
-      double  inputs[TRB_RING_IN], change[TRB_NP] = {0};
+      double  change[TRB_NP] = {0}, reaction[TRB_RING_OUT] = {0};
       double *to = border->to_hub + (first + c) * TRB_NR;
-      trb_ring_inputs(&jac->with[first + c], cosine, sine, inputs);
-      kernels->add(slopes->flow[0], TRB_FLOW_ROOM, TRB_RING_IN, inputs, change);
+      kernels->add(slopes->flow[0], TRB_FLOW_ROOM, TRB_RING_IN, jac->with[first + c], change);
       for (int i = 0; i < TRB_NR; i++) to[i] += change[i];
-      const trb_wrench w = reaction_of(tangent, &slopes->reaction[TRB_TANGENT_IN], inputs, TRB_RING_IN);
+      for (int q = 0; q < TRB_RING_IN; q++)
+        for (int i = 0; i < TRB_RING_OUT; i++) reaction[i] += jac->with[first + c][q] * slopes->reaction[TRB_TANGENT_IN + q][i];
+      const trb_wrench w = trb_ring_wrench(reaction);
       trb_add_wrench(&jac->changes[first + c], &w);
     }
   }

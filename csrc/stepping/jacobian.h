@@ -20,14 +20,12 @@ typedef struct trb_jacobian {
   double       *moved;    /* scratch: a state with one coordinate moved */
   double       *rates;    /* scratch: three times the rates of the hub */
   trb_wrench   *changes;  /* scratch: slopes of the loads of the hub's bodies with each of their own coordinates */
-  /* scratch, of rings with coordinates and of bodies that deform: what a unit of each force and moment in R does to the rates; of rings: their
-   * inputs' slopes with each coordinate, in inertial axes */
-  double (*response)[6];
-  trb_ring_pose *with;
-  trb_modal     *modal[TRB_MOST_BODIES]; /* of bodies that deform */
-  int           *renewed;                /* rollers whose slopes are taken again at the next fill, ascending */
-  int            n_renewed;
-  long           rings_evaluations;
+  double *response; /* scratch, of rings with coordinates and of bodies that deform: [force or moment in R][rate]: what a unit of it does */
+  double (*with)[TRB_RING_IN];       /* scratch, of rings with coordinates: slopes of their inputs with each coordinate */
+  trb_modal *modal[TRB_MOST_BODIES]; /* of bodies that deform */
+  int       *renewed;                /* rollers whose slopes are taken again at the next fill, ascending */
+  int        n_renewed;
+  long       rings_evaluations;
 } trb_jacobian;
 
 trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,

@@ -1,8 +1,8 @@
 /* The part of a roller's tangent (stepping/tangent.h) that belongs to a ring with coordinates. What a roller and a ring do to each other
- * depends on where both are and how they move. Seen from the roller's cylindrical frame, the ring's place and motion are eleven numbers,
- * the inputs of the ring; they stand beside the roller's own coordinates in the tangent. Besides the roller's flow the tangent then gives
- * the reaction: the wrench on the ring about its centre. The frame is that of the roller at the state at which slopes were found; it turns
- * with R, so that a ring which stands still off the bearing's axis moves in it, as the roller sees it. */
+ * depends on where both are and how they move. The ring's place and motion in the frame R are eleven numbers, the inputs of the ring, which
+ * are the same for all rollers; they stand beside the roller's own coordinates in the tangent. Besides the roller's flow the tangent then
+ * gives the reaction: the wrench on the ring about its centre, in R. As R turns, a ring which stands still off the bearing's axis moves in
+ * it, as the rollers see it. */
 #ifndef TRB_STEPPING_RING_TANGENT_H
 #define TRB_STEPPING_RING_TANGENT_H
 
@@ -24,20 +24,19 @@ typedef struct trb_ring_tangent {
   double          per[TRB_RING_IN];    /* weights of a distance */
   double          curve[TRB_RING_OUT]; /* of the reaction, and the ring's part of its direction: see trb_tangent */
   double          along[TRB_RING_IN];
-  trb_ring_pose   from;         /* the ring there, in inertial coordinates */
-  double          cosine, sine; /* of the frame's angle in R */
+  trb_ring_pose   from; /* the ring there, in inertial coordinates */
 } trb_ring_tangent;
 
 /* Tolerances: those of a roller's coordinate of the same kind. */
 int trb_ring_like(int input);
-/* A ring's inputs in a frame; ring: in the frame of its coordinates, which the frame is turned against. */
-void trb_ring_inputs(const trb_ring_pose *ring, double cosine, double sine, double *inputs);
-/* Step of a ring's inputs from the origin at the poses kept in the dynamics; gives the sum of squares of step times per. */
-double trb_ring_step(const trb_ring_tangent *tangent, const trb_dynamics *d, int body, double *step);
-/* A wrench in R as a reaction in the tangent's frame, and back. */
-void       trb_ring_reaction(const trb_ring_tangent *tangent, const trb_wrench *in_r, double *reaction);
-trb_wrench trb_ring_wrench(const trb_ring_tangent *tangent, const double *reaction);
-/* Moves one input of a ring's pose. */
-void trb_ring_move(trb_ring_pose *ring, int input, double by);
+/* A ring's inputs in R, which is turned against the frame of the ring's pose; or the slopes of inputs, from those of a pose. */
+void trb_ring_inputs(const trb_ring_pose *ring, const trb_drive *drive, double *inputs);
+/* Step of a ring's inputs from the origin; gives the sum of squares of step times per. */
+double trb_ring_step(const trb_ring_tangent *tangent, const double *inputs, double *step);
+/* Moves a ring, as a roller sees it, by one of its inputs; cosine, sine: of the roller's angle in R. */
+void trb_ring_move(trb_ring_pose *ring, int input, double by, double cosine, double sine);
+/* A wrench in R as a reaction, and back. */
+void       trb_ring_reaction(const trb_wrench *wrench, double *reaction);
+trb_wrench trb_ring_wrench(const double *reaction);
 
 #endif

@@ -117,7 +117,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
     const int    j = chosen[k];
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
-    memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
+    trb_tangent_see(t, d, j);
     memcpy(r->origin, y + trb_state_roller(d->system, j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
     trb_tangent_straighten(t, j);
@@ -202,20 +202,23 @@ static double slipped(const trb_params *p, const double *step)
 }
 
 /* Whether contacts that a bound leaves open have changed their interference by less than a share of their margin all the same. Bounds add up what
- * bodies do that move together, as a roller that follows a rib which leans. Of a point contact the interference itself can be had. */
+ * bodies do that move together, as a roller that follows a rib which leans, or that rolls along a raceway askew. The interferences themselves
+ * can be had out of the poses. */
 static int is_near(const trb_tangents *t, const trb_dynamics *d, int roller, const double *y, unsigned open)
 {
-  const double   *margin = t->rollers[roller].margin, share = t->measure->margin_share;
-  trb_roller_pose pose;
-  for (int i = 0; i < t->arms.n; i++)
-    if (open >> i & 1U && d->system->pairs[t->arms.row[i]].kind->depth == NULL) return 0;
+  const trb_tangent *r = &t->rollers[roller];
+  trb_roller_pose    pose;
   trb_roller_pose_unpack(d->model, &d->drive, roller, y, &pose);
   for (int i = 0; i < t->arms.n; i++) {
     if (!(open >> i & 1U)) continue;
-    const int           row = t->arms.row[i];
-    const trb_pair     *pair = &d->system->pairs[row];
+    const trb_pair *pair = &d->system->pairs[t->arms.row[i]];
+    const double    may = t->measure->margin_share * r->margin[t->arms.row[i]];
+    double          now[TRB_N_DEPTHS];
+    if (pair->kind->depths == NULL) return 0;
     const trb_ring_pose ring = trb_dynamics_ring_seen(d, pair->b, &pose);
-    if (!(fabs(pair->kind->depth(pair, &pose, &ring) - margin[row]) <= share * fabs(margin[row]))) return 0;
+    pair->kind->depths(d->model, pair, roller, &pose, &ring, now);
+    for (int e = 0; e < TRB_N_DEPTHS; e++)
+      if (!(fabs(now[e] - r->depths[i][e]) <= may)) return 0;
   }
   return 1;
 }
@@ -227,6 +230,7 @@ static void begin(void *self, const trb_dynamics *d, double time)
   t->under_way = trb_motion_under_way(d->motion, time);
   t->slip = slip_allowed(d, t->measure->slip_share);
   trb_ring_offsets_of(d->system, d->bodies, t->offsets);
+  trb_rings_place(t, d);
   for (int j = 0; t->under_way && j < d->model->n_rollers; j++) t->rollers[j].known = 0;
 }
 
@@ -238,9 +242,9 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   const trb_block_kernels   *kernels = measure->factors->kernels;
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
   if (t->under_way) return 0;
-  const double distance2 =
-      r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, d, roller, of_ring)
-               : (double)INFINITY;
+  const double distance2 = r->known
+                               ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, roller, of_ring)
+                               : (double)INFINITY;
   const double slid = slipped(&t->model->params, step) + trb_rings_moved(t, d, roller);
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip);
   if (!t->beyond[roller]) {
@@ -256,7 +260,7 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
     double                  reaction[TRB_RING_OUT];
     kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->least, flow, reaction);
     for (int i = 0; i < TRB_RING_OUT; i++) reaction[i] += by * ring->curve[i];
-    reactions[k] = trb_ring_wrench(ring, reaction);
+    reactions[k] = trb_ring_wrench(reaction);
   }
   return 1;
 }

@@ -32,6 +32,17 @@ void trb_tangent_straighten(trb_tangents *t, int roller)
   }
 }
 
+void trb_tangent_see(trb_tangents *t, const trb_dynamics *d, int roller)
+{
+  trb_tangent *r = &t->rollers[roller];
+  memcpy(r->margin, d->loads[roller].margin, sizeof r->margin);
+  for (int i = 0; i < t->arms.n; i++) {
+    const trb_pair *pair = &d->system->pairs[t->arms.row[i]];
+    if (pair->kind->depths == NULL) continue;
+    pair->kind->depths(d->model, pair, roller, &d->rollers[roller], &d->bodies[pair->b].in_frame[roller], r->depths[i]);
+  }
+}
+
 static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const double *y)
 {
   for (int i = 0; i < TRB_NR; i++) r->per[i] = trb_tangent_weight(measure, i, y[i]);
@@ -109,7 +120,7 @@ static trb_found compare(const trb_tangents *t, int roller, const trb_tangent_me
     const trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
     double                  exact[TRB_RING_OUT];
     kernels->follow_ring(&ring->slopes, ring->value, step, of_ring[k], t->anything, error, off[k]);
-    trb_ring_reaction(ring, &reactions[k], exact);
+    trb_ring_reaction(&reactions[k], exact);
     for (int i = 0; i < TRB_RING_OUT; i++) {
       off[k][i] = exact[i] - off[k][i];
       left_off[k][i] = off[k][i] - by * ring->curve[i];
@@ -129,14 +140,14 @@ static trb_found compare(const trb_tangents *t, int roller, const trb_tangent_me
 void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const double *y, const double *flow, const trb_wrench *reactions)
 {
   const trb_tangent_measure *measure = t->measure;
-  const double               turn = d->drive.frame_angle, *margin = d->loads[roller].margin;
+  const double               turn = d->drive.frame_angle;
   const int                  n_moving = t->system->n_moving;
   double                     of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN], off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
   trb_tangent               *r = &t->rollers[roller];
   const trb_block_kernels   *kernels = measure->factors->kernels;
   double                     step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];
   if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
-  const double by_rings = r->known ? trb_rings_step(t, d, roller, of_ring) : 0.0;
+  const double by_rings = r->known ? trb_rings_step(t, roller, of_ring) : 0.0;
   const double length = r->known ? sqrt(kernels->step_from(r->origin, r->per, y, turn, step) + by_rings) : 0.0;
   if (r->known && length > 0.0 && length < farthest) {
     double          direction[TRB_TANGENT_IN];
@@ -161,7 +172,7 @@ void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const
     r->reach = trb_first_reach;
     trb_tangent_straighten(t, roller);
   }
-  memcpy(r->margin, margin, sizeof r->margin);
+  trb_tangent_see(t, d, roller);
   memcpy(r->value, flow, sizeof r->value);
   memcpy(r->origin, y, TRB_NR * sizeof *y);
   r->origin[TRB_TANGENT_TURN] = turn;

@@ -11,7 +11,7 @@ void trb_rings_differentiate_reactions(trb_tangents *t, const trb_dynamics *d, i
     trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
     double            moved[TRB_RING_OUT];
     if (only >= 0 && k != only) continue;
-    trb_ring_reaction(ring, &reactions[k], moved);
+    trb_ring_reaction(&reactions[k], moved);
     for (int i = 0; i < TRB_RING_OUT; i++) ring->slopes.reaction[input][i] = per * (moved[i] - ring->value[i]);
   }
 }
@@ -27,16 +27,13 @@ void trb_rings_see(trb_tangents *t, trb_dynamics *d, int put_back)
 
 void trb_rings_begin(trb_tangents *t, const trb_dynamics *d, int roller)
 {
-  const trb_roller_pose *r = &d->rollers[roller];
-  trb_wrench             reactions[TRB_MOST_MOVING_RINGS];
+  trb_wrench reactions[TRB_MOST_MOVING_RINGS];
   trb_dynamics_roller_reactions(d, roller, &d->loads[roller], reactions);
   for (int k = 0; k < t->system->n_moving; k++) {
     trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
-    ring->cosine = r->cosine;
-    ring->sine = r->sine;
     ring->from = d->bodies[t->system->moving[k]].ring;
-    trb_ring_inputs(&d->bodies[t->system->moving[k]].in_frame[roller], 1.0, 0.0, ring->origin);
-    trb_ring_reaction(ring, &reactions[k], ring->value);
+    trb_ring_inputs(&ring->from, &d->drive, ring->origin);
+    trb_ring_reaction(&reactions[k], ring->value);
   }
 }
 
@@ -51,7 +48,10 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
     for (int i = 0; i < n; i++) trb_dynamics_roller_flow(d, chosen[i], &d->loads[chosen[i]], t->partly[chosen[i]]);
     for (int c = 0; c < TRB_RING_IN; c++) {
       const double h = trb_difference[trb_roller_tolerance(trb_ring_like(c))], per = 1.0 / h;
-      for (int i = 0; i < n; i++) trb_ring_move(&d->bodies[body].in_frame[chosen[i]], c, h);
+      for (int i = 0; i < n; i++) {
+        const trb_roller_pose *r = &d->rollers[chosen[i]];
+        trb_ring_move(&d->bodies[body].in_frame[chosen[i]], c, h, r->cosine, r->sine);
+      }
       trb_contact_slow_of(d->model, &at, body, d->work, d->loads);
       for (int q = 0; q < n; q++) {
         const int         j = chosen[q];
@@ -83,10 +83,15 @@ double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, cons
   return sqrt(sum);
 }
 
-double trb_rings_step(const trb_tangents *t, const trb_dynamics *d, int roller, double (*steps)[TRB_RING_IN])
+void trb_rings_place(trb_tangents *t, const trb_dynamics *d)
+{
+  for (int k = 0; k < t->system->n_moving; k++) trb_ring_inputs(&d->bodies[t->system->moving[k]].ring, &d->drive, t->inputs[k]);
+}
+
+double trb_rings_step(const trb_tangents *t, int roller, double (*steps)[TRB_RING_IN])
 {
   double sum = 0.0;
-  for (int k = 0; k < t->system->n_moving; k++) sum += trb_ring_step(trb_tangents_ring_of(t, roller, k), d, t->system->moving[k], steps[k]);
+  for (int k = 0; k < t->system->n_moving; k++) sum += trb_ring_step(trb_tangents_ring_of(t, roller, k), t->inputs[k], steps[k]);
   return sum;
 }
 
@@ -106,11 +111,9 @@ void trb_rings_move_origin(trb_tangents *t, const trb_dynamics *d, int roller, c
 {
   for (int k = 0; k < t->system->n_moving; k++) {
     trb_ring_tangent *ring = trb_tangents_ring_of(t, roller, k);
-    const trb_drive  *drive = &d->drive;
     ring->from = d->bodies[t->system->moving[k]].ring;
-    trb_ring_inputs(&ring->from, drive->cosine * ring->cosine - drive->sine * ring->sine,
-                    drive->sine * ring->cosine + drive->cosine * ring->sine, ring->origin);
-    trb_ring_reaction(ring, &reactions[k], ring->value);
+    memcpy(ring->origin, t->inputs[k], sizeof ring->origin);
+    trb_ring_reaction(&reactions[k], ring->value);
     for (int i = 0; i < TRB_RING_IN; i++) ring->per[i] = trb_tangent_weight(measure, trb_ring_like(i), ring->origin[i]);
   }
 }

@@ -13,15 +13,17 @@ static inline trb_ring_tangent *trb_tangents_ring_of(const trb_tangents *t, int 
 void trb_rings_differentiate_reactions(trb_tangents *t, const trb_dynamics *d, int roller, int input, double per, int only);
 /* The rings with coordinates as every roller sees them are kept, or put back. */
 void trb_rings_see(trb_tangents *t, trb_dynamics *d, int put_back);
-/* The origin of each roller's part that belongs to a ring, and the frame in which it is written. */
+/* The origin of each roller's part that belongs to a ring. */
 void trb_rings_begin(trb_tangents *t, const trb_dynamics *d, int roller);
-/* Slopes of n chosen rollers with the inputs of the rings: each sees the ring moved along its own axes. Only contacts with this ring change. */
+/* Slopes of n chosen rollers with the inputs of the rings. Only contacts with the ring that is moved change. */
 void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen, int n);
 /* Error of a step of the ring, in tolerances, from an error in a reaction, if those of all rollers are alike; moments count by an arm of
  * half the pitch diameter. */
 double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error);
-/* Steps of all inputs of rings, one after the other, from the origin to the poses kept; gives the sum of squares of weighted steps. */
-double trb_rings_step(const trb_tangents *t, const trb_dynamics *d, int roller, double (*steps)[TRB_RING_IN]);
+/* The inputs of the rings at the poses kept in the dynamics. */
+void trb_rings_place(trb_tangents *t, const trb_dynamics *d);
+/* Their steps from a roller's origin, one ring after the other; gives the sum of squares of weighted steps. */
+double trb_rings_step(const trb_tangents *t, int roller, double (*steps)[TRB_RING_IN]);
 /* Broyden's correction of the part of a ring by the errors of flow and reaction. to_roller, to_ring: directions of the correction. */
 void trb_rings_correct(trb_ring_tangent *ring, const double *in_flow, const double *in_reaction, const double *to_roller,
                        const double *to_ring);

@@ -172,29 +172,37 @@ static void test_kinds(void)
   rig_free(system);
 }
 
-/* What rollers do to a ring in the frames of their tangents: a wrench comes back, and has its components along the frame's axes. */
-static void test_reactions(void)
+/* The inputs of a ring: in R, and moved along R's axes by rollers that see the ring from their own frames; a reaction comes back as a wrench. */
+static void test_inputs(void)
 {
-  const trb_wrench wrench = {{1, -2, 3}, {-4, 5, 6}};
+  const trb_ring_pose ring = {{0.01, -0.02, 1.0}, {1e-3, 2e-3, 0.1}, {0.3, -0.2, 0.1}, {1, -2, 300}, 0.0};
+  const trb_wrench    wrench = {{1, -2, 3}, {-4, 5, 6}};
+  double              reaction[TRB_RING_OUT];
+  trb_ring_reaction(&wrench, reaction);
+  const trb_wrench back = trb_ring_wrench(reaction);
+  CHECK(memcmp(&back, &wrench, sizeof wrench) == 0);
   for (int i = 0; i < 8; i++) {
-    const trb_ring_tangent t = {.cosine = cos(i), .sine = sin(i)};
-    double                 reaction[TRB_RING_OUT];
-    trb_ring_reaction(&t, &wrench, reaction);
-    const trb_wrench back = trb_ring_wrench(&t, reaction);
-    CHECK_NEAR(trb_norm(trb_sub(back.force, wrench.force)), 0.0, 1e-14);
-    CHECK_NEAR(trb_norm(trb_sub(back.moment, wrench.moment)), 0.0, 1e-14);
-    const trb_vec3 first = trb_v(t.cosine, t.sine, 0.0), second = trb_v(-t.sine, t.cosine, 0.0);
-    CHECK_NEAR(reaction[0], trb_dot(wrench.force, first), 1e-14);
-    CHECK_NEAR(reaction[1], trb_dot(wrench.force, second), 1e-14);
-    CHECK_NEAR(reaction[3], trb_dot(wrench.moment, first), 1e-14);
-    CHECK_NEAR(reaction[4], trb_dot(wrench.moment, second), 1e-14);
+    const double    frame = 0.7 * i, angle = cos(i);
+    const trb_drive drive = {.cosine = cos(frame), .sine = sin(frame)}, turned = {.cosine = cos(-angle), .sine = sin(-angle)};
+    double          inputs[TRB_RING_IN], moved[TRB_RING_IN];
+    trb_ring_inputs(&ring, &drive, inputs);
+    CHECK_NEAR(inputs[0] * cos(frame) - inputs[1] * sin(frame), ring.centre.x, 1e-15);
+    CHECK_NEAR(inputs[3] * sin(frame) + inputs[4] * cos(frame), ring.axis.y, 1e-15);
+    CHECK_NEAR(inputs[5] * cos(frame) - inputs[6] * sin(frame), ring.velocity.x, 1e-15);
+    CHECK(inputs[7] == ring.velocity.z && inputs[10] == ring.omega.z);
+    for (int c = 0; c < TRB_RING_IN; c++) {
+      trb_ring_pose seen = trb_ring_pose_in_frame(&ring, cos(frame + angle), sin(frame + angle));
+      trb_ring_move(&seen, c, 1e-3, cos(angle), sin(angle));
+      trb_ring_inputs(&seen, &turned, moved);
+      for (int k = 0; k < TRB_RING_IN; k++) CHECK_NEAR(moved[k] - inputs[k], k == c ? 1e-3 : 0.0, 1e-12);
+    }
   }
 }
 
 int main(void)
 {
   test_kinds();
-  test_reactions();
+  test_inputs();
   test_common_turn(TRB_GUIDANCE_ROLLERS);
   test_common_turn(TRB_GUIDANCE_INNER_LAND);
   test_common_turn(TRB_GUIDANCE_OUTER_LAND);

@@ -294,7 +294,7 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
     /* a slip within what is allowed, a way towards a raceway, a slip beyond, a way along the rib that its bound does not tell from one
      * towards it, and one towards it */
     const int    moved[] = {TRB_ROLLER_v_t, TRB_ROLLER_r, TRB_ROLLER_v_t, TRB_ROLLER_r, TRB_ROLLER_z};
-    const double by[] = {0.99 * slip, 0.51 * race, 1.01 * slip, fmin(0.9 * rib, 0.49 * race), 0.52 * rib};
+    const double by[] = {0.99 * slip, 0.53 * race, 1.01 * slip, fmin(0.9 * rib, 0.49 * race), 0.52 * rib};
     if (!CHECK(rib < 0.9 * race)) return;
     memcpy(y, b.y, sizeof y);
     y[trb_state_roller(b.system, j) + moved[k]] += by[k];
