@@ -137,25 +137,11 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
   }
 }
 
-static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
+static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_cone     *race = nodes_of(pair)->cone;
-  const double        chain = trb_chain_length(m), reach = chain + trb_clearance_play(m);
-  const double        axial = fabs(race->place + g->roller_mass_offset * m->axis_cosine) + reach;
-  return (trb_margin_arm){.arm = chain, .ring = trb_cone_turned(race, g->roller_centre_radius + reach, axial)};
-}
-
-static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
-{
-  const double    chain = trb_chain_length(m);
   const trb_cone *race = nodes_of(pair)->cone;
-  return (trb_hold_arms){fabs(race->cosine),
-                         fabs(race->sine),
-                         chain,
-                         chain,
-                         m->params.total_length + m->params.roller_diameter,
-                         0.5 * m->geometry.roller_centre_radius};
+  const double    chain = trb_chain_length(m);
+  *arms = trb_arms_on_cone(m, race, -chain, chain, fabs(race->place + m->geometry.roller_mass_offset * m->axis_cosine) + chain);
 }
 
 static void look_at_race(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work, double share,
@@ -201,8 +187,7 @@ const trb_pair_kind trb_pair_raceway = {.name = "flank on a raceway",
                                                       TRB_LOSES(TRB_BY_ROLLING_PRESSURE) | TRB_LOSES(TRB_BY_DAMPING),
                                         .contact = TRB_CONTACT_LINE,
                                         .evaluate = evaluate,
-                                        .margin = margin_of,
-                                        .hold = hold_of,
+                                        .arms = arms_of,
                                         .look = look_at_races,
                                         .uneven = is_uneven,
                                         .change = change_of};

@@ -69,20 +69,10 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
   for (int i = 0; i < batch->n; i++) evaluate_one(m, at, batch->pairs[i], batch->index[i], work, loads, detail);
 }
 
-static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
+static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_rib      *rib = rib_of(pair);
-  const trb_sphere   *end = &rib->end;
-  const double        arm = fabs(end->place), play = trb_clearance_play(m);
-  const double        offset = fabs(g->roller_centre_radius + end->place * m->axis_sine);
-  const double        axial = fabs(rib->face.place) + end->radius * fabs(rib->face.sine);
-  return (trb_margin_arm){.arm = arm,
-                          .ring = trb_cone_turned(&rib->face, offset + play, axial + play),
-                          .on_end = 1,
-                          .normal_sine = fabs(rib->face.cosine),
-                          .normal_lean = rib->normal_lean,
-                          .sphere_offset = offset};
+  const trb_rib *rib = rib_of(pair);
+  *arms = trb_arms_on_cone(m, &rib->face, rib->end.place, rib->end.place, fabs(rib->face.place) + rib->end.radius * fabs(rib->face.sine));
 }
 
 static double depth_of(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring)
@@ -91,21 +81,6 @@ static double depth_of(const trb_pair *pair, const trb_roller_pose *roller, cons
   const trb_vec3 centre = trb_axpy(roller->x, rib->end.place, roller->frame.a);
   return rib->end.radius +
          trb_cone_at(&rib->face, ring->axis, trb_sub(centre, trb_cone_point(&rib->face, ring->centre, ring->axis))).beyond;
-}
-
-/* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
-static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
-{
-  const trb_geometry *g = &m->geometry;
-  const trb_cone     *face = &rib_of(pair)->face;
-  const double        station = rib_of(pair)->end.place;
-  const double        lean = fabs(face->cosine * m->axis_cosine + face->sine * m->axis_sine);
-  return (trb_hold_arms){fabs(face->cosine),
-                         fabs(face->sine),
-                         lean * fabs(station),
-                         fabs(station),
-                         m->params.total_length + m->params.roller_diameter,
-                         fabs(g->roller_centre_radius + station * m->axis_sine)};
 }
 
 static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
@@ -127,7 +102,6 @@ const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
                                     .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
                                     .contact = TRB_CONTACT_POINT,
                                     .evaluate = evaluate,
-                                    .margin = margin_of,
+                                    .arms = arms_of,
                                     .depth = depth_of,
-                                    .hold = hold_of,
                                     .look = look_at};

@@ -48,7 +48,7 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
-  t->arms = trb_margin_arms_of(system);
+  t->arms = trb_ring_arms_of(system);
   t->least_mass = INFINITY;
   for (int k = 0; k < system->n_moving; k++) {
     const trb_body *body = &system->bodies[system->moving[k]];
@@ -244,7 +244,7 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   const double slid = slipped(&t->model->params, step) + trb_rings_moved(t, d, roller);
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip);
   if (!t->beyond[roller]) {
-    const unsigned open = trb_margin_open(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
+    const unsigned open = trb_bounds_open(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
     t->beyond[roller] = open != 0U && !is_near(t, d, roller, y, open);
   }
   r->served += !t->beyond[roller];

@@ -15,7 +15,7 @@
  *
  * An error that was measured in one direction says little about another direction, and a tangent cannot foresee that a contact begins or
  * ends or that the oil yields. Two more bounds therefore hold, whatever the reach is. While a tangent is followed no contact with a
- * raceway or a rib can begin or end; motion/margin.h proves that. And the roller's slip changes by at most a share of its rolling speed,
+ * raceway or a rib can begin or end; motion/bound.h proves that. And the roller's slip changes by at most a share of its rolling speed,
  * within which friction is linear.
  *
  * A ring that moves by itself adds its own inputs and outputs (stepping/ring_tangent.h). */
@@ -24,7 +24,7 @@
 
 #include <math.h>
 
-#include "motion/margin.h"
+#include "motion/bound.h"
 #include "motion/rhs.h"
 #include "stepping/arrow.h"
 
@@ -64,7 +64,7 @@ typedef struct trb_tangents {
   double                            slip;                     /* by which a roller may slip away from its origin in this evaluation, m/s */
   int                              *beyond;                   /* scratch: whether a bound of the tangent is passed */
   trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
-  trb_margin_arms                   arms;                     /* what bounds the change of an interference */
+  trb_ring_arms                     arms;                     /* what bounds the change of an interference */
   double                            time;                     /* at which the slopes of all rollers were last evaluated, s */
   int                               has_slopes;               /* whether they were at all */
 } trb_tangents;
