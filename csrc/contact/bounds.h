@@ -19,10 +19,10 @@ typedef struct trb_arms {
   double body[TRB_PLACE_OF_BODY];
   /* of a pair with a ring, whose arms depend on how ring and roller stand (trb_way_on_ring); its arm of the orbit angle is that dependence alone */
   double skew, tilt; /* shares of the roller's arms of skew and tilt that count where nothing is turned */
-  double across;     /* part of the normal across the ring's axis */
-  double along;      /* part of the normal along the roller's axis */
-  double offset;     /* least distance of the spheres' centres from the ring's axis, m */
-  double axial;      /* largest distance of the same from the ring's reference point, along the axis, m */
+  double swing; /* by which the normal turns about the ring's axis, at most, if what touches moves across the plane of both axes, 1/m */
+  double along; /* part of the normal along the roller's axis */
+  double room;  /* displacements up to which that holds, m */
+  double axial; /* largest distance of the same from the ring's reference point, along the axis, m */
 } trb_arms;
 
 /* Displacements and gaps up to which arms are proven, m. */
@@ -40,9 +40,9 @@ static inline trb_arms trb_arms_on_cone(const trb_model *m, const trb_cone *cone
   return (trb_arms){.roller = {cosine, 0.0, sine, arm, arm},
                     .body = {1.0, 1.0, 1.0, turn, turn, 0.0},
                     .tilt = fabs(cone->cosine * m->axis_cosine + cone->sine * m->axis_sine),
-                    .across = cosine,
                     .along = fabs(cone->cosine * m->axis_sine - cone->sine * m->axis_cosine),
-                    .offset = nearest,
+                    .swing = nearest > 0.0 ? 2.0 * cosine / nearest : 0.0, /* centres stay as far as half of it from the axis */
+                    .room = 0.5 * nearest,
                     .axial = far};
 }
 

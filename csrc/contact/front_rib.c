@@ -59,7 +59,7 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
 
 /* The interference is that of the deepest point of a circle beyond the end, and the way of this point along the roller's axis for a turn is
  * its distance from the roller's centre of mass. A turn of the roller against the ring moves it round the circle: by less than half a radian as
- * long as all angles together are below a third of that between both axes, which `offset` says, and anywhere beyond. */
+ * long as all angles together are below a third of that between both axes, which `room` says, and anywhere beyond. */
 static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
 {
   const trb_circle *edges = pair->own;
@@ -71,13 +71,13 @@ static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
     near = fmax(near, hypot(along, centre - radius) + 0.5 * radius);
     turn = fmax(turn, hypot(along, radius));
   }
-  const double offset = 2.0 / 3.0 * arm * fabs(m->axis_sine);
-  near = fmin(near + 0.5 * offset, arm);
+  const double room = arm * fabs(m->axis_sine) / 3.0;
+  near = fmin(near + room, arm);
   *arms = (trb_arms){.roller = {1.0, 0.0, 1.0, arm, arm},
                      .body = {1.0, 1.0, 1.0, 1.01 * turn, 1.01 * turn, 0.0},
                      .skew = near / arm,
                      .tilt = near / arm,
-                     .offset = offset,
+                     .room = room,
                      .axial = arm};
 }
 

@@ -38,7 +38,7 @@ static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
   const double        offset = fabs(g->roller_mass_offset), chain = trb_chain_length(m);
   const double        length = fmax(fabs(g->small_end_station), fabs(g->large_end_station)) + offset;
   const double        sphere = fabs(m->surfaces.end[TRB_END_LARGE].place);
-  const double flanks = pocket_size(m, 1) + offset + trb_bound_play(m), ends = pocket_size(m, 0) + offset + trb_bound_play(m);
+  const double        flanks = pocket_size(m, 1) + offset + trb_bound_play(m), ends = pocket_size(m, 0) + offset + trb_bound_play(m);
   arms[TRB_GAP_FLANK] = arms_from(m, chain, flanks, fmax(chain, flanks));
   arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));
 }

@@ -14,7 +14,8 @@ void trb_bound_set(const trb_model *m, trb_bound *bound, const trb_gaps *gaps, c
 }
 
 /* Adds what has changed of each gap, at most. */
-static void add_ways(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body, double ways[TRB_N_GAPS])
+static inline void add_ways(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
+                            double ways[TRB_N_GAPS])
 {
   for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) {
     const double moved = fabs(y_roller[i] - bound->roller[i]);
@@ -57,7 +58,7 @@ void trb_ring_offsets_of(const trb_system *system, const trb_body_at *bodies, tr
     offsets[b] = (trb_ring_offset){.lean = 0.0};
     if (!trb_is_ring(system->bodies[b].kind)) continue;
     offsets[b].lean = apart(ring->axis, trb_v(0, 0, 1));
-    offsets[b].aside = hypot(ring->centre.x, ring->centre.y);
+    offsets[b].aside = sqrt(ring->centre.x * ring->centre.x + ring->centre.y * ring->centre.y);
     offsets[b].speed = across(ring->velocity) + outside * across(ring->omega);
   }
 }
@@ -81,8 +82,8 @@ unsigned trb_bounds_open(const trb_ring_arms *arms, const trb_ring_offset *rings
   const double around = fabs(step[TRB_ROLLER_psi]) + fabs(turn);
   unsigned     open = 0U;
   for (int i = 0; i < arms->n; i++) {
-    const double way = trb_way_on_ring(&arms->of[i], &rings[arms->body[i]], place, step, around);
-    if (!(way <= share * fabs(interference[arms->row[i]]))) open |= 1U << i;
+    const double length = share * fabs(interference[arms->row[i]]);
+    if (!(trb_way_on_ring(&arms->of[i], &rings[arms->body[i]], place, step, around, length) <= length)) open |= 1U << i;
   }
   return open;
 }
@@ -97,16 +98,16 @@ void trb_bound_set_on_ring(trb_bound *bound, double length, const trb_ring_pose 
 }
 
 int trb_bound_holds_on_ring(const trb_bound *bound, const trb_arms *arms, const trb_ring_offset *offset, const trb_ring_pose *ring,
-                      const double *y_roller, double angle)
+                            const double *y_roller, double angle)
 {
-  const double   *from = bound->body;
+  const double   *from = bound->body, length = bound->length[0], around = fabs(angle - bound->roller[TRB_ROLLER_psi]);
   trb_ring_offset now = *offset;
   double          step[TRB_PLACE_OF_ROLLER];
-  if (!(bound->length[0] >= 0.0)) return 0;
+  if (!(length >= 0.0)) return 0;
   for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) step[i] = y_roller[i] - bound->roller[i];
   now.shifted = apart(ring->centre, trb_v(from[0], from[1], from[2]));
   now.leaned = apart(ring->axis, trb_v(from[3], from[4], from[5]));
-  return trb_way_on_ring(arms, &now, bound->roller, step, fabs(angle - bound->roller[TRB_ROLLER_psi])) <= bound->length[0];
+  return trb_way_on_ring(arms, &now, bound->roller, step, around, length) <= length;
 }
 
 void trb_speed_bound_set(trb_speed_bound *bound, double length, const trb_system *system, const trb_body_at *bodies, const double *y_roller,

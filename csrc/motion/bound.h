@@ -2,8 +2,8 @@
  *
  * When a roller and another body move, a gap between them changes at most by the sum of the changes of their coordinates, each multiplied
  * by the longest arm by which that coordinate moves anything that may touch along its normal: 1 for a displacement, the largest distance
- * from the axis of turning for an angle. The sum is an upper bound and not an estimate; csrc/tests/test_bounds.c tries to break it. Three
- * things rest on it:
+ * from the axis of turning for an angle. The sum is an upper bound and not an estimate; csrc/tests/test_bounds.c tries to break it.
+ * Three things rest on it:
  * - A roller that was clear of its pocket is not evaluated as long as the sum is smaller than the gap.
  * - A tangent is wrong as soon as a contact begins or ends. It is followed as long as the sum is smaller than a share of the interference, or
  *   of the gap, at its origin.
@@ -16,7 +16,8 @@
 
 /* What is proven of the gaps of a roller and another body. */
 typedef struct trb_bound {
-  double length[TRB_N_GAPS]; /* by which each gap may change, m; a ring has the first one alone; negative or not a number: nothing is proven */
+  double
+      length[TRB_N_GAPS]; /* by which each gap may change, m; a ring has the first one alone; negative or not a number: nothing is proven */
   /* where it was found */
   double roller[TRB_PLACE_OF_ROLLER]; /* with a ring the angle is that of the roller about the bearing's axis */
   double body[TRB_PLACE_OF_BODY];
@@ -42,24 +43,28 @@ typedef struct trb_ring_offset {
 void trb_ring_offsets_of(const trb_system *system, const trb_body_at *bodies, trb_ring_offset *offsets);
 
 /* By how much a gap between a roller and a ring has changed, at most, m. place: the roller's coordinates where the bound was found; step: from
- * there; around: by how much the roller has turned about the bearing's axis since then, rad. */
-static inline double trb_way_on_ring(const trb_arms *a, const trb_ring_offset *ring, const double *place, const double *step, double around)
+ * there; around: by how much the roller has turned about the bearing's axis since then, rad; enough: the first bound that is no larger will do. */
+static inline double trb_way_on_ring(const trb_arms *a, const trb_ring_offset *ring, const double *place, const double *step, double around,
+                                     double enough)
 {
   const double dr = fabs(step[TRB_ROLLER_r]), dz = fabs(step[TRB_ROLLER_z]);
   const double skewed = fabs(step[TRB_ROLLER_skew]), tilted = fabs(step[TRB_ROLLER_tilt]);
   /* the largest of each on the way */
   const double skew = fabs(place[TRB_ROLLER_skew]) + skewed, tilt = fabs(place[TRB_ROLLER_tilt]) + tilted;
   const double lean = ring->lean + ring->leaned, aside = ring->aside + ring->shifted, arm = a->roller[TRB_ROLLER_skew];
-  /* how far spheres' centres are off their nominal places, the ring's axis there off the bearing's, and centres across the plane of both axes */
-  const double off = fabs(place[TRB_ROLLER_r]) + dr + fabs(place[TRB_ROLLER_z]) + dz + arm * (skew + tilt);
-  const double axis = aside + lean * (a->axial + off), sideways = arm * skew + axis;
-  /* sine of the angle by which the normal turns about the ring's axis; parts of the normal that are not there where nothing is turned */
-  const double sine = 2.0 * (off + axis) < a->offset ? 2.0 * a->across * sideways / a->offset : 1.0, turned = sine + lean;
-  const double by_skew = arm * trb_min(a->skew + turned + skew * (a->along + tilt + turned), 1.0);
-  const double by_tilt = arm * trb_min(a->tilt + tilt + turned, 1.0);
-  const double by_lean = a->body[3] + 1.5 * (off + axis);
-  return (a->roller[TRB_ROLLER_r] + lean) * dr + (a->roller[TRB_ROLLER_z] + lean) * dz + by_skew * skewed + by_tilt * tilted +
-         around * (aside + lean * by_lean) + (ring->shifted + ring->leaned * by_lean);
+  /* how far spheres' centres are off their nominal places, and the ring's axis there off the bearing's */
+  const double off = (fabs(place[TRB_ROLLER_r]) + dr + fabs(place[TRB_ROLLER_z]) + dz) + arm * (skew + tilt);
+  const double axis = aside + lean * (a->axial + off), by_lean = a->body[3] + 1.5 * (off + axis);
+  const double by_ring = around * (aside + lean * by_lean) + (ring->shifted + ring->leaned * by_lean);
+  /* as if the normal pointed along every displacement */
+  const double coarse = (dr + dz) + arm * (skewed + tilted) + by_ring;
+  if (coarse <= enough) return coarse;
+  /* sine of the angle by which the normal turns about the ring's axis; the parts of the normal along each displacement */
+  const double sine = off + axis < a->room ? a->swing * (arm * skew + axis) : 1.0, turned = sine + lean;
+  const double by_r = trb_min(a->roller[TRB_ROLLER_r] + lean, 1.0), by_z = trb_min(a->roller[TRB_ROLLER_z] + lean, 1.0);
+  const double by_skew = trb_min(a->skew + turned + skew * (a->along + tilt + turned), 1.0);
+  const double by_tilt = trb_min(a->tilt + tilt + turned, 1.0);
+  return (by_r * dr + by_z * dz) + arm * (by_skew * skewed + by_tilt * tilted) + by_ring;
 }
 
 /* Of the pairs of rollers with rings that are on. */
@@ -91,7 +96,7 @@ typedef struct trb_speed_bound {
 
 void trb_speed_bound_set(trb_speed_bound *bound, double length, const trb_system *system, const trb_body_at *bodies, const double *y_roller,
                          double angle);
-int  trb_speed_bound_holds(const trb_speed_bound *bound, const trb_system *system, const trb_ring_offset *offsets, const trb_body_at *bodies,
+int trb_speed_bound_holds(const trb_speed_bound *bound, const trb_system *system, const trb_ring_offset *offsets, const trb_body_at *bodies,
                           const double *y_roller, double angle);
 
 #endif

@@ -9,10 +9,10 @@ struct trb_dynamics;
 
 /* A pair that is evaluated at every instant, and what is proven of every roller in it. */
 typedef struct trb_fast_pair {
-  const trb_pair    *pair;
-  int                row;        /* its number in the system */
-  trb_bound *bounds; /* n_rollers */
-  trb_arms arms[TRB_N_GAPS];
+  const trb_pair *pair;
+  int             row;    /* its number in the system */
+  trb_bound      *bounds; /* n_rollers */
+  trb_arms        arms[TRB_N_GAPS];
   /* where the other body deforms; NULL where it does not */
   int    *places; /* [mode]: of its amplitude in the state */
   double *ways;   /* [roller][mode][gap]: as its kind gives them, for a unit of that coordinate */

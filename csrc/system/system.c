@@ -100,9 +100,8 @@ static trb_status check_contact(const trb_pair *pair, trb_message *message)
 {
   const trb_pair_kind *kind = pair->kind;
   if (kind->contact != TRB_CONTACT_NONE && kind->pace == TRB_PACE_SLOW && (!kind->arms || !kind->look))
-    return trb_fail(message, TRB_ERR_INPUT,
-                    "pair %s: its kind '%s' is a contact of a roller with a ring, and must give arms and look", pair->name,
-                    kind->name);
+    return trb_fail(message, TRB_ERR_INPUT, "pair %s: its kind '%s' is a contact of a roller with a ring, and must give arms and look",
+                    pair->name, kind->name);
   return TRB_OK;
 }
 

@@ -281,8 +281,8 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
   bench  b;
   double y[MOST], found[MOST];
   if (!open_bench(&b, params, 1.0, 1.0)) return;
-  const double rolling = fabs(0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
-  const double slip = 1e-3 * fmin(of_rolling * rolling, speed_of_range);
+  const double    rolling = fabs(0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
+  const double    slip = 1e-3 * fmin(of_rolling * rolling, speed_of_range);
   const trb_cone *face = &((const trb_rib *)b.system->pairs[TRB_PAIR_rib].own)->face;
   for (int k = 0; k < 5; k++) {
     const int j = 3 + k, beyond = k == 1 || k == 2 || k == 4;
@@ -300,8 +300,12 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
      * from one towards it, and one towards it */
     const double by = k == 1 ? 0.55 * race : 0.4 * race;
     const double moved[TRB_ROLLER_SIZE] = {[TRB_ROLLER_r] = k == 1 || k == 3 ? by : 0.0,
-                                           [TRB_ROLLER_z] = k == 1 || k == 3 ? by * face->cosine / face->sine : k == 4 ? 0.52 * rib : 0.0,
-                                           [TRB_ROLLER_v_t] = k == 0 ? 0.99 * slip : k == 2 ? 1.01 * slip : 0.0};
+                                           [TRB_ROLLER_z] = k == 1 || k == 3 ? by * face->cosine / face->sine
+                                                            : k == 4         ? 0.52 * rib
+                                                                             : 0.0,
+                                           [TRB_ROLLER_v_t] = k == 0   ? 0.99 * slip
+                                                              : k == 2 ? 1.01 * slip
+                                                                       : 0.0};
     if (!CHECK(rib < 0.1 * race && 2.0 * fabs(face->cosine) * by > 0.6 * rib)) return;
     memcpy(y, origin, sizeof y);
     for (int i = 0; i < TRB_ROLLER_SIZE; i++) y[trb_state_roller(b.system, j) + i] += moved[i];
