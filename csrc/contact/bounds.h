@@ -1,5 +1,5 @@
-/* Bounds of how far the motion of bodies can change a contact. A pair gives the lengths and angles; motion/margin.h, motion/hold.h and
- * motion/clearance.h use them. */
+/* Arms of bounds: by how much the motion of two bodies can change a gap between them, at most (docs/theory/numerics.md#bounds-of-gaps). A
+ * pair gives them; motion/bound.h says what they are used for. */
 #ifndef TRB_CONTACT_BOUNDS_H
 #define TRB_CONTACT_BOUNDS_H
 
@@ -8,44 +8,42 @@
 #include "body/roller.h"
 #include "surface/cone.h"
 
-/* What the motions of a roller and a ring do to their interference, at most. */
-typedef struct trb_margin_arm {
-  double arm;           /* largest distance of what can touch from the roller's centre of mass, m */
-  double ring;          /* by which the other body's turn about its reference point moves the contact along its normal, m */
-  int    on_end;        /* 1: the contact is on the roller's end, its normal nearly along the roller's axis */
-  double normal_sine;   /* of an end: of the angle between the normal and the bearing axis */
-  double normal_lean;   /* of an end: sine of the angle between the normal and the roller's axis */
-  double sphere_offset; /* of an end: the end's sphere, its centre from the bearing axis, m */
-} trb_margin_arm;
+/* Coordinates that come first in the state of a roller, and of a rigid body: its place (three), then its turns. Of a ring: its reference
+ * point and its axis. */
+enum { TRB_PLACE_OF_ROLLER = TRB_ROLLER_tilt + 1, TRB_PLACE_OF_BODY = 6 };
 
-/* What the coordinates of a roller do to one kind of contact, to first order. */
-typedef struct trb_hold_arms {
-  double radial, axial; /* parts of the normal, 1 */
-  double tilt, skew;    /* arms of tilt along the normal, and of skew across it, m */
-  double reach;         /* of the surface from the roller's centre of mass, m */
-  double off;           /* distance of the contact's centre of curvature from the ring's axis, m: skew moves it round the ring */
-} trb_hold_arms;
+/* What a unit of each coordinate changes of one gap of a pair, at most, m/m or m/rad: the longest way, along the normal, of anything that may
+ * touch. */
+typedef struct trb_arms {
+  double roller[TRB_PLACE_OF_ROLLER];
+  double body[TRB_PLACE_OF_BODY];
+  /* of a pair with a ring, whose arms depend on how ring and roller stand (trb_way_on_ring); its arm of the orbit angle is that dependence alone */
+  double skew, tilt; /* shares of the roller's arms of skew and tilt that count where nothing is turned */
+  double swing; /* by which the normal turns about the ring's axis, at most, if what touches moves across the plane of both axes, 1/m */
+  double along; /* part of the normal along the roller's axis */
+  double room;  /* displacements up to which that holds, m */
+  double axial; /* largest distance of the same from the ring's reference point, along the axis, m */
+} trb_arms;
 
-/* Coordinates that come first in the state of a roller, and of a rigid body: its place (three), then its turns. */
-enum { TRB_CLEARANCE_ROLLER = TRB_ROLLER_tilt + 1, TRB_CLEARANCE_BODY = 6 };
+/* Displacements and gaps up to which arms are proven, m. */
+static inline double trb_bound_play(const trb_model *m) { return 0.5 * m->params.roller_diameter; }
 
-/* The longest way by which a unit of each coordinate moves what may touch, m/m or m/rad. The centre of the large end's sphere is far
- * from the roller, so ends have longer arms than the flank, whose gap is the smaller one. */
-typedef struct trb_clearance_arms {
-  double roller[TRB_CLEARANCE_ROLLER];
-  double body[TRB_CLEARANCE_BODY];
-} trb_clearance_arms;
-
-/* By how much a turn of a cone about its body's reference point changes the interference with a sphere, over its angle, m. The interference
- * is (e - R) cos(alpha) - z sin(alpha) of the sphere's centre, at e from the axis and z along it (surface/cone.h). A turn changes e by no
- * more than its angle times z, and z by no more than its angle times e. radius, axial: the largest e and z, the latter from the reference point. A
- * tenth more, for the squares of angles. */
-static inline double trb_cone_turned(const trb_cone *cone, double radius, double axial)
+/* Arms between a cone of a ring and spheres of a roller, with centres between two stations of its axis, from its centre of mass. axial: distance
+ * of these centres from the ring's reference point along the axis, at most, m. */
+static inline trb_arms trb_arms_on_cone(const trb_model *m, const trb_cone *cone, double from, double to, double axial)
 {
-  return 1.1 * (fabs(cone->cosine) * axial + fabs(cone->sine) * radius);
+  const double centre = m->geometry.roller_centre_radius, arm = fmax(fabs(from), fabs(to));
+  const double first = centre + from * m->axis_sine, last = centre + to * m->axis_sine;
+  const double nearest = first * last > 0.0 ? fmin(fabs(first), fabs(last)) : 0.0, farthest = fmax(fabs(first), fabs(last));
+  const double far = axial + trb_bound_play(m), cosine = fabs(cone->cosine), sine = fabs(cone->sine);
+  const double turn = 1.01 * (cosine * far + sine * farthest); /* an axis moves on an arc, a little longer than the straight line */
+  return (trb_arms){.roller = {cosine, 0.0, sine, arm, arm},
+                    .body = {1.0, 1.0, 1.0, turn, turn, 0.0},
+                    .tilt = fabs(cone->cosine * m->axis_cosine + cone->sine * m->axis_sine),
+                    .along = fabs(cone->cosine * m->axis_sine - cone->sine * m->axis_cosine),
+                    .swing = nearest > 0.0 ? 2.0 * cosine / nearest : 0.0, /* centres stay as far as half of it from the axis */
+                    .room = 0.5 * nearest,
+                    .axial = far};
 }
-
-/* Displacements and gaps up to which the arms of clearances are proven, m. */
-static inline double trb_clearance_play(const trb_model *m) { return 0.5 * m->params.roller_diameter; }
 
 #endif

@@ -76,11 +76,13 @@ typedef struct trb_load {
 /* The sum over pairs that act on a roller, or over those without a roller. */
 typedef struct trb_loads {
   trb_wrench roller;
-  trb_wrench on[TRB_MOST_BODIES];    /* on each body of the system */
-  double     elastic;                /* J */
-  double     margin[TRB_MOST_PAIRS]; /* of slow pairs: least distance of the contact from its onset or end, m */
-  double     torque[TRB_N_TORQUES];  /* shares of the torque on the driven ring about its axis, N m */
-  double     power[TRB_N_LOSSES];    /* lost, W */
+  trb_wrench on[TRB_MOST_BODIES]; /* on each body of the system */
+  double     elastic;             /* J */
+  double
+      margin[TRB_MOST_PAIRS]; /* of slow pairs: least distance of the contact from its onset or end, m; of a kind that tells its depth that
+                                      * depth, negative for a gap */
+  double torque[TRB_N_TORQUES]; /* shares of the torque on the driven ring about its axis, N m */
+  double power[TRB_N_LOSSES];   /* lost, W */
 } trb_loads;
 
 /* All that the contacts read at an instant. */

@@ -9,19 +9,15 @@
 #include "contact/pair.h"
 #include "surface/circle.h"
 
-static trb_circle_meeting meet(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, trb_circle circle)
-{
-  const trb_vec3 a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
-  return trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
-}
-
 static void edge_on_end(const trb_model *m, const trb_roller_pose *r, const trb_ring_pose *ring, int edge, const trb_pair *pair, int row,
                         trb_counters *counters, trb_loads *to, trb_contact *c)
 {
-  const trb_vec3           a = r->frame.a;
-  const trb_circle         circle = ((const trb_circle *)pair->own)[edge];
-  const trb_circle_meeting meeting = meet(m, r, ring, circle);
-  const double             d = meeting.depth;
+  const trb_vec3   a = r->frame.a, end = trb_axpy(r->x, m->surfaces.small_end, a);
+  const trb_circle circle = ((const trb_circle *)pair->own)[edge];
+
+  const trb_circle_meeting meeting =
+      trb_circle_on_plane(trb_axpy(ring->centre, circle.place, ring->axis), ring->axis, circle.radius, end, a);
+  const double d = meeting.depth;
   counters->front_rib_tests++;
   c->interference = edge == 0 ? d : trb_max(d, c->interference);
   to->margin[row] = trb_min(to->margin[row], fabs(d));
@@ -61,27 +57,28 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
     }
 }
 
-static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
+/* The interference is that of the deepest point of a circle beyond the end, and the way of this point along the roller's axis for a turn is
+ * its distance from the roller's centre of mass. A turn of the roller against the ring moves it round the circle: by less than half a radian as
+ * long as all angles together are below a third of that between both axes, which `room` says, and anywhere beyond. */
+static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
 {
-  (void)pair;
-  const trb_geometry *g = &m->geometry;
-  const double        arm = hypot(fabs(g->small_end_station) + fabs(g->roller_mass_offset), g->outer_race_radius);
-  return (trb_margin_arm){.arm = arm, .ring = arm + g->outer_race_radius + m->params.total_length};
-}
-
-static void depths_of(const trb_model *m, const trb_pair *pair, int roller, const trb_roller_pose *pose, const trb_ring_pose *ring,
-                      double *depths)
-{
-  (void)roller;
-  for (int edge = 0; edge < TRB_N_DEPTHS; edge++) depths[edge] = meet(m, pose, ring, ((const trb_circle *)pair->own)[edge]).depth;
-}
-
-/* The deepest point wanders round the end: the arm is that of the rib's edge. */
-static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
-{
-  (void)pair;
-  const double arm = 2.0 * m->geometry.roller_centre_radius;
-  return (trb_hold_arms){1.0, 1.0, arm, arm, m->params.total_length + m->params.roller_diameter, 1e-12};
+  const trb_circle *edges = pair->own;
+  double            arm = 0.0, near = 0.0, turn = 0.0;
+  for (int i = 0; i < 2; i++) {
+    const double along = fabs(edges[i].place) + fabs(m->geometry.roller_mass_offset) + trb_bound_play(m);
+    const double centre = m->geometry.roller_centre_radius, radius = edges[i].radius;
+    arm = fmax(arm, hypot(along, centre + radius));
+    near = fmax(near, hypot(along, centre - radius) + 0.5 * radius);
+    turn = fmax(turn, hypot(along, radius));
+  }
+  const double room = arm * fabs(m->axis_sine) / 3.0;
+  near = fmin(near + room, arm);
+  *arms = (trb_arms){.roller = {1.0, 0.0, 1.0, arm, arm},
+                     .body = {1.0, 1.0, 1.0, 1.01 * turn, 1.01 * turn, 0.0},
+                     .skew = near / arm,
+                     .tilt = near / arm,
+                     .room = room,
+                     .axial = arm};
 }
 
 static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
@@ -102,7 +99,5 @@ const trb_pair_kind trb_pair_front_rib = {.name = "end on a plane rib",
                                           .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
                                           .contact = TRB_CONTACT_POINT,
                                           .evaluate = evaluate,
-                                          .margin = margin_of,
-                                          .depths = depths_of,
-                                          .hold = hold_of,
+                                          .arms = arms_of,
                                           .look = look_at};

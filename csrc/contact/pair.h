@@ -37,9 +37,6 @@ typedef struct trb_batch {
   int             n;
 } trb_batch;
 
-/* Interferences that tell how a contact with a ring has changed. */
-enum { TRB_N_DEPTHS = 2 };
-
 struct trb_lanes;
 struct trb_uneven;
 
@@ -103,13 +100,11 @@ typedef struct trb_pair_kind {
   unsigned           mechanisms; /* by which it loses energy: TRB_LOSES of each */
   trb_contact_form   contact;    /* of a roller with a ring: it has a row of contacts in details */
   trb_pair_evaluate *evaluate;
+  /* what bounds the changes of its gaps: TRB_N_GAPS of a fast pair, one of a contact with a ring */
+  void (*arms)(const trb_model *m, const trb_pair *pair, trb_arms *arms);
   /* of slow pairs */
-  trb_margin_arm (*margin)(const trb_model *m, const trb_pair *pair);
-  /* interferences out of the poses alone, the ring as the roller sees it, m; negative: gaps. Those of a line are at the ends of its nodes,
-   * those of edges at each; a point has one twice. NULL: they take an evaluation */
-  void (*depths)(const trb_model *m, const trb_pair *pair, int roller, const trb_roller_pose *pose, const trb_ring_pose *ring,
-                 double *depths);
-  trb_hold_arms (*hold)(const trb_model *m, const trb_pair *pair);
+  /* interference out of the poses alone, the ring as the roller sees it, m; negative: the gap; NULL: it takes an evaluation */
+  double (*depth)(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring);
   trb_pair_look *look;
   /* whether surfaces may be off their true form where a roller is; azimuth: of the roller, turned: of the ring, spin: of the roller, rad; NULL:
    * they never are */
@@ -120,7 +115,6 @@ typedef struct trb_pair_kind {
   trb_pair_touch *touch;
   int (*surfaces)(const trb_model *m, int roller);                       /* that it tests for a roller; 0: they never touch */
   void (*count_clear)(const trb_model *m, int roller, trb_counters *to); /* counts a roller that is proven clear */
-  void (*clearance)(const trb_model *m, trb_clearance_arms *arms);       /* TRB_N_GAPS of them */
   void (*ways)(const trb_model *m, int roller, double *ways); /* [mode][gap]: longest way of what may touch, for a unit of amplitude, m/m */
   double (*stiffness)(const trb_model *m, double depth);      /* load over interference at an interference, N/m */
   /* of pairs without a roller, which have nothing of the others */

@@ -19,25 +19,26 @@ static double pocket_size(const trb_model *m, int flanks)
 
 /* roller: largest distance of what may touch, from the roller's centre of mass; pocket: the same of its faces, from the pocket's origin;
  * ring: the same of either, from the place of the roller, across the bearing axis. */
-static trb_clearance_arms arms_from(const trb_model *m, double roller, double pocket, double ring)
+static trb_arms arms_from(const trb_model *m, double roller, double pocket, double ring)
 {
   const trb_geometry *g = &m->geometry;
   /* turn: about the roller's centre; orbit: about the bearing's or the cage's axis; lean: about the cage's centre */
-  const double turn = fmax(roller, pocket), orbit = g->roller_centre_radius + ring + 4.0 * trb_clearance_play(m);
-  const double lean = g->roller_centre_radius + turn + fabs(m->params.cage_offset) + 4.0 * trb_clearance_play(m);
-  return (trb_clearance_arms){{1.0, orbit, 1.0, turn, turn}, {1.0, 1.0, 1.0, lean, lean, orbit}};
+  const double turn = fmax(roller, pocket), orbit = g->roller_centre_radius + ring + 4.0 * trb_bound_play(m);
+  const double lean = g->roller_centre_radius + turn + fabs(m->params.cage_offset) + 4.0 * trb_bound_play(m);
+  return (trb_arms){.roller = {1.0, orbit, 1.0, turn, turn}, .body = {1.0, 1.0, 1.0, lean, lean, orbit}};
 }
 
 /* A gap is a distance between things that are fixed in either body: centres of spheres and the plane of the small end in the roller,
  * outlines of faces in the cage. When a body turns it changes by no more than the angle times the largest distance of any of them from
  * the axis. */
-static void clearance_of(const trb_model *m, trb_clearance_arms *arms)
+static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
 {
+  (void)pair;
   const trb_geometry *g = &m->geometry;
   const double        offset = fabs(g->roller_mass_offset), chain = trb_chain_length(m);
   const double        length = fmax(fabs(g->small_end_station), fabs(g->large_end_station)) + offset;
   const double        sphere = fabs(m->surfaces.end[TRB_END_LARGE].place);
-  const double flanks = pocket_size(m, 1) + offset + trb_clearance_play(m), ends = pocket_size(m, 0) + offset + trb_clearance_play(m);
+  const double        flanks = pocket_size(m, 1) + offset + trb_bound_play(m), ends = pocket_size(m, 0) + offset + trb_bound_play(m);
   arms[TRB_GAP_FLANK] = arms_from(m, chain, flanks, fmax(chain, flanks));
   arms[TRB_GAP_ENDS] = arms_from(m, fmax(length, sphere), ends, fmax(length, ends));
 }
@@ -56,7 +57,7 @@ static void ways_of(const trb_model *m, int roller, double *ways)
     const trb_vec3     middle = modes->middle[f], aside = trb_axpy(middle, -trb_dot(middle, p->normal), p->normal);
     const int          gap = m->faces[f].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_GAP_ENDS;
     const double      *shape = trb_shapes_of(modes, f);
-    double             reach = extent[gap] + trb_clearance_play(m) + trb_norm(aside);
+    double             reach = extent[gap] + trb_bound_play(m) + trb_norm(aside);
     for (int k = 0; k < p->n; k++) reach = fmax(reach, trb_norm(trb_sub(trb_polygon_vertex(p, k), middle)));
     for (int i = 0; i < modes->n; i++, shape += TRB_SHAPE_ROOM) {
       const double way = trb_norm(trb_v(shape[0], shape[1], shape[2])) + reach * trb_norm(trb_v(shape[3], shape[4], shape[5]));
@@ -88,7 +89,7 @@ static double stiffness_of(const trb_model *m, double depth)
    .touch = trb_contact_pocket_of, \
    .surfaces = faces_of, \
    .count_clear = count_clear, \
-   .clearance = clearance_of, \
+   .arms = arms_of, \
    .ways = ways_of, \
    .stiffness = stiffness_of}
 

@@ -137,37 +137,11 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
   }
 }
 
-static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
+static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_cone     *race = nodes_of(pair)->cone;
-  const double        chain = trb_chain_length(m), reach = chain + trb_clearance_play(m);
-  const double        axial = fabs(race->place + g->roller_mass_offset * m->axis_cosine) + reach;
-  return (trb_margin_arm){.arm = chain, .ring = trb_cone_turned(race, g->roller_centre_radius + reach, axial)};
-}
-
-/* The nodes lie on a line, and a node's interference is its distance beyond the cone and its radius: it changes in proportion along the line,
- * most at one of the ends, but for the curvature of the cone, which adds the square of what a skew moves an end by, over the cone's radius. */
-static void depths_of(const trb_model *m, const trb_pair *pair, int roller, const trb_roller_pose *pose, const trb_ring_pose *ring,
-                      double *depths)
-{
-  const trb_cone race = *nodes_of(pair)->cone;
-  const size_t   first = (size_t)roller * (size_t)m->n_lanes, ends[TRB_N_DEPTHS] = {first, first + (size_t)m->n_nodes - 1};
-  const trb_vec3 start = trb_sub(pose->x, trb_cone_point(&race, ring->centre, ring->axis));
-  for (int e = 0; e < TRB_N_DEPTHS; e++)
-    depths[e] = m->sphere[ends[e]] + trb_cone_at(&race, ring->axis, trb_axpy(start, m->centre[ends[e]], pose->frame.a)).beyond;
-}
-
-static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
-{
-  const double    chain = trb_chain_length(m);
   const trb_cone *race = nodes_of(pair)->cone;
-  return (trb_hold_arms){fabs(race->cosine),
-                         fabs(race->sine),
-                         chain,
-                         chain,
-                         m->params.total_length + m->params.roller_diameter,
-                         0.5 * m->geometry.roller_centre_radius};
+  const double    chain = trb_chain_length(m);
+  *arms = trb_arms_on_cone(m, race, -chain, chain, fabs(race->place + m->geometry.roller_mass_offset * m->axis_cosine) + chain);
 }
 
 static void look_at_race(const trb_model *m, const trb_instant *at, int roller, const trb_pair *pair, trb_workspace *work, double share,
@@ -213,9 +187,7 @@ const trb_pair_kind trb_pair_raceway = {.name = "flank on a raceway",
                                                       TRB_LOSES(TRB_BY_ROLLING_PRESSURE) | TRB_LOSES(TRB_BY_DAMPING),
                                         .contact = TRB_CONTACT_LINE,
                                         .evaluate = evaluate,
-                                        .margin = margin_of,
-                                        .depths = depths_of,
-                                        .hold = hold_of,
+                                        .arms = arms_of,
                                         .look = look_at_races,
                                         .uneven = is_uneven,
                                         .change = change_of};

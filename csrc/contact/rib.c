@@ -56,7 +56,7 @@ static void evaluate_one(const trb_model *m, const trb_instant *at, const trb_pa
     const trb_race_output *out = &outputs[k];
     trb_loads             *to = &loads[j];
     if (detail != NULL) fill_detail(m, rib_of(pair), &ring[j], k, work->lanes, out, &trb_pair_contacts(m, pair, detail)[j]);
-    to->margin[row] = fabs(out->depth);
+    to->margin[row] = out->depth;
     if (!out->loaded) continue;
     const trb_load load = trb_load_of_output(out);
     trb_add_load(pair, &load, to);
@@ -69,45 +69,18 @@ static void evaluate(const trb_model *m, const trb_instant *at, const trb_batch 
   for (int i = 0; i < batch->n; i++) evaluate_one(m, at, batch->pairs[i], batch->index[i], work, loads, detail);
 }
 
-static trb_margin_arm margin_of(const trb_model *m, const trb_pair *pair)
-{
-  const trb_geometry *g = &m->geometry;
-  const trb_rib      *rib = rib_of(pair);
-  const trb_sphere   *end = &rib->end;
-  const double        arm = fabs(end->place), play = trb_clearance_play(m);
-  const double        offset = fabs(g->roller_centre_radius + end->place * m->axis_sine);
-  const double        axial = fabs(rib->face.place) + end->radius * fabs(rib->face.sine);
-  return (trb_margin_arm){.arm = arm,
-                          .ring = trb_cone_turned(&rib->face, offset + play, axial + play),
-                          .on_end = 1,
-                          .normal_sine = fabs(rib->face.cosine),
-                          .normal_lean = rib->normal_lean,
-                          .sphere_offset = offset};
-}
-
-static void depths_of(const trb_model *m, const trb_pair *pair, int roller, const trb_roller_pose *pose, const trb_ring_pose *ring,
-                      double *depths)
+static void arms_of(const trb_model *m, const trb_pair *pair, trb_arms *arms)
 {
   const trb_rib *rib = rib_of(pair);
-  const trb_vec3 centre = trb_axpy(pose->x, rib->end.place, pose->frame.a), point = trb_cone_point(&rib->face, ring->centre, ring->axis);
-  (void)m;
-  (void)roller;
-  depths[0] = depths[1] = rib->end.radius + trb_cone_at(&rib->face, ring->axis, trb_sub(centre, point)).beyond;
+  *arms = trb_arms_on_cone(m, &rib->face, rib->end.place, rib->end.place, fabs(rib->face.place) + rib->end.radius * fabs(rib->face.sine));
 }
 
-/* The end's sphere turns about the roller's centre of mass: its centre moves nearly across the normal. */
-static trb_hold_arms hold_of(const trb_model *m, const trb_pair *pair)
+static double depth_of(const trb_pair *pair, const trb_roller_pose *roller, const trb_ring_pose *ring)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_cone     *face = &rib_of(pair)->face;
-  const double        station = rib_of(pair)->end.place;
-  const double        lean = fabs(face->cosine * m->axis_cosine + face->sine * m->axis_sine);
-  return (trb_hold_arms){fabs(face->cosine),
-                         fabs(face->sine),
-                         lean * fabs(station),
-                         fabs(station),
-                         m->params.total_length + m->params.roller_diameter,
-                         fabs(g->roller_centre_radius + station * m->axis_sine)};
+  const trb_rib *rib = rib_of(pair);
+  const trb_vec3 centre = trb_axpy(roller->x, rib->end.place, roller->frame.a);
+  return rib->end.radius +
+         trb_cone_at(&rib->face, ring->axis, trb_sub(centre, trb_cone_point(&rib->face, ring->centre, ring->axis))).beyond;
 }
 
 static void look_at(const trb_model *m, const trb_instant *at, const trb_batch *batch, trb_workspace *work, trb_loads *loads,
@@ -129,7 +102,6 @@ const trb_pair_kind trb_pair_rib = {.name = "spherical end on a conical rib",
                                     .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
                                     .contact = TRB_CONTACT_POINT,
                                     .evaluate = evaluate,
-                                    .margin = margin_of,
-                                    .depths = depths_of,
-                                    .hold = hold_of,
+                                    .arms = arms_of,
+                                    .depth = depth_of,
                                     .look = look_at};

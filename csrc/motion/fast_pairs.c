@@ -35,10 +35,10 @@ int trb_fast_create(trb_dynamics *d)
       trb_fast_pair *fast = &d->fast[d->n_fast];
       fast->pair = pair;
       fast->row = d->work->batches[i].index[k];
-      fast->clearances = calloc((size_t)d->model->n_rollers, sizeof *fast->clearances);
-      if (fast->clearances == NULL) return 0;
+      fast->bounds = calloc((size_t)d->model->n_rollers, sizeof *fast->bounds);
+      if (fast->bounds == NULL) return 0;
       d->n_fast++;
-      pair->kind->clearance(d->model, fast->arms);
+      pair->kind->arms(d->model, pair, fast->arms);
       if (d->system->bodies[pair->b].modes != NULL && !add_modes(d, fast)) return 0;
     }
   return 1;
@@ -47,7 +47,7 @@ int trb_fast_create(trb_dynamics *d)
 void trb_fast_free(trb_dynamics *d)
 {
   for (int f = 0; f < d->n_fast; f++) {
-    free(d->fast[f].clearances);
+    free(d->fast[f].bounds);
     free(d->fast[f].places);
     free(d->fast[f].ways);
     free(d->fast[f].modal);
@@ -83,7 +83,7 @@ static int is_clear(const trb_dynamics *d, const trb_fast_pair *fast, int roller
 {
   double        ways[TRB_N_GAPS];
   const double *deformed = deformed_by(d, fast, roller, y, ways);
-  return trb_clearance_holds(&fast->clearances[roller], fast->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, fast, y));
+  return trb_bound_clear(&fast->bounds[roller], fast->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, fast, y));
 }
 
 double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const double *y)
@@ -91,7 +91,7 @@ double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const doub
   const trb_fast_pair *pair = &d->fast[fast];
   double               ways[TRB_N_GAPS];
   const double        *deformed = deformed_by(d, pair, roller, y, ways);
-  return trb_clearance_left(&pair->clearances[roller], pair->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
+  return trb_bound_left(&pair->bounds[roller], pair->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
 }
 
 void trb_fast_apart(const trb_dynamics *d, const double *y, unsigned *apart)
@@ -107,7 +107,7 @@ void trb_fast_apart(const trb_dynamics *d, const double *y, unsigned *apart)
 
 void trb_fast_forget(trb_dynamics *d)
 {
-  for (int f = 0; f < d->n_fast; f++) memset(d->fast[f].clearances, 0, (size_t)d->model->n_rollers * sizeof *d->fast[f].clearances);
+  for (int f = 0; f < d->n_fast; f++) memset(d->fast[f].bounds, 0, (size_t)d->model->n_rollers * sizeof *d->fast[f].bounds);
 }
 
 unsigned trb_fast_near(const trb_dynamics *d, int roller, const double *y)
@@ -128,7 +128,7 @@ trb_gaps trb_fast_touch(trb_dynamics *d, int fast, int roller, const double *y, 
   const trb_instant at = trb_dynamics_instant(d);
   trb_fast_pair    *pair = &d->fast[fast];
   const trb_gaps    gaps = pair->pair->kind->touch(d->model, pair->pair, &at, roller, &d->work->counters, load, slopes, detail);
-  trb_clearance_set(d->model, &pair->clearances[roller], &gaps, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
+  trb_bound_set(d->model, &pair->bounds[roller], &gaps, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
   const trb_modes *modes = d->system->bodies[pair->pair->b].modes;
   for (int i = 0; modes != NULL && i < modes->n; i++) pair->modal[roller * modes->n + i] = y[pair->places[i]];
   return gaps;

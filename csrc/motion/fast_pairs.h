@@ -1,18 +1,18 @@
 /* Fast pairs: those whose forces jump as a contact begins, as a roller's with its pocket, so that nothing approximates them. A roller is looked
- * at in such a pair unless it is proven clear (motion/clearance.h). What is proven is kept with the dynamics, from one evaluation to the next. */
+ * at in such a pair unless it is proven clear (motion/bound.h). What is proven is kept with the dynamics, from one evaluation to the next. */
 #ifndef TRB_MOTION_FAST_PAIRS_H
 #define TRB_MOTION_FAST_PAIRS_H
 
-#include "motion/clearance.h"
+#include "motion/bound.h"
 
 struct trb_dynamics;
 
 /* A pair that is evaluated at every instant, and what is proven of every roller in it. */
 typedef struct trb_fast_pair {
-  const trb_pair    *pair;
-  int                row;        /* its number in the system */
-  trb_clearance     *clearances; /* n_rollers */
-  trb_clearance_arms arms[TRB_N_GAPS];
+  const trb_pair *pair;
+  int             row;    /* its number in the system */
+  trb_bound      *bounds; /* n_rollers */
+  trb_arms        arms[TRB_N_GAPS];
   /* where the other body deforms; NULL where it does not */
   int    *places; /* [mode]: of its amplitude in the state */
   double *ways;   /* [roller][mode][gap]: as its kind gives them, for a unit of that coordinate */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "contact/kernels.h"
-#include "motion/hold.h"
+#include "motion/bound.h"
 
 const trb_peak_quantity trb_peak_quantities[TRB_N_PEAK_QUANTITIES] = {
 #define TRB_PEAK_QUANTITY(name, kind, sense) {TRB_FIELD_##kind, TRB_PEAK_##sense},
@@ -31,10 +31,12 @@ struct trb_peak_look {
   trb_system    system; /* of `normal` */
   trb_dynamics *d;      /* of that system */
   trb_detail   *detail; /* of ribs */
-  trb_hold     *holds;  /* of every batch of slow pairs, which are held together, n_rollers each */
-  trb_hold_arms arms[TRB_MOST_PAIRS];
-  int          *posed; /* per roller: its pose is that of this look */
-  int           offset[TRB_N_PEAK_QUANTITIES + 1];
+  /* how far what was looked at holds, n_rollers each: interferences of every pair with a ring, and velocities of every batch */
+  trb_bound       *bounds;
+  trb_speed_bound *speeds;
+  trb_arms         arms[TRB_MOST_PAIRS];
+  int             *posed; /* per roller: its pose is that of this look */
+  int              offset[TRB_N_PEAK_QUANTITIES + 1];
 };
 
 static int count(const trb_model *m, int quantity)
@@ -70,9 +72,11 @@ trb_status trb_peak_look_create(const trb_system *system, const trb_motion *moti
   p->system.model = &p->normal;
   p->normal.friction = p->normal.pocket_friction = 0;
   p->normal.params.rolling_resistance = 0.0;
-  p->holds = calloc(TRB_MOST_PAIRS * n, sizeof *p->holds);
+  p->bounds = calloc(TRB_MOST_PAIRS * n, sizeof *p->bounds);
+  p->speeds = calloc(TRB_MOST_PAIRS * n, sizeof *p->speeds);
   p->posed = calloc(n, sizeof *p->posed);
-  trb_status status = p->holds != NULL && p->posed != NULL ? TRB_OK : trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
+  const int  made = p->bounds != NULL && p->speeds != NULL && p->posed != NULL;
+  trb_status status = made ? TRB_OK : trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
   if (status == TRB_OK) status = trb_dynamics_create(&p->system, motion, variant, &p->d, message);
   if (status == TRB_OK) status = trb_detail_create(m, system->pairs, system->n_pairs, &p->detail, message);
   if (status != TRB_OK) {
@@ -80,10 +84,8 @@ trb_status trb_peak_look_create(const trb_system *system, const trb_motion *moti
     return status;
   }
   trb_detail_clear(m, p->detail);
-  for (int i = 0; i < p->d->work->n_batches; i++) {
-    const trb_batch *batch = &p->d->work->batches[i];
-    if (batch->pairs[0]->kind->look != NULL) p->arms[i] = trb_hold_arms_of(m, batch);
-  }
+  const trb_ring_arms arms = trb_ring_arms_of(system);
+  for (int i = 0; i < arms.n; i++) p->arms[arms.row[i]] = arms.of[i];
   for (int i = 0; i <= TRB_N_PEAK_QUANTITIES; i++) p->offset[i] = trb_peak_look_offset(m, i);
   trb_peak_look_forget(p);
   *look = p;
@@ -95,14 +97,15 @@ void trb_peak_look_free(trb_peak_look *look)
   if (look == NULL) return;
   trb_dynamics_free(look->d);
   trb_detail_free(look->detail);
-  free(look->holds);
+  free(look->bounds);
+  free(look->speeds);
   free(look->posed);
   free(look);
 }
 
 void trb_peak_look_forget(trb_peak_look *look)
 {
-  for (int i = 0; i < TRB_MOST_PAIRS * look->normal.n_rollers; i++) look->holds[i].way = -1.0;
+  for (int i = 0; i < TRB_MOST_PAIRS * look->normal.n_rollers; i++) look->speeds[i].length = -1.0;
 }
 
 /* Places of the values of a quantity. */
@@ -121,14 +124,15 @@ static double turn_of(const trb_peak_look *p, int j, const double *y)
 }
 
 /* A roller's contacts of a batch, looked at: values are written, and how far they hold. */
-static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, const double *y, double *values)
+static void put(trb_peak_look *p, int batch, int j, const double *y, double *values)
 {
   const trb_model *m = &p->normal;
   const trb_batch *b = &p->d->work->batches[batch];
-  double           way = INFINITY, speed = INFINITY;
+  const double    *own = y + trb_state_roller(p->d->system, j), angle = turn_of(p, j, y);
+  double           speed = INFINITY;
   for (int i = 0; i < b->n; i++) {
     const trb_contact *look = &trb_pair_contacts(m, b->pairs[i], p->detail)[j];
-    way = fmin(way, look->way);
+    trb_bound_set_on_ring(&p->bounds[b->index[i] * m->n_rollers + j], look->way, &p->d->bodies[b->pairs[i]->b].ring, own, angle);
     speed = fmin(speed, look->speed);
     for (size_t q = 0; q < sizeof contact_peaks / sizeof contact_peaks[0]; q++) {
       if (contact_peaks[q].pair != b->index[i]) continue;
@@ -137,7 +141,20 @@ static void put(trb_peak_look *p, const trb_hold_ring *ring, int batch, int j, c
       write(p, contact_peaks[q].quantity, j, there ? value : (double)INFINITY, values);
     }
   }
-  trb_hold_set(ring, y + trb_state_roller(p->d->system, j), turn_of(p, j, y), way, speed, &p->holds[batch * m->n_rollers + j]);
+  trb_speed_bound_set(&p->speeds[batch * m->n_rollers + j], speed, p->d->system, p->d->bodies, own, angle);
+}
+
+/* Whether a roller's contacts of a batch are as they were when they were looked at. */
+static int holds(const trb_peak_look *p, const trb_ring_offset *offsets, int batch, int j, const double *y)
+{
+  const int        z = p->normal.n_rollers;
+  const trb_batch *b = &p->d->work->batches[batch];
+  const double    *own = y + trb_state_roller(p->d->system, j), angle = turn_of(p, j, y);
+  for (int i = 0; i < b->n; i++) {
+    const int row = b->index[i], ring = b->pairs[i]->b;
+    if (!trb_bound_holds_on_ring(&p->bounds[row * z + j], &p->arms[row], &offsets[ring], &p->d->bodies[ring].ring, own, angle)) return 0;
+  }
+  return trb_speed_bound_holds(&p->speeds[batch * z + j], p->d->system, offsets, p->d->bodies, own, angle);
 }
 
 static void pose(trb_peak_look *p, int j, const double *y)
@@ -164,7 +181,8 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
   trb_instant      at = trb_dynamics_instant(d);
   int              chosen[TRB_TILE_LANES];
 
-  const trb_hold_ring ring = trb_hold_ring_of(d->system, d->bodies);
+  trb_ring_offset offsets[TRB_MOST_BODIES];
+  trb_ring_offsets_of(d->system, d->bodies, offsets);
   at.chosen = chosen;
   at.spin = d->spin;
   for (int i = 0; i < d->work->n_batches; i++) {
@@ -173,9 +191,7 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
     at.n = 0;
     for (int j = 0; j < z; j++) {
       /* what is known of a contact knows no change of the surfaces */
-      if (!d->uneven[j] &&
-          trb_hold_holds(&p->holds[i * z + j], &p->arms[i], &ring, y + trb_state_roller(p->d->system, j), turn_of(p, j, y)))
-        continue;
+      if (!d->uneven[j] && holds(p, offsets, i, j, y)) continue;
       pose(p, j, y);
       memset(&d->loads[j], 0, sizeof d->loads[j]);
       chosen[at.n++] = j;
@@ -183,8 +199,8 @@ static void look_at_slow(trb_peak_look *p, const double *y, double *values)
     if (at.n == 0) continue;
     batch->pairs[0]->kind->look(m, &at, batch, d->work, d->loads, p->detail, TRB_PEAK_SHARE);
     for (int k = 0; k < at.n; k++) {
-      put(p, &ring, i, chosen[k], y, values);
-      if (d->uneven[chosen[k]]) p->holds[i * z + chosen[k]].way = -1.0;
+      put(p, i, chosen[k], y, values);
+      if (d->uneven[chosen[k]]) p->speeds[i * z + chosen[k]].length = -1.0;
     }
   }
 }

@@ -1,6 +1,6 @@
 /* What peaks are made of: all loads, pressures, film parameters, skews and spacings at a state. Friction is left out, as none of them
  * needs it. A contact with a ring is evaluated again where its load or its film's entrainment speed may have changed by TRB_PEAK_SHARE
- * since it was evaluated last (motion/hold.h), and always while the ring or its speed changes; pockets are evaluated always, unless they
+ * since it was evaluated last (motion/bound.h), and always while the ring or its speed changes; pockets are evaluated always, unless they
  * are proven clear. */
 #ifndef TRB_MOTION_PEAK_LOOK_H
 #define TRB_MOTION_PEAK_LOOK_H

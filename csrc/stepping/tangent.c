@@ -48,7 +48,7 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
     trb_tangents_free(t);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the tangents of %d rollers", m->n_rollers);
   }
-  t->arms = trb_margin_arms_of(system);
+  t->arms = trb_ring_arms_of(system);
   t->least_mass = INFINITY;
   for (int k = 0; k < system->n_moving; k++) {
     const trb_body *body = &system->bodies[system->moving[k]];
@@ -117,7 +117,7 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
     const int    j = chosen[k];
     trb_tangent *r = &t->rollers[j];
     trb_dynamics_roller_flow(d, j, &d->loads[j], r->value);
-    trb_tangent_see(t, d, j);
+    memcpy(r->margin, d->loads[j].margin, sizeof r->margin);
     memcpy(r->origin, y + trb_state_roller(d->system, j), TRB_NR * sizeof *y);
     r->origin[TRB_TANGENT_TURN] = d->drive.frame_angle;
     trb_tangent_straighten(t, j);
@@ -202,23 +202,20 @@ static double slipped(const trb_params *p, const double *step)
 }
 
 /* Whether contacts that a bound leaves open have changed their interference by less than a share of their margin all the same. Bounds add up what
- * bodies do that move together, as a roller that follows a rib which leans, or that rolls along a raceway askew. The interferences themselves
- * can be had out of the poses. */
+ * bodies do that move together, as a roller that follows a rib which leans. Of a point contact the interference itself can be had. */
 static int is_near(const trb_tangents *t, const trb_dynamics *d, int roller, const double *y, unsigned open)
 {
-  const trb_tangent *r = &t->rollers[roller];
-  trb_roller_pose    pose;
+  const double   *margin = t->rollers[roller].margin, share = t->measure->margin_share;
+  trb_roller_pose pose;
+  for (int i = 0; i < t->arms.n; i++)
+    if (open >> i & 1U && d->system->pairs[t->arms.row[i]].kind->depth == NULL) return 0;
   trb_roller_pose_unpack(d->model, &d->drive, roller, y, &pose);
   for (int i = 0; i < t->arms.n; i++) {
     if (!(open >> i & 1U)) continue;
-    const trb_pair *pair = &d->system->pairs[t->arms.row[i]];
-    const double    may = t->measure->margin_share * r->margin[t->arms.row[i]];
-    double          now[TRB_N_DEPTHS];
-    if (pair->kind->depths == NULL) return 0;
+    const int           row = t->arms.row[i];
+    const trb_pair     *pair = &d->system->pairs[row];
     const trb_ring_pose ring = trb_dynamics_ring_seen(d, pair->b, &pose);
-    pair->kind->depths(d->model, pair, roller, &pose, &ring, now);
-    for (int e = 0; e < TRB_N_DEPTHS; e++)
-      if (!(fabs(now[e] - r->depths[i][e]) <= may)) return 0;
+    if (!(fabs(pair->kind->depth(pair, &pose, &ring) - margin[row]) <= share * fabs(margin[row]))) return 0;
   }
   return 1;
 }
@@ -242,13 +239,13 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   const trb_block_kernels   *kernels = measure->factors->kernels;
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
   if (t->under_way) return 0;
-  const double distance2 = r->known
-                               ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, roller, of_ring)
-                               : (double)INFINITY;
+  const double distance2 =
+      r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, roller, of_ring)
+               : (double)INFINITY;
   const double slid = slipped(&t->model->params, step) + trb_rings_moved(t, d, roller);
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip);
   if (!t->beyond[roller]) {
-    const unsigned open = trb_margin_open(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
+    const unsigned open = trb_bounds_open(&t->arms, t->offsets, r->margin, measure->margin_share, r->origin, step, step[TRB_TANGENT_TURN]);
     t->beyond[roller] = open != 0U && !is_near(t, d, roller, y, open);
   }
   r->served += !t->beyond[roller];

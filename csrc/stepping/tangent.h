@@ -15,7 +15,7 @@
  *
  * An error that was measured in one direction says little about another direction, and a tangent cannot foresee that a contact begins or
  * ends or that the oil yields. Two more bounds therefore hold, whatever the reach is. While a tangent is followed no contact with a
- * raceway or a rib can begin or end; motion/margin.h proves that. And the roller's slip changes by at most a share of its rolling speed,
+ * raceway or a rib can begin or end; motion/bound.h proves that. And the roller's slip changes by at most a share of its rolling speed,
  * within which friction is linear.
  *
  * A ring that moves by itself adds its own inputs and outputs (stepping/ring_tangent.h). */
@@ -24,7 +24,7 @@
 
 #include <math.h>
 
-#include "motion/margin.h"
+#include "motion/bound.h"
 #include "motion/rhs.h"
 #include "stepping/arrow.h"
 
@@ -37,18 +37,17 @@ typedef struct trb_tangent {
   double found[TRB_NR][TRB_NR];                  /* slopes of the rates as differences gave them, column by column */
   double value[TRB_TANGENT_OUT];                 /* flow at the origin */
   double origin[TRB_TANGENT_IN];                 /* where it is exact */
-  double per[TRB_TANGENT_IN];                  /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
-  double curve[TRB_TANGENT_OUT];               /* bend of the flow along the way on which the origins lie; zero: none is known */
-  double along[TRB_TANGENT_IN];                /* times a step: its part of the last step between origins, of which this is the direction */
-  int    bends;                                /* 1: the curve is not zero */
-  double length;                               /* of the last step between origins; 0: slopes were found at the origin */
-  double reach;                                /* distance up to which it is used */
-  double margin[TRB_MOST_PAIRS];               /* of the contacts at the origin, m */
-  double depths[TRB_MOST_PAIRS][TRB_N_DEPTHS]; /* there, in the order of the margins' arms, where a kind has them */
-  double usual;                                /* for how many evaluations an origin is used: running mean */
-  int    served;                               /* for how many this one was */
-  int    known;                                /* 0: there is no origin */
-  int    corrected;                            /* how often its slopes were corrected since they were computed by differences */
+  double per[TRB_TANGENT_IN];    /* weights of a distance: one over tolerance, scaled so that the sum of squares is a mean */
+  double curve[TRB_TANGENT_OUT]; /* bend of the flow along the way on which the origins lie; zero: none is known */
+  double along[TRB_TANGENT_IN];  /* times a step: its part of the last step between origins, of which this is the direction */
+  int    bends;                  /* 1: the curve is not zero */
+  double length;                 /* of the last step between origins; 0: slopes were found at the origin */
+  double reach;                  /* distance up to which it is used */
+  double margin[TRB_MOST_PAIRS]; /* of the contacts at the origin, m */
+  double usual;                  /* for how many evaluations an origin is used: running mean */
+  int    served;                 /* for how many this one was */
+  int    known;                  /* 0: there is no origin */
+  int    corrected;              /* how often its slopes were corrected since they were computed by differences */
 } trb_tangent;
 
 typedef struct trb_tangents {
@@ -66,9 +65,9 @@ typedef struct trb_tangents {
   int                              *beyond;                   /* scratch: whether a bound of the tangent is passed */
   trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
   double                            inputs[TRB_MOST_MOVING_RINGS][TRB_RING_IN]; /* of those with coordinates, in this evaluation */
-  trb_margin_arms                   arms;                                       /* what bounds the change of an interference */
-  double                            time;       /* at which the slopes of all rollers were last evaluated, s */
-  int                               has_slopes; /* whether they were at all */
+  trb_ring_arms                     arms;                     /* what bounds the change of an interference */
+  double                            time;                     /* at which the slopes of all rollers were last evaluated, s */
+  int                               has_slopes;               /* whether they were at all */
 } trb_tangents;
 
 /* Limits of a tangent, and what its error is measured with. */

@@ -32,17 +32,6 @@ void trb_tangent_straighten(trb_tangents *t, int roller)
   }
 }
 
-void trb_tangent_see(trb_tangents *t, const trb_dynamics *d, int roller)
-{
-  trb_tangent *r = &t->rollers[roller];
-  memcpy(r->margin, d->loads[roller].margin, sizeof r->margin);
-  for (int i = 0; i < t->arms.n; i++) {
-    const trb_pair *pair = &d->system->pairs[t->arms.row[i]];
-    if (pair->kind->depths == NULL) continue;
-    pair->kind->depths(d->model, pair, roller, &d->rollers[roller], &d->bodies[pair->b].in_frame[roller], r->depths[i]);
-  }
-}
-
 static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const double *y)
 {
   for (int i = 0; i < TRB_NR; i++) r->per[i] = trb_tangent_weight(measure, i, y[i]);
@@ -140,7 +129,7 @@ static trb_found compare(const trb_tangents *t, int roller, const trb_tangent_me
 void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const double *y, const double *flow, const trb_wrench *reactions)
 {
   const trb_tangent_measure *measure = t->measure;
-  const double               turn = d->drive.frame_angle;
+  const double               turn = d->drive.frame_angle, *margin = d->loads[roller].margin;
   const int                  n_moving = t->system->n_moving;
   double                     of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN], off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
   trb_tangent               *r = &t->rollers[roller];
@@ -172,7 +161,7 @@ void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const
     r->reach = trb_first_reach;
     trb_tangent_straighten(t, roller);
   }
-  trb_tangent_see(t, d, roller);
+  memcpy(r->margin, margin, sizeof r->margin);
   memcpy(r->value, flow, sizeof r->value);
   memcpy(r->origin, y, TRB_NR * sizeof *y);
   r->origin[TRB_TANGENT_TURN] = turn;

@@ -12,9 +12,7 @@ static const double trb_first_reach = 1.0;
 
 /* No bend is known, as slopes were found at the origin. */
 void trb_tangent_straighten(trb_tangents *t, int roller);
-/* The margins of a roller's contacts, and their depths, at the pose and with the loads that the dynamics keep. */
-void trb_tangent_see(trb_tangents *t, const trb_dynamics *d, int roller);
-/* An exact flow of a roller, with the reactions on the rings, at a state whose poses and loads the dynamics have. */
+/* An exact flow of a roller, with the reactions on the rings, at a state whose margins the dynamics have. */
 void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const double *y, const double *flow,
                        const trb_wrench *reactions);
 

@@ -95,14 +95,13 @@ static trb_status join(const trb_system *s, trb_pair *pair, trb_message *message
   return TRB_OK;
 }
 
-/* A contact of a roller with a ring is followed by tangents, which its margin bounds, and looked at for peaks, which hold for a while. */
+/* A contact of a roller with a ring is followed by tangents and looked at for peaks, which hold as long as bounds say so. */
 static trb_status check_contact(const trb_pair *pair, trb_message *message)
 {
   const trb_pair_kind *kind = pair->kind;
-  if (kind->contact != TRB_CONTACT_NONE && kind->pace == TRB_PACE_SLOW && (!kind->margin || !kind->look || !kind->hold))
-    return trb_fail(message, TRB_ERR_INPUT,
-                    "pair %s: its kind '%s' is a contact of a roller with a ring, and must give margin, look and hold", pair->name,
-                    kind->name);
+  if (kind->contact != TRB_CONTACT_NONE && kind->pace == TRB_PACE_SLOW && (!kind->arms || !kind->look))
+    return trb_fail(message, TRB_ERR_INPUT, "pair %s: its kind '%s' is a contact of a roller with a ring, and must give arms and look",
+                    pair->name, kind->name);
   return TRB_OK;
 }
 

@@ -1,115 +1,302 @@
-/* Bounds of contacts: arms reach as far as what they stand for, and what several coordinates do is added up. */
+/* Bounds of interferences with rings: whatever moves, none changes by more than its bound; and bounds are not much wider than needed. */
+#include "motion/bound.h"
+
+#include <stdlib.h>
+
 #include "check.h"
-#include "contact/pair.h"
 #include "motion/dynamics.h"
-#include "motion/hold.h"
 #include "rig.h"
 
-/* Two coordinates that each move a contact by 0.6 of what it may bear hold alone, and not together, whatever their signs. */
-static void test_ways_add_up(void)
+enum { MOST = 512 };
+
+static unsigned long long seed = 11;
+
+/* What a bound was, and what it bounded. */
+typedef struct tried {
+  double tightest; /* largest change over its bound */
+  double mean;     /* the same, summed up */
+  int    n;
+} tried;
+
+static void note(tried *t, double change, double bound)
 {
-  static const int           coordinates[] = {TRB_ROLLER_r, TRB_ROLLER_z, TRB_ROLLER_tilt};
-  static const int           velocities[] = {TRB_ROLLER_v_r, TRB_ROLLER_v_z, TRB_ROLLER_omega_n, TRB_ROLLER_omega_a};
-  const trb_hold_arms        arms = {.radial = 0.9, .axial = 0.2, .tilt = 0.02, .skew = 0.01, .reach = 0.03, .off = 0.05};
-  const double               arm[] = {arms.radial, arms.axial, arms.tilt}, lever[] = {1.0, 1.0, arms.reach, arms.reach};
-  const double               from[TRB_ROLLER_SIZE] = {0}, way = 1e-6, speed = 1e-3;
-  static const trb_hold_ring still = {0};
-  trb_hold                   hold;
-  trb_hold_set(&still, from, 0.0, way, speed, &hold);
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++)
-      for (int signs = 0; signs < 4; signs++) {
-        double y[TRB_ROLLER_SIZE] = {0};
-        y[coordinates[a]] = (signs & 1 ? -0.6 : 0.6) * way / arm[a];
-        CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
-        if (a == b) continue;
-        y[coordinates[b]] = (signs & 2 ? -0.6 : 0.6) * way / arm[b];
-        CHECK(!trb_hold_holds(&hold, &arms, &still, y, 0.0));
-      }
-  for (int a = 0; a < 4; a++)
-    for (int b = 0; b < 4; b++) {
-      double y[TRB_ROLLER_SIZE] = {0};
-      y[velocities[a]] = 0.6 * speed / lever[a];
-      CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
-      if (a == b) continue;
-      y[velocities[b]] = -0.6 * speed / lever[b];
-      CHECK(!trb_hold_holds(&hold, &arms, &still, y, 0.0));
-    }
+  if (!(bound > 0.0)) return;
+  t->tightest = fmax(t->tightest, change / bound);
+  t->mean += change / bound;
+  t->n++;
 }
 
-/* A roller that skews to the other side has moved by both angles. */
-static void test_skew_to_the_other_side(void)
+/* Between `most` and so many decades less. */
+static double size_of(double most, double decades) { return most * pow(10.0, -decades * fabs(rig_random(&seed))); }
+
+/* A bearing whose motion is that of its frame; rings stand where the tests put them. */
+typedef struct bench {
+  trb_system   *system;
+  trb_motion   *motion;
+  trb_dynamics *d;
+  trb_detail   *detail;
+  double        y[MOST];
+} bench;
+
+static int set_up(bench *b, const trb_params *params, double load)
 {
-  const trb_hold_arms arms = {.radial = 0.9, .axial = 0.2, .tilt = 0.02, .skew = 0.01, .reach = 0.03, .off = 0.05};
-  const trb_hold_ring still = {0};
-  double              from[TRB_ROLLER_SIZE] = {0}, y[TRB_ROLLER_SIZE] = {0};
-  trb_hold            hold;
-  from[TRB_ROLLER_skew] = 1e-2;
-  /* the way of both angles is aside times slant over off: half of it is not enough to hold, a little more than it is */
-  const double aside = arms.skew * 2e-2, slant = arms.skew * 1e-2 + aside;
-  trb_hold_set(&still, from, 0.0, 0.5 * aside * slant / arms.off, 1.0, &hold);
-  y[TRB_ROLLER_skew] = 1e-2;
-  CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
-  y[TRB_ROLLER_skew] = -1e-2;
-  CHECK(!trb_hold_holds(&hold, &arms, &still, y, 0.0));
-  trb_hold_set(&still, from, 0.0, 1.01 * aside * slant / arms.off, 1.0, &hold);
-  CHECK(trb_hold_holds(&hold, &arms, &still, y, 0.0));
+  const double speed = 100.0 * TRB_PI;
+  b->system = rig_system(params);
+  b->motion = rig_motion(rig_state(b->system, load, speed, b->y), speed);
+  if (!CHECK(trb_dynamics_create(b->system, b->motion, "scalar", &b->d, NULL) == TRB_OK)) return 0;
+  for (int i = 0; i < b->system->n_bodies; i++) b->d->bodies[i].rests = 0;
+  return CHECK(trb_detail_create(b->system->model, b->system->pairs, b->system->n_pairs, &b->detail, NULL) == TRB_OK);
+}
+
+static void take_down(bench *b)
+{
+  trb_detail_free(b->detail);
+  trb_dynamics_free(b->d);
+  trb_motion_free(b->motion);
+  rig_free(b->system);
+}
+
+/* A displacement of all rings, or of none. */
+typedef struct stand {
+  trb_vec3 shift[TRB_MOST_BODIES], lean[TRB_MOST_BODIES];
+} stand;
+
+static void displace(double shift, double lean, stand *s)
+{
+  for (int i = 0; i < TRB_MOST_BODIES; i++) {
+    const double axial = shift * rig_random(&seed);
+    s->shift[i] = trb_add(s->shift[i], trb_v(shift * rig_random(&seed), shift * rig_random(&seed), axial));
+    s->lean[i] = trb_add(s->lean[i], trb_v(lean * rig_random(&seed), lean * rig_random(&seed), 0.0));
+  }
+}
+
+/* Interferences of all rollers at a state, negative for a gap, by row; the frame has turned. */
+static void look(bench *b, double turn, const double *y, const stand *s, trb_loads *loads, double (*depth)[TRB_MOST_PAIRS])
+{
+  trb_dynamics    *d = b->d;
+  const trb_model *m = d->model;
+  trb_dynamics_pose(d, turn / (m->geometry.cage_speed_ratio * 100.0 * TRB_PI), y);
+  for (int i = 0; i < b->system->n_bodies; i++) {
+    trb_ring_pose *ring = &d->bodies[i].ring;
+    if (!trb_is_ring(b->system->bodies[i].kind)) continue;
+    const trb_vec3 axis = trb_add(ring->axis, s->lean[i]);
+    ring->axis = trb_scale(1.0 / trb_norm(axis), axis);
+    ring->centre = trb_add(ring->centre, s->shift[i]);
+  }
+  for (int j = 0; j < m->n_rollers; j++) trb_dynamics_pose_roller(d, j, y + trb_state_roller(b->system, j));
+  const trb_instant at = trb_dynamics_instant(d);
+  trb_detail_clear(m, b->detail);
+  trb_contact_slow(m, &at, d->work, loads, b->detail);
+  for (int i = 0; i < b->system->n_pairs; i++) {
+    const trb_pair *pair = &b->system->pairs[i];
+    for (int j = 0; j < m->n_rollers && pair->on && pair->kind->contact != TRB_CONTACT_NONE; j++) {
+      const double margin = loads[j].margin[i];
+      if (pair->kind->contact == TRB_CONTACT_LINE) depth[j][i] = trb_pair_contacts(m, pair, b->detail)[j].load > 0.0 ? margin : -margin;
+      else depth[j][i] = trb_pair_contacts(m, pair, b->detail)[j].interference;
+      if (pair->kind->depth == NULL) continue;
+      /* depths out of poses alone are those of the evaluation */
+      const trb_ring_pose ring = trb_dynamics_ring_seen(d, pair->b, &d->rollers[j]);
+      CHECK_NEAR(pair->kind->depth(pair, &d->rollers[j], &ring), margin, 1e-15);
+      CHECK(margin == depth[j][i]);
+    }
+  }
+}
+
+/* What may move: one coordinate of the rollers alone, all of them, the frame, the rings, or everything. */
+static void move(const trb_system *system, int kind, double size, double *y, double *turn, stand *s)
+{
+  static const double unit[TRB_PLACE_OF_ROLLER] = {1.0, 30.0, 1.0, 30.0, 30.0};
+  for (int j = 0; j < system->model->n_rollers; j++)
+    for (int c = 0; c < TRB_PLACE_OF_ROLLER; c++)
+      if (kind == c || kind == 5 || kind > 7) y[trb_state_roller(system, j) + c] += size * unit[c] * rig_random(&seed);
+  if (kind > 5 && kind != 7) *turn += 1e3 * size * rig_random(&seed);
+  if (kind > 6) displace(size, 20.0 * size, s);
+}
+
+/* Random states of rollers and rings, and random displacements of both from there. aside, lean: of the rings; off: of the
+ * rollers, m; farthest: displacement, m. */
+static void try_rings(bench *b, double aside, double lean, double off, double farthest, tried *of, int *held)
+{
+  const trb_system   *system = b->system;
+  const trb_model    *m = system->model;
+  const size_t        n = (size_t)m->n_rollers;
+  const trb_ring_arms arms = trb_ring_arms_of(system);
+  trb_loads          *loads = calloc(2 * n, sizeof *loads);
+  double (*before)[TRB_MOST_PAIRS] = calloc(2 * n, sizeof *before), (*after)[TRB_MOST_PAIRS] = before + n;
+  const double share = 0.5;
+  for (int k = 0; k < 1500; k++) {
+    double place[MOST], to[MOST], turn = rig_random(&seed), turned = turn;
+    stand  from = {0}, there;
+    memcpy(place, b->y, sizeof place);
+    displace(aside, lean, &from);
+    double unused = 0.0;
+    stand  none = {0};
+    move(system, 5, off, place, &unused, &none);
+    look(b, turn, place, &from, loads, before);
+    trb_body_at bodies[TRB_MOST_BODIES];
+    memcpy(bodies, b->d->bodies, sizeof bodies);
+    memcpy(to, place, sizeof to);
+    there = from;
+    move(system, k % 9, size_of(farthest, 4.0), to, &turned, &there);
+    look(b, turned, to, &there, loads + n, after);
+    trb_ring_offset offsets[TRB_MOST_BODIES];
+    trb_ring_offsets_of(system, b->d->bodies, offsets);
+    for (int i = 0; i < system->n_bodies; i++) {
+      offsets[i].shifted = trb_norm(trb_sub(b->d->bodies[i].ring.centre, bodies[i].ring.centre));
+      offsets[i].leaned = trb_norm(trb_sub(b->d->bodies[i].ring.axis, bodies[i].ring.axis));
+    }
+    for (int j = 0; j < m->n_rollers; j++) {
+      const double *first = place + trb_state_roller(system, j), *last = to + trb_state_roller(system, j);
+      double        step[TRB_ROLLER_SIZE];
+      for (int c = 0; c < TRB_ROLLER_SIZE; c++) step[c] = last[c] - first[c];
+      const unsigned open = trb_bounds_open(&arms, offsets, loads[j].margin, share, first, step, turned - turn);
+      for (int i = 0; i < arms.n; i++) {
+        const int       row = arms.row[i], ring = arms.body[i];
+        const double    change = fabs(after[j][row] - before[j][row]), angle = turned - turn + last[TRB_ROLLER_psi];
+        const double    around = fabs(step[TRB_ROLLER_psi] + turned - turn);
+        const double    way = trb_way_on_ring(&arms.of[i], &offsets[ring], first, step, around, 0.0);
+        trb_ring_offset still = offsets[ring];
+        trb_bound       bound;
+        CHECK(change <= way * (1.0 + 1e-9) + 1e-15);
+        CHECK(way <= (1.0 + 1e-9) * trb_way_on_ring(&arms.of[i], &offsets[ring], first, step, around, INFINITY));
+        if (way > 1e-12) note(&of[row], change, way);
+        /* a bound that was set there says the same */
+        still.shifted = still.leaned = 0.0;
+        trb_bound_set_on_ring(&bound, 1.000001 * way, &bodies[ring].ring, first, first[TRB_ROLLER_psi]);
+        CHECK(trb_bound_holds_on_ring(&bound, &arms.of[i], &still, &b->d->bodies[ring].ring, last, angle));
+        bound.length[0] = 0.999 * way;
+        CHECK(way < 1e-12 || !trb_bound_holds_on_ring(&bound, &arms.of[i], &still, &b->d->bodies[ring].ring, last, angle));
+        bound.length[0] = NAN;
+        CHECK(!trb_bound_holds_on_ring(&bound, &arms.of[i], &still, &b->d->bodies[ring].ring, last, angle));
+        if (open >> i & 1U) continue;
+        ++*held;
+        CHECK(change <= share * fabs(loads[j].margin[row]) * (1.0 + 1e-9));
+      }
+    }
+  }
+  free(loads);
+  free(before);
+}
+
+static void test_rings(const trb_params *params, double load)
+{
+  bench b;
+  tried of[TRB_MOST_PAIRS] = {{0}};
+  int   held = 0;
+  if (!set_up(&b, params, load)) return;
+  try_rings(&b, 0.0, 0.0, 2e-6, 1e-5, of, &held);
+  try_rings(&b, 40e-6, 0.0, 2e-6, 1e-5, of, &held);
+  try_rings(&b, 20e-6, 1e-3, 1e-5, 1e-4, of, &held);
+  try_rings(&b, 100e-6, 5e-3, 1e-4, 1e-3, of, &held);
+  try_rings(&b, 100e-6, 2e-2, 5e-4, 2e-3, of, &held);
+  const trb_ring_arms arms = trb_ring_arms_of(b.system);
+  for (int i = 0; i < arms.n; i++) {
+    const tried *t = &of[arms.row[i]];
+    fprintf(stderr, "%s: change over bound %.3f at most, %.3f in the mean of %d\n", b.system->pairs[arms.row[i]].name, t->tightest,
+            t->mean / t->n, t->n);
+    CHECK(t->n > 4000 && t->tightest > 0.9 && t->mean > 0.1 * t->n);
+  }
+  fprintf(stderr, "held %d\n", held);
+  CHECK(held > 10000);
+  take_down(&b);
+}
+
+/* Not a number proves nothing, wherever it stands. */
+static void test_not_a_number(void)
+{
+  const trb_params      p = rig_params();
+  trb_system           *system = rig_system(&p);
+  const trb_ring_arms   arms = trb_ring_arms_of(system);
+  const trb_ring_offset still[TRB_MOST_BODIES] = {{0}};
+  const double          place[TRB_ROLLER_SIZE] = {0};
+  double                interference[TRB_MOST_PAIRS], step[TRB_ROLLER_SIZE] = {0};
+  for (int i = 0; i < TRB_MOST_PAIRS; i++) interference[i] = -1e-6;
+  CHECK(arms.n == 4 && trb_bounds_open(&arms, still, interference, 0.5, place, step, 0.0) == 0U);
+  for (int c = 0; c < TRB_PLACE_OF_ROLLER; c++) {
+    step[c] = NAN;
+    CHECK(trb_bounds_open(&arms, still, interference, 0.5, place, step, 0.0) == 0xFU);
+    step[c] = 0.0;
+  }
+  CHECK(trb_bounds_open(&arms, still, interference, 0.5, place, step, NAN) == 0xFU);
+  interference[arms.row[2]] = NAN;
+  CHECK(trb_bounds_open(&arms, still, interference, 0.5, place, step, 0.0) == 1U << 2);
+  rig_free(system);
 }
 
 /* The edge of the small end, seen from the roller's centre of mass, which lies nearer to the large end. */
 static void test_arm_of_the_small_end(const trb_system *system)
 {
-  const trb_model    *m = system->model;
-  const trb_geometry *g = &m->geometry;
+  const trb_geometry *g = &system->model->geometry;
+  trb_arms            arms;
+  trb_pair_front_rib.arms(system->model, &system->pairs[TRB_PAIR_front_rib], &arms);
   CHECK(g->small_end_station < 0.0 && g->roller_mass_offset > 0.0);
-  CHECK(trb_pair_front_rib.margin(m, &system->pairs[TRB_PAIR_front_rib]).arm >=
-        hypot(g->small_end_station - g->roller_mass_offset, g->small_end_radius));
+  CHECK(arms.tilt <= 1.0 && arms.skew == arms.tilt);
+  CHECK(arms.tilt * arms.roller[TRB_ROLLER_tilt] >= hypot(g->small_end_station - g->roller_mass_offset, g->small_end_radius));
 }
 
-/* A turn of a body about the roller moves a face's vertex by its distance, which the arm of the same kind of face must reach. */
-static void test_arms_of_pockets(const trb_model *m)
+/* Whatever meets a ring that stands aside and leans, while it turns and moves, passes a roller across no faster than its offset says. */
+static void test_offset_of_a_ring(const trb_system *system)
 {
-  trb_clearance_arms arms[TRB_N_GAPS];
-  trb_pair_pocket.clearance(m, arms);
-  for (int i = 0; i < m->first_face[m->n_rollers]; i++) {
-    const trb_polygon *f = &m->faces[i].surface;
-    const int          gap = m->faces[i].part == TRB_PART_FLANK ? TRB_GAP_FLANK : TRB_N_GAPS - 1;
-    for (int k = 0; k < f->n; k++) {
-      const trb_vec3 vertex = trb_axpy(trb_axpy(f->origin, f->outline[2 * k], f->u), f->outline[2 * k + 1], f->v);
-      CHECK(arms[gap].roller[TRB_ROLLER_skew] >= trb_norm(vertex) && arms[gap].roller[TRB_ROLLER_tilt] >= trb_norm(vertex));
-      CHECK(arms[gap].body[TRB_CAGE_psi] >= trb_norm(vertex) + m->geometry.roller_centre_radius);
-    }
+  const double        lean = 2e-3, outside = 2.0 * system->model->geometry.roller_centre_radius;
+  const trb_ring_pose ring = {.axis = {sin(lean), 0, cos(lean)},
+                              .centre = {3e-6, -4e-6, 1e-3},
+                              .velocity = {-1e-3, 2e-3, 1.0},
+                              .omega = {100.0 * sin(lean), 0.3, 100.0 * cos(lean)}};
+  trb_body_at         bodies[TRB_MOST_BODIES] = {{.rests = 1}};
+  trb_ring_offset     offsets[TRB_MOST_BODIES];
+  for (int b = 0; b < system->n_bodies; b++) bodies[b].ring = ring;
+  trb_ring_offsets_of(system, bodies, offsets);
+  const trb_ring_offset *of = &offsets[system->driven];
+  CHECK_NEAR(of->lean, 2.0 * sin(0.5 * lean), 1e-15);
+  CHECK_NEAR(of->aside, 5e-6, 1e-18);
+  CHECK(of->shifted == 0.0 && of->leaned == 0.0);
+  for (int sign = -1; sign <= 1; sign++) {
+    const trb_vec3 across = trb_cross(trb_v(ring.omega.x, ring.omega.y, 0.0), trb_scale(sign * outside, ring.axis));
+    const trb_vec3 speed = trb_add(ring.velocity, across);
+    CHECK(of->speed >= hypot(speed.x, speed.y));
   }
 }
 
-/* Whatever meets a ring that stands aside and leans, to either side, lies no further across than the bound of its place says. */
-static void test_place_of_a_ring(const trb_system *system)
+/* Two velocities that each change by 0.6 of what may be hold alone, and not together, whatever their signs; the same of turns past a ring that
+ * moves across. */
+static void test_speeds_add_up(const trb_system *system)
 {
-  static const double turns[][2] = {{2e-3, 0.0}, {-2e-3, 0.0}, {1e-3, -3e-3}}, still[2] = {0.0, 0.0};
-  trb_dynamics       *d;
-  if (!CHECK(trb_dynamics_create(system, NULL, "scalar", &d, NULL) == TRB_OK)) return;
-  for (size_t i = 0; i < sizeof turns / sizeof turns[0]; i++) {
-    trb_drive_place(system->model, trb_v(3e-6, -5e-6, 0.0), trb_v(0, 0, 0), turns[i], still, 0.0, &d->drive);
-    trb_dynamics_place(d);
-    const trb_hold_ring  bound = trb_hold_ring_of(system, d->bodies);
-    const trb_ring_pose *ring = &d->bodies[system->driven].ring;
-    for (int sign = -1; sign <= 1; sign++) {
-      const trb_vec3 point = trb_axpy(ring->centre, sign * bound.far, ring->axis);
-      CHECK(bound.place >= hypot(point.x, point.y));
+  static const int      velocities[] = {TRB_ROLLER_v_r,     TRB_ROLLER_v_t,     TRB_ROLLER_v_z,
+                                        TRB_ROLLER_omega_n, TRB_ROLLER_omega_t, TRB_ROLLER_omega_a};
+  const trb_params     *p = &system->model->params;
+  const double          reach = p->total_length + p->roller_diameter, from[TRB_ROLLER_SIZE] = {0}, speed = 1e-3;
+  const trb_body_at     bodies[TRB_MOST_BODIES] = {{.rests = 1}};
+  const trb_ring_offset offsets[TRB_MOST_BODIES] = {{.speed = 0.0}, {.speed = 0.1}};
+  trb_speed_bound       bound;
+  trb_speed_bound_set(&bound, speed, system, bodies, from, 0.5);
+  for (int a = 0; a < 6; a++)
+    for (int b = 0; b < 6; b++) {
+      double y[TRB_ROLLER_SIZE] = {0};
+      y[velocities[a]] = 0.6 * speed / (a < 3 ? 1.0 : reach);
+      CHECK(trb_speed_bound_holds(&bound, system, offsets, bodies, y, 0.5));
+      CHECK(trb_speed_bound_holds(&bound, system, offsets, bodies, y, 0.5 + 0.3 * speed / 0.1));
+      CHECK(!trb_speed_bound_holds(&bound, system, offsets, bodies, y, 0.5 - 0.6 * speed / 0.1));
+      if (a == b) continue;
+      y[velocities[b]] = -0.6 * speed / (b < 3 ? 1.0 : reach);
+      CHECK(!trb_speed_bound_holds(&bound, system, offsets, bodies, y, 0.5));
     }
-  }
-  trb_dynamics_free(d);
+  trb_speed_bound_set(&bound, NAN, system, bodies, from, 0.5);
+  CHECK(!trb_speed_bound_holds(&bound, system, offsets, bodies, from, 0.5));
 }
 
 int main(void)
 {
-  const trb_params p = rig_params();
-  trb_system      *system = rig_system(&p);
-  test_ways_add_up();
-  test_skew_to_the_other_side();
+  trb_params p = rig_params();
+  p.front_rib_clearance = 20e-6;
+  test_rings(&p, 3000.0);
+  p = rig_cylinder();
+  test_rings(&p, 3000.0);
+  test_not_a_number();
+  p = rig_params();
+  trb_system *system = rig_system(&p);
   test_arm_of_the_small_end(system);
-  test_arms_of_pockets(system->model);
-  test_place_of_a_ring(system);
+  test_offset_of_a_ring(system);
+  test_speeds_add_up(system);
   rig_free(system);
   return check_report();
 }

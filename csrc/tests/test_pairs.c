@@ -18,7 +18,7 @@ typedef struct seen {
   trb_loads *loads;
   trb_loads  hub;
   trb_arrow *arrow;
-  int        bounds; /* pairs that have margins */
+  int        bounds; /* pairs whose interference has a bound */
 } seen;
 
 /* A cage is guided by one land at most. */
@@ -77,7 +77,7 @@ static void look(const trb_motion *motion, const double *y, unsigned left_out, s
   s->hub = d->hub;
   trb_jacobian_fill(jac, 0.01, y, 1, s->arrow);
   trb_peak_look_at(peaks, 0.01, y, s->peaks);
-  s->bounds = trb_margin_arms_of(system).n;
+  s->bounds = trb_ring_arms_of(system).n;
   trb_peak_look_free(peaks);
   trb_jacobian_free(jac);
   trb_detail_free(detail);
@@ -212,11 +212,11 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
     elastic += c->elastic;
     force += trb_norm(c->roller.force);
     moment += trb_norm(c->roller.moment);
-    if (pair_of(row)->kind->margin == NULL) continue;
+    if (pair_of(row)->kind->contact == TRB_CONTACT_NONE) continue;
     CHECK(b->margin[row] == TRB_NO_CONTACT && c->margin[row] == a->margin[row] && a->margin[row] < TRB_NO_CONTACT);
   }
   if (!is_hub(row)) CHECK(is_contact(row) ? elastic > 0.0 && force > 1.0 : force > 1.0 || (force == 0.0 && moment > 1e-4));
-  CHECK(full->bounds == out->bounds + (pair_of(row)->kind->margin != NULL) && alone->bounds == full->bounds - out->bounds);
+  CHECK(full->bounds == out->bounds + (pair_of(row)->kind->contact != TRB_CONTACT_NONE) && alone->bounds == full->bounds - out->bounds);
 }
 
 /* Loads among the peaks: gone with the row. */
@@ -391,9 +391,9 @@ static void test_refused(void)
   *system = good;
   /* a contact that would be followed across its onset, or whose peaks nobody could tell; rows that are not there */
   const trb_pair_kind *const whole = system->pairs[TRB_PAIR_rib].kind;
-  trb_pair_kind              part[3] = {*whole, *whole, *whole};
-  part[0].margin = NULL, part[1].look = NULL, part[2].hold = NULL;
-  for (int i = 0; i < 3; i++) {
+  trb_pair_kind              part[2] = {*whole, *whole};
+  part[0].arms = NULL, part[1].look = NULL;
+  for (int i = 0; i < 2; i++) {
     system->pairs[TRB_PAIR_rib].kind = &part[i];
     CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
     CHECK_SAYS(message.text, "pair rib: its kind 'spherical end on a conical rib' is a contact of a roller with a ring");

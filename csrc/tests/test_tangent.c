@@ -281,23 +281,34 @@ static void test_bounds(const trb_params *params, double of_rolling, double spee
   bench  b;
   double y[MOST], found[MOST];
   if (!open_bench(&b, params, 1.0, 1.0)) return;
-  const double rolling = fabs(0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
-  const double slip = 1e-3 * fmin(of_rolling * rolling, speed_of_range);
+  const double    rolling = fabs(0.5 * params->roller_diameter * b.model->geometry.roller_spin_ratio * 100.0 * TRB_PI);
+  const double    slip = 1e-3 * fmin(of_rolling * rolling, speed_of_range);
+  const trb_cone *face = &((const trb_rib *)b.system->pairs[TRB_PAIR_rib].own)->face;
   for (int k = 0; k < 5; k++) {
+    const int j = 3 + k, beyond = k == 1 || k == 2 || k == 4;
+    double    origin[MOST], *margins = b.tangents->rollers[j].margin;
     for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = 0.0;
-    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, b.y, found); /* the origins are there */
+    memcpy(origin, b.y, sizeof origin);
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, origin, found);
+    /* near the rib */
+    origin[trb_state_roller(b.system, j) + TRB_ROLLER_z] += 0.9 * margins[TRB_PAIR_rib] / face->sine;
+    trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, origin, found); /* the origins are there */
     for (int i = 0; i < b.model->n_rollers; i++) b.tangents->rollers[i].reach = b.tangents->rollers[i].usual = 1e9;
     const long long before = b.d->work->counters.tangent_rollers;
-    const int       j = 3 + k, beyond = k == 1 || k == 2 || k == 4;
-    const double   *margins = b.tangents->rollers[j].margin, race = fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]);
-    const double    rib = fabs(margins[TRB_PAIR_rib]);
-    /* a slip within what is allowed, a way towards a raceway, a slip beyond, a way along the rib that its bound does not tell from one
-     * towards it, and one towards it */
-    const int    moved[] = {TRB_ROLLER_v_t, TRB_ROLLER_r, TRB_ROLLER_v_t, TRB_ROLLER_r, TRB_ROLLER_z};
-    const double by[] = {0.99 * slip, 0.53 * race, 1.01 * slip, fmin(0.9 * rib, 0.49 * race), 0.52 * rib};
-    if (!CHECK(rib < 0.9 * race)) return;
-    memcpy(y, b.y, sizeof y);
-    y[trb_state_roller(b.system, j) + moved[k]] += by[k];
+    const double    race = fmin(margins[TRB_PAIR_outer], margins[TRB_PAIR_inner]), rib = fabs(margins[TRB_PAIR_rib]);
+    /* a slip within what is allowed, a way along the rib and towards a raceway, a slip beyond, a way along the rib that its bound does not tell
+     * from one towards it, and one towards it */
+    const double by = k == 1 ? 0.55 * race : 0.4 * race;
+    const double moved[TRB_ROLLER_SIZE] = {[TRB_ROLLER_r] = k == 1 || k == 3 ? by : 0.0,
+                                           [TRB_ROLLER_z] = k == 1 || k == 3 ? by * face->cosine / face->sine
+                                                            : k == 4         ? 0.52 * rib
+                                                                             : 0.0,
+                                           [TRB_ROLLER_v_t] = k == 0   ? 0.99 * slip
+                                                              : k == 2 ? 1.01 * slip
+                                                                       : 0.0};
+    if (!CHECK(rib < 0.1 * race && 2.0 * fabs(face->cosine) * by > 0.6 * rib)) return;
+    memcpy(y, origin, sizeof y);
+    for (int i = 0; i < TRB_ROLLER_SIZE; i++) y[trb_state_roller(b.system, j) + i] += moved[i];
     trb_tangents_derivative(b.tangents, b.d, &b.measure, 0.0, y, found);
     CHECK(b.d->work->counters.tangent_rollers - before == b.model->n_rollers - beyond);
     CHECK(b.tangents->beyond[j] == beyond);

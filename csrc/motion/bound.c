@@ -1,0 +1,138 @@
+#include "motion/bound.h"
+
+#include <math.h>
+#include <string.h>
+
+void trb_bound_set(const trb_model *m, trb_bound *bound, const trb_gaps *gaps, const double *y_roller, const double *y_body)
+{
+  const double far = fabs(y_roller[TRB_ROLLER_r]) + fabs(y_roller[TRB_ROLLER_z]) + fabs(y_body[0]) + fabs(y_body[1]) + fabs(y_body[2]);
+  /* a gap that is not a number (NaN) proves nothing */
+  for (int g = 0; g < TRB_N_GAPS; g++)
+    bound->length[g] = far < trb_bound_play(m) && gaps->of[g] > 0.0 ? trb_min(gaps->of[g], trb_bound_play(m)) : 0.0;
+  memcpy(bound->roller, y_roller, sizeof bound->roller);
+  memcpy(bound->body, y_body, sizeof bound->body);
+}
+
+/* Adds what has changed of each gap, at most. */
+static inline void add_ways(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
+                            double ways[TRB_N_GAPS])
+{
+  for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) {
+    const double moved = fabs(y_roller[i] - bound->roller[i]);
+    for (int g = 0; g < TRB_N_GAPS; g++) ways[g] += arms[g].roller[i] * moved;
+  }
+  for (int i = 0; i < TRB_PLACE_OF_BODY; i++) {
+    const double moved = fabs(y_body[i] - bound->body[i]);
+    for (int g = 0; g < TRB_N_GAPS; g++) ways[g] += arms[g].body[i] * moved;
+  }
+}
+
+int trb_bound_clear(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body)
+{
+  double ways[TRB_N_GAPS] = {0};
+  if (!(bound->length[TRB_GAP_FLANK] > 0.0 && bound->length[TRB_GAP_ENDS] > 0.0)) return 0;
+  if (deformed != NULL) memcpy(ways, deformed, sizeof ways);
+  add_ways(bound, arms, y_roller, y_body, ways);
+  /* where a coordinate is not a number (NaN) both comparisons are false: nothing is proven */
+  return ways[TRB_GAP_FLANK] < bound->length[TRB_GAP_FLANK] && ways[TRB_GAP_ENDS] < bound->length[TRB_GAP_ENDS];
+}
+
+double trb_bound_left(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body)
+{
+  double ways[TRB_N_GAPS] = {0};
+  if (deformed != NULL) memcpy(ways, deformed, sizeof ways);
+  add_ways(bound, arms, y_roller, y_body, ways);
+  return fmin(bound->length[TRB_GAP_FLANK] - ways[TRB_GAP_FLANK], bound->length[TRB_GAP_ENDS] - ways[TRB_GAP_ENDS]);
+}
+
+/* Across the bearing's axis. */
+static double across(trb_vec3 v) { return fabs(v.x) + fabs(v.y); }
+
+static double apart(trb_vec3 a, trb_vec3 b) { return trb_norm(trb_sub(a, b)); }
+
+void trb_ring_offsets_of(const trb_system *system, const trb_body_at *bodies, trb_ring_offset *offsets)
+{
+  const double outside = 2.0 * system->model->geometry.roller_centre_radius;
+  for (int b = 0; b < system->n_bodies; b++) {
+    const trb_ring_pose *ring = &bodies[b].ring;
+    offsets[b] = (trb_ring_offset){.lean = 0.0};
+    if (!trb_is_ring(system->bodies[b].kind)) continue;
+    offsets[b].lean = apart(ring->axis, trb_v(0, 0, 1));
+    offsets[b].aside = sqrt(ring->centre.x * ring->centre.x + ring->centre.y * ring->centre.y);
+    offsets[b].speed = across(ring->velocity) + outside * across(ring->omega);
+  }
+}
+
+trb_ring_arms trb_ring_arms_of(const trb_system *system)
+{
+  trb_ring_arms arms = {.n = 0};
+  for (int i = 0; i < system->n_pairs; i++) {
+    const trb_pair *pair = &system->pairs[i];
+    if (pair->kind->contact == TRB_CONTACT_NONE || pair->kind->pace != TRB_PACE_SLOW || !pair->on) continue;
+    pair->kind->arms(system->model, pair, &arms.of[arms.n]);
+    arms.body[arms.n] = pair->b;
+    arms.row[arms.n++] = i;
+  }
+  return arms;
+}
+
+unsigned trb_bounds_open(const trb_ring_arms *arms, const trb_ring_offset *rings, const double *interference, double share,
+                         const double *place, const double *step, double turn)
+{
+  const double around = fabs(step[TRB_ROLLER_psi]) + fabs(turn);
+  unsigned     open = 0U;
+  for (int i = 0; i < arms->n; i++) {
+    const double length = share * fabs(interference[arms->row[i]]);
+    if (!(trb_way_on_ring(&arms->of[i], &rings[arms->body[i]], place, step, around, length) <= length)) open |= 1U << i;
+  }
+  return open;
+}
+
+void trb_bound_set_on_ring(trb_bound *bound, double length, const trb_ring_pose *ring, const double *y_roller, double angle)
+{
+  *bound = (trb_bound){.length = {length}};
+  memcpy(bound->roller, y_roller, sizeof bound->roller);
+  bound->roller[TRB_ROLLER_psi] = angle;
+  memcpy(bound->body, &ring->centre, sizeof ring->centre);
+  memcpy(bound->body + 3, &ring->axis, sizeof ring->axis);
+}
+
+int trb_bound_holds_on_ring(const trb_bound *bound, const trb_arms *arms, const trb_ring_offset *offset, const trb_ring_pose *ring,
+                            const double *y_roller, double angle)
+{
+  const double   *from = bound->body, length = bound->length[0], around = fabs(angle - bound->roller[TRB_ROLLER_psi]);
+  trb_ring_offset now = *offset;
+  double          step[TRB_PLACE_OF_ROLLER];
+  if (!(length >= 0.0)) return 0;
+  for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) step[i] = y_roller[i] - bound->roller[i];
+  now.shifted = apart(ring->centre, trb_v(from[0], from[1], from[2]));
+  now.leaned = apart(ring->axis, trb_v(from[3], from[4], from[5]));
+  return trb_way_on_ring(arms, &now, bound->roller, step, around, length) <= length;
+}
+
+void trb_speed_bound_set(trb_speed_bound *bound, double length, const trb_system *system, const trb_body_at *bodies, const double *y_roller,
+                         double angle)
+{
+  bound->length = length;
+  bound->angle = angle;
+  memcpy(bound->roller, y_roller, sizeof bound->roller);
+  for (int k = 0; k < system->n_moving; k++) bound->ring[k] = bodies[system->moving[k]].ring;
+}
+
+int trb_speed_bound_holds(const trb_speed_bound *bound, const trb_system *system, const trb_ring_offset *offsets, const trb_body_at *bodies,
+                          const double *y_roller, double angle)
+{
+  const trb_model *m = system->model;
+  /* distances of what meets from the roller's centre of mass, and from a ring's reference point */
+  const double reach = m->params.total_length + m->params.roller_diameter, far = 2.0 * m->geometry.roller_centre_radius + reach;
+  double       passed = 0.0, speed = 0.0;
+  for (int b = 0; b < system->n_bodies; b++) passed = fmax(passed, offsets[b].speed);
+  speed = passed * fabs(angle - bound->angle);
+  for (int k = 0; k < system->n_moving; k++) {
+    const trb_ring_pose *to = &bodies[system->moving[k]].ring, *from = &bound->ring[k];
+    speed += apart(to->velocity, from->velocity) + far * apart(to->omega, from->omega);
+  }
+  for (int i = TRB_ROLLER_v_r; i <= TRB_ROLLER_v_z; i++) speed += fabs(y_roller[i] - bound->roller[i]);
+  for (int i = TRB_ROLLER_omega_n; i <= TRB_ROLLER_omega_a; i++) speed += reach * fabs(y_roller[i] - bound->roller[i]);
+  return speed <= bound->length;
+}
