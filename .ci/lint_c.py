@@ -18,10 +18,10 @@ ORDER = ["base", "laws", "surface", "bearing", "body", "contact", "system", "mot
 SUNDIALS_HEADERS = re.compile(r"(sundials|cvodes?|arkode|kinsol|idas?|nvector|sunmatrix|sunlinsol|sunnonlinsol)/")
 CALLS = "v?f?printf|f?puts|putchar|perror|exit|_Exit|_exit|quick_exit|abort|system"
 FORBIDDEN = re.compile(rf"\b((?:{CALLS})\s*\(|(?:stdout|stderr)\b)")
-# motion/ and stepping/ loop over the bodies and pairs of a system. Records and peaks name those that files show; the kinematic
-# orbit is a number of the geometry, and a speed that is prescribed has the name that users know.
+# motion/ and stepping/ loop over the bodies and pairs of a system. The table of recorded quantities names those that files show;
+# the kinematic orbit is a number of the geometry, and a speed that is prescribed has the name that users know.
 NAMED = re.compile(r"\b\w*(?:cage|inner|outer)\w*\b", re.I)
-MAY_NAME = {"motion/record.c", "motion/fields.h", "motion/peak_fields.h"}
+MAY_NAME = {"motion/fields.c", "motion/fields.h"}
 MAY_BE_NAMED = {"cage_speed_ratio", "TRB_CHANNEL_outer_speed"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 # comments, strings, characters
