@@ -286,6 +286,12 @@ def test_records_of_the_outer_ribs() -> None:
             _ = other[name]
     assert float(own["outer_front_rib_load"].sum(axis=1)[0]) == pytest.approx(500.0, rel=1e-3)
     assert float(own["outer_front_rib_pressure"].max()) > 5e7
+    told = own.summary()
+    assert 16 * told["outer_front_rib_load_mean"] == pytest.approx(500.0, rel=0.05)
+    assert told["outer_front_rib_pressure_max"] == own.window().peaks["outer_front_rib_pressure_peak"].max() > 5e7
+    assert 1.0 < told["film_parameter_outer_front_rib_min"] <= told["film_parameter_outer_front_rib"]
+    assert told["outer_rib_load_mean"] is told["front_rib_pressure_max"] is None  # which carry nothing
+    assert other.summary()["outer_rib_load_mean"] is None
 
 
 def test_the_rating_is_that_of_a_radial_bearing() -> None:

@@ -97,6 +97,17 @@ def table() -> tuple[Field, ...]:
     return from_rows(_core.field_table())
 
 
+@cache
+def contacts() -> dict[str, str]:
+    """Contacts of the rollers with the rings, by the beginning of their fields' names, and where each is: "outer raceway"."""
+    start = "normal load at the "
+    return {
+        field.name.removesuffix("_load"): field.text.removeprefix(start)
+        for field in table()
+        if field.text.startswith(start)
+    }
+
+
 def groups(fields: Iterable[Field]) -> tuple[str, ...]:
     """Names of the groups, in the order in which they first appear."""
     return tuple(dict.fromkeys(field.group for field in fields))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
+from trbdyn.results.fields import contacts
+
 
 class Quantity(NamedTuple):
     """How an entry of the summary is shown.
@@ -144,18 +146,16 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "pocket_duty": Quantity(
         "share of time that a pocket is touched", "", "Share of the time for which a pocket is touched."
     ),
-    "outer_load_mean": Quantity("load a roller, outer raceway", "N", "Mean load of a roller on the outer raceway."),
-    "inner_load_mean": Quantity("load a roller, inner raceway", "N", "Mean load of a roller on the inner raceway."),
-    "rib_load_mean": Quantity(
-        "load a roller, back-face rib", "N", "Mean load of a roller's large end on the back-face rib."
-    ),
-    "outer_pressure_max": Quantity(
-        "largest pressure at any step, outer raceway", "Pa", "Largest Hertz pressure at the outer raceway."
-    ),
-    "inner_pressure_max": Quantity(
-        "largest pressure at any step, inner raceway", "Pa", "Largest Hertz pressure at the inner raceway."
-    ),
-    "rib_pressure_max": Quantity("largest pressure at any step, rib", "Pa", "Largest Hertz pressure at the rib."),
+    **{
+        f"{side}_load_mean": Quantity(f"load a roller, {place}", "N", f"Mean load of a roller at the {place}.")
+        for side, place in contacts().items()
+    },
+    **{
+        f"{side}_pressure_max": Quantity(
+            f"largest pressure at any step, {place}", "Pa", f"Largest Hertz pressure at the {place}."
+        )
+        for side, place in contacts().items()
+    },
     "equivalent_load": Quantity(
         "equivalent dynamic load P (ISO 281)",
         "N",
@@ -195,22 +195,22 @@ QUANTITIES: Final[dict[str, Quantity]] = {
         "",
         "Viscosity over the one that this bearing asks for at its speed: below 1 surfaces touch, 1 to 4 is good.",
     ),
-    "film_parameter_outer": Quantity(
-        "film parameter, outer raceway",
-        "",
-        "Film thickness over roughness at the outer raceway; from effects.friction.lambda_full on, the film carries all.",
-    ),
-    "film_parameter_inner": Quantity("film parameter, inner raceway", "", "The same at the inner raceway."),
-    "film_parameter_rib": Quantity("film parameter, rib", "", "The same at the rib."),
-    "film_parameter_outer_min": Quantity(
-        "smallest film parameter, outer raceway",
-        "",
-        "The thinnest film over roughness at the outer raceway, at any moment.",
-    ),
-    "film_parameter_inner_min": Quantity(
-        "smallest film parameter, inner raceway", "", "The same at the inner raceway."
-    ),
-    "film_parameter_rib_min": Quantity("smallest film parameter, rib", "", "The same at the rib."),
+    **{
+        f"film_parameter_{side}": Quantity(
+            f"film parameter, {place}",
+            "",
+            f"Film thickness over roughness at the {place}; from effects.friction.lambda_full on, the film carries all.",
+        )
+        for side, place in contacts().items()
+    },
+    **{
+        f"film_parameter_{side}_min": Quantity(
+            f"smallest film parameter, {place}",
+            "",
+            f"The thinnest film over roughness at the {place}, at any moment.",
+        )
+        for side, place in contacts().items()
+    },
     "skew_rms": Quantity("roller skew, rms", "rad", "How far the rollers turn out of their rolling direction."),
     "torque": Quantity("friction torque of the shaft", "N m", "Friction torque that the shaft has to overcome."),
     "torque_outer": Quantity(
