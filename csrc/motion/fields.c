@@ -66,58 +66,55 @@ static double shaft_offset(const trb_seen *seen, int coordinate)
   return ring->kind == &trb_ring_free ? sense * seen->y[ring->first + coordinate] : 0.0;
 }
 
-static void show_time(const trb_seen *seen, int of, double *const *to)
+static void show_time(const trb_seen *seen, double *const *to)
 {
-  (void)of;
   *to[0] = seen->time;
   *to[1] = seen->d->drive.shaft_angle + shaft_offset(seen, TRB_FREE_RING_psi);
   *to[2] = seen->d->drive.shaft_speed + shaft_offset(seen, TRB_FREE_RING_omega_a);
 }
 
-static void show_cage(const trb_seen *seen, int of, double *const *to)
+static void show_cage(const trb_seen *seen, double *const *to)
 {
   const trb_dynamics   *d = seen->d;
   const trb_model      *m = d->model;
   const trb_drive      *drive = &d->drive;
-  const trb_rigid_pose *c = &d->bodies[of].pose;
+  const trb_rigid_pose *c = &d->bodies[seen->of].pose;
   const trb_vec3  plane = trb_v(0, 0, m->geometry.centre_plane), rail = trb_v(0, 0, m->geometry.centre_plane + m->params.cage_rail_offset);
   const trb_vec3  axis = from_r(drive, c->frame.a), centre = from_r(drive, c->x);
   const trb_frame body = {from_r(drive, c->body.n), from_r(drive, c->body.t), axis};
   trb_vec3        force = {0, 0, 0}, moment = {0, 0, 0};
   for (int j = 0; j < m->n_rollers; j++) {
-    force = trb_add(force, d->loads[j].on[of].force);
-    moment = trb_add(moment, d->loads[j].on[of].moment);
+    force = trb_add(force, d->loads[j].on[seen->of].force);
+    moment = trb_add(moment, d->loads[j].on[seen->of].moment);
   }
   if (d->work->n_hub > 0) {
-    force = trb_add(force, d->hub.on[of].force);
-    moment = trb_add(moment, d->hub.on[of].moment);
+    force = trb_add(force, d->hub.on[seen->of].force);
+    moment = trb_add(moment, d->hub.on[seen->of].moment);
   }
   put3(to[CAGE_position], trb_sub(trb_axpy(centre, -m->params.cage_offset, axis), plane));
   put3(to[CAGE_rail_position], trb_sub(trb_axpy(centre, m->params.cage_rail_offset - m->params.cage_offset, axis), rail));
   put3(to[CAGE_velocity], from_r(drive, c->v));
   put_quaternion(to[CAGE_orientation], &body);
   put3(to[CAGE_angular_velocity], from_r(drive, c->omega));
-  *to[CAGE_angle] = drive->frame_angle + seen->y[d->system->bodies[of].first + TRB_CAGE_psi];
+  *to[CAGE_angle] = drive->frame_angle + seen->y[d->system->bodies[seen->of].first + TRB_CAGE_psi];
   put_tilt(to[CAGE_tilt], axis);
   put3(to[CAGE_force], from_r(drive, force));
   put3(to[CAGE_moment], from_r(drive, moment));
-  const trb_deformed *deformed = d->bodies[of].deformed;
+  const trb_deformed *deformed = d->bodies[seen->of].deformed;
   if (deformed == NULL) return;
   memcpy(to[CAGE_mode], deformed->amplitude, (size_t)deformed->modes->n * sizeof(double));
   memcpy(to[CAGE_mode_rate], deformed->rate, (size_t)deformed->modes->n * sizeof(double));
 }
 
-static void show_land(const trb_seen *seen, int of, double *const *to)
+static void show_land(const trb_seen *seen, double *const *to)
 {
-  (void)of;
 #define PUT_LAND(X, name, unit, text) **to++ = seen->detail.land.name;
   TRB_LAND_FIELDS(PUT_LAND, 0)
 #undef PUT_LAND
 }
 
-static void show_roller(const trb_seen *seen, int of, double *const *to)
+static void show_roller(const trb_seen *seen, double *const *to)
 {
-  (void)of;
   const trb_dynamics *d = seen->d;
   const trb_drive    *drive = &d->drive;
   for (int j = 0; j < d->model->n_rollers; j++) {
@@ -138,34 +135,34 @@ static void show_roller(const trb_seen *seen, int of, double *const *to)
   }
 }
 
-static void show_pocket(const trb_seen *seen, int of, double *const *to)
+static void show_pocket(const trb_seen *seen, double *const *to)
 {
-  (void)of;
   const size_t size = (size_t)(seen->d->model->n_rollers * seen->d->model->n_slots) * sizeof(double);
   memcpy(to[POCKET_force], seen->detail.pocket_force, size);
   memcpy(to[POCKET_friction], seen->detail.pocket_friction, size);
 }
 
 /* A ring's displacement and motion in the roller-centre plane, and what rollers and cage do to it about that point. */
-static void show_ring(const trb_seen *seen, int of, double *const *to)
+static void show_ring(const trb_seen *seen, double *const *to)
 {
   const trb_dynamics  *d = seen->d;
-  const trb_ring_pose *ring = &d->bodies[of].ring;
+  const trb_ring_pose *ring = &d->bodies[seen->of].ring;
   const trb_vec3       nominal = trb_v(0, 0, d->model->geometry.centre_plane);
   trb_wrench           sum = {{0, 0, 0}, {0, 0, 0}};
   for (int j = 0; j < d->model->n_rollers; j++) {
-    const trb_wrench *on = &d->loads[j].on[of];
+    const trb_wrench *on = &d->loads[j].on[seen->of];
     sum.force = trb_add(sum.force, from_orbit(&d->drive, &d->rollers[j], on->force));
     sum.moment = trb_add(sum.moment, from_orbit(&d->drive, &d->rollers[j], on->moment));
   }
   if (d->work->n_hub > 0) {
-    sum.force = trb_add(sum.force, from_r(&d->drive, d->hub.on[of].force));
-    sum.moment = trb_add(sum.moment, from_r(&d->drive, d->hub.on[of].moment));
+    sum.force = trb_add(sum.force, from_r(&d->drive, d->hub.on[seen->of].force));
+    sum.moment = trb_add(sum.moment, from_r(&d->drive, d->hub.on[seen->of].moment));
   }
   /* the reference point of the ring that is driven is there, that of another one at the apex */
-  const trb_vec3 arm = trb_scale(of == d->system->driven ? 0.0 : d->model->geometry.centre_plane, ring->axis);
+  const trb_vec3 arm = trb_scale(seen->of == d->system->driven ? 0.0 : d->model->geometry.centre_plane, ring->axis);
   put3(to[RING_position], trb_sub(trb_add(ring->centre, arm), nominal));
-  if (of == d->system->driven && d->system->bodies[of].size == 0) put3(to[RING_position], d->drive.displacement); /* without rounding */
+  if (seen->of == d->system->driven && d->system->bodies[seen->of].size == 0)
+    put3(to[RING_position], d->drive.displacement); /* without rounding */
   put_tilt(to[RING_tilt], ring->axis);
   put3(to[RING_velocity], trb_add(ring->velocity, trb_cross(ring->omega, arm)));
   put3(to[RING_angular_velocity], ring->omega);
@@ -177,18 +174,17 @@ static void show_ring(const trb_seen *seen, int of, double *const *to)
 static double sense_of(const trb_dynamics *d) { return d->drive.rolling_speed < 0.0 ? -1.0 : 1.0; }
 
 /* Of rollers and cage on a ring about its axis, against its turn relative to the other ring. */
-static void show_friction(const trb_seen *seen, int of, double *const *to)
+static void show_friction(const trb_seen *seen, double *const *to)
 {
   const trb_dynamics *d = seen->d;
   double              friction = 0.0;
-  for (int j = 0; j < d->model->n_rollers; j++) friction += trb_dot(d->loads[j].on[of].moment, d->bodies[of].in_frame[j].axis);
-  if (d->work->n_hub > 0) friction += trb_dot(from_r(&d->drive, d->hub.on[of].moment), d->bodies[of].ring.axis);
-  *to[0] = (of == d->system->driven ? -sense_of(d) : sense_of(d)) * friction;
+  for (int j = 0; j < d->model->n_rollers; j++) friction += trb_dot(d->loads[j].on[seen->of].moment, d->bodies[seen->of].in_frame[j].axis);
+  if (d->work->n_hub > 0) friction += trb_dot(from_r(&d->drive, d->hub.on[seen->of].moment), d->bodies[seen->of].ring.axis);
+  *to[0] = (seen->of == d->system->driven ? -sense_of(d) : sense_of(d)) * friction;
 }
 
-static void show_share(const trb_seen *seen, int of, double *const *to)
+static void show_share(const trb_seen *seen, double *const *to)
 {
-  (void)of;
   const trb_dynamics *d = seen->d;
   for (int k = 0; k < TRB_N_TORQUES; k++) {
     double torque = 0.0;
@@ -198,9 +194,8 @@ static void show_share(const trb_seen *seen, int of, double *const *to)
   }
 }
 
-static void show_power(const trb_seen *seen, int of, double *const *to)
+static void show_power(const trb_seen *seen, double *const *to)
 {
-  (void)of;
   const trb_dynamics *d = seen->d;
   double              total = 0.0, within[TRB_N_LOSSES] = {0};
   trb_dynamics_book_bodies(d, within);
@@ -214,9 +209,8 @@ static void show_power(const trb_seen *seen, int of, double *const *to)
   *to[0] = total;
 }
 
-static void show_energy(const trb_seen *seen, int of, double *const *to)
+static void show_energy(const trb_seen *seen, double *const *to)
 {
-  (void)of;
   const trb_dynamics *d = seen->d;
   *to[0] = trb_audit_kinetic(d);
   *to[1] = trb_audit_elastic(d);

@@ -10,16 +10,22 @@
 #include "contact/contact.h"
 #include "system/tapered.h"
 
+/* Kinds: X(KIND, name, how many extents, first, second); extents that are not numbers are those of the model. */
+#define TRB_FIELD_KINDS(X) \
+  X(SCALAR,      "scalar",      0, 1,            1) \
+  X(VEC2,        "vec2",        1, 2,            1) \
+  X(VEC3,        "vec3",        1, 3,            1) \
+  X(QUATERNION,  "quaternion",  1, 4,            1) /* w, x, y, z */ \
+  X(ROLLER,      "roller",      1, m->n_rollers, 1) \
+  X(ROLLER_VEC3, "roller_vec3", 2, m->n_rollers, 3) \
+  X(ROLLER_QUAT, "roller_quat", 2, m->n_rollers, 4) \
+  X(POCKET_FACE, "pocket_face", 2, m->n_rollers, m->n_slots) \
+  X(MODE,        "mode",        1, m->modes.n,   1)
+
 typedef enum trb_field_kind {
-  TRB_FIELD_SCALAR,      /* ()        */
-  TRB_FIELD_VEC2,        /* (2,)      */
-  TRB_FIELD_VEC3,        /* (3,)      */
-  TRB_FIELD_QUATERNION,  /* (4,)      w, x, y, z */
-  TRB_FIELD_ROLLER,      /* (Z,)      */
-  TRB_FIELD_ROLLER_VEC3, /* (Z, 3)    */
-  TRB_FIELD_ROLLER_QUAT, /* (Z, 4)    */
-  TRB_FIELD_POCKET_FACE, /* (Z, slots) */
-  TRB_FIELD_MODE         /* (modes,)  */
+#define TRB_FIELD_KIND(kind, name, n, first, second) TRB_FIELD_##kind,
+  TRB_FIELD_KINDS(TRB_FIELD_KIND)
+#undef TRB_FIELD_KIND
 } trb_field_kind;
 
 /* What there is of each kind has these quantities: TRB_FIELDS_OF_<kind>(F, X, as, group, at): F(X, as, group, quantity, kind, unit, text).

@@ -4,33 +4,18 @@
 
 const char *trb_field_kind_name(trb_field_kind kind)
 {
-  static const char *const names[] = {"scalar",      "vec2",        "vec3",        "quaternion", "roller",
-                                      "roller_vec3", "roller_quat", "pocket_face", "mode"};
+#define NAME(kind, name, n, first, second) name,
+  static const char *const names[] = {TRB_FIELD_KINDS(NAME)};
   return names[kind];
 }
 
 int trb_field_shape(const trb_model *m, trb_field_kind kind, int shape[2])
 {
+#define SHAPE(kind, name, n, first, second) \
+  case TRB_FIELD_##kind: shape[0] = first, shape[1] = second; return n;
   shape[0] = shape[1] = 1;
   switch (kind) {
-  case TRB_FIELD_SCALAR: return 0;
-  case TRB_FIELD_VEC2: shape[0] = 2; return 1;
-  case TRB_FIELD_VEC3: shape[0] = 3; return 1;
-  case TRB_FIELD_QUATERNION: shape[0] = 4; return 1;
-  case TRB_FIELD_ROLLER: shape[0] = m->n_rollers; return 1;
-  case TRB_FIELD_ROLLER_VEC3:
-    shape[0] = m->n_rollers;
-    shape[1] = 3;
-    return 2;
-  case TRB_FIELD_ROLLER_QUAT:
-    shape[0] = m->n_rollers;
-    shape[1] = 4;
-    return 2;
-  case TRB_FIELD_POCKET_FACE:
-    shape[0] = m->n_rollers;
-    shape[1] = m->n_slots;
-    return 2;
-  case TRB_FIELD_MODE: shape[0] = m->modes.n; return 1;
+    TRB_FIELD_KINDS(SHAPE)
   }
   return 0;
 }
@@ -80,6 +65,8 @@ void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const 
     if (trb_field_table[i].pair >= 0 && size > 0) put_contact(&seen, &trb_field_table[i], record);
     record += size;
   }
-  for (int i = 0, first = 0; i < trb_n_shown; first += trb_shown_table[i++].n)
-    if (trb_shown_table[i].fill != NULL) trb_shown_table[i].fill(&seen, trb_shown_table[i].of, at + first);
+  for (int i = 0, first = 0; i < trb_n_shown; first += trb_shown_table[i++].n) {
+    seen.of = trb_shown_table[i].of;
+    if (trb_shown_table[i].fill != NULL) trb_shown_table[i].fill(&seen, at + first);
+  }
 }

@@ -30,10 +30,11 @@ typedef struct trb_seen {
   trb_detail    detail; /* neither the nodes of raceways nor the gaps of pockets */
   double        time;
   const double *y;
+  int           of; /* number of the body whose quantities are asked for */
 } trb_seen;
 
-/* What fills the quantities of a kind, in the order of its list; of: number of the body. */
-typedef void trb_show(const trb_seen *seen, int of, double *const *to);
+/* What fills the quantities of a kind, in the order of its list. */
+typedef void trb_show(const trb_seen *seen, double *const *to);
 
 /* The rows of TRB_SHOWN. */
 typedef struct trb_shown {

@@ -23,6 +23,14 @@ class Quantity(NamedTuple):
     meaning: str
 
 
+def _of_contacts(name: str, words: str, unit: str, meaning: str) -> dict[str, Quantity]:
+    """A quantity of each contact of the rollers with the rings."""
+    return {
+        name.format(side): Quantity(f"{words}, {place}", unit, meaning.format(place))
+        for side, place in contacts().items()
+    }
+
+
 QUANTITIES: Final[dict[str, Quantity]] = {
     "success": Quantity("finished", "", "Whether the run reached its end."),
     "message": Quantity("how it ended", "", "How it ended."),
@@ -146,16 +154,8 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "pocket_duty": Quantity(
         "share of time that a pocket is touched", "", "Share of the time for which a pocket is touched."
     ),
-    **{
-        f"{side}_load_mean": Quantity(f"load a roller, {place}", "N", f"Mean load of a roller at the {place}.")
-        for side, place in contacts().items()
-    },
-    **{
-        f"{side}_pressure_max": Quantity(
-            f"largest pressure at any step, {place}", "Pa", f"Largest Hertz pressure at the {place}."
-        )
-        for side, place in contacts().items()
-    },
+    **_of_contacts("{}_load_mean", "load a roller", "N", "Mean load of a roller at the {}."),
+    **_of_contacts("{}_pressure_max", "largest pressure at any step", "Pa", "Largest Hertz pressure at the {}."),
     "equivalent_load": Quantity(
         "equivalent dynamic load P (ISO 281)",
         "N",
@@ -195,22 +195,18 @@ QUANTITIES: Final[dict[str, Quantity]] = {
         "",
         "Viscosity over the one that this bearing asks for at its speed: below 1 surfaces touch, 1 to 4 is good.",
     ),
-    **{
-        f"film_parameter_{side}": Quantity(
-            f"film parameter, {place}",
-            "",
-            f"Film thickness over roughness at the {place}; from effects.friction.lambda_full on, the film carries all.",
-        )
-        for side, place in contacts().items()
-    },
-    **{
-        f"film_parameter_{side}_min": Quantity(
-            f"smallest film parameter, {place}",
-            "",
-            f"The thinnest film over roughness at the {place}, at any moment.",
-        )
-        for side, place in contacts().items()
-    },
+    **_of_contacts(
+        "film_parameter_{}",
+        "film parameter",
+        "",
+        "Film thickness over roughness at the {}; from effects.friction.lambda_full on, the film carries all.",
+    ),
+    **_of_contacts(
+        "film_parameter_{}_min",
+        "smallest film parameter",
+        "",
+        "The thinnest film over roughness at the {}, at any moment.",
+    ),
     "skew_rms": Quantity("roller skew, rms", "rad", "How far the rollers turn out of their rolling direction."),
     "torque": Quantity("friction torque of the shaft", "N m", "Friction torque that the shaft has to overcome."),
     "torque_outer": Quantity(
