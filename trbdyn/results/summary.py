@@ -24,7 +24,7 @@ from trbdyn.errors import FileError, TrbError
 from trbdyn.model.motion import is_constant
 from trbdyn.results import observables, peak_band
 from trbdyn.results.confidence import confidence
-from trbdyn.results.fields import contacts
+from trbdyn.results.fields import carrying
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.ranges import rolling_note
 from trbdyn.standards.sheet import at_equilibrium, sheet
@@ -47,9 +47,6 @@ RATINGS: Final = (
 
 UNPRINTED: Final = ("settled", "settling_time_scale", "settling_reason", "confidence")
 """Entries that the table leaves out, as another one tells them."""
-
-ALWAYS: Final = ("outer", "inner", "rib")
-"""Contacts that a summary has whether they carried a load or not; other ribs are left out where they did not."""
 
 RECORDS_AT_ONCE: Final = 4096
 """Records whose deformed cages are in memory together."""
@@ -230,12 +227,11 @@ def _loaded_mean(values: Any, load: Any) -> float:
 
 def _contacts(window: Result) -> dict[str, Any]:
     out: dict[str, Any] = {}
-    for side in contacts():
-        load = window[f"{side}_load"] if f"{side}_load" in window else np.zeros(0)
-        if load.any() or (side in ALWAYS and load.size):
-            out[f"{side}_load_mean"] = load.mean()
-            if f"{side}_film_parameter" in window:
-                out[f"film_parameter_{side}"] = _loaded_mean(window[f"{side}_film_parameter"], load)
+    for side in carrying(window):
+        load = window[f"{side}_load"]
+        out[f"{side}_load_mean"] = load.mean()
+        if f"{side}_film_parameter" in window:
+            out[f"film_parameter_{side}"] = _loaded_mean(window[f"{side}_film_parameter"], load)
     return out
 
 
@@ -243,12 +239,11 @@ def _peaks(window: Result) -> dict[str, Any]:
     """Extremes at the ends of all steps in the window, and time integrals between them; not those of the records."""
     peaks = window.peaks
     out: dict[str, Any] = {}
-    for side in (side for side in contacts() if f"{side}_load_peak" in peaks):
-        if side in ALWAYS or peaks[f"{side}_load_peak"].any():
-            out[f"{side}_load_mean"] = peaks[f"{side}_load_mean"].mean()
-            if f"{side}_pressure_peak" in peaks:
-                out[f"{side}_pressure_max"] = peaks[f"{side}_pressure_peak"].max()
-                out[f"film_parameter_{side}_min"] = np.fmin.reduce(peaks[f"{side}_film_parameter_min"])
+    for side in carrying(peaks, "_load_peak"):
+        out[f"{side}_load_mean"] = peaks[f"{side}_load_mean"].mean()
+        if f"{side}_pressure_peak" in peaks:
+            out[f"{side}_pressure_max"] = peaks[f"{side}_pressure_peak"].max()
+            out[f"film_parameter_{side}_min"] = np.fmin.reduce(peaks[f"{side}_film_parameter_min"])
     if window.scene.effects.guidance != "rollers":
         out |= {name: float(peaks[name]) for name in ("land_force_peak", "land_gap_min")}
     return out | {

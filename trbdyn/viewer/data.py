@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
-from trbdyn.results.fields import contacts
-from trbdyn.results.summary import ALWAYS
+from trbdyn.results.fields import carrying, contacts
 from trbdyn.run.replay import Replay
 from trbdyn.run.simulation import Simulation
 
@@ -206,13 +205,14 @@ _CONTACTS: Final = (
 
 def _quantities(result: Result, index: NDArray[np.int64], pose: dict[str, Array]) -> list[Quantity]:
     out = []
-    for side, place in contacts().items():
-        if f"{side}_load" in result and (side in ALWAYS or result[f"{side}_load"].any()):
-            out += [
-                Quantity(f"{side}_{name}", f"{words} the {place}", unit, factor * result[f"{side}_{name}"][index])
-                for name, words, unit, factor in _CONTACTS
-                if f"{side}_{name}" in result
-            ]
+    for side in carrying(result):
+        out += [
+            Quantity(
+                f"{side}_{name}", f"{words} the {contacts()[side]}", unit, factor * result[f"{side}_{name}"][index]
+            )
+            for name, words, unit, factor in _CONTACTS
+            if f"{side}_{name}" in result
+        ]
     if "pocket" in result.groups and result.has_cage:
         held = largest_between(result["pocket_force"], index)
         out.append(
