@@ -18,10 +18,11 @@ ORDER = ["base", "laws", "surface", "bearing", "body", "contact", "system", "mot
 SUNDIALS_HEADERS = re.compile(r"(sundials|cvodes?|arkode|kinsol|idas?|nvector|sunmatrix|sunlinsol|sunnonlinsol)/")
 CALLS = "v?f?printf|f?puts|putchar|perror|exit|_Exit|_exit|quick_exit|abort|system"
 FORBIDDEN = re.compile(rf"\b((?:{CALLS})\s*\(|(?:stdout|stderr)\b)")
-# motion/ and stepping/ loop over the bodies and pairs of a system. Records and peaks name those that files show; the kinematic
-# orbit is a number of the geometry, and a speed that is prescribed has the name that users know.
-NAMED = re.compile(r"\b\w*(?:cage|inner|outer)\w*\b", re.I)
-MAY_NAME = {"motion/record.c", "motion/fields.h", "motion/peak_fields.h"}
+# motion/ and stepping/ loop over the bodies and pairs of a system. The table of recorded quantities names those that files show;
+# the kinematic orbit is a number of the geometry, and a speed that is prescribed has the name that users know.
+NUMBER = r"(?-i:\bTRB_(?:BODY|PAIR)_\w+)"
+NAMED = re.compile(rf"\b\w*(?:cage|inner|outer)\w*\b|{NUMBER}", re.I)
+MAY_NAME = {"motion/fields.h": "", "motion/fields.c": NUMBER}  # what these must not name all the same
 MAY_BE_NAMED = {"cage_speed_ratio", "TRB_CHANNEL_outer_speed"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 # comments, strings, characters
@@ -74,8 +75,8 @@ def check_sources() -> list[str]:
             found.append(
                 (line, f"{match.group(1).rstrip('( ')}: the core reports through trb_message and status codes")
             )
-        if path.startswith(("motion/", "stepping/")) and path not in MAY_NAME:
-            for match in NAMED.finditer(code):
+        if path.startswith(("motion/", "stepping/")) and MAY_NAME.get(path) != "":
+            for match in re.finditer(MAY_NAME.get(path, NAMED), code):
                 if match.group() not in MAY_BE_NAMED:
                     line = code.count("\n", 0, match.start()) + 1
                     found.append((line, f"{match.group()}: motion/ and stepping/ name no body of a system"))

@@ -97,7 +97,7 @@ const trb_pair_kind trb_pair_front_rib = {.name = "end on a plane rib",
                                           .shape = {TRB_SHAPE_PLANE, TRB_SHAPE_CIRCLES},
                                           .pace = TRB_PACE_SLOW,
                                           .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING),
-                                          .contact = TRB_CONTACT_POINT,
+                                          .contact = TRB_CONTACT_EDGE,
                                           .evaluate = evaluate,
                                           .arms = arms_of,
                                           .look = look_at};

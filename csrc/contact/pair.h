@@ -89,8 +89,8 @@ typedef enum trb_shape {
   TRB_SHAPE_LAND      /* that guides it: trb_guide */
 } trb_shape;
 
-/* What a pair of a roller with a ring touches in. */
-typedef enum trb_contact_form { TRB_CONTACT_NONE, TRB_CONTACT_LINE, TRB_CONTACT_POINT } trb_contact_form;
+/* What a pair of a roller with a ring touches in. An edge has neither Hertz's pressure nor a film: records have its load alone. */
+typedef enum trb_contact_form { TRB_CONTACT_NONE, TRB_CONTACT_LINE, TRB_CONTACT_POINT, TRB_CONTACT_EDGE } trb_contact_form;
 
 typedef struct trb_pair_kind {
   const char        *name;

@@ -1,7 +1,6 @@
 #include "motion/peak_look.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,21 +8,9 @@
 #include "motion/bound.h"
 
 const trb_peak_quantity trb_peak_quantities[TRB_N_PEAK_QUANTITIES] = {
-#define TRB_PEAK_QUANTITY(name, kind, sense) {TRB_FIELD_##kind, TRB_PEAK_##sense},
+#define TRB_PEAK_QUANTITY(name, field, sense) {TRB_FIELD_AT_##field, TRB_PEAK_##sense},
     TRB_PEAK_QUANTITIES(TRB_PEAK_QUANTITY)
 #undef TRB_PEAK_QUANTITY
-};
-
-/* Where each quantity of a contact is in its look, and goes. */
-static const struct {
-  int            pair;
-  size_t         from;
-  int            quantity;
-  trb_peak_sense sense;
-} contact_peaks[] = {
-#define ROW(X, pair, quantity, sense) {TRB_PAIR_##pair, offsetof(trb_contact, quantity), TRB_PEAK_##pair##_##quantity, TRB_PEAK_##sense},
-    TRB_PEAK_CONTACTS(ROW, 0)
-#undef ROW
 };
 
 struct trb_peak_look {
@@ -39,24 +26,18 @@ struct trb_peak_look {
   int              offset[TRB_N_PEAK_QUANTITIES + 1];
 };
 
-static int count(const trb_model *m, int quantity)
-{
-  int shape[2];
-  (void)trb_field_shape(m, trb_peak_quantities[quantity].kind, shape);
-  return shape[0] * shape[1];
-}
-
-int trb_peak_look_offset(const trb_model *m, int quantity)
+int trb_peak_look_offset(const trb_system *s, int quantity)
 {
   int offset = 0;
-  for (int i = 0; i < quantity; i++) offset += count(m, i);
+  for (int i = 0; i < quantity; i++) offset += trb_field_size(s, trb_peak_quantities[i].field);
   return offset;
 }
 
-trb_peak_sizes trb_peak_look_sizes(const trb_model *m)
+#define ONE(name, field, sense) +1
+trb_peak_sizes trb_peak_look_sizes(const trb_system *s)
 {
-  return (trb_peak_sizes){trb_peak_look_offset(m, TRB_PEAK_pocket_force + 1), trb_peak_look_offset(m, TRB_PEAK_front_rib_load + 1),
-                          trb_peak_look_offset(m, TRB_N_PEAK_QUANTITIES)};
+  return (trb_peak_sizes){trb_peak_look_offset(s, TRB_PEAK_pocket_force + 1), trb_peak_look_offset(s, 0 TRB_PEAK_LOADS(ONE)),
+                          trb_peak_look_offset(s, TRB_N_PEAK_QUANTITIES)};
 }
 
 trb_status trb_peak_look_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_peak_look **look,
@@ -86,7 +67,7 @@ trb_status trb_peak_look_create(const trb_system *system, const trb_motion *moti
   trb_detail_clear(m, p->detail);
   const trb_ring_arms arms = trb_ring_arms_of(system);
   for (int i = 0; i < arms.n; i++) p->arms[arms.row[i]] = arms.of[i];
-  for (int i = 0; i <= TRB_N_PEAK_QUANTITIES; i++) p->offset[i] = trb_peak_look_offset(m, i);
+  for (int i = 0; i <= TRB_N_PEAK_QUANTITIES; i++) p->offset[i] = trb_peak_look_offset(system, i);
   trb_peak_look_forget(p);
   *look = p;
   return TRB_OK;
@@ -134,11 +115,12 @@ static void put(trb_peak_look *p, int batch, int j, const double *y, double *val
     const trb_contact *look = &trb_pair_contacts(m, b->pairs[i], p->detail)[j];
     trb_bound_set_on_ring(&p->bounds[b->index[i] * m->n_rollers + j], look->way, &p->d->bodies[b->pairs[i]->b].ring, own, angle);
     speed = fmin(speed, look->speed);
-    for (size_t q = 0; q < sizeof contact_peaks / sizeof contact_peaks[0]; q++) {
-      if (contact_peaks[q].pair != b->index[i]) continue;
-      const double value = *(const double *)((const char *)look + contact_peaks[q].from);
-      const int    there = contact_peaks[q].sense == TRB_PEAK_MOST || (m->film && look->load > 0.0);
-      write(p, contact_peaks[q].quantity, j, there ? value : (double)INFINITY, values);
+    for (int q = 0; q < TRB_N_PEAK_QUANTITIES; q++) {
+      const trb_field_info *field = &trb_field_table[trb_peak_quantities[q].field];
+      if (field->pair != b->index[i] || p->offset[q] == p->offset[q + 1]) continue;
+      const double value = *(const double *)((const char *)look + field->from);
+      const int    there = trb_peak_quantities[q].sense == TRB_PEAK_MOST || (m->film && look->load > 0.0);
+      write(p, q, j, there ? value : (double)INFINITY, values);
     }
   }
   trb_speed_bound_set(&p->speeds[batch * m->n_rollers + j], speed, p->d->system, p->d->bodies, own, angle);

@@ -14,14 +14,14 @@
 #define TRB_PEAK_SHARE 2e-3
 
 enum {
-#define TRB_PEAK_QUANTITY_ENUM(name, kind, sense) TRB_PEAK_##name,
+#define TRB_PEAK_QUANTITY_ENUM(name, field, sense) TRB_PEAK_##name,
   TRB_PEAK_QUANTITIES(TRB_PEAK_QUANTITY_ENUM)
 #undef TRB_PEAK_QUANTITY_ENUM
       TRB_N_PEAK_QUANTITIES
 };
 
 typedef struct trb_peak_quantity {
-  trb_field_kind kind;
+  int            field; /* of records, that has as many values */
   trb_peak_sense sense;
 } trb_peak_quantity;
 
@@ -34,8 +34,8 @@ trb_status trb_peak_look_create(const trb_system *system, const trb_motion *moti
 void       trb_peak_look_free(trb_peak_look *look);
 
 /* How many values of each sort there are, and where those of a quantity begin; TRB_N_PEAK_QUANTITIES gives the end. */
-trb_peak_sizes trb_peak_look_sizes(const trb_model *m);
-int            trb_peak_look_offset(const trb_model *m, int quantity);
+trb_peak_sizes trb_peak_look_sizes(const trb_system *s);
+int            trb_peak_look_offset(const trb_system *s, int quantity);
 
 /* Evaluate everything at the next look. */
 void trb_peak_look_forget(trb_peak_look *look);

@@ -14,7 +14,7 @@ const trb_peak_field_info trb_peak_field_table[TRB_N_PEAK_FIELDS] = {
 #undef TRB_PEAK_FIELD_INFO
 };
 
-trb_field_kind trb_peak_kind(const trb_peak_field_info *field) { return trb_peak_quantities[field->quantity].kind; }
+trb_field_kind trb_peak_kind(const trb_peak_field_info *field) { return trb_field_table[trb_peak_quantities[field->quantity].field].kind; }
 
 const char *trb_peak_joined(const trb_peak_field_info *field)
 {
@@ -29,13 +29,10 @@ const char *trb_peak_joined(const trb_peak_field_info *field)
   return "";
 }
 
-int trb_peak_offset(const trb_model *m, int field)
+int trb_peak_offset(const trb_system *s, int field)
 {
-  int offset = 0, shape[2];
-  for (int i = 0; i < field; i++) {
-    (void)trb_field_shape(m, trb_peak_kind(&trb_peak_field_table[i]), shape);
-    offset += shape[0] * shape[1];
-  }
+  int offset = 0;
+  for (int i = 0; i < field; i++) offset += trb_field_size(s, trb_peak_quantities[trb_peak_field_table[i].quantity].field);
   return offset;
 }
 
@@ -55,12 +52,11 @@ struct trb_peaks {
 trb_status trb_peaks_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_peaks **peaks,
                             trb_message *message)
 {
-  const trb_model *m = system->model;
   *peaks = NULL;
   trb_peaks *p = calloc(1, sizeof *p);
   if (p == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");
-  p->n = trb_peak_look_sizes(m);
-  for (int i = 0; i <= TRB_N_PEAK_QUANTITIES; i++) p->offset[i] = trb_peak_look_offset(m, i);
+  p->n = trb_peak_look_sizes(system);
+  for (int i = 0; i <= TRB_N_PEAK_QUANTITIES; i++) p->offset[i] = trb_peak_look_offset(system, i);
   const size_t all = (size_t)p->n.all, track = (size_t)trb_peak_track_length(&p->n);
   p->block = trb_zeros(1 + 2 * all + 3 * track, sizeof(double));
   trb_status status = p->block != NULL ? TRB_OK : trb_fail(message, TRB_ERR_MEMORY, "out of memory for peaks");

@@ -30,7 +30,7 @@ trb_field_kind trb_peak_kind(const trb_peak_field_info *field);
 /* How a field is joined with that of the next interval, in a word: largest, smallest, time, mean, sum. */
 const char *trb_peak_joined(const trb_peak_field_info *field);
 /* Offset of a field in a row of peaks; TRB_N_PEAK_FIELDS gives the row's length. */
-int trb_peak_offset(const trb_model *m, int field);
+int trb_peak_offset(const trb_system *s, int field);
 
 typedef struct trb_peaks trb_peaks;
 

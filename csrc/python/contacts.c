@@ -28,7 +28,7 @@ static int put_detail(const trb_system *system, const trb_detail *detail, PyObje
   const int count = (int)(sizeof points / sizeof points[0]);
   for (int f = 0; f < system->n_pairs * count; f++) {
     const trb_pair *pair = &system->pairs[f / count];
-    if (pair->kind->contact != TRB_CONTACT_POINT) continue;
+    if (pair->kind->contact == TRB_CONTACT_NONE || pair->kind->contact == TRB_CONTACT_LINE) continue;
     const trb_contact *from = trb_pair_contacts(m, pair, detail);
     PyObject          *array = trb_vector(NULL, m->n_rollers);
     if (array == NULL) return -1;

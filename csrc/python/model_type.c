@@ -5,6 +5,7 @@
 
 #include "contact/kernels.h"
 #include "motion/equilibrium.h"
+#include "motion/peak_look.h"
 #include "motion/peaks.h"
 #include "motion/record.h"
 #include "system/assembly.h"
@@ -72,13 +73,13 @@ static void model_dealloc(PyObject *object)
 
 static PyObject *get_number(PyObject *self, void *closure)
 {
-  const trb_model *m = ((model_object *)self)->model;
-  const char      *name = closure;
-  if (strcmp(name, "n_rollers") == 0) return PyLong_FromLong(m->n_rollers);
-  if (strcmp(name, "n_slots") == 0) return PyLong_FromLong(m->n_slots);
-  if (strcmp(name, "n_state") == 0) return PyLong_FromLong(trb_state_size(((model_object *)self)->system));
-  if (strcmp(name, "peak_length") == 0) return PyLong_FromLong(trb_peak_offset(m, TRB_N_PEAK_FIELDS));
-  return PyLong_FromLong(trb_record_offset(m, TRB_N_FIELDS));
+  const trb_system *s = ((model_object *)self)->system;
+  const char       *name = closure;
+  if (strcmp(name, "n_rollers") == 0) return PyLong_FromLong(s->model->n_rollers);
+  if (strcmp(name, "n_slots") == 0) return PyLong_FromLong(s->model->n_slots);
+  if (strcmp(name, "n_state") == 0) return PyLong_FromLong(trb_state_size(s));
+  if (strcmp(name, "peak_length") == 0) return PyLong_FromLong(trb_peak_offset(s, TRB_N_PEAK_FIELDS));
+  return PyLong_FromLong(trb_record_offset(s, TRB_N_FIELDS));
 }
 
 static PyObject *get_variant(PyObject *self, void *closure)
@@ -93,42 +94,39 @@ static PyObject *shape_tuple(int n, const int *shape)
   return n == 1 ? Py_BuildValue("(i)", shape[0]) : Py_BuildValue("(ii)", shape[0], shape[1]);
 }
 
-static PyObject *record_layout(PyObject *self, PyObject *none)
-{
-  const trb_model *m = ((model_object *)self)->model;
-  PyObject        *list = PyList_New(0);
-  (void)none;
-  for (int i = 0; list != NULL && i < TRB_N_FIELDS; i++) {
-    int       shape[2];
-    const int n = trb_field_shape(m, trb_field_table[i].kind, shape);
-    if (shape[0] * shape[1] == 0) continue; /* of modes that a rigid cage has not */
-    PyObject *row = Py_BuildValue("(siN)", trb_field_table[i].name, trb_record_offset(m, i), shape_tuple(n, shape));
-    if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
-    Py_XDECREF(row);
-  }
-  return list;
-}
-
-static PyObject *peak_layout(PyObject *self, PyObject *none)
-{
-  const trb_model *m = ((model_object *)self)->model;
-  PyObject        *list = PyList_New(0);
-  (void)none;
-  for (int i = 0; list != NULL && i < TRB_N_PEAK_FIELDS; i++) {
-    int       shape[2];
-    const int n = trb_field_shape(m, trb_peak_kind(&trb_peak_field_table[i]), shape);
-    PyObject *row = Py_BuildValue("(siN)", trb_peak_field_table[i].name, trb_peak_offset(m, i), shape_tuple(n, shape));
-    if (row == NULL || PyList_Append(list, row) != 0) Py_CLEAR(list);
-    Py_XDECREF(row);
-  }
-  return list;
-}
-
 /* Adds a row to a list; takes the row. */
 static void append(PyObject **list, PyObject *row)
 {
   if (*list != NULL && (row == NULL || PyList_Append(*list, row) != 0)) Py_CLEAR(*list);
   Py_XDECREF(row);
+}
+
+/* Adds a field to a layout, unless the system does not have it; gives the offset of the next one. */
+static int append_field(PyObject **list, const trb_system *s, const char *name, int field, int offset)
+{
+  int       shape[2];
+  const int n = trb_field_shape(s->model, trb_field_table[field].kind, shape), size = trb_field_size(s, field);
+  if (size > 0) append(list, Py_BuildValue("(siN)", name, offset, shape_tuple(n, shape)));
+  return offset + size;
+}
+
+static PyObject *record_layout(PyObject *self, PyObject *none)
+{
+  PyObject *list = PyList_New(0);
+  (void)none;
+  for (int i = 0, at = 0; i < TRB_N_FIELDS; i++) at = append_field(&list, ((model_object *)self)->system, trb_field_table[i].name, i, at);
+  return list;
+}
+
+static PyObject *peak_layout(PyObject *self, PyObject *none)
+{
+  PyObject *list = PyList_New(0);
+  (void)none;
+  for (int i = 0, at = 0; i < TRB_N_PEAK_FIELDS; i++) {
+    const trb_peak_field_info *peak = &trb_peak_field_table[i];
+    at = append_field(&list, ((model_object *)self)->system, peak->name, trb_peak_quantities[peak->quantity].field, at);
+  }
+  return list;
 }
 
 /* A coordinate of a body, without blanks. */

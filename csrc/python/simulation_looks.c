@@ -32,12 +32,12 @@ PyObject *trb_python_observe(PyObject *object, PyObject *args)
   PyArrayObject     *array = look(self, args, &time);
   if (array == NULL) return NULL;
   int length = 0;
-  for (int k = 0; k < s->assembly.n; k++) length += trb_record_offset(s->assembly.members[k].model, TRB_N_FIELDS);
+  for (int k = 0; k < s->assembly.n; k++) length += trb_record_offset(&s->assembly.members[k], TRB_N_FIELDS);
   PyObject *out = trb_vector(NULL, length);
   double   *row = out != NULL ? PyArray_DATA((PyArrayObject *)out) : NULL;
   for (int k = 0; k < s->assembly.n && row != NULL; k++) {
     trb_record_fill(s->parts[k].onlooker, NULL, time, PyArray_DATA(array), s->parts[k].detail, row);
-    row += trb_record_offset(s->assembly.members[k].model, TRB_N_FIELDS);
+    row += trb_record_offset(&s->assembly.members[k], TRB_N_FIELDS);
   }
   trb_python_leave(self, 0);
   Py_DECREF((PyObject *)array);

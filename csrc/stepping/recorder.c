@@ -38,14 +38,14 @@ struct trb_recorder {
 
 int trb_record_parts_length(const trb_record_parts *parts)
 {
-  const trb_model *m = parts->onlooker->model;
-  return trb_record_offset(m, TRB_N_FIELDS) + (parts->peaks != NULL ? trb_peak_offset(m, TRB_N_PEAK_FIELDS) : 0);
+  const trb_system *s = parts->onlooker->system;
+  return trb_record_offset(s, TRB_N_FIELDS) + (parts->peaks != NULL ? trb_peak_offset(s, TRB_N_PEAK_FIELDS) : 0);
 }
 
 void trb_record_parts_fill(const trb_record_parts *parts, const unsigned *apart, double time, const double *y, double *row)
 {
   trb_record_fill(parts->onlooker, apart, time, y, parts->detail, row);
-  if (parts->peaks != NULL) trb_peaks_record(parts->peaks, time, row + trb_record_offset(parts->onlooker->model, TRB_N_FIELDS));
+  if (parts->peaks != NULL) trb_peaks_record(parts->peaks, time, row + trb_record_offset(parts->onlooker->system, TRB_N_FIELDS));
 }
 
 static void compute(const trb_recorder *r, const place *at)

@@ -298,7 +298,7 @@ trb_status trb_simulation_restore_peaks(trb_simulation *s, const double *saved, 
 int trb_simulation_whole_length(const trb_simulation *s)
 {
   int length = 0;
-  for (int k = 0; k < s->assembly.n && s->with_peaks; k++) length += trb_peak_offset(s->assembly.members[k].model, TRB_N_PEAK_FIELDS);
+  for (int k = 0; k < s->assembly.n && s->with_peaks; k++) length += trb_peak_offset(&s->assembly.members[k], TRB_N_PEAK_FIELDS);
   return length;
 }
 
@@ -306,7 +306,7 @@ void trb_simulation_whole_peaks(const trb_simulation *s, double time, double *to
 {
   for (int k = 0; k < s->assembly.n && s->with_peaks; k++) {
     trb_peaks_whole(s->parts[k].peaks, time, to);
-    to += trb_peak_offset(s->assembly.members[k].model, TRB_N_PEAK_FIELDS);
+    to += trb_peak_offset(&s->assembly.members[k], TRB_N_PEAK_FIELDS);
   }
 }
 

@@ -251,7 +251,8 @@ static void test_steps(void)
       const double    *q = end[k] + trb_state_quadrature(&s->assembly.members[i]);
       const int        stored[] = {TRB_FIELD_AT_kinetic_energy, TRB_FIELD_AT_elastic_energy};
       double           change = 0.0, work = 0.0, lost = 0.0;
-      for (int e = 0; e < 2; e++) change += last[trb_record_offset(m, stored[e])] - first[trb_record_offset(m, stored[e])];
+      for (int e = 0; e < 2; e++)
+        change += last[trb_record_offset(p->alone[i], stored[e])] - first[trb_record_offset(p->alone[i], stored[e])];
       for (int w = 0; w < TRB_Q_losses; w++) work += q[w];
       for (int l = 0; l < m->n_losses; l++) lost += q[TRB_Q_losses + l];
       CHECK(fabs(change) > 1e-3 && lost > 1e-3);

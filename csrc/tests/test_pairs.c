@@ -70,7 +70,7 @@ static void look(const trb_motion *motion, const double *y, unsigned left_out, s
   if (!CHECK(trb_jacobian_create(system, motion, "scalar", &jac, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_arrow_create(m->n_rollers, system->layout.hub_width, &s->arrow, NULL) == TRB_OK)) exit(1);
   if (!CHECK(trb_peak_look_create(system, motion, "scalar", &peaks, NULL) == TRB_OK)) exit(1);
-  if (!CHECK(trb_record_offset(m, TRB_N_FIELDS) <= MOST_FIELDS && trb_peak_look_sizes(m).all <= MOST_FIELDS)) exit(1);
+  if (!CHECK(trb_record_offset(system, TRB_N_FIELDS) <= MOST_FIELDS && trb_peak_look_sizes(system).all <= MOST_FIELDS)) exit(1);
   trb_rhs(d, NULL, 0.01, y, s->rates);
   trb_record_fill(d, NULL, 0.01, y, detail, s->record);
   memcpy(s->loads, d->loads, (size_t)m->n_rollers * sizeof *s->loads);
@@ -153,14 +153,14 @@ static void check_jacobian(int row, const seen *full, const seen *out, const see
 }
 
 /* The row's own fields are there with it and zero without it; those of the other rows are as they were. */
-static void check_records(const trb_model *m, int row, const seen *full, const seen *out)
+static void check_records(const trb_system *system, int row, const seen *full, const seen *out)
 {
   const char  *name = is_land(row) ? "land" : pair_of(row)->name;
   const size_t length = strlen(name);
   double       made = 0.0;
   for (int f = 0; f < TRB_N_FIELDS; f++) {
     const trb_field_info *field = &trb_field_table[f];
-    const int             from = trb_record_offset(m, f), to = trb_record_offset(m, f + 1);
+    const int             from = trb_record_offset(system, f), to = trb_record_offset(system, f + 1);
     const int             land = strncmp(field->name, "land_", 5) == 0;
     const int             contact = strcmp(field->group, "contacts") == 0 || strcmp(field->group, "pocket") == 0 || land;
     const int             own = contact && strncmp(field->name, name, length) == 0 && field->name[length] == '_';
@@ -173,18 +173,18 @@ static void check_records(const trb_model *m, int row, const seen *full, const s
 }
 
 /* Losses, elastic energy and torques are sums over rows. */
-static void check_audit(const trb_model *m, const seen *full, const seen *out, const seen *alone)
+static void check_audit(const trb_system *system, const seen *full, const seen *out, const seen *alone)
 {
   static const char *const groups[] = {"power", "torque", "energy"};
   double                   made = 0.0;
   for (int f = 0; f < TRB_N_FIELDS; f++) {
     const trb_field_info *field = &trb_field_table[f];
-    const int             at = trb_record_offset(m, f);
+    const int             at = trb_record_offset(system, f);
     int                   summed = strcmp(field->name, "kinetic_energy") != 0;
     int                   found = strcmp(field->name, "ring_force") == 0 || strcmp(field->name, "ring_moment") == 0;
     for (size_t g = 0; g < sizeof groups / sizeof groups[0]; g++) found |= strcmp(field->group, groups[g]) == 0;
     summed &= found && strncmp(field->name, "work_", 5) != 0 && strncmp(field->name, "loss_", 5) != 0;
-    for (int i = at; i < trb_record_offset(m, f + 1) && summed; i++)
+    for (int i = at; i < trb_record_offset(system, f + 1) && summed; i++)
       made += check_share(field->name, full->record[i], out->record[i], alone->record[i], 0.0, 1e-9, 1e-9);
   }
   CHECK(made > 0.0);
@@ -219,22 +219,25 @@ static void check_loads(const trb_model *m, int row, const seen *full, const see
   CHECK(full->bounds == out->bounds + (pair_of(row)->kind->contact != TRB_CONTACT_NONE) && alone->bounds == full->bounds - out->bounds);
 }
 
-/* Loads among the peaks: gone with the row. */
-static void check_peaks(const trb_model *m, int row, const seen *full, const seen *out)
+/* Whose peaks a quantity is. */
+static int is_peak_of(int quantity, int row)
 {
-  static const struct {
-    int row, quantity;
-  } loads[] = {{TRB_PAIR_outer, TRB_PEAK_outer_load},     {TRB_PAIR_inner, TRB_PEAK_inner_load},
-               {TRB_PAIR_rib, TRB_PEAK_rib_load},         {TRB_PAIR_front_rib, TRB_PEAK_front_rib_load},
-               {TRB_PAIR_pocket, TRB_PEAK_pocket_force},  {TRB_PAIR_inner_land, TRB_PEAK_land_force},
-               {TRB_PAIR_outer_land, TRB_PEAK_land_force}};
+  if (quantity == TRB_PEAK_pocket_force) return row == TRB_PAIR_pocket;
+  const int pair = trb_field_table[trb_peak_quantities[quantity].field].pair;
+  return pair < 0 ? is_land(row) : pair == row;
+}
+
+/* Loads among the peaks: gone with the row. */
+static void check_peaks(const trb_system *system, int row, const seen *full, const seen *out)
+{
   double made = 0.0;
-  for (size_t k = 0; k < sizeof loads / sizeof loads[0]; k++)
-    for (int i = trb_peak_look_offset(m, loads[k].quantity); i < trb_peak_look_offset(m, loads[k].quantity + 1); i++) {
-      const int own = is_land(loads[k].row) ? is_land(row) : loads[k].row == row;
-      made += own ? full->peaks[i] : 0.0;
-      CHECK(out->peaks[i] == (own ? 0.0 : full->peaks[i]));
+  for (int q = 0; q < TRB_N_PEAK_QUANTITIES; q++) {
+    if (q >= TRB_PEAK_outer_pressure && q != TRB_PEAK_land_force) continue;
+    for (int i = trb_peak_look_offset(system, q); i < trb_peak_look_offset(system, q + 1); i++) {
+      made += is_peak_of(q, row) ? full->peaks[i] : 0.0;
+      CHECK(out->peaks[i] == (is_peak_of(q, row) ? 0.0 : full->peaks[i]));
     }
+  }
   CHECK(made > 0.0 || !is_contact(row));
 }
 
@@ -260,9 +263,9 @@ static unsigned test_rows(void)
     check_jacobian(row, &full, &out, &alone, &none, m->n_rollers);
     check_loads(m, row, &full, &out, &alone);
     check_hub(row, &full, &out, &alone);
-    check_records(m, row, &full, &out);
-    check_audit(m, &full, &out, &alone);
-    check_peaks(m, row, &full, &out);
+    check_records(system, row, &full, &out);
+    check_audit(system, &full, &out, &alone);
+    check_peaks(system, row, &full, &out);
     for (int j = 0; j < m->n_rollers; j++)
       if (pair_of(row)->kind->touch != NULL) CHECK(out.arrow->borders[j].parts == 0U);
     forget(&out);

@@ -67,7 +67,7 @@ static trb_simulation *disturbed(unsigned long long seed)
 /* Largest difference of a field of the row from values, over the largest value. */
 static double off(const double *row, int field, const double *values, int n)
 {
-  const double *found = row + trb_peak_offset(m, field);
+  const double *found = row + trb_peak_offset(built, field);
   double        worst = 0.0, size = 0.0;
   for (int i = 0; i < n; i++) size = fmax(size, fabs(values[i]));
   for (int i = 0; i < n; i++) worst = fmax(worst, fabs(found[i] - values[i]));
@@ -78,9 +78,9 @@ static double off(const double *row, int field, const double *values, int n)
 static void test_against_records(void)
 {
   enum { WIDTH = 64 };
-  const int       length = trb_record_offset(m, TRB_N_FIELDS), z = m->n_rollers, pockets = z * m->n_slots;
+  const int       length = trb_record_offset(built, TRB_N_FIELDS), z = m->n_rollers, pockets = z * m->n_slots;
   trb_simulation *s = disturbed(3);
-  double *record = calloc((size_t)length, sizeof *record), *row = calloc((size_t)trb_peak_offset(m, TRB_N_PEAK_FIELDS), sizeof *row);
+  double *record = calloc((size_t)length, sizeof *record), *row = calloc((size_t)trb_peak_offset(built, TRB_N_PEAK_FIELDS), sizeof *row);
   double  pocket[WIDTH] = {0}, mean[WIDTH] = {0}, before[WIDTH], outer[WIDTH] = {0}, pressure[WIDTH] = {0}, rib[WIDTH] = {0}, film[WIDTH];
   double  skew[WIDTH] = {0}, last = 0.0;
   for (int i = 0; i < WIDTH; i++) film[i] = INFINITY;
@@ -89,7 +89,7 @@ static void test_against_records(void)
   for (int step = 0; step <= STEPS; step++) {
     if (step > 0) CHECK(trb_simulation_step(s, NULL) == TRB_OK);
     trb_record_fill(s->parts[0].onlooker, NULL, s->integrator.time, s->integrator.y, s->parts[0].detail, record);
-    const double *force = record + trb_record_offset(m, TRB_FIELD_AT_pocket_force);
+    const double *force = record + trb_record_offset(built, TRB_FIELD_AT_pocket_force);
     const double  h = s->integrator.time - last;
     for (int i = 0; i < pockets; i++) {
       pocket[i] = fmax(pocket[i], force[i]);
@@ -97,12 +97,12 @@ static void test_against_records(void)
       before[i] = force[i];
     }
     for (int j = 0; j < z; j++) {
-      outer[j] = fmax(outer[j], record[trb_record_offset(m, TRB_FIELD_AT_outer_load) + j]);
-      pressure[j] = fmax(pressure[j], record[trb_record_offset(m, TRB_FIELD_AT_inner_pressure) + j]);
-      rib[j] = fmax(rib[j], record[trb_record_offset(m, TRB_FIELD_AT_rib_load) + j]);
-      const double parameter = record[trb_record_offset(m, TRB_FIELD_AT_outer_film_parameter) + j];
+      outer[j] = fmax(outer[j], record[trb_record_offset(built, TRB_FIELD_AT_outer_load) + j]);
+      pressure[j] = fmax(pressure[j], record[trb_record_offset(built, TRB_FIELD_AT_inner_pressure) + j]);
+      rib[j] = fmax(rib[j], record[trb_record_offset(built, TRB_FIELD_AT_rib_load) + j]);
+      const double parameter = record[trb_record_offset(built, TRB_FIELD_AT_outer_film_parameter) + j];
       if (parameter > 0.0) film[j] = fmin(film[j], parameter); /* a record of an unloaded contact says 0 */
-      skew[j] = fmax(skew[j], fabs(record[trb_record_offset(m, TRB_FIELD_AT_roller_skew) + j]));
+      skew[j] = fmax(skew[j], fabs(record[trb_record_offset(built, TRB_FIELD_AT_roller_skew) + j]));
     }
     last = s->integrator.time;
   }
@@ -115,7 +115,7 @@ static void test_against_records(void)
   CHECK(off(row, TRB_PEAK_AT_inner_pressure_peak, pressure, z) < 2e-3);
   CHECK(off(row, TRB_PEAK_AT_rib_load_peak, rib, z) < 2e-3);
   CHECK(off(row, TRB_PEAK_AT_outer_film_parameter_min, film, z) < 2e-3);
-  CHECK(row[trb_peak_offset(m, TRB_PEAK_AT_pocket_force_peak)] >= 0.0);
+  CHECK(row[trb_peak_offset(built, TRB_PEAK_AT_pocket_force_peak)] >= 0.0);
   double most = 0.0;
   for (int i = 0; i < pockets; i++) most = fmax(most, pocket[i]);
   CHECK(most > 1.0); /* there was something to see */
@@ -127,7 +127,7 @@ static void test_against_records(void)
 /* What is saved and restored goes on to the same numbers; another length or time is refused. */
 static void test_restore(void)
 {
-  const int       length = trb_peak_offset(m, TRB_N_PEAK_FIELDS);
+  const int       length = trb_peak_offset(built, TRB_N_PEAK_FIELDS);
   trb_simulation *s = disturbed(5), *other = disturbed(5);
   trb_message     message = {TRB_OK, ""};
   double         *rows = calloc(2 * (size_t)length, sizeof *rows), state[512];

@@ -70,7 +70,7 @@ static void test_bad_input(void)
 static void test_outputs(const char *kind, double *end)
 {
   const trb_settings settings = rig_settings();
-  const int          length = trb_record_offset(m, TRB_N_FIELDS), n = trb_state_size(built);
+  const int          length = trb_record_offset(built, TRB_N_FIELDS), n = trb_state_size(built);
   enum { TIMES = 101 };
   double          times[TIMES], last = 1e-4;
   trb_simulation *often, *once;
@@ -83,7 +83,8 @@ static void test_outputs(const char *kind, double *end)
   for (int i = 0; i < TIMES; i++) times[i] = 1e-6 * i;
   times[TIMES - 1] = last;
   CHECK(trb_simulation_run(often, times, TIMES, INFINITY, records, 1000000, 0, &rows, &steps, &message) == TRB_OK && rows == TIMES);
-  for (int i = 0; i < TIMES; i++) CHECK(records[(size_t)i * (size_t)length + (size_t)trb_record_offset(m, TRB_FIELD_AT_time)] == times[i]);
+  for (int i = 0; i < TIMES; i++)
+    CHECK(records[(size_t)i * (size_t)length + (size_t)trb_record_offset(built, TRB_FIELD_AT_time)] == times[i]);
   CHECK(trb_simulation_run(once, &last, 1, INFINITY, records, 1000000, 0, &rows, &steps_once, &message) == TRB_OK && rows == 1);
   CHECK(steps == steps_once && often->integrator.time == once->integrator.time);
   CHECK(memcmp(often->integrator.y, once->integrator.y, (size_t)n * sizeof(double)) == 0);
@@ -127,8 +128,9 @@ static void test_beside(void)
   double times[TIMES], ends[2][512];
   for (int i = 0; i < TIMES; i++) times[i] = 3e-6 * (i + 1);
   for (int with_peaks = 0; with_peaks < 2; with_peaks++) {
-    const size_t length = (size_t)trb_record_offset(m, TRB_N_FIELDS) + (with_peaks ? (size_t)trb_peak_offset(m, TRB_N_PEAK_FIELDS) : 0);
-    double      *here = rows_of(0, with_peaks, times, TIMES, 7, ends[0]), *there = rows_of(1, with_peaks, times, TIMES, 1000, ends[1]);
+    const size_t length =
+        (size_t)trb_record_offset(built, TRB_N_FIELDS) + (with_peaks ? (size_t)trb_peak_offset(built, TRB_N_PEAK_FIELDS) : 0);
+    double *here = rows_of(0, with_peaks, times, TIMES, 7, ends[0]), *there = rows_of(1, with_peaks, times, TIMES, 1000, ends[1]);
     if (here != NULL && there != NULL) {
       CHECK(memcmp(here, there, length * TIMES * sizeof *here) == 0);
       CHECK(memcmp(ends[0], ends[1], (size_t)trb_state_size(built) * sizeof(double)) == 0);

@@ -9,14 +9,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.optimize import brentq
+from scipy.special import ellipe
 
 import trbdyn as trb
 from trbdyn.model.contact_line import stations
 from trbdyn.model.outlines import cone_outline, cup_outline
+from trbdyn.results import fields
+from trbdyn.results.peaks import from_row
 from trbdyn.viewer.meshes import ears
 
 Array = NDArray[np.float64]
 PLACED = (None, None, 0.0)
+SHARE = 2e-3
+"""What a held load of a ring's contact may be off; TRB_PEAK_SHARE of the core."""
 
 
 def bearing(flanges: str = "NU", clearance: float = 20e-6, **changes: Any) -> trb.Bearing:
@@ -206,14 +211,87 @@ def test_the_floating_side_of_a_shaft() -> None:
     assert "outer_ribs" in result["floating"].groups
 
 
+def pressure_at_a_rib(own: trb.Bearing, rib: str, load: Array) -> Array:
+    """Hertz's largest pressure of a sphere on a cone, nominal place: hollow at the outer ring, round at the inner."""
+    outwards = 1.0 if rib.startswith("outer") else -1.0
+    place = 0.5 * (own.pitch_diameter + outwards * own.roller.diameter) - outwards * own.ribs.contact_height
+    lean, sphere = abs(math.sin(own.geometry.rib_normal_angle)), own.geometry.sphere_radius
+    shorter, longer = sorted((1.0 / (1.0 / sphere - outwards * lean / place), sphere))
+    ratio = trb.laws.point_ellipticity(longer, shorter)
+    equivalent = longer * shorter / (longer + shorter)
+    size = 6.0 * ellipe(1.0 - ratio**-2) * equivalent / (math.pi * own.geometry.effective_modulus)
+    return np.asarray(
+        1.5 * np.cbrt(load) / (math.pi * np.cbrt(ratio * size**2))
+    )  # semi-axes cbrt(ratio^2 size load), cbrt(size load / ratio)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_every_rib_has_its_records_and_peaks(side: float) -> None:
+    """An inner ring between two ribs of each ring, pushed against two of them: their contacts at the ends of all steps."""
+    gap = bearing("NUP").ribs.clearance
+    undamped = trb.Effects(damping="off")  # pressures are those of the elastic part of a load
+    pushed = scene("NUP", axial_load=0.0, displacement=(None, None, side * (2.0 * gap + 1e-5)), effects=undamped)
+    sim, roughness = trb.Simulation(pushed), pushed.bearing.roughness.rib
+    sim._core.begin_peaks(0.0)
+    seen, records = [sim.contacts()], [sim.record()]
+    while sim.time < 1e-3:
+        sim.step()
+        seen.append(sim.contacts())
+        records.append(sim.record())
+    peaks = from_row(sim._core.whole_peaks(sim.time), sim._model.peak_layout())
+    time = np.array([record["time"] for record in records])
+    loaded = ("front_rib", "outer_rib") if side > 0.0 else ("rib", "outer_front_rib")
+    for rib in ("rib", "front_rib", "outer_rib", "outer_front_rib"):
+        of = {name: np.array([one[f"{rib}_{name}"] for one in seen]) for name in ("load", "height", "film", "friction")}
+        load = of["load"]
+        assert (load.max() > 100.0) == (rib in loaded)
+        force = sum(load[0]) * math.cos(pushed.bearing.geometry.rib_normal_angle)
+        if rib in loaded:
+            assert force == pytest.approx(abs(records[0]["ring_force"][2]), rel=1e-2)
+        np.testing.assert_allclose(peaks[f"{rib}_load_peak"], load.max(axis=0), rtol=SHARE)
+        mean = np.trapezoid(load, time, axis=0) / time[-1]
+        np.testing.assert_allclose(peaks[f"{rib}_load_mean"], mean, rtol=SHARE)
+        pressure = pressure_at_a_rib(pushed.bearing, rib, load)
+        np.testing.assert_allclose(peaks[f"{rib}_pressure_peak"], pressure.max(axis=0), rtol=SHARE)
+        film = np.where(load > 0.0, of["film"] / roughness, np.inf).min(axis=0)
+        wanted = np.where(np.isfinite(film), film, np.nan)
+        np.testing.assert_allclose(peaks[f"{rib}_film_parameter_min"], wanted, rtol=SHARE)
+        again = {name: np.array([record[f"{rib}_{name}"] for record in records]) for name in fields_of_ribs()}
+        for name in ("load", "height", "film", "friction"):
+            np.testing.assert_array_equal(again.pop(name), of[name])
+        np.testing.assert_allclose(again.pop("pressure"), pressure, rtol=2e-4)
+        np.testing.assert_allclose(again.pop("film_parameter"), of["film"] / roughness, rtol=1e-12)
+        sliding, rolling = (
+            np.array([one[f"{rib}_{name}"] for one in seen]) for name in ("sliding_speed", "mean_speed")
+        )
+        np.testing.assert_allclose(again.pop("slide_roll") * rolling, sliding, rtol=1e-12)
+        assert (again.pop("overhang") >= 0.0).all()
+        assert not again
+
+
+def fields_of_ribs() -> set[str]:
+    """Quantities of a rib's contact."""
+    return {field.name.removeprefix("rib_") for field in fields.table() if field.name.startswith("rib_")}
+
+
 def test_records_of_the_outer_ribs() -> None:
     """Cylindrical bearings have them, tapered ones do not."""
     own = trb.Simulation(scene("NJ")).run(duration=1e-3)
-    other = trb.Simulation(trb.cases.scene_30310()).run(duration=1e-3)
+    other = trb.Simulation(trb.cases.scene_30310()).run(duration=1e-3, save_groups=("outer_ribs", "contacts", "peaks"))
     assert "outer_ribs" in own.groups
     assert "outer_ribs" not in other.groups
+    assert not [name for name in other.peaks if name.startswith("outer_rib")]
+    for name, says in {"front_rib_pressure": "does not have it", "outer_rib_load": "or this bearing lacks"}.items():
+        with pytest.raises(trb.InputError, match=says):
+            _ = other[name]
     assert float(own["outer_front_rib_load"].sum(axis=1)[0]) == pytest.approx(500.0, rel=1e-3)
     assert float(own["outer_front_rib_pressure"].max()) > 5e7
+    told = own.summary()
+    assert 16 * told["outer_front_rib_load_mean"] == pytest.approx(500.0, rel=0.05)
+    assert told["outer_front_rib_pressure_max"] == own.window().peaks["outer_front_rib_pressure_peak"].max() > 5e7
+    assert 1.0 < told["film_parameter_outer_front_rib_min"] <= told["film_parameter_outer_front_rib"]
+    assert told["outer_rib_load_mean"] is told["front_rib_pressure_max"] is None  # which carry nothing
+    assert other.summary()["outer_rib_load_mean"] is None
 
 
 def test_the_rating_is_that_of_a_radial_bearing() -> None:

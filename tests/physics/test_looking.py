@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import trbdyn as trb
 from trbdyn import Effects, InputError, laws
 from trbdyn.results import fields as field_table
 
@@ -93,11 +94,18 @@ def test_intermediate_quantities_follow_from_each_other(kit: SimpleNamespace) ->
 
 
 def test_records_have_their_fields(kit: SimpleNamespace) -> None:
-    record = kit.simulate(Effects.paper()).record()
-    recorded = [field for field in field_table.table() if field.kind != "mode"]  # the cage is rigid
-    for field in recorded:
-        assert record[field.name].shape == field.shape(12, 4), field.name
-    assert set(record) == {field.name for field in recorded}
+    """Rigid cages have no modes, and tapered bearings no contacts of cylindrical ones."""
+    table = {field.name: field for field in field_table.table()}
+    scene = trb.Scene(trb.cases.bearing_nj210(), speed_rpm=3000.0, radial_load=4000.0, axial_load=500.0)
+    tapered, cylindrical = kit.simulate(Effects.paper()).record(), trb.Simulation(scene).record()
+    for record in (tapered, cylindrical):
+        for name, values in record.items():
+            assert values.shape == table[name].shape(*record["pocket_force"].shape), name
+    assert set(cylindrical) == {name for name, field in table.items() if field.kind != "mode"}
+    other = set(cylindrical) - set(tapered)
+    assert {name for name in table if name.startswith(("outer_rib_", "outer_front_rib_"))} < other
+    assert all("rib_" in name for name in other)
+    assert "front_rib_load" in tapered
 
 
 def test_records_sum_up_contacts(kit: SimpleNamespace) -> None:

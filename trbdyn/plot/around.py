@@ -16,15 +16,13 @@ from numpy.typing import NDArray
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns
 from trbdyn.plot.style import COLOURS, GREY, LINES, legend, sequence, styled
+from trbdyn.results.fields import contacts
 from trbdyn.run.replay import Replay
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
 Array = NDArray[np.float64]
-
-SIDES: Final = ("outer", "inner", "rib")
-NAMES: Final = {"outer": "outer raceway", "inner": "inner raceway", "rib": "back-face rib"}
 
 
 def _polar(ax: Axes | None, title: str, size: tuple[float, float] = (5.2, 5.2)) -> Any:
@@ -96,13 +94,13 @@ def load_zone(result: Result, ax: Axes | None = None, last: float | None = None,
     orbit = shown["roller_orbit_angle"]
     with styled():
         ax = _polar(ax, "Load of a roller by its place around the bearing (N)")
-        for index, side in enumerate(SIDES):
-            load = shown[f"{side}_load"]
-            if not load.any():
+        for index, (side, name) in enumerate(contacts().items()):
+            if f"{side}_load" not in shown or not shown[f"{side}_load"].any():
                 continue
+            load = shown[f"{side}_load"]
             place, mean, low, high = binned(orbit, load, bins)
             around = [np.append(values, values[0]) for values in (place, mean, low, high)]
-            label = f"{NAMES[side]}, {load.min():.4g} to {load.max():.4g} N"
+            label = f"{name}, {load.min():.4g} to {load.max():.4g} N"
             ax.plot(around[0], around[1], color=COLOURS[index], linestyle=LINES[index], label=label)
             ax.fill_between(around[0], around[2], around[3], color=COLOURS[index], alpha=0.2, linewidth=0)
         ax.set_ylim(bottom=0)
@@ -280,7 +278,7 @@ def contact_map(
         figure, axes = plt.subplots(len(sides), 1, figsize=(6.8, 0.9 + 2.0 * len(sides)), sharex=True, squeeze=False)
         for ax, side, grid in zip(axes[:, 0], sides, grids, strict=True):
             mesh = ax.pcolormesh(edges, borders, grid.T, cmap=sequence(), vmin=low, vmax=high)
-            ax.set_title(NAMES[side], loc="left")
+            ax.set_title(contacts()[side], loc="left")
             ax.set_ylabel("along the roller (mm)")
             ax.grid(visible=False)
         axes[-1, 0].set(xticks=range(0, 361, 45), xlabel="place around the bearing from x towards y (deg)")

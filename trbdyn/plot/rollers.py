@@ -15,11 +15,11 @@ from matplotlib.ticker import LogFormatter
 from trbdyn.errors import InputError
 from trbdyn.plot.cage import last_turns, need_cage, revolutions, turns_label
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, OWN, canvas, legend, line, sequence, styled
+from trbdyn.results.fields import contacts
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
 
-SIDES = ("outer", "inner", "rib")
 BINS = 72
 STRETCHES = 300
 """Stretches of time into which a picture of pocket forces is divided."""
@@ -191,10 +191,10 @@ def _around(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> None:
-    for index, side in enumerate(SIDES):
-        values = result[f"{side}_{quantity}"]
-        if not values.any():
+    for index, side in enumerate(contacts()):
+        if f"{side}_{quantity}" not in result or not result[f"{side}_{quantity}"].any():
             continue
+        values = result[f"{side}_{quantity}"]
         place, mean, low, high = _around(result["roller_orbit_angle"], values)
         line(ax, place, mean, index, f"{side} (mean {values.mean():.4g}{unit})")
         ax.fill_between(place, low, high, color=COLOURS[index], alpha=0.25, linewidth=0)

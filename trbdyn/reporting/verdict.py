@@ -14,6 +14,7 @@ import numpy as np
 
 from trbdyn.model.motion import value_at
 from trbdyn.reporting.bias import biases, preset_of
+from trbdyn.results.fields import contacts
 from trbdyn.run import estimate
 
 if TYPE_CHECKING:
@@ -249,7 +250,7 @@ def _torque(result: Result, numbers: dict[str, Any]) -> Sentence | None:
 def _films(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     values = {
         name: numbers[f"film_parameter_{side}"]
-        for side, name in (("outer", "outer raceway"), ("inner", "inner raceway"), ("rib", "back-face rib"))
+        for side, name in contacts().items()
         if numbers.get(f"film_parameter_{side}")
     }
     if not values or not result.scene.effects.films:
@@ -293,7 +294,7 @@ def _too_short(headline: str, number: str) -> Sentence:
 def _pressure(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     found = {
         name: numbers[f"{side}_pressure_max"]
-        for side, name in (("outer", "outer raceway"), ("inner", "inner raceway"), ("rib", "back-face rib"))
+        for side, name in contacts().items()
         if numbers.get(f"{side}_pressure_max")
     }
     if not found:

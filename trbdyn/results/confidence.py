@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.results import observables
+from trbdyn.results.fields import contacts
 from trbdyn.results.observables.uncertainty import LEAST_BATCHES, MOST_COSINES
 
 if TYPE_CHECKING:
@@ -45,12 +46,8 @@ AVERAGES: Final = (
     "spacing_std_deg",
     "pocket_force_p95",
     "pocket_duty",
-    "outer_load_mean",
-    "inner_load_mean",
-    "rib_load_mean",
-    "film_parameter_outer",
-    "film_parameter_inner",
-    "film_parameter_rib",
+    *(f"{side}_load_mean" for side in contacts()),
+    *(f"film_parameter_{side}" for side in contacts()),
     "skew_rms",
     "torque",
     "torque_outer",

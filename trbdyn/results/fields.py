@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any, Final
 
 from trbdyn import _core
 from trbdyn.errors import InputError, unknown_name
@@ -28,6 +29,9 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "mode": ("mode",),
 }
 """Names of the dimensions of each kind of field, without time."""
+
+ALWAYS: Final = ("outer", "inner", "rib")
+"""Contacts that are shown whether they carry a load or not."""
 
 _FIXED_SIZES = {"xy": 2, "xyz": 3, "wxyz": 4}
 
@@ -95,6 +99,23 @@ def from_rows(rows: Iterable[tuple[str, str, str, str, str]]) -> tuple[Field, ..
 def table() -> tuple[Field, ...]:
     """Every recorded quantity of the core, in the order of the record."""
     return from_rows(_core.field_table())
+
+
+@cache
+def contacts() -> dict[str, str]:
+    """Contacts of the rollers with the rings, by the beginning of their fields' names, and where each is: "outer raceway"."""
+    start = "normal load at the "
+    return {
+        field.name.removesuffix("_load"): field.text.removeprefix(start)
+        for field in table()
+        if field.text.startswith(start)
+    }
+
+
+def carrying(values: Any, suffix: str = "_load") -> list[str]:
+    """Contacts that have a load in a result or peaks, but for ribs where it is zero throughout; those of `ALWAYS` are kept."""
+    found = ((side, side + suffix) for side in contacts())
+    return [side for side, name in found if name in values and (side in ALWAYS or values[name].any())]
 
 
 def groups(fields: Iterable[Field]) -> tuple[str, ...]:

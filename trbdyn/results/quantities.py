@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
+from trbdyn.results.fields import contacts
+
 
 class Quantity(NamedTuple):
     """How an entry of the summary is shown.
@@ -19,6 +21,14 @@ class Quantity(NamedTuple):
     words: str
     unit: str
     meaning: str
+
+
+def _of_contacts(name: str, words: str, unit: str, meaning: str) -> dict[str, Quantity]:
+    """A quantity of each contact of the rollers with the rings."""
+    return {
+        name.format(side): Quantity(f"{words}, {place}", unit, meaning.format(place))
+        for side, place in contacts().items()
+    }
 
 
 QUANTITIES: Final[dict[str, Quantity]] = {
@@ -144,18 +154,8 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "pocket_duty": Quantity(
         "share of time that a pocket is touched", "", "Share of the time for which a pocket is touched."
     ),
-    "outer_load_mean": Quantity("load a roller, outer raceway", "N", "Mean load of a roller on the outer raceway."),
-    "inner_load_mean": Quantity("load a roller, inner raceway", "N", "Mean load of a roller on the inner raceway."),
-    "rib_load_mean": Quantity(
-        "load a roller, back-face rib", "N", "Mean load of a roller's large end on the back-face rib."
-    ),
-    "outer_pressure_max": Quantity(
-        "largest pressure at any step, outer raceway", "Pa", "Largest Hertz pressure at the outer raceway."
-    ),
-    "inner_pressure_max": Quantity(
-        "largest pressure at any step, inner raceway", "Pa", "Largest Hertz pressure at the inner raceway."
-    ),
-    "rib_pressure_max": Quantity("largest pressure at any step, rib", "Pa", "Largest Hertz pressure at the rib."),
+    **_of_contacts("{}_load_mean", "load a roller", "N", "Mean load of a roller at the {}."),
+    **_of_contacts("{}_pressure_max", "largest pressure at any step", "Pa", "Largest Hertz pressure at the {}."),
     "equivalent_load": Quantity(
         "equivalent dynamic load P (ISO 281)",
         "N",
@@ -195,22 +195,18 @@ QUANTITIES: Final[dict[str, Quantity]] = {
         "",
         "Viscosity over the one that this bearing asks for at its speed: below 1 surfaces touch, 1 to 4 is good.",
     ),
-    "film_parameter_outer": Quantity(
-        "film parameter, outer raceway",
+    **_of_contacts(
+        "film_parameter_{}",
+        "film parameter",
         "",
-        "Film thickness over roughness at the outer raceway; from effects.friction.lambda_full on, the film carries all.",
+        "Film thickness over roughness at the {}; from effects.friction.lambda_full on, the film carries all.",
     ),
-    "film_parameter_inner": Quantity("film parameter, inner raceway", "", "The same at the inner raceway."),
-    "film_parameter_rib": Quantity("film parameter, rib", "", "The same at the rib."),
-    "film_parameter_outer_min": Quantity(
-        "smallest film parameter, outer raceway",
+    **_of_contacts(
+        "film_parameter_{}_min",
+        "smallest film parameter",
         "",
-        "The thinnest film over roughness at the outer raceway, at any moment.",
+        "The thinnest film over roughness at the {}, at any moment.",
     ),
-    "film_parameter_inner_min": Quantity(
-        "smallest film parameter, inner raceway", "", "The same at the inner raceway."
-    ),
-    "film_parameter_rib_min": Quantity("smallest film parameter, rib", "", "The same at the rib."),
     "skew_rms": Quantity("roller skew, rms", "rad", "How far the rollers turn out of their rolling direction."),
     "torque": Quantity("friction torque of the shaft", "N m", "Friction torque that the shaft has to overcome."),
     "torque_outer": Quantity(

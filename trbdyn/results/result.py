@@ -193,8 +193,11 @@ class Result(Derived, Displayed):
         """Why there is no such field: its group was not saved, or what the name may have meant."""
         every = {field.name: field.group for field in field_table.table()}
         saved = f"saved groups: {', '.join(self.groups)}"
+        if every.get(name) in self.groups:
+            return f"this bearing does not have it; {saved}"
         if name in every:
-            return f"was not recorded: it belongs to the group '{every[name]}', which save_groups left out; {saved}"
+            left_out = f"the group '{every[name]}', which save_groups left out or this bearing lacks"
+            return f"was not recorded: it belongs to {left_out}; {saved}"
         derived = [entry for entry in super().__dir__() if not entry.startswith("_")]
         near = difflib.get_close_matches(str(name), [*every, *derived], n=3)
         hint = f"did you mean {' or '.join(repr(entry) for entry in near)}? " if near else ""

@@ -24,6 +24,7 @@ from trbdyn.errors import FileError, TrbError
 from trbdyn.model.motion import is_constant
 from trbdyn.results import observables, peak_band
 from trbdyn.results.confidence import confidence
+from trbdyn.results.fields import carrying
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.ranges import rolling_note
 from trbdyn.standards.sheet import at_equilibrium, sheet
@@ -159,7 +160,6 @@ def averages(window: Result) -> dict[str, Any]:
         "cage": _cage,
         "rollers": _rollers,
         "pocket": _pocket,
-        "contacts": _contacts,
         "peaks": _peaks,
         "torque": _torque,
         "power": _power,
@@ -168,7 +168,7 @@ def averages(window: Result) -> dict[str, Any]:
     for group, part in parts.items():
         if group in window.groups and (window.has_cage or group not in ("cage", "pocket")):
             out |= part(window)
-    return out
+    return _contacts(window) | out
 
 
 def _cage(window: Result) -> dict[str, Any]:
@@ -226,19 +226,24 @@ def _loaded_mean(values: Any, load: Any) -> float:
 
 
 def _contacts(window: Result) -> dict[str, Any]:
-    out: dict[str, Any] = {f"{side}_load_mean": window[f"{side}_load"].mean() for side in ("outer", "inner", "rib")}
-    return out | {
-        f"film_parameter_{side}": _loaded_mean(window[f"{side}_film_parameter"], window[f"{side}_load"])
-        for side in ("outer", "inner", "rib")
-    }
+    out: dict[str, Any] = {}
+    for side in carrying(window):
+        load = window[f"{side}_load"]
+        out[f"{side}_load_mean"] = load.mean()
+        if f"{side}_film_parameter" in window:
+            out[f"film_parameter_{side}"] = _loaded_mean(window[f"{side}_film_parameter"], load)
+    return out
 
 
 def _peaks(window: Result) -> dict[str, Any]:
     """Extremes at the ends of all steps in the window, and time integrals between them; not those of the records."""
-    peaks, sides = window.peaks, ("outer", "inner", "rib")
-    out: dict[str, Any] = {f"{side}_load_mean": peaks[f"{side}_load_mean"].mean() for side in sides}
-    out |= {f"{side}_pressure_max": peaks[f"{side}_pressure_peak"].max() for side in sides}
-    out |= {f"film_parameter_{side}_min": np.fmin.reduce(peaks[f"{side}_film_parameter_min"]) for side in sides}
+    peaks = window.peaks
+    out: dict[str, Any] = {}
+    for side in carrying(peaks, "_load_peak"):
+        out[f"{side}_load_mean"] = peaks[f"{side}_load_mean"].mean()
+        if f"{side}_pressure_peak" in peaks:
+            out[f"{side}_pressure_max"] = peaks[f"{side}_pressure_peak"].max()
+            out[f"film_parameter_{side}_min"] = np.fmin.reduce(peaks[f"{side}_film_parameter_min"])
     if window.scene.effects.guidance != "rollers":
         out |= {name: float(peaks[name]) for name in ("land_force_peak", "land_gap_min")}
     return out | {

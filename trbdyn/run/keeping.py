@@ -2,8 +2,8 @@
 
 A record of all quantities of a bearing with 12 rollers takes 2.7 kB in a file (its numbers are compressed), so a turn takes
 less than 0.1 MB. Shorter intervals are for runs that would have fewer than 200 records otherwise. Peaks are those of all steps
-at any interval. Beyond 20 000 records the groups contacts and pocket are left out; the peaks and means of their loads are in the
-group peaks. What is given explicitly is kept as it is given.
+at any interval. Beyond 20 000 records the groups contacts, outer_ribs and pocket are left out; the peaks and means of their loads
+are in the group peaks. What is given explicitly is kept as it is given.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ RESTING: Final = 1e-3
 """Default interval (s) where the shaft rests."""
 MANY: Final = 20_000
 """Records beyond which the groups `DETAILS` are left out by default."""
-DETAILS: Final[tuple[Group, ...]] = ("contacts", "pocket")
+DETAILS: Final[tuple[Group, ...]] = ("contacts", "outer_ribs", "pocket")
 
 OPTIONAL: Final[tuple[Group, ...]] = ("housing", "outer_ribs")
 """Groups of what few bearings have, and which are kept there by default: of a housing that moves, of ribs of the outer ring."""

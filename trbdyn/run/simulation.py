@@ -342,7 +342,7 @@ class Simulation(Displayed):
             fewer than 200 records a half, a quarter and so on of that, as far as 1e-4 s. ``result.meta["kept"]`` says
             what was kept.
         save_groups : sequence of str, optional
-            Groups of quantities to keep; all by default, but contacts and pocket in runs of more than 20 000 records.
+            Groups of quantities to keep; all by default, but contacts, outer_ribs and pocket in runs of more than 20 000 records.
         output : path-like, optional
             HDF5 file to write while running; without it records stay in memory.
         progress : bool

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from trbdyn.errors import InputError
 from trbdyn.results.confidence import AVERAGES
+from trbdyn.results.fields import contacts, table
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -27,14 +28,16 @@ GROWTH: Final = 1.125
 LEAST_RECORDS: Final = 50
 """Records before the first look."""
 
+_GROUPS: Final = {field.name: field.group for field in table()}
 GROUPS_OF: Final = {
     "pocket_": "pocket",
     "torque": "torque",
     "power_": "power",
-    "film_": "contacts",
-    "outer_load": "contacts",
-    "inner_load": "contacts",
-    "rib_load": "contacts",
+    **{
+        start: _GROUPS[f"{side}_load"]
+        for side in reversed(contacts())  # "outer" is the beginning of others
+        for start in (f"{side}_load", f"film_parameter_{side}")
+    },
     "cage_slip": "rollers",
     "skew_": "rollers",
     "spacing_": "rollers",

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
+from trbdyn.results.fields import carrying, contacts
 from trbdyn.run.replay import Replay
 from trbdyn.run.simulation import Simulation
 
@@ -194,25 +195,24 @@ def _ring_tilt(result: Result, index: NDArray[np.int64]) -> Array:
 
 
 _CONTACTS: Final = (
-    ("outer_load", "load on the outer raceway", "N", 1.0),
-    ("inner_load", "load on the inner raceway", "N", 1.0),
-    ("rib_load", "load on the back-face rib", "N", 1.0),
-    ("outer_pressure", "largest pressure, outer raceway", "GPa", 1e-9),
-    ("inner_pressure", "largest pressure, inner raceway", "GPa", 1e-9),
-    ("outer_film", "film thickness, outer raceway", "µm", 1e6),
-    ("inner_film", "film thickness, inner raceway", "µm", 1e6),
-    ("outer_film_parameter", "film parameter Λ, outer raceway", "1", 1.0),
-    ("inner_film_parameter", "film parameter Λ, inner raceway", "1", 1.0),
-    ("outer_slide_roll", "slide-roll ratio, outer raceway", "1", 1.0),
-    ("inner_slide_roll", "slide-roll ratio, inner raceway", "1", 1.0),
-    ("rib_slide_roll", "slide-roll ratio, rib", "1", 1.0),
+    ("load", "load on", "N", 1.0),
+    ("pressure", "largest pressure at", "GPa", 1e-9),
+    ("film", "film thickness at", "µm", 1e6),
+    ("film_parameter", "film parameter Λ at", "1", 1.0),
+    ("slide_roll", "slide-roll ratio at", "1", 1.0),
 )
 
 
 def _quantities(result: Result, index: NDArray[np.int64], pose: dict[str, Array]) -> list[Quantity]:
     out = []
-    if "contacts" in result.groups:
-        out += [Quantity(name, label, unit, factor * result[name][index]) for name, label, unit, factor in _CONTACTS]
+    for side in carrying(result):
+        out += [
+            Quantity(
+                f"{side}_{name}", f"{words} the {contacts()[side]}", unit, factor * result[f"{side}_{name}"][index]
+            )
+            for name, words, unit, factor in _CONTACTS
+            if f"{side}_{name}" in result
+        ]
     if "pocket" in result.groups and result.has_cage:
         held = largest_between(result["pocket_force"], index)
         out.append(

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from trbdyn.results.fields import contacts
+
 LEAST: Final = {
     "cage_slip": 1e-4,
     "orbit_": 0.01,
@@ -22,9 +24,7 @@ LEAST: Final = {
     "spacing_": 1e-3,
     "pocket_force_": 0.1,
     "pocket_duty": 1e-3,
-    "outer_load_": 0.1,
-    "inner_load_": 0.1,
-    "rib_load_": 0.1,
+    **{f"{side}_load_": 0.1 for side in contacts()},
 }
 """Least value that means anything, by the beginning of the average's name, in the units of the summary; 0 for others."""
 
