@@ -239,9 +239,9 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   const trb_block_kernels   *kernels = measure->factors->kernels;
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
   if (t->under_way) return 0;
-  const double distance2 =
-      r->known ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, roller, of_ring)
-               : (double)INFINITY;
+  const double distance2 = r->known
+                               ? kernels->step_from(r->origin, r->per, y, d->drive.frame_angle, step) + trb_rings_step(t, roller, of_ring)
+                               : (double)INFINITY;
   const double slid = slipped(&t->model->params, step) + trb_rings_moved(t, d, roller);
   t->beyond[roller] = !(distance2 <= r->reach * r->reach) || !(slid <= t->slip);
   if (!t->beyond[roller]) {

@@ -65,9 +65,9 @@ typedef struct trb_tangents {
   int                              *beyond;                   /* scratch: whether a bound of the tangent is passed */
   trb_ring_offset                   offsets[TRB_MOST_BODIES]; /* of the rings, in this evaluation */
   double                            inputs[TRB_MOST_MOVING_RINGS][TRB_RING_IN]; /* of those with coordinates, in this evaluation */
-  trb_ring_arms                     arms;                     /* what bounds the change of an interference */
-  double                            time;                     /* at which the slopes of all rollers were last evaluated, s */
-  int                               has_slopes;               /* whether they were at all */
+  trb_ring_arms                     arms;                                       /* what bounds the change of an interference */
+  double                            time;       /* at which the slopes of all rollers were last evaluated, s */
+  int                               has_slopes; /* whether they were at all */
 } trb_tangents;
 
 /* Limits of a tangent, and what its error is measured with. */
