@@ -1,7 +1,7 @@
 /* The table of all peaks: what is kept between records, over each record's interval and over the whole run.
  *
- * TRB_PEAK_QUANTITIES(X): X(name, field, sense), what is evaluated at the end of every step, and the field of records that has as many values; the
- * loads, which have means, come first.
+ * TRB_PEAK_QUANTITIES(X): X(name, field, sense), what is evaluated at the end of every step, and the field of records that has as many
+ * values; the loads, which have means, come first.
  * TRB_PEAK_FIELDS(X): X(name, quantity, take, unit, text), what is written of it. Texts hold for an interval and for a run. */
 #ifndef TRB_MOTION_PEAK_FIELDS_H
 #define TRB_MOTION_PEAK_FIELDS_H
@@ -20,8 +20,8 @@ typedef enum trb_peak_take {
   TRB_TAKE_IMPULSE  /* time integral */
 } trb_peak_take;
 
-/* Of each contact of the rollers with a ring (motion/fields.h). The smallest value is wanted of films, which are there in scenes with films and under a
- * load only. Peaks are taken of a model without friction and rolling resistance: a quantity of these would be zero. */
+/* Of each contact of the rollers with a ring (motion/fields.h). The smallest value is wanted of films, which are there in scenes with films
+ * and under a load only. Peaks are taken of a model without friction and rolling resistance: a quantity of these would be zero. */
 #define TRB_PEAK_OF_LOAD(X, kind, as, group, of, at) X(as##_load, as##_load, MOST)
 #define TRB_PEAK_OF_PRESSURE(X, kind, as, group, of, at) X(as##_pressure, as##_pressure, MOST)
 #define TRB_PEAK_OF_FILM(X, kind, as, group, of, at) X(as##_film_parameter, as##_film_parameter, LEAST)

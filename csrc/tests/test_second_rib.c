@@ -5,6 +5,7 @@
 #include "check.h"
 #include "motion/audit.h"
 #include "motion/equilibrium.h"
+#include "motion/record.h"
 #include "rig.h"
 #include "stepping/jacobian.h"
 
@@ -47,7 +48,8 @@ static void test_forces(void)
   trb_motion   *motion = rig_motion(rig_state(system, 4930.0, 100 * TRB_PI, y), 100 * TRB_PI);
   trb_dynamics *d[2];
   trb_detail   *detail;
-  const int     row = add_rib(both, &rib);
+  const int     row = add_rib(both, &rib), record = TRB_FIELD_AT_outer_rib_load; /* that its number gives it */
+  CHECK(trb_field_size(system, record) == 0 && trb_field_size(both, record) == 12);
   /* the faces stand together where the inner ring is not displaced */
   trb_motion_free(motion);
   motion = rig_motion(0.0, 100 * TRB_PI);
