@@ -24,7 +24,7 @@
   X(margin_share,   0.5,   0,     0.9,  "share of a contact's interference or gap that may be used up while a tangent is followed") \
   X(slip_share,     3e-3,  0,     0.1,  "share of the mean rolling speed by which a roller's slip may change while a tangent is followed") \
   X(slow_share,     10,    1e-3,  1e6,  "absolute tolerances of velocities are at most this times rtol times the mean rolling speed") \
-  X(impact_share,   0.1,   1e-4,  1e3,  "share of an impact's speed and interference that roller and cage may be off in a step") \
+  X(impact_share,   0.03,  1e-4,  1e3,  "share of an impact's speed and interference that roller and cage may be off in a step") \
   X(impact_least,   4e-3,  1e-6,  1,    "smallest factor of their absolute tolerances for that") \
   X(max_step,       1e-3,  1e-12, 1e3,  "largest step, s") \
   X(first_step,     0,     0,     1,    "first step, s; 0: chosen by the integrator") \
