@@ -191,7 +191,11 @@ def unloaded_within(kit: SimpleNamespace, within: float, effects: Effects) -> Re
     return kit.simulate(effects, scenery={"ring": "follows", "axial_load": load}).run(duration=6e-3)
 
 
-@pytest.mark.parametrize("within", [1e-5, 1e-6, 1e-8, 1e-9])
+SUDDEN = [1e-5, pytest.param(1e-6, marks=pytest.mark.slow), pytest.param(1e-8, marks=pytest.mark.slow), 1e-9]
+"""Times in which the load falls and comes back (s)."""
+
+
+@pytest.mark.parametrize("within", SUDDEN)
 @pytest.mark.parametrize("effects", [PAPER, STANDARD], ids=["paper", "standard"])
 def test_the_work_of_a_sudden_load_is_in_the_balance(kit: SimpleNamespace, within: float, effects: Effects) -> None:
     """However sudden: no step passes over it."""
