@@ -191,12 +191,12 @@ def _around(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> None:
-    for index, side in enumerate(contacts()):
+    for index, (side, name) in enumerate(contacts().items()):
         if f"{side}_{quantity}" not in result or not result[f"{side}_{quantity}"].any():
             continue
         values = result[f"{side}_{quantity}"]
         place, mean, low, high = _around(result["roller_orbit_angle"], values)
-        line(ax, place, mean, index, f"{side} (mean {values.mean():.4g}{unit})")
+        line(ax, place, mean, index, f"{name} (mean {values.mean():.4g}{unit})")
         ax.fill_between(place, low, high, color=COLOURS[index], alpha=0.25, linewidth=0)
     ax.set(xlim=(0, 360), xticks=range(0, 361, 45))
     ax.set_xlabel("place around the bearing from x towards y (deg)\nline: mean, band: 5 to 95 %")
@@ -220,7 +220,7 @@ def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
         _draw_around(result, ax, "load", " N")
         ax.set_ylabel("normal load (N)")
         ax.set_ylim(bottom=0)
-        legend(ax, ncols=3)
+        legend(ax, ncols=2)
     return ax
 
 
@@ -247,5 +247,5 @@ def film_parameter(result: Result, ax: Axes | None = None) -> Axes:
         ax.yaxis.set_major_formatter(LogFormatter())
         ax.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.5)))
         ax.set_ylabel(r"film parameter $\Lambda$")
-        legend(ax, ncols=3)
+        legend(ax, ncols=2)
     return ax
