@@ -45,7 +45,6 @@ typedef struct trb_rib {
   trb_cone   face;              /* about the ring's axis */
   trb_cone   race;              /* raceway beside it, from which heights are counted */
   trb_sphere end;               /* of the roller, from its centre of mass */
-  double     normal_lean;       /* sine of the angle between the nominal contact's normal and the roller's axis */
   double     edge_low;          /* heights of its edges above the raceway, m */
   double     edge_high;         /* m */
   double     stiffness;         /* K of the Hertz law Q = K d^1.5, N/m^1.5 */

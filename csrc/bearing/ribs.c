@@ -16,7 +16,6 @@ static trb_status fill_rib(trb_model *m, int race, int end, trb_message *message
   *rib = (trb_rib){.face = trb_rib_face(&place, end),
                    .race = m->surfaces.race[race],
                    .end = m->surfaces.end[end],
-                   .normal_lean = fabs(sin(place.normal_angle - g->roller_axis_angle)),
                    .edge_low = p->rib_edge_low,
                    .edge_high = p->rib_edge_high,
                    .stiffness = place.stiffness,

@@ -17,12 +17,13 @@ enum { TRB_PLACE_OF_ROLLER = TRB_ROLLER_tilt + 1, TRB_PLACE_OF_BODY = 6 };
 typedef struct trb_arms {
   double roller[TRB_PLACE_OF_ROLLER];
   double body[TRB_PLACE_OF_BODY];
-  /* of a pair with a ring, whose arms depend on how ring and roller stand (trb_way_on_ring); its arm of the orbit angle is that dependence alone */
+  /* of a pair with a ring, whose arms depend on how ring and roller stand (trb_way_on_ring, which also computes that of the
+   * orbit angle) */
   double skew, tilt; /* shares of the roller's arms of skew and tilt that count where nothing is turned */
   double swing; /* by which the normal turns about the ring's axis, at most, if what touches moves across the plane of both axes, 1/m */
   double along; /* part of the normal along the roller's axis */
   double room;  /* displacements up to which that holds, m */
-  double axial; /* largest distance of the same from the ring's reference point, along the axis, m */
+  double axial; /* largest distance of what touches from the ring's reference point, along the axis, m */
 } trb_arms;
 
 /* Displacements and gaps up to which arms are proven, m. */

@@ -105,9 +105,9 @@ typedef enum trb_field_kind {
   TRB_WORKS(TRB_FIELD_OF_WORK, X) \
   TRB_LOSSES(TRB_FIELD_OF_LOSS, X)
 
-/* What there is: S(X, kind, as, group, of, at), and C of the same for contacts of the rollers with the rings. Fields are named
- * <as>_<quantity>; of: number of its body or pair; at: what texts call it. A system has the fields of the pairs that it has; the bodies are
- * those of each bearing. Contacts have peaks, too (motion/peak_fields.h). */
+/* What there is. S(X, kind, as, group, of, at) is a row that fields.c fills, C one of a contact of the rollers with a ring. Fields are named
+ * <as>_<quantity>; of: number of its body or pair; at: what texts call it. A system has the fields of the pairs that it has; the bodies
+ * are those of each bearing. Contacts have peaks, too (motion/peak_fields.h). */
 #define TRB_SHOWN_CONTACTS(C, X) \
   C(X, raceway, outer,           contacts,   TRB_PAIR_outer,           "the outer raceway") \
   C(X, raceway, inner,           contacts,   TRB_PAIR_inner,           "the inner raceway") \

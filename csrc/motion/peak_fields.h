@@ -45,7 +45,7 @@ typedef enum trb_peak_take {
   X(as##_load_mean,               as##_load,           MEAN,    "N",  "mean normal load at " at) \
   X(as##_pressure_peak,           as##_pressure,       EXTREME, "Pa", "largest Hertz pressure at " at) \
   X(as##_pressure_peak_time,      as##_pressure,       TIME,    "s",  "time of " #as "_pressure_peak") \
-  X(as##_film_parameter_min,      as##_film_parameter, EXTREME, "1",  "smallest film parameter Lambda at " at "; not a number: no film carried a load") \
+  X(as##_film_parameter_min,      as##_film_parameter, EXTREME, "1",  "smallest film parameter Lambda at " at " (of a raceway: mean over the contact, weighted by load); not a number: no film carried a load") \
   X(as##_film_parameter_min_time, as##_film_parameter, TIME,    "s",  "time of " #as "_film_parameter_min")
 
 #define TRB_PEAK_FIELDS(X) \

@@ -98,6 +98,14 @@ static void write(const trb_peak_look *p, int quantity, int place, double value,
   of(p, quantity, values)[place] = trb_peak_quantities[quantity].sense == TRB_PEAK_LEAST ? -value : value;
 }
 
+void trb_peak_look_start(const trb_peak_look *p, double *values)
+{
+  for (int q = 0; q < TRB_N_PEAK_QUANTITIES; q++) {
+    if (trb_field_table[trb_peak_quantities[q].field].pair < 0 || trb_peak_quantities[q].sense != TRB_PEAK_LEAST) continue;
+    for (int i = 0; i < p->offset[q + 1] - p->offset[q]; i++) write(p, q, i, (double)INFINITY, values);
+  }
+}
+
 /* Of a roller about the bearing's axis. */
 static double turn_of(const trb_peak_look *p, int j, const double *y)
 {

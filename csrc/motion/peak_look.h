@@ -1,6 +1,6 @@
 /* What peaks are made of: all loads, pressures, film parameters, skews and spacings at a state. Friction is left out, as none of them
  * needs it. A contact with a ring is evaluated again where its load or its film's entrainment speed may have changed by TRB_PEAK_SHARE
- * since it was evaluated last (motion/bound.h), and always while the ring or its speed changes; pockets are evaluated always, unless they
+ * since it was evaluated last (motion/bound.h), and always while the drive moves a ring or changes its speed; pockets are evaluated always, unless they
  * are proven clear. */
 #ifndef TRB_MOTION_PEAK_LOOK_H
 #define TRB_MOTION_PEAK_LOOK_H
@@ -39,6 +39,8 @@ int            trb_peak_look_offset(const trb_system *s, int quantity);
 
 /* Evaluate everything at the next look. */
 void trb_peak_look_forget(trb_peak_look *look);
+/* Before the first look: films of contacts that the scene has not carry no load. */
+void trb_peak_look_start(const trb_peak_look *look, double *values);
 /* All values at a state. Held ones stay as they are in `values`, which come from the look before. */
 void trb_peak_look_at(trb_peak_look *look, double time, const double *y, double *values);
 

@@ -86,6 +86,7 @@ void trb_peaks_free(trb_peaks *peaks)
 void trb_peaks_begin(trb_peaks *p, double time, const double *y, double end, const double *y_end)
 {
   trb_peak_look_forget(p->look);
+  trb_peak_look_start(p->look, p->value);
   trb_peak_look_at(p->look, time, y, p->value);
   trb_peak_track_start(&p->n, &p->whole, time, p->value, 0);
   trb_peak_track_start(&p->n, &p->interval, time, p->value, 0);

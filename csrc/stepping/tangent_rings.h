@@ -30,7 +30,7 @@ void trb_rings_correct(trb_ring_tangent *ring, const double *in_flow, const doub
 /* The rings where they are now, and the exact reactions on them, become the origin. */
 void trb_rings_move_origin(trb_tangents *t, const trb_dynamics *d, int roller, const trb_tangent_measure *measure,
                            const trb_wrench *reactions);
-/* How far the rings with coordinates have moved since a roller's origin: what margins need is put into their offsets; gives the speed at which
+/* How far the rings with coordinates have moved since a roller's origin: what bounds need is put into their offsets; gives the speed at which
  * surfaces there slide away, m/s. */
 double trb_rings_moved(trb_tangents *t, const trb_dynamics *d, int roller);
 

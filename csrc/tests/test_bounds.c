@@ -237,7 +237,8 @@ static void test_arm_of_the_small_end(const trb_system *system)
 /* Whatever meets a ring that stands aside and leans, while it turns and moves, passes a roller across no faster than its offset says. */
 static void test_offset_of_a_ring(const trb_system *system)
 {
-  const double        lean = 2e-3, outside = 2.0 * system->model->geometry.roller_centre_radius;
+  const trb_geometry *g = &system->model->geometry;
+  const double        lean = 2e-3, outside = 2.0 * g->roller_centre_radius;
   const trb_ring_pose ring = {.axis = {sin(lean), 0, cos(lean)},
                               .centre = {3e-6, -4e-6, 1e-3},
                               .velocity = {-1e-3, 2e-3, 1.0},
@@ -254,7 +255,30 @@ static void test_offset_of_a_ring(const trb_system *system)
     const trb_vec3 across = trb_cross(trb_v(ring.omega.x, ring.omega.y, 0.0), trb_scale(sign * outside, ring.axis));
     const trb_vec3 speed = trb_add(ring.velocity, across);
     CHECK(of->speed >= hypot(speed.x, speed.y));
+    /* an outer ring has its reference point at the apex, far along the axis from the rollers */
+    const trb_vec3 arm = trb_v(sign * g->roller_centre_radius, 0.0, g->centre_plane);
+    const trb_vec3 there = trb_add(ring.velocity, trb_cross(trb_v(ring.omega.x, ring.omega.y, 0.0), arm));
+    CHECK(of->speed >= hypot(there.x, there.y));
   }
+}
+
+/* A housing that turns about the apex moves what the rollers meet by the distance of that. */
+static void test_speeds_of_a_housing(void)
+{
+  trb_params p = rig_params();
+  p.outer_free = 1.0, p.outer_mass = 5.0, p.outer_inertia_axial = 1e-2, p.outer_inertia_transverse = 1e-2;
+  trb_system           *system = rig_system(&p);
+  const trb_geometry   *g = &system->model->geometry;
+  const trb_ring_offset offsets[TRB_MOST_BODIES] = {{.speed = 0.0}};
+  const double          y[TRB_ROLLER_SIZE] = {0}, turning = 0.1, moved = turning * hypot(g->roller_centre_radius, g->centre_plane);
+  trb_body_at           bodies[TRB_MOST_BODIES] = {{.rests = 1}};
+  trb_speed_bound       bound;
+  if (!CHECK(system->n_moving == 1)) return;
+  trb_speed_bound_set(&bound, 0.999 * moved, system, bodies, y, 0.0);
+  CHECK(trb_speed_bound_holds(&bound, system, offsets, bodies, y, 0.0));
+  bodies[system->moving[0]].ring.omega.y = turning;
+  CHECK(!trb_speed_bound_holds(&bound, system, offsets, bodies, y, 0.0));
+  rig_free(system);
 }
 
 /* Two velocities that each change by 0.6 of what may be hold alone, and not together, whatever their signs; the same of turns past a ring that
@@ -297,6 +321,7 @@ int main(void)
   test_arm_of_the_small_end(system);
   test_offset_of_a_ring(system);
   test_speeds_add_up(system);
+  test_speeds_of_a_housing();
   rig_free(system);
   return check_report();
 }

@@ -340,3 +340,18 @@ def test_what_is_refused(make: Any, says: str) -> None:
     with pytest.raises(trb.InputError, match=r".") as found:
         make()
     assert says in str(found.value)
+
+
+def test_a_rib_that_is_not_there_carries_no_film() -> None:
+    """Peaks of an NU, whose inner ring has no rib: no load, and no film that would be thinnest; nor may a run wait for them."""
+    floating = scene("NU", axial_load=0.0, displacement=(None, None, 0.0))
+    result = trb.Simulation(floating).run(duration=1e-3)
+    assert not result["rib_load_peak"].any()
+    for rib in ("rib", "front_rib"):
+        assert np.isnan(result[f"{rib}_film_parameter_min"]).all()
+    summary = result.summary()
+    assert summary["film_parameter_rib"] is None
+    assert not np.isfinite(summary["film_parameter_rib_min"] or math.nan)
+    tapered = trb.Simulation(trb.Scene(trb.cases.rig_30310(), speed_rpm=3000.0, axial_load=4930.0))
+    with pytest.raises(trb.InputError, match="does not have: outer ring's rib"):
+        tapered.run(duration=1e-3, until={"outer_rib_load_mean": 0.1})

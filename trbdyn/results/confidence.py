@@ -100,7 +100,9 @@ def confidence(
             values = np.array([of_records[name][a:b].mean() for a, b in pairwise(edges)])
         else:
             given = [part.get(name) for part in parts]
-            values = np.array([math.nan if value is None else value for value in given], dtype=float)
+            # a rib that carries no load in a batch is left out of its averages
+            absent = 0.0 if name.endswith("_load_mean") and any(given) else math.nan
+            values = np.array([absent if value is None else value for value in given], dtype=float)
         if not np.isfinite(values).all():
             continue
         width = observables.half_width(values)

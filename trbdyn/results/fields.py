@@ -105,11 +105,13 @@ def table() -> tuple[Field, ...]:
 def contacts() -> dict[str, str]:
     """Contacts of the rollers with the rings, by the beginning of their fields' names, and where each is: "outer raceway"."""
     start = "normal load at the "
-    return {
+    found = {
         field.name.removesuffix("_load"): field.text.removeprefix(start)
         for field in table()
         if field.text.startswith(start)
     }
+    assert set(ALWAYS) <= set(found), "texts of loads in the table of fields begin in another way"
+    return found
 
 
 def carrying(values: Any, suffix: str = "_load") -> list[str]:

@@ -194,7 +194,7 @@ class Result(Derived, Displayed):
         every = {field.name: field.group for field in field_table.table()}
         saved = f"saved groups: {', '.join(self.groups)}"
         if every.get(name) in self.groups:
-            return f"this bearing does not have it; {saved}"
+            return f"this bearing does not have it, or its file is of an older version; {saved}"
         if name in every:
             left_out = f"the group '{every[name]}', which save_groups left out or this bearing lacks"
             return f"was not recorded: it belongs to {left_out}; {saved}"

@@ -219,10 +219,10 @@ def _pocket(window: Result) -> dict[str, Any]:
     }
 
 
-def _loaded_mean(values: Any, load: Any) -> float:
-    """Mean weighted by load: the thickness of a film that carries nothing has no meaning."""
+def _loaded_mean(values: Any, load: Any) -> float | None:
+    """Mean weighted by load; None: the thickness of a film that carries nothing has no meaning."""
     total = float(load.sum())
-    return float((values * load).sum() / total) if total > 0.0 else 0.0
+    return float((values * load).sum() / total) if total > 0.0 else None
 
 
 def _contacts(window: Result) -> dict[str, Any]:

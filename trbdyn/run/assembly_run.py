@@ -126,7 +126,7 @@ class AssemblyRun:
                 layout += [(field, first + length, shape) for field, first, shape in model.peak_layout()]
                 length += model.peak_length
             has_cage = seat.scene.effects.bodies == "rollers_and_cage"
-            check_wanted(self.options.until, self.options.save_groups, has_cage)
+            check_wanted(self.options.until, self.options.save_groups, {field for field, _, _ in layout}, has_cage)
             until, doubts = Until(self.options.until, self.times.size), list(sim._seated.unusual[number])
             out.append(RunningBearing(name, seat, layout, at, fields, doubts, until, Kept(layout, kept_fields)))
             at += length

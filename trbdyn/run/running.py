@@ -74,7 +74,8 @@ class Run:
         self.beside = has_a_spare_core()
         self.fields = field_table.table()
         self.layout = list(sim._model.record_layout())
-        check_wanted(options.until, options.save_groups, sim.scene.effects.bodies == "rollers_and_cage")
+        has_cage = sim.scene.effects.bodies == "rollers_and_cage"
+        check_wanted(options.until, options.save_groups, {name for name, _, _ in self.layout}, has_cage)
         self.until = Until(options.until, times.size)
         self.accuracy_note = bias.note(sim)
         self.enough = ""

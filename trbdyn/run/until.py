@@ -10,7 +10,7 @@ was cut off and resumed ends where it would have ended.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Final
 
@@ -45,7 +45,7 @@ GROUPS_OF: Final = {
 """Group of records that an average needs, by the beginning of its name; other averages are those of the cage."""
 
 
-def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], has_cage: bool) -> None:
+def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], fields: Collection[str], has_cage: bool) -> None:
     """Check that what is asked for can be had.
 
     Parameters
@@ -54,6 +54,8 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], has_cage:
         Largest half width of the 95 % confidence interval over the size of the average, by the names of the summary.
     groups : tuple of str
         Groups that the run keeps.
+    fields : collection of str
+        Names of the fields that this bearing has.
     has_cage : bool
         Whether there is a cage.
 
@@ -64,6 +66,14 @@ def check_wanted(wanted: Mapping[str, float], groups: tuple[str, ...], has_cage:
     """
     for name in wanted:
         check_average(name, "run", "until")
+        side = next(
+            (side for side in reversed(contacts()) if name in (f"{side}_load_mean", f"film_parameter_{side}")), ""
+        )
+        field = f"{side}_load" if name.endswith("_load_mean") else f"{side}_film_parameter"
+        if side and field not in fields:
+            raise InputError.of(
+                ("run", "until"), name, f"needs a contact that this bearing does not have: {contacts()[side]}"
+            )
         missing = sorted(set(groups_for(name)) - set(groups))
         if missing:
             raise InputError.of(("run", "save_groups"), groups, f"must hold {', '.join(missing)} for until = {name}")
