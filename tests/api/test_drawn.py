@@ -146,9 +146,11 @@ def test_pocket_statistics(uneven: Result) -> None:
 def test_around_the_bearing(uneven: Result, picture: str, quantity: str) -> None:
     ax = getattr(plot, picture)(uneven)
     angle = np.degrees(np.mod(uneven.roller_orbit_angle, 2.0 * np.pi))
-    for index, side in enumerate(("outer", "inner", "rib")):
+    for index, (side, name) in enumerate(
+        {"outer": "outer raceway", "inner": "inner raceway", "rib": "back-face rib"}.items()
+    ):
         values = uneven[f"{side}_{quantity}"]
-        line = next(line for line in ax.lines if str(line.get_label()).startswith(side))
+        line = next(line for line in ax.lines if str(line.get_label()).startswith(name))
         assert line.get_color() == COLOURS[index]
         x, y = data(line)
         width = 5.0
