@@ -302,3 +302,11 @@ double rig_jacobian_error(trb_dynamics *const *d, int n, const trb_arrow *a, dou
   }
   return worst;
 }
+
+void rig_note(rig_tried *tried, double change, double bound)
+{
+  if (!(bound > 0.0)) return;
+  tried->tightest = fmax(tried->tightest, change / bound);
+  tried->mean += change / bound;
+  tried->n++;
+}

@@ -36,6 +36,15 @@ void rig_disturb(const trb_system *system, unsigned long long *seed, double *sta
 /* Uniform over -1 to 1. */
 double rig_random(unsigned long long *seed);
 
+/* What a bound was, and what it bounded. */
+typedef struct rig_tried {
+  double tightest; /* largest change over its bound */
+  double mean;     /* the same, summed up */
+  int    n;
+} rig_tried;
+
+void rig_note(rig_tried *tried, double change, double bound);
+
 /* Back towards a state until no roller pushes the cage with more than a force. */
 void rig_draw_back(trb_dynamics *d, double most, const double *to, double *state);
 

@@ -11,21 +11,6 @@ enum { MOST = 512 };
 
 static unsigned long long seed = 11;
 
-/* What a bound was, and what it bounded. */
-typedef struct tried {
-  double tightest; /* largest change over its bound */
-  double mean;     /* the same, summed up */
-  int    n;
-} tried;
-
-static void note(tried *t, double change, double bound)
-{
-  if (!(bound > 0.0)) return;
-  t->tightest = fmax(t->tightest, change / bound);
-  t->mean += change / bound;
-  t->n++;
-}
-
 /* Between `most` and so many decades less. */
 static double size_of(double most, double decades) { return most * pow(10.0, -decades * fabs(rig_random(&seed))); }
 
@@ -115,7 +100,7 @@ static void move(const trb_system *system, int kind, double size, double *y, dou
 
 /* Random states of rollers and rings, and random displacements of both from there. aside, lean: of the rings; off: of the
  * rollers, m; farthest: displacement, m. */
-static void try_rings(bench *b, double aside, double lean, double off, double farthest, tried *of, int *held)
+static void try_rings(bench *b, double aside, double lean, double off, double farthest, rig_tried *of, int *held)
 {
   const trb_system   *system = b->system;
   const trb_model    *m = system->model;
@@ -159,7 +144,7 @@ static void try_rings(bench *b, double aside, double lean, double off, double fa
         trb_bound       bound;
         CHECK(change <= way * (1.0 + 1e-9) + 1e-15);
         CHECK(way <= (1.0 + 1e-9) * trb_way_on_ring(&arms.of[i], &offsets[ring], first, step, around, INFINITY));
-        if (way > 1e-12) note(&of[row], change, way);
+        if (way > 1e-12) rig_note(&of[row], change, way);
         /* a bound that was set there says the same */
         still.shifted = still.leaned = 0.0;
         trb_bound_set_on_ring(&bound, 1.000001 * way, &bodies[ring].ring, first, first[TRB_ROLLER_psi]);
@@ -180,9 +165,9 @@ static void try_rings(bench *b, double aside, double lean, double off, double fa
 
 static void test_rings(const trb_params *params, double load)
 {
-  bench b;
-  tried of[TRB_MOST_PAIRS] = {{0}};
-  int   held = 0;
+  bench     b;
+  rig_tried of[TRB_MOST_PAIRS] = {{0}};
+  int       held = 0;
   if (!set_up(&b, params, load)) return;
   try_rings(&b, 0.0, 0.0, 2e-6, 1e-5, of, &held);
   try_rings(&b, 40e-6, 0.0, 2e-6, 1e-5, of, &held);
@@ -191,7 +176,7 @@ static void test_rings(const trb_params *params, double load)
   try_rings(&b, 100e-6, 2e-2, 5e-4, 2e-3, of, &held);
   const trb_ring_arms arms = trb_ring_arms_of(b.system);
   for (int i = 0; i < arms.n; i++) {
-    const tried *t = &of[arms.row[i]];
+    const rig_tried *t = &of[arms.row[i]];
     fprintf(stderr, "%s: change over bound %.3f at most, %.3f in the mean of %d\n", b.system->pairs[arms.row[i]].name, t->tightest,
             t->mean / t->n, t->n);
     CHECK(t->n > 4000 && t->tightest > 0.9 && t->mean > 0.1 * t->n);

@@ -10,21 +10,6 @@ enum { MOST = 512 };
 
 static unsigned long long seed = 23;
 
-/* What a bound was, and what it bounded. */
-typedef struct tried {
-  double tightest; /* largest change over its bound */
-  double mean;     /* the same, summed up */
-  int    n;
-} tried;
-
-static void note(tried *t, double change, double bound)
-{
-  if (!(bound > 0.0)) return;
-  t->tightest = fmax(t->tightest, change / bound);
-  t->mean += change / bound;
-  t->n++;
-}
-
 /* Lower bounds of a roller's gaps at a state, whether its pocket pushes, and whether these are heights over the planes of all faces. */
 static trb_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touches, int *heights)
 {
@@ -43,7 +28,7 @@ static trb_gaps gaps_at(trb_dynamics *d, int roller, const double *y, int *touch
 static const double unit[TRB_PLACE_OF_ROLLER + TRB_PLACE_OF_BODY] = {2e-5, 5e-4, 2e-5, 1e-3, 1e-3, 2e-5, 2e-5, 2e-5, 5e-4, 5e-4, 5e-4};
 
 /* From a state without contact, on along a random direction of one coordinate or of all, until the roller touches. */
-static void walk(const trb_system *system, trb_dynamics *d, const double *start, tried *of, int *held, int *reached)
+static void walk(const trb_system *system, trb_dynamics *d, const double *start, rig_tried *of, int *held, int *reached)
 {
   const trb_model *m = system->model;
   trb_arms         arms[TRB_N_GAPS];
@@ -79,7 +64,7 @@ static void walk(const trb_system *system, trb_dynamics *d, const double *start,
         for (int i = 0; i < TRB_PLACE_OF_BODY; i++) way += arms[g].body[i] * fabs(along * direction[TRB_PLACE_OF_ROLLER + i]);
         const double change = fabs(now.of[g] - gaps.of[g]);
         CHECK(change <= way * (1.0 + 1e-9) + 1e-15);
-        if (way > 1e-9) note(&of[g], change, way);
+        if (way > 1e-9) rig_note(&of[g], change, way);
       }
     }
   }
@@ -92,7 +77,7 @@ static void test_pockets(const trb_params *params)
   trb_dynamics *d;
   double        y[MOST], start[MOST];
   trb_motion   *motion = rig_motion(rig_state(system, 4930.0, speed, y), speed);
-  tried         of[TRB_N_GAPS] = {{0}};
+  rig_tried     of[TRB_N_GAPS] = {{0}};
   int           held = 0, reached = 0;
   if (!CHECK(trb_dynamics_create(system, motion, "scalar", &d, NULL) == TRB_OK)) return;
   trb_dynamics_pose(d, 0.0, y);
