@@ -43,8 +43,8 @@ def test_creep_number_scales_with_gravity_and_froude_against_it() -> None:
 
 @pytest.fixture
 def planar(monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.syspath_prepend(str(Path(__file__).resolve().parents[2] / "benchmarks"))
-    from creep import planar
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+    import planar_cage as planar
 
     return planar
 
@@ -80,7 +80,7 @@ def test_planar_growth_is_converged_in_stiffness_and_steps(planar: Any) -> None:
 
 
 def _grown(planar: Any, what: trb.Scene, turns: float) -> tuple[Any, float]:
-    from creep import whirl
+    import creep_whirl as whirl
 
     run = whirl.run(what, turns)
     return run, run.rate

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import trbdyn as trb
 from trbdyn.model.scene import Scene
 
-from .planar import Motion, growth
+from planar_cage import Motion, growth
 
 Array = NDArray[np.float64]
 
