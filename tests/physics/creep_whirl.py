@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from planar_cage import Motion, growth
 
 import trbdyn as trb
 from trbdyn.model.scene import Scene
-
-from planar_cage import Motion, growth
 
 Array = NDArray[np.float64]
 
