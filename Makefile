@@ -9,6 +9,7 @@
 #   make adversary  random scenes for a time, each judged; failures are shrunk and kept (MINUTES=20, SEED=0)
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
+#   make cross      the core and its C tests for Windows, aarch64 and macOS; where a system can be had here, the tests run; minutes long
 #   make docs       the documentation site in build/docs; its code is run, warnings are errors
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
@@ -40,7 +41,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: demo docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
+.PHONY: cross demo docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -94,6 +95,9 @@ mutate: install $(VENV)/.test
 	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),90) --seed $(or $(SEED),1)
 
 install: build/.package
+
+cross:
+	.ci/cross
 
 # In an environment of its own, which finds the sanitized package and the other packages of .venv, but not its editable install;
 # -P: without the folder of the sources before them.

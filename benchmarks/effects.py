@@ -101,7 +101,7 @@ class Evaluation:
     def __init__(self, core: ModuleType, scene: Scene, vector: Any, variant: str) -> None:
         model = core.Model(parameter_block(scene), diameter_deviation(scene), face_rows(scene), variant)
         motion, _ = ring_motion(model, scene)
-        self._core = core.Simulation(model, motion.table, 0.0, vector, {})
+        self._core = core.Simulation((model,), (motion.table,), 0.0, vector, {})
         self._vector = vector
 
     def __call__(self) -> Any:

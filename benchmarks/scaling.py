@@ -81,13 +81,15 @@ WHIRL = Start.whirl(0.9)
 
 
 def with_rollers(count: int) -> Scene:
-    """The rig with another number of rollers: pitch circle and load in proportion, the cage's mass and inertias too."""
+    """The rig with another number of rollers: pitch circle, load, cage in proportion; the cage keeps its length."""
     rig = cases.rig_30310()
     factor = count / rig.n_rollers
+    axial = rig.cage.inertia_axial
+    along = rig.cage.inertia_transverse - 0.5 * axial  # what the cage's length adds
     cage = rig.cage.replace(
         mass=factor * rig.cage.mass,
-        inertia_axial=factor**3 * rig.cage.inertia_axial,
-        inertia_transverse=factor**3 * rig.cage.inertia_transverse,
+        inertia_axial=factor**3 * axial,
+        inertia_transverse=0.5 * factor**3 * axial + factor * along,
     )
     bearing = rig.replace(n_rollers=count, pitch_diameter=factor * rig.pitch_diameter, cage=cage)
     return cases.scene_30310(3000.0 / factor, 4930.0 * factor, bearing=bearing, effects=EFFECTS, start=WHIRL)

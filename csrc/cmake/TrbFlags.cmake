@@ -24,6 +24,10 @@ if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion -Wstrict-prototypes
     -Wmissing-prototypes -Wpointer-arith -Wvla
     -ffunction-sections -fdata-sections)
+  if(CMAKE_C_COMPILER_ID MATCHES "Clang")
+    # numbers of choices are kept among those of the parameters, all of them double; NAN and INFINITY are of the type float
+    target_compile_options(trb_flags INTERFACE -Wno-unknown-warning-option -Wno-enum-float-conversion -Wno-double-promotion)
+  endif()
   if(TRB_WERROR)
     target_compile_options(trb_flags INTERFACE -Werror)
   endif()
@@ -31,5 +35,14 @@ if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
     set(sanitizers -fsanitize=address,undefined -fno-omit-frame-pointer)
     target_compile_options(trb_flags INTERFACE ${sanitizers} -fno-sanitize-recover=all -g)
     target_link_options(trb_flags INTERFACE ${sanitizers})
+  endif()
+endif()
+
+# see base/windows_memory.h
+if(WIN32)
+  if(MSVC)
+    target_compile_options(trb_flags INTERFACE /FI${CMAKE_CURRENT_SOURCE_DIR}/base/windows_memory.h)
+  else()
+    target_compile_options(trb_flags INTERFACE -include ${CMAKE_CURRENT_SOURCE_DIR}/base/windows_memory.h)
   endif()
 endif()

@@ -5,6 +5,8 @@
 #ifndef TRB_CONTACT_PASSES_H
 #define TRB_CONTACT_PASSES_H
 
+#include <float.h>
+
 #include "contact/kernels.h"
 #include "laws/film.h"
 #include "laws/line_contact.h"
@@ -139,7 +141,7 @@ static inline void pass_boundary(const trb_model *m, int n, trb_lanes *l)
 
 static inline double thinnest(int n, const trb_lanes *l)
 {
-  double least = INFINITY;
+  double least = DBL_MAX;
   TRB_PADDED(n);
   for (int i = 0; i < n; i++) least = trb_min(least, l->film_parameter[i]);
   return least;

@@ -3,6 +3,7 @@
  * nothing branches on effects. */
 #include "contact/kernels.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "contact/passes.h"
@@ -21,7 +22,7 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
   const trb_vec3         x = r->x, a = r->frame.a, v = r->v, w = r->omega, k = g->axis, b = g->centre, rv = g->velocity, rw = g->omega;
   const trb_vec3         start = trb_sub(x, trb_cone_point(&race, b, k));
   const double           orbit = r->orbit_speed;
-  double                 largest = -INFINITY;
+  double                 largest = -DBL_MAX;
   TRB_PADDED(n);
   for (int i = 0; i < n; i++) {
     /* the sphere's centre, from the roller's centre of mass, against the race's cone */
@@ -58,7 +59,7 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
 /* What depths of surfaces off their true form leave of the interference; gives the largest. */
 static double pass_uneven(const trb_race_input *in, int n, trb_lanes *l, int first)
 {
-  double largest = -INFINITY;
+  double largest = -DBL_MAX;
   for (int i = 0; i < n; i++) {
     l->interference[first + i] -= in->uneven->depth[in->lane + i];
     l->approach[first + i] -= in->uneven->rate[in->lane + i];

@@ -6,11 +6,11 @@
  * woken when there is enough to do, and the stepping, when the queue was full, when half of it is free. */
 #include "stepping/recorder.h"
 
-#include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/thread.h"
 
 /* Places of the queue; how many of them are filled, or free again, before a thread that waits is woken. */
 enum { PLACES = 128, ENOUGH = 32, FREE = 64 };
@@ -31,9 +31,9 @@ struct trb_recorder {
   atomic_ulong            put, taken;    /* states put into the queue, and computed, since the beginning */
   atomic_int              idle, held_up; /* whether the second thread waits for work, and the stepping for room */
   int                     closing;
-  pthread_mutex_t         lock; /* of waiting, and of closing */
-  pthread_cond_t          has_work, has_room;
-  pthread_t               thread;
+  trb_lock                lock; /* of waiting, and of closing */
+  trb_condition           has_work, has_room;
+  trb_thread              thread;
 };
 
 int trb_record_parts_length(const trb_record_parts *parts)
@@ -66,34 +66,34 @@ static void compute(const trb_recorder *r, const place *at)
 static unsigned long filled(trb_recorder *r) { return r->put - r->taken; }
 
 /* Wake a thread that waits. */
-static void wake(trb_recorder *r, atomic_int *waits, pthread_cond_t *condition)
+static void wake(trb_recorder *r, atomic_int *waits, trb_condition *condition)
 {
-  pthread_mutex_lock(&r->lock);
+  trb_lock_take(&r->lock);
   *waits = 0;
-  pthread_cond_signal(condition);
-  pthread_mutex_unlock(&r->lock);
+  trb_condition_wake(condition);
+  trb_lock_give(&r->lock);
 }
 
 /* Wait until there is enough to do, or the end; gives 0 where nothing is left and nothing will come. */
 static int wait_for_work(trb_recorder *r)
 {
-  pthread_mutex_lock(&r->lock);
-  for (r->idle = 1; filled(r) < ENOUGH && !r->closing; r->idle = 1) pthread_cond_wait(&r->has_work, &r->lock);
+  trb_lock_take(&r->lock);
+  for (r->idle = 1; filled(r) < ENOUGH && !r->closing; r->idle = 1) trb_condition_wait(&r->has_work, &r->lock);
   r->idle = 0;
   const int more = filled(r) > 0 || !r->closing;
-  pthread_mutex_unlock(&r->lock);
+  trb_lock_give(&r->lock);
   return more;
 }
 
 static void wait_for_room(trb_recorder *r)
 {
-  pthread_mutex_lock(&r->lock);
-  for (r->held_up = 1; filled(r) > PLACES - FREE; r->held_up = 1) pthread_cond_wait(&r->has_room, &r->lock);
+  trb_lock_take(&r->lock);
+  for (r->held_up = 1; filled(r) > PLACES - FREE; r->held_up = 1) trb_condition_wait(&r->has_room, &r->lock);
   r->held_up = 0;
-  pthread_mutex_unlock(&r->lock);
+  trb_lock_give(&r->lock);
 }
 
-static void *work(void *recorder)
+TRB_THREAD_WORK(work, recorder)
 {
   trb_recorder *r = recorder;
   while (wait_for_work(r)) {
@@ -103,7 +103,7 @@ static void *work(void *recorder)
       if (r->held_up && filled(r) <= PLACES - FREE) wake(r, &r->held_up, &r->has_room);
     }
   }
-  return NULL;
+  return 0;
 }
 
 /* The next place, once it is free. */
@@ -150,17 +150,6 @@ static void release(trb_recorder *r)
   free(r);
 }
 
-/* Signals are for the thread that called: Ctrl-C must reach Python's own. */
-static int start_without_signals(trb_recorder *r)
-{
-  sigset_t all, before;
-  sigfillset(&all);
-  if (pthread_sigmask(SIG_SETMASK, &all, &before) != 0) return -1;
-  const int failed = pthread_create(&r->thread, NULL, work, r);
-  pthread_sigmask(SIG_SETMASK, &before, NULL);
-  return failed;
-}
-
 trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_state)
 {
   trb_recorder *r = calloc(1, sizeof *r);
@@ -174,15 +163,15 @@ trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_stat
     r->queue[i].apart = calloc((size_t)parts[0].onlooker->system->layout.n_rollers, sizeof(unsigned));
     complete = complete && r->queue[i].y != NULL && r->queue[i].apart != NULL;
   }
-  if (complete && pthread_mutex_init(&r->lock, NULL) == 0) {
-    if (pthread_cond_init(&r->has_work, NULL) == 0) {
-      if (pthread_cond_init(&r->has_room, NULL) == 0) {
-        if (start_without_signals(r) == 0) return r;
-        pthread_cond_destroy(&r->has_room);
+  if (complete && trb_lock_open(&r->lock) == 0) {
+    if (trb_condition_open(&r->has_work) == 0) {
+      if (trb_condition_open(&r->has_room) == 0) {
+        if (trb_thread_start(&r->thread, work, r) == 0) return r;
+        trb_condition_close(&r->has_room);
       }
-      pthread_cond_destroy(&r->has_work);
+      trb_condition_close(&r->has_work);
     }
-    pthread_mutex_destroy(&r->lock);
+    trb_lock_close(&r->lock);
   }
   release(r);
   return NULL;
@@ -191,13 +180,13 @@ trb_recorder *trb_recorder_open(const trb_record_parts *parts, int n, int n_stat
 void trb_recorder_close(trb_recorder *r)
 {
   if (r == NULL) return;
-  pthread_mutex_lock(&r->lock);
+  trb_lock_take(&r->lock);
   r->closing = 1;
-  pthread_cond_signal(&r->has_work);
-  pthread_mutex_unlock(&r->lock);
-  pthread_join(r->thread, NULL);
-  pthread_cond_destroy(&r->has_room);
-  pthread_cond_destroy(&r->has_work);
-  pthread_mutex_destroy(&r->lock);
+  trb_condition_wake(&r->has_work);
+  trb_lock_give(&r->lock);
+  trb_thread_join(r->thread);
+  trb_condition_close(&r->has_room);
+  trb_condition_close(&r->has_work);
+  trb_lock_close(&r->lock);
   release(r);
 }

@@ -3,6 +3,8 @@
 #ifndef TRB_SURFACE_POLYGON_H
 #define TRB_SURFACE_POLYGON_H
 
+#include <float.h>
+
 #include "base/vec3.h"
 #include "laws/smooth.h"
 
@@ -20,7 +22,7 @@ typedef struct trb_polygon {
 /* Nearest point of a convex polygon to a point (u, v) of its plane. vertices: n pairs (u, v), counter-clockwise. */
 static inline void trb_nearest_in_polygon(const double *vertices, int n, double u, double v, double *nearest_u, double *nearest_v)
 {
-  double best = INFINITY;
+  double best = DBL_MAX;
   int    inside = 1;
   *nearest_u = u;
   *nearest_v = v;

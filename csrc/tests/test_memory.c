@@ -147,7 +147,7 @@ static void fail_each(const char *name, attempt *make)
       printf("  %s: allocation %ld fails, status %d\n", name, n, (int)status);
     CHECK_SAYS(message.text, "out of memory");
   }
-  CHECK(!"more allocations than expected");
+  CHECK(0 && "more allocations than expected");
 }
 
 /* While stepping: a step goes on or fails cleanly, and nothing leaks; afterwards the simulation still steps. The first step is left

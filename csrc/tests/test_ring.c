@@ -157,7 +157,7 @@ static void test_kinds(void)
   const trb_params p = rig_params();
   trb_system      *system = rig_system(&p);
   const trb_model *m = system->model;
-  trb_drive        drive = {.ring = {{0, 0.6, 0.8}, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, .shaft_speed = 2.0};
+  trb_drive        drive = {.ring = {{0, 0.6, 0.8}, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, .angle = 0.0}, .shaft_speed = 2.0};
   trb_ring_pose    pose;
   CHECK(trb_ring_at_rest.rests && trb_ring_at_rest.power == NULL);
   trb_ring_at_rest.place(m, &drive, &pose);
