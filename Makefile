@@ -3,7 +3,7 @@
 #   make demo       the 30310 test bearing at 3000 rpm, in demo/
 #   make test       C unit tests and the Python tests in two processes (PYTEST="-k film" narrows them; SLOW=1 adds the slow ones; JOBS=4)
 #   make lint       style, types, layers of the package, rules of the C sources (make format rewrites the style)
-#   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them)
+#   make bench      every script in benchmarks/, results in build/bench (BENCH="name name" picks some, QUICK=1 shortens them; SMOKE=1: seconds each, side by side)
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
 #   make notebooks  the notebooks run and keep their outputs
 #   make adversary  random scenes for a time, each judged; failures are shrunk and kept (MINUTES=20, SEED=0)
@@ -24,6 +24,7 @@ PYTEST ?=
 SLOW   ?=
 JOBS   ?= 2
 QUICK  ?=
+SMOKE  ?=
 BENCH  ?= $(filter-out common bit_identity paired,$(basename $(notdir $(wildcard benchmarks/*.py))))
 
 VENV    := .venv
@@ -75,8 +76,15 @@ format: $(VENV)/.lint
 
 bench: install $(VENV)/.test
 	@mkdir -p build/bench
+ifdef SMOKE
+	@printf '%s\n' $(BENCH) | xargs -P $(JOBS) -I NAME sh -c 'began=$$(date +%s); $(PY) benchmarks/NAME.py --smoke --no-picture \
+	  --json build/bench/NAME.json >build/bench/NAME.log 2>&1 || { echo "NAME fails:"; tail -20 build/bench/NAME.log; exit 1; }; \
+	  echo "NAME: $$(($$(date +%s) - began)) s"'
+	@$(PY) benchmarks/paper --quick --quiet -o build/bench/paper >build/bench/paper.log 2>&1 || { tail -20 build/bench/paper.log; exit 1; }
+else
 	@set -e; for name in $(BENCH); do echo "== $$name"; \
 	  $(PY) benchmarks/$$name.py $(if $(QUICK),--quick) --json build/bench/$$name.json; done
+endif
 
 stability: install $(VENV)/.test
 	@mkdir -p build

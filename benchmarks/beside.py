@@ -34,7 +34,6 @@ def open_report(
 ) -> tuple[common.Report, int]:
     """The report of a benchmark that runs variants beside each other, and how many pieces each of them runs."""
     parser = common.parser(text)
-    parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
     options = parser.parse_args(arguments)
     return common.Report(name, options, columns), 1 if options.smoke else 16 if options.quick else 160
 

@@ -121,7 +121,6 @@ def run(plan: Plan, options: argparse.Namespace) -> common.Report:
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
-    parser.add_argument("--smoke", action="store_true", help="one point")
     parser.add_argument("--steps", type=int, help="steps of a run at most, instead of the plan's")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--write", action="store_true", help="write the page and its picture")

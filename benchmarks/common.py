@@ -44,12 +44,20 @@ HERE = Path(__file__).resolve().parent
 PICTURES = HERE / "pictures"
 
 
+class _Smoke(argparse.Action):
+    """The shortest form is a quick one, too: what a script does not shorten further is as it is with --quick."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, *_: object) -> None:
+        namespace.smoke = namespace.quick = True
+
+
 def parser(description: str | None) -> argparse.ArgumentParser:
     """The command line that all benchmarks have; a script may add to it."""
     out = argparse.ArgumentParser(
         description=(description or "").split("\n")[0], formatter_class=argparse.ArgumentDefaultsHelpFormatter
     )
     out.add_argument("--quick", action="store_true", help="fewer cases and repeats, under two minutes")
+    out.add_argument("--smoke", action=_Smoke, nargs=0, default=False, help="the least that goes through every part")
     out.add_argument("--json", type=Path, metavar="FILE", default=None, help="write results to a JSON file")
     out.add_argument("--no-picture", action="store_true", help="draw no picture")
     out.add_argument("--write-readme", action="store_true", help="put the results into benchmarks/README.md")

@@ -75,7 +75,7 @@ class Plan:
 
 FULL = Plan(5, 10.0, 41, None)
 QUICK = Plan(2, 1.0, 15, None)
-SMOKE = Plan(1, 0.1, 3, (), ("thermal", "gravity"))
+SMOKE = Plan(1, 0.1, 3, ("thermal",), ("thermal", "gravity"))
 
 
 def scene_with(case: states.Case, effects: Effects) -> Scene:
@@ -282,9 +282,6 @@ def draw(report: common.Report) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
-    parser.add_argument(
-        "--smoke", action="store_true", help="the least that goes through everything; seconds, no build"
-    )
     options = parser.parse_args(arguments)
     report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
     report.readme = text_of(report)

@@ -109,15 +109,18 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser.add_argument("--scenes", nargs="+", choices=list(SCENES), default=list(SCENES), help="only these")
     options = parser.parse_args(arguments)
     report = common.Report("interval_coverage", options, COLUMNS)
-    count = 4 if options.quick else options.runs
+    count = 2 if options.smoke else 4 if options.quick else options.runs
     report.inputs = {"runs": count, "scenes": {name: SCENES[name] for name in options.scenes}}
     warnings.simplefilter("ignore", UserWarning)
     with tempfile.TemporaryDirectory() as own:
         folder = options.folder or Path(own)
         folder.mkdir(parents=True, exist_ok=True)
         for scene in options.scenes:
+            share = 0.05 if options.smoke else 0.2 if options.quick else 1.0
             turns, most = SCENES[scene][3:]
-            long = one(folder, scene, 0, 0.2 * most if options.quick else most)
+            if options.smoke:
+                turns = 0.2 * turns
+            long = one(folder, scene, 0, share * most)
             runs = [one(folder, scene, seed, turns) for seed in range(1, count + 1)]
             alone = [one(folder, scene, seed, LONGEST * turns, UNTIL) for seed in range(1, count + 1)]
             for end, these in (("turns", runs), ("until", ended(alone, LONGEST * turns))):

@@ -246,7 +246,7 @@ def main() -> None:
         report.readme = _page(report.results, report.summary)
         report.finish()
         return
-    names = options.scenes or (QUICK if options.quick else list(scenes()))
+    names = options.scenes or (QUICK[:1] if options.smoke else QUICK if options.quick else list(scenes()))
     if options.drawn is not None:
         names = [f"{DRAWN}{seed}" for seed in range(options.seed, options.seed + options.drawn)]
         if options.write_readme:

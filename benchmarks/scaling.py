@@ -271,7 +271,6 @@ def draw(report: common.Report) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser = common.parser(__doc__)
-    parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
     options = parser.parse_args(arguments)
     report = run(SMOKE if options.smoke else QUICK if options.quick else FULL, options)
     report.readme = text_of(report)

@@ -407,7 +407,6 @@ def write_table(report: common.Report, path: Path) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> common.Report | None:
     parser = common.parser(__doc__)
-    parser.add_argument("--smoke", action="store_true", help="the least that goes through everything; seconds")
     parser.add_argument(
         "--make-states",
         nargs="*",

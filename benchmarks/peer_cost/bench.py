@@ -108,7 +108,7 @@ class Bench:
         self.kinds = kinds(self.model)
         self.simulations: dict[tuple[str, float], Simulation] = {}
         self.paces: dict[float, list[float]] = {}
-        self.windows = self._windows(12 if options.quick else 24)
+        self.windows = self._windows(1 if options.smoke else 12 if options.quick else 24)
 
     def _windows(self, count: int) -> list[Window]:
         sim = Simulation(self.scene)
