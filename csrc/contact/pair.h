@@ -96,6 +96,7 @@ typedef struct trb_pair_kind {
   const char        *name;
   trb_shape          shape[2];   /* of the surfaces that it joins */
   trb_pace           pace;       /* of pairs with a roller */
+  int                alone;      /* 1: a system has one row of it at most: records have room for one */
   int                seats;      /* 1: under load it holds a roller along the roller's axis */
   unsigned           mechanisms; /* by which it loses energy: TRB_LOSES of each */
   trb_contact_form   contact;    /* of a roller with a ring: it has a row of contacts in details */

@@ -84,6 +84,7 @@ static double stiffness_of(const trb_model *m, double depth)
   {.name = is, \
    .shape = {TRB_SHAPE_NONE, TRB_SHAPE_POCKETS}, \
    .pace = TRB_PACE_FAST, \
+   .alone = 1, \
    .mechanisms = TRB_LOSES(TRB_BY_SLIDING) | TRB_LOSES(TRB_BY_DAMPING) | (film), \
    .evaluate = trb_contact_pocket, \
    .touch = trb_contact_pocket_of, \

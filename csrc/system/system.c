@@ -105,6 +105,17 @@ static trb_status check_contact(const trb_pair *pair, trb_message *message)
   return TRB_OK;
 }
 
+/* Pockets have one set of records and one set of faces in the model: a second row would act without being seen. */
+static trb_status check_alone(const trb_system *s, int row, trb_message *message)
+{
+  const trb_pair *pair = &s->pairs[row];
+  for (int i = 0; i < row && pair->kind->alone; i++)
+    if (s->pairs[i].on && s->pairs[i].kind->alone)
+      return trb_fail(message, TRB_ERR_INPUT, "pair %s: a system has one pair of the kind '%s' at most, and has pair %s", pair->name,
+                      pair->kind->name, s->pairs[i].name);
+  return TRB_OK;
+}
+
 /* Where a roller's part of the right-hand side has no room for a loss, the loss would be dropped. */
 static trb_status check_books(const trb_system *s, const trb_pair *pair, trb_message *message)
 {
@@ -145,6 +156,7 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
     trb_status status = join(s, pair, message);
     if (status == TRB_OK) status = check_contact(pair, message);
     if (status == TRB_OK && pair->on) status = check_books(s, pair, message);
+    if (status == TRB_OK && pair->on) status = check_alone(s, i, message);
     if (status != TRB_OK) return status;
     pair->contact = contacts;
     contacts += pair->kind->contact != TRB_CONTACT_NONE;

@@ -423,6 +423,13 @@ static void test_refused(void)
   CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
   CHECK_SAYS(message.text, "pair pocket: a pair that comes and goes with impacts needs a body with coordinates");
   *system = good;
+  /* a second row of pockets, of which records and losses would miss one */
+  CHECK(system->n_pairs < TRB_MOST_PAIRS);
+  system->pairs[system->n_pairs] = system->pairs[TRB_PAIR_pocket];
+  system->pairs[system->n_pairs++].name = "second pocket";
+  CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
+  CHECK_SAYS(message.text, "pair second pocket: a system has one pair of the kind 'roller in a pocket with oil' at most, and has pair pocket");
+  *system = good;
   rig_free(system);
 }
 

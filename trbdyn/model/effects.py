@@ -74,7 +74,7 @@ class Friction(Model):
         return self
 
 
-def _refuse_idle(damping: str, lubrication: str, given: Mapping[str, Any]) -> None:
+def refuse_idle(damping: str, lubrication: str, given: Mapping[str, Any]) -> None:
     """Coefficients that somebody gives, and that the law of damping does not use."""
     if "damping_race" in given and damping == "film" and lubrication in FILMED:
         raise InputError.of(
@@ -219,8 +219,10 @@ class Effects(Model):
             return values
         if values.get("rolling_resistance") is False and "rolling_pressure_force" not in values:
             values = {**values, "rolling_pressure_force": False}
-        if "damping" not in values:
-            _refuse_idle("film", values.get("lubrication", "mixed"), values)
+        if (
+            not values.keys() >= cls.model_fields.keys()
+        ):  # a whole table, as files have it, has the coefficients of every law
+            refuse_idle(values.get("damping", "film"), values.get("lubrication", "mixed"), values)
         fill = values.get("oil_fill")
         if isinstance(fill, str):
             if fill not in OIL_SUPPLIES:
@@ -243,7 +245,7 @@ class Effects(Model):
     def replace(self, changes: Mapping[str, Any] | None = None, /, **fields: Any) -> Self:
         """As of every input; a coefficient of damping that would act nowhere is refused."""
         fields = {**(self._changed(split_paths(changes)) if changes is not None else {}), **fields}
-        _refuse_idle(fields.get("damping", self.damping), fields.get("lubrication", self.lubrication), fields)
+        refuse_idle(fields.get("damping", self.damping), fields.get("lubrication", self.lubrication), fields)
         return super().replace(**fields)
 
     @property

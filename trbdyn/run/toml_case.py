@@ -29,7 +29,7 @@ from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
 from trbdyn.errors import Path as FieldPath
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.cases import BEARINGS
-from trbdyn.model.effects import PRESETS, Effects
+from trbdyn.model.effects import PRESETS, Effects, refuse_idle
 from trbdyn.model.lubricants import Lubricant, vg100
 from trbdyn.model.pocket import Pocket
 from trbdyn.model.pocket_shapes import SHAPES
@@ -219,7 +219,11 @@ def effects_from_table(table: Table) -> Effects:
     path = ("effects",)
     check_names(table, {*Effects.model_fields, "preset"}, path)
     preset = _choose({"preset": "standard", **table}, "preset", PRESETS, path)
-    return build(Effects, _merged(preset().to_dict(), without(table, "preset")), path)
+    values = _merged(preset().to_dict(), without(table, "preset"))
+    if not table.keys() >= Effects.model_fields.keys():  # a whole table has the coefficients of every law
+        with located(path):
+            refuse_idle(values["damping"], values["lubrication"], table)
+    return build(Effects, values, path)
 
 
 def _in_tables(problem: Problem) -> Problem:
