@@ -77,6 +77,7 @@ class Model:
         instruction_set: str = "",
         modes: Array = ...,
         form: Array = ...,
+        drops: Array = ...,
     ) -> None: ...
     n_rollers: int
     n_slots: int

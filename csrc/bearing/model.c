@@ -14,6 +14,8 @@
 
 /* Smallest half angle of a cup whose apex is near enough for coordinates that are counted from there, rad. */
 #define TRB_LEAST_CONE 0.01
+/* Largest drop of a profile that is given as a table, m. */
+#define TRB_MOST_DROP 1e-3
 /* Smallest height of a land's film over the clearance: the law of the film keeps eight digits. */
 #define TRB_LEAST_CONTACT_FILM 1e-4
 
@@ -57,6 +59,8 @@ static double profile_drop(const trb_model *m, double station)
   if (p->profile == TRB_PROFILE_LOGARITHMIC)
     return trb_profile_logarithmic(station, p->effective_length, p->profile_k1, p->profile_k2, p->profile_zm, p->profile_load,
                                    m->geometry.effective_modulus);
+  if (p->profile == TRB_PROFILE_ISO)
+    return trb_profile_iso(station, p->profile_a * p->roller_diameter, p->profile_c, p->profile_d, p->profile_k);
   return 0.0;
 }
 
@@ -64,7 +68,7 @@ static double profile_drop(const trb_model *m, double station)
 #define TRB_MAX_NODES 200
 
 /* Nodes along the contact and, per roller, the chain of inscribed spheres (docs/theory/contacts.md#chain-of-spheres). */
-static trb_status fill_nodes(trb_model *m, trb_message *message)
+static trb_status fill_nodes(trb_model *m, const double *drops, trb_message *message)
 {
   const trb_params   *p = &m->params;
   const trb_geometry *g = &m->geometry;
@@ -87,9 +91,10 @@ static trb_status fill_nodes(trb_model *m, trb_message *message)
       m->race[race].radius[k] = radius;
       m->race[race].log_radius[k] = log(radius);
       m->race[race].roller_share[k] = radius * roller_curvature;
+      m->race[race].drop[k] = drops == NULL ? 0.0 : drops[(1 + race) * m->n_nodes + used];
     }
     for (int j = 0; j < m->n_rollers; j++) {
-      const double radius = nominal + 0.5 * m->diameter_deviation[j] - profile_drop(m, station);
+      const double radius = nominal + 0.5 * m->diameter_deviation[j] - profile_drop(m, station) - (drops == NULL ? 0.0 : drops[used]);
       if (!(radius > 0.0))
         return trb_fail(message, TRB_ERR_GEOMETRY, "roller %d: profile and diameter deviation leave no radius at station %g m", j, station);
       const trb_sphere sphere = trb_sphere_inscribed(flank, station, radius);
@@ -199,6 +204,7 @@ static int allocate(trb_model *m)
     ok &= (m->race[race].log_radius = doubles(lanes)) != NULL;
     ok &= (m->race[race].radius = doubles(lanes)) != NULL;
     ok &= (m->race[race].roller_share = doubles(lanes)) != NULL;
+    ok &= (m->race[race].drop = doubles(lanes)) != NULL;
   }
   return ok;
 }
@@ -284,7 +290,7 @@ static trb_status fill(trb_model *m, const double *deviation, const trb_face *fa
                       deviation[j]);
     m->diameter_deviation[j] = deviation[j];
   }
-  if ((status = fill_nodes(m, message)) != TRB_OK) return status;
+  if ((status = fill_nodes(m, NULL, message)) != TRB_OK) return status;
   if ((status = trb_pockets_fill_faces(m, faces, n_faces, message)) != TRB_OK) return status;
   m->n_losses = losses_of(&m->params);
   fill_ends(m);
@@ -314,6 +320,17 @@ trb_status trb_model_create(const trb_params *params, const double *deviation, i
   return TRB_OK;
 }
 
+trb_status trb_model_set_drops(trb_model *m, const double *rows, int n_rows, int n_columns, trb_message *message)
+{
+  if (n_rows == 0) return TRB_OK;
+  if (n_rows != 1 + TRB_N_RACES || n_columns != m->n_nodes)
+    return trb_fail(message, TRB_ERR_INPUT, "drops: %d rows of %d values needed, %d of %d given", 1 + TRB_N_RACES, m->n_nodes, n_rows, n_columns);
+  for (int i = 0; i < n_rows * n_columns; i++)
+    if (!(rows[i] >= -TRB_MOST_DROP && rows[i] <= TRB_MOST_DROP))
+      return trb_fail(message, TRB_ERR_INPUT, "drops, row %d: %g m: must be from %g to %g m", i / n_columns, rows[i], -TRB_MOST_DROP, TRB_MOST_DROP);
+  return fill_nodes(m, rows, message);
+}
+
 void trb_model_free(trb_model *model)
 {
   if (model == NULL) return;
@@ -322,6 +339,7 @@ void trb_model_free(trb_model *model)
     free(model->race[race].log_radius);
     free(model->race[race].radius);
     free(model->race[race].roller_share);
+    free(model->race[race].drop);
   }
   free(model->diameter_deviation);
   free(model->station);

@@ -38,6 +38,7 @@ typedef struct trb_race_nodes {
   double         *log_radius;   /* ln Re */
   double         *radius;       /* Re, m */
   double         *roller_share; /* Re/R1: share of the roller in the pair's curvature */
+  double         *drop;         /* of the raceway's profile, along its normal, m */
 } trb_race_nodes;
 
 /* A conical rib of a ring, and the spherical end of a roller that meets it. */
@@ -155,6 +156,9 @@ trb_status trb_model_set_modes(trb_model *model, const double *rows, int n_modes
 /* Gives a new model the form of its surfaces: rows of TRB_FORM_depth + 2 n_nodes numbers (bearing/form.h); none: all surfaces have their true
  * form. */
 trb_status trb_model_set_form(trb_model *model, const double *rows, int n_rows, int n_columns, trb_message *message);
+/* Gives a new model what profiles drop at the nodes, m: rows of n_nodes for the rollers, in addition to their own profile and perpendicular to
+ * their axis, the outer and the inner raceway; none: raceways are straight. */
+trb_status trb_model_set_drops(trb_model *model, const double *rows, int n_rows, int n_columns, trb_message *message);
 void       trb_model_free(trb_model *model);
 
 #endif

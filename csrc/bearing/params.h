@@ -42,12 +42,16 @@
   X(roughness,  roughness_rib,             "m",         1e-10,  1e-3,   "composite rms roughness of roller end and rib") \
   X(roughness,  roughness_pocket,          "m",         1e-10,  1e-3,   "composite rms roughness of roller and pocket: the film between them is no thinner") \
   /* roller profile and quadrature along the contact */ \
-  X(roller,     profile,                   "choice",    0,      2,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic") \
+  X(roller,     profile,                   "choice",    0,      3,      "roller profile: 0 straight, 1 crowned (arc), 2 logarithmic, 3 general form of ISO/TS 16281") \
   X(roller,     crown_radius,              "m",         1e-3,   1e9,    "radius of the crowning arc") \
   X(roller,     profile_k1,                "1",         0,      100,    "K1 of the logarithmic profile") \
   X(roller,     profile_k2,                "1",         0.001,  1,      "K2 of the logarithmic profile") \
   X(roller,     profile_zm,                "m",         0,      1e-3,   "zm of the logarithmic profile: drop at the end") \
   X(roller,     profile_load,              "N",         1e-3,   1e9,    "design load Q of the logarithmic profile") \
+  X(roller,     profile_a,                 "1",         0,      0.1,    "a_p of the ISO profile: its drop over the roller's diameter") \
+  X(roller,     profile_c,                 "m",         1e-6,   10,     "c_p of the ISO profile: length over which it drops, both ends together") \
+  X(roller,     profile_d,                 "m",         0,      10,     "d_p of the ISO profile: length of its straight middle") \
+  X(roller,     profile_k,                 "1",         1,      20,     "k_p of the ISO profile: its exponent") \
   X(effects,    quadrature,                "choice",    0,      1,      "nodes along the contact: 0 uniform slices, 1 Gauss-Legendre") \
   X(effects,    n_slices,                  "count",     1,      200,    "number of slices or nodes along a contact line") \
   /* cage */ \

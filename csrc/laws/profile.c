@@ -16,6 +16,12 @@ double trb_profile_logarithmic(double y, double length, double k1, double k2, do
   return -amplitude * (trb_max(one, other) + log1p(exp(trb_min(one, other) - trb_max(one, other))));
 }
 
+double trb_profile_iso(double y, double scale, double length, double straight, double exponent)
+{
+  const double way = trb_min((2.0 * fabs(y) - straight) / length, 1.0);
+  return way > 0.0 ? -scale * log1p(-trb_min(pow(way, exponent), TRB_PROFILE_STEEPEST)) : 0.0;
+}
+
 /* Legendre polynomial of degree n and its derivative. */
 static void legendre(int n, double x, double *value, double *slope)
 {

@@ -63,6 +63,8 @@
   X(profile_crowned, 2, "station radius", "drop of an arc, m", trb_profile_crowned(x[0], x[1])) \
   X(profile_logarithmic, 7, "station length k1 k2 zm load effective_modulus", "logarithmic drop, m", \
     trb_profile_logarithmic(x[0], x[1], x[2], x[3], x[4], x[5], x[6])) \
+  X(profile_iso, 5, "station scale length straight exponent", "drop of the general form of ISO/TS 16281, m", \
+    trb_profile_iso(x[0], x[1], x[2], x[3], x[4])) \
   X(journal_along, 2, "eccentricity_along eccentricity_across", "Short journal bearing with half of its film: force along the velocity over (viscosity radius width^3/clearance^3) and the velocity", \
     trb_journal_short(x[0], x[1]).along) \
   X(journal_across, 2, "eccentricity_along eccentricity_across", "Short journal bearing with half of its film: force across the velocity over (viscosity radius width^3/clearance^3) and the velocity", \

@@ -12,13 +12,13 @@
 
 static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keywords)
 {
-  static char *names[] = {"params", "diameter_deviation", "faces", "instruction_set", "modes", "form", NULL};
-  PyObject    *params_object, *deviation_object, *faces_object, *modes_object = NULL, *form_object = NULL;
+  static char *names[] = {"params", "diameter_deviation", "faces", "instruction_set", "modes", "form", "drops", NULL};
+  PyObject    *params_object, *deviation_object, *faces_object, *modes_object = NULL, *form_object = NULL, *drops_object = NULL;
   const char  *variant = "";
-  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|sOO", names, &params_object, &deviation_object, &faces_object, &variant,
-                                   &modes_object, &form_object))
+  if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|sOOO", names, &params_object, &deviation_object, &faces_object, &variant,
+                                   &modes_object, &form_object, &drops_object))
     return NULL;
-  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL, *modes = NULL, *form = NULL;
+  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL, *modes = NULL, *form = NULL, *drops = NULL;
   model_object  *self = NULL;
   trb_model     *model = NULL;
   trb_system    *system = NULL;
@@ -29,6 +29,7 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
   if (deviation != NULL) faces = trb_array(faces_object, 2, "faces");
   if (faces != NULL && modes_object != NULL && (modes = trb_array(modes_object, 2, "modes")) == NULL) Py_CLEAR(faces);
   if (faces != NULL && form_object != NULL && (form = trb_array(form_object, 2, "form")) == NULL) Py_CLEAR(faces);
+  if (faces != NULL && drops_object != NULL && (drops = trb_array(drops_object, 2, "drops")) == NULL) Py_CLEAR(faces);
   if (faces != NULL) {
     if (PyArray_DIM(params, 0) != TRB_N_PARAMS)
       status = trb_fail(&message, TRB_ERR_INPUT, "params: %d values needed, %d given", TRB_N_PARAMS, (int)PyArray_DIM(params, 0));
@@ -41,6 +42,8 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
       status = trb_model_set_modes(model, PyArray_DATA(modes), (int)PyArray_DIM(modes, 0), (int)PyArray_DIM(modes, 1), &message);
     if (status == TRB_OK && form != NULL)
       status = trb_model_set_form(model, PyArray_DATA(form), (int)PyArray_DIM(form, 0), (int)PyArray_DIM(form, 1), &message);
+    if (status == TRB_OK && drops != NULL)
+      status = trb_model_set_drops(model, PyArray_DATA(drops), (int)PyArray_DIM(drops, 0), (int)PyArray_DIM(drops, 1), &message);
     /* a workspace tells whether the variant runs, and which one "" stands for */
     if (status == TRB_OK) status = trb_system_tapered(model, &system, &message);
     if (status == TRB_OK) status = trb_workspace_create(system->pairs, system->n_pairs, variant, &work, &message);
@@ -61,6 +64,7 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
   Py_XDECREF((PyObject *)faces);
   Py_XDECREF((PyObject *)modes);
   Py_XDECREF((PyObject *)form);
+  Py_XDECREF((PyObject *)drops);
   return (PyObject *)self;
 }
 

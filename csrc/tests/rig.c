@@ -19,6 +19,7 @@ trb_params rig_params(void)
   p.front_rib_clearance = 0.2e-3, p.front_rib_low = 0.3e-3, p.front_rib_high = 2e-3, p.end_stiffness = 1e10;
   p.roughness_raceway = 0.16e-6, p.roughness_rib = 0.24e-6, p.roughness_pocket = 1e-6;
   p.profile = 2, p.crown_radius = 100, p.profile_k1 = 1.5, p.profile_k2 = 0.4, p.profile_zm = 10e-6, p.profile_load = 1833;
+  p.profile_a = 3.5e-4, p.profile_c = 19.8e-3, p.profile_k = 2.0;
   p.quadrature = 0, p.n_slices = RIG_SLICES;
   p.cage_mass = 0.2, p.cage_inertia_axial = 3.9e-4, p.cage_inertia_transverse = 2.1e-4, p.cage_offset = 0, p.cage_rail_offset = 12e-3;
   p.viscosity = 0.0346, p.pressure_coefficient = 1.97e-8, p.temperature_coefficient = 0.0392, p.conductivity = 0.134, p.temperature = 60;

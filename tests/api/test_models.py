@@ -295,7 +295,12 @@ class TestBearing:
             n_rollers=12,
             cup_half_angle_deg=rig.cup_half_angle_deg,
             pitch_diameter=rig.pitch_diameter,
-            roller={"diameter": 14e-3, "effective_length": 19.8e-3, "total_length": 20.8e-3},
+            roller={
+                "diameter": 14e-3,
+                "effective_length": 19.8e-3,
+                "total_length": 20.8e-3,
+                "profile": {"kind": "logarithmic", "k1": 1.5, "k2": 0.4, "zm": 10e-6, "load": 1833.0},
+            },
             ribs=Ribs(contact_height=1.667e-3),
             cage=Cage(**rig.cage.to_dict()),
             name="30310",

@@ -173,7 +173,7 @@ def loose_scene(**effects: Any) -> trb.Scene:
 def hardly_loaded(seed: int = 1) -> trb.Scene:
     """Rollers that a light combined load hardly holds, in oil that drags at them: they vibrate, and damping is on."""
     return trb.Scene(
-        trb.cases.bearing_32216(),
+        trb.cases.bearing_32216().replace({"roller.profile": trb.Profile.logarithmic(1391.0)}),
         speed_rpm=914.0,
         axial_load=534.0,
         radial_load=1488.0,

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from trbdyn import Simulation, cases
 from trbdyn.errors import InputError
-from trbdyn.model.bearing import Bearing
+from trbdyn.model.bearing import Bearing, Profile
 from trbdyn.model.effects import Effects
 
 TABLE = [
@@ -137,7 +137,8 @@ def test_rib_sliding(rig: Bearing) -> None:
 def test_ratios_are_those_of_pure_rolling(bearing: Bearing) -> None:
     """At the start both raceways roll without sliding, all along the contact."""
     scene = {"30310": cases.paper_30310, "32216": cases.scene_32216}[bearing.name]
-    found = Simulation(scene(3000.0, effects=Effects.paper())).contacts()
+    whole = bearing.replace({"roller.profile": Profile.logarithmic(1400.0)})
+    found = Simulation(scene(3000.0, bearing=whole, effects=Effects.paper())).contacts()
     speed = found["raceway_mean_speed"].mean(axis=(0, 1))
     middle = 0.5 * (speed[11] + speed[12])
     half = 0.5 * bearing.roller.diameter

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from trbdyn import Effects, Simulation, cases
-from trbdyn.model.bearing import Bearing
+from trbdyn.model.bearing import Bearing, Profile
 
 Array = NDArray[np.float64]
 SKEW, TILT = 5e-3, 2e-4
@@ -84,7 +84,8 @@ def random_state(sim: Simulation, seed: int, skew: float = SKEW, tilt: float = T
 def sim(request: pytest.FixtureRequest, rig: Bearing, straight_rig: Bearing) -> Simulation:
     effects = Effects.paper().replace(n_slices=31)
     if request.param == "32216":
-        return Simulation(cases.scene_32216(0.0, effects=effects))
+        bearing = cases.bearing_32216().replace({"roller.profile": Profile.logarithmic(1391.0)})
+        return Simulation(cases.scene_32216(0.0, bearing=bearing, effects=effects))
     if request.param == "scattered":
         deviation = tuple(np.random.default_rng(1).uniform(-1e-6, 1e-6, 12))
         rig = rig.replace(roller=rig.roller.replace(diameter_deviation=deviation))

@@ -50,6 +50,20 @@ RIG: Final[dict[str, float]] = {
 }
 """Numbers of the 30310 rig (m, kg, kg m2, kg/m3, N, N/m^1.5), to which assumed ones are in proportion."""
 
+ISO_SHORT, ISO_LONG, ISO_LENGTH = 0.00035, 0.0005, 2.5
+"""Profile of ISO/TS 16281: drop over diameter of rollers up to the third number's diameters long, and of longer ones, whose ends
+drop over this length."""
+
+PROFILE_FIELDS: Final[dict[str, tuple[str, ...]]] = {
+    "iso": ("a_p", "c_p", "d_p", "k_p"),
+    "logarithmic": ("k1", "k2", "zm", "load"),
+    "crowned": ("crown_radius",),
+    "straight": (),
+    "table": (),
+}
+"""Numbers of a profile that its kind uses."""
+RACEWAY_PROFILES: Final = ("cup_profile", "cone_profile")
+
 END_RADIUS: Final = 50.0
 """Radius of the ends of cylindrical rollers over their diameter: the ribs' faces then open by 0.4 degrees."""
 RIB_CLEARANCE: Final = 1.5e-3
@@ -61,7 +75,7 @@ _WITH_DIAMETER: Final = {
 }
 _CONSTANT: Final = {
     "roller": ("sphere_ratio",),
-    "roller.profile": ("kind", "k1", "k2", "zm"),
+    "roller.profile": ("kind", "k1", "k2", "zm", "k_p"),
     "cage": ("offset",),
     "material": ("youngs_modulus", "poisson_ratio", "density", "expansion", "damping_ratio"),
     "roughness": ("raceway", "rib", "pocket"),
@@ -110,7 +124,15 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     cylinder = size["cup_half_angle_deg"] == 0.0
     made["roller"]["end_radius"] = END_RADIUS * size["diameter"] if cylinder else 0.0
     made["ribs"]["clearance"] = RIB_CLEARANCE * size["diameter"] if cylinder else 0.0
-    made["roller.profile"] = {"load": RIG["load"] * (across * along)}
+    ends = min(size["effective_length"], ISO_LENGTH * size["diameter"])
+    middle = size["effective_length"] - ends
+    made["roller.profile"] = {
+        "load": RIG["load"] * (across * along),
+        "a_p": ISO_LONG if middle > 0.0 else ISO_SHORT,
+        "c_p": ends,
+        "d_p": middle,
+    }
+    made |= dict.fromkeys(RACEWAY_PROFILES, made["roller.profile"])
     height = size.get("contact_height", made["ribs"]["contact_height"]) / RIG["contact_height"]
     made["ribs"] |= {name: RIG[name] * height for name in ("edge_low", "edge_high")}
     dense = size.get("cage_density", RIG["density"]) / RIG["density"]
@@ -179,6 +201,9 @@ def with_assumed(values: Mapping[str, Any], kinds: Mapping[str, type[Model]]) ->
     if profile is None:
         return found
     given["roller.profile"] = profile
+    for name in RACEWAY_PROFILES:
+        if (raceway := _given(found.get(name))) is not None:
+            given[name] = raceway
     stored = {
         section: {name: numbers.pop(name) for name in list(numbers) if f"{section}.{name}" in kept}
         for section, numbers in given.items()
@@ -204,6 +229,9 @@ def with_assumed(values: Mapping[str, Any], kinds: Mapping[str, type[Model]]) ->
         given[section].pop("profile", None)
         extra = {"profile": own} if section == "roller" else {}
         found[section] = build(kinds[section], section, extra, found.get(section, {}))
+    for name in RACEWAY_PROFILES:
+        if name in given:
+            found[name] = build(kinds["roller.profile"], name, {}, found[name])
     if problems:
         raise InputError(problems)
     return found
@@ -265,12 +293,15 @@ def assumed_inputs(bearing: Bearing) -> dict[str, float]:
         }
     ).items():
         names[section] = [*numbers, *names.get(section, [])]
+    for raceway in RACEWAY_PROFILES:
+        names[raceway] = names["roller.profile"] if getattr(bearing, raceway) is not None else []
     found: dict[str, float] = {}
     for section, fields in names.items():
         part: Any = bearing
         for name in section.split("."):
             part = getattr(part, name)
-        unused = {"load", "k1", "k2", "zm"} if getattr(part, "kind", "logarithmic") != "logarithmic" else set()
+        of_kind = PROFILE_FIELDS.get(getattr(part, "kind", ""))
+        unused = set() if of_kind is None else {*fields} - {"kind", *of_kind}
         found |= {
             f"{section}.{name}": getattr(part, name)
             for name in fields

@@ -261,6 +261,8 @@ class Bearing(Model):
     roughness: Roughness = Roughness()
     land: Land = Land()
     radial_clearance: Annotated[Number, parameter("radial_clearance")] = 0.0
+    cup_profile: Profile | None = None
+    cone_profile: Profile | None = None
     name: Annotated[str, Field(min_length=1)] = "bearing"
     ratings: Ratings = Ratings()
     estimates: tuple[Estimated, ...] = ()
@@ -532,9 +534,23 @@ class Bearing(Model):
                 )
                 raise InputError.of(path, value, allowed)
 
+    def _check_profiles(self) -> None:
+        half = 0.5 * self.roller.effective_length
+        for path, profile in (
+            (("roller", "profile"), self.roller.profile),
+            (("cup_profile",), self.cup_profile),
+            (("cone_profile",), self.cone_profile),
+        ):
+            if profile is None or profile.kind != "table":
+                continue
+            if profile.stations[0] > -(1.0 - 1e-6) * half or profile.stations[-1] < (1.0 - 1e-6) * half:
+                allowed = f"must go from {-half:g} to {half:g}: over the effective length (m)"
+                raise InputError.of((*path, "stations"), profile.stations, allowed)
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_kind()
+        self._check_profiles()
         given = self.roller.diameter_deviation
         if given is not None and len(given) != self.n_rollers:
             limit = f"must have one entry for each roller, {self.n_rollers}"

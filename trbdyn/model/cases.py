@@ -115,8 +115,10 @@ def bearing_32216() -> Bearing:
     11:369). That source gives no cup angle: it is that of ISO 355 for the series 3EC, 15 deg 38' 32", which agrees
     with the catalogues' e = 0.42 to 0.43 = 1.5 tan(alpha). All other numbers are assumed: those of the 30310 rig,
     lengths of rib and pocket scaled with the roller's diameter (17/14), bars with its length, the cage's mass with
-    pitch diameter squared times length, its inertias with pitch diameter squared in addition. The profile's design
-    load is the outer load of a roller at 6 kN.
+    pitch diameter squared times length, its inertias with pitch diameter squared in addition. The rollers' profile is that of
+    table 4 of the source: a_p = 0.0005, c_p = 20.7 mm (the length less the edge radii of 1.0 mm), d_p = 0, k_p = 2 of the general
+    form of ISO/TS 16281. That a_p multiplies the roller's diameter is inferred: the table gives it no unit, 0.0005 and 0.00035
+    are the standard's constants, and only so the source's own simulation comes within reach.
     """
     rig = rig_30310()
     scale = 17.0 / 14.0
@@ -131,7 +133,7 @@ def bearing_32216() -> Bearing:
             diameter=17.0e-3,
             effective_length=length,
             total_length=length + 1.0e-3,
-            profile=Profile.logarithmic(1391.0),
+            profile=Profile.iso(a_p=0.0005, c_p=20.7e-3, d_p=0.0, k_p=2.0),
             end_stiffness=rig.roller.end_stiffness,
         ),
         ribs=Ribs(

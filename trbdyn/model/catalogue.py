@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from trbdyn.base.validation import as_number, as_whole_number
 from trbdyn.errors import MISSING, InputError, Problem
-from trbdyn.model.assumed import RIG, cage_inertias
+from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, RIG, cage_inertias
 from trbdyn.model.catalogue_rollers import CUP_WIDTH, FILL, LENGTH, MAKER, PITCH, SECTION, Page, Rollers, solve
 from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.estimated import Estimated
@@ -104,7 +104,7 @@ def fields_from_catalogue(
         dynamic=C, static=C0, e=e, Y=Y, reference_speed_rpm=reference_speed_rpm, limiting_speed_rpm=limiting_speed_rpm
     )
     name = name or f"{1e3 * bore:g}x{1e3 * outside:g}x{1e3 * width:g}"
-    return _fields(found, C, angle, cage_mass, estimates, name) | {"ratings": ratings}
+    return _fields(found, angle, cage_mass, estimates, name) | {"ratings": ratings}
 
 
 def _known_names(others: Mapping[str, Any]) -> None:
@@ -250,14 +250,13 @@ def _roller_estimates(page: Page, found: Rollers, factor: float) -> list[Estimat
 
 
 def _fields(
-    found: Rollers, C: float, angle: float, cage_mass: float | None, estimates: list[Estimated], name: str
+    found: Rollers, angle: float, cage_mass: float | None, estimates: list[Estimated], name: str
 ) -> dict[str, Any]:
     """Fields of the bearing: what is left is scaled from the 30310 test bearing, whose inner geometry is published."""
     scale, longer = found.diameter / RIG["diameter"], found.length / RIG["effective_length"]
     wide = found.pitch / RIG["pitch_diameter"]
     mass = RIG["mass"] * wide**2 * longer if cage_mass is None else cage_mass
     inertia = cage_inertias(mass, wide, longer)
-    load = 5.0 * 0.05 * C / (found.count * math.cos(math.radians(angle)))
     heights = ("contact_height", "edge_low", "edge_high", "front_clearance", "front_low", "front_high")
     ribs = {key: scale * RIG[key] for key in heights}
     lengths = (
@@ -275,13 +274,12 @@ def _fields(
         diameter=found.diameter,
         effective_length=found.length,
         total_length=found.length + scale * (RIG["total_length"] - RIG["effective_length"]),
-        profile=Profile.logarithmic(load),
+        profile=Profile.iso(),
     )
     scaled = "30310 test bearing (Sakaguchi and Harada 2006), scaled with"
     inertias = f"{scaled} mass and pitch diameter squared, the part along the axis with length squared"
     rows: list[tuple[str, float, float, float, str, str]] = [
         ("roller.total_length", roller.total_length, 1.0, 1.05, "m", f"{scaled} the roller's diameter"),
-        ("roller.profile.load", load, 0.3, 3.0, "N", "heaviest roller at a radial load of 5 % of C (Stribeck)"),
         ("ribs.contact_height", ribs["contact_height"], 0.7, 1.3, "m", f"{scaled} the roller's diameter"),
         ("cage.play_radial", cage["play_radial"], 0.5, 2.0, "m", f"{scaled} the roller's diameter"),
         ("cage.play_circumferential", cage["play_circumferential"], 0.5, 2.0, "m", f"{scaled} the roller's diameter"),
@@ -294,6 +292,9 @@ def _fields(
     listed = [
         _entry(path, value, low * value, high * value, unit, source) for path, value, low, high, unit, source in rows
     ]
+    amplitude = ISO_SHORT if found.length <= ISO_LENGTH * found.diameter else ISO_LONG
+    source = "profile of ISO/TS 16281; band from straight (0) to the larger of its constants, which a 32216 was measured with"
+    listed.append(_entry("roller.profile.a_p", amplitude, 0.0, ISO_LONG, "1", source))
     return {
         "name": name,
         "n_rollers": found.count,

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-PROFILES = {"straight": 0, "crowned": 1, "logarithmic": 2}
+PROFILES = {"straight": 0, "crowned": 1, "logarithmic": 2, "iso": 3, "table": 0}
 QUADRATURES = {"uniform": 0, "gauss": 1}
 PRESSURE_LAWS = {"dicke": 0, "roelands": 1, "barus": 2}
 LUBRICATION = {"dry": 0, "boundary": 1, "mixed": 2, "full_film": 3}

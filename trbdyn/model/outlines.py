@@ -9,9 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from trbdyn import laws
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -96,35 +94,6 @@ def cone_outline(bearing: Bearing) -> list[Array]:
         (front_top[0], front),
     ]
     return [np.array(corner) for corner in outline]
-
-
-def profile_drop(bearing: Bearing, stations: ArrayLike) -> Array:
-    """Drop of the roller's profile below its straight cone (m), shape (n,).
-
-    Parameters
-    ----------
-    bearing : Bearing
-        The bearing.
-    stations : array_like, shape (n,)
-        Places from mid length along the axis (m); those beyond the effective length have the drop of its ends.
-    """
-    roller = bearing.roller
-    profile, half = roller.profile, 0.5 * roller.effective_length
-    place = np.clip(np.asarray(stations, dtype=float), -half, half)
-    if profile.kind == "crowned":
-        return np.asarray(laws.profile_crowned(station=place, radius=profile.crown_radius))
-    if profile.kind == "logarithmic":
-        drop = laws.profile_logarithmic(
-            station=place,
-            length=roller.effective_length,
-            k1=profile.k1,
-            k2=profile.k2,
-            zm=profile.zm,
-            load=profile.load,
-            effective_modulus=bearing.geometry.effective_modulus,
-        )
-        return np.asarray(drop)
-    return np.zeros_like(place)
 
 
 def rail_bands(bearing: Bearing) -> list[tuple[float, float, float, float, float]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from os import PathLike
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -10,21 +12,22 @@ from pydantic import model_validator
 
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
-from trbdyn.model.assumed import RIG
+from trbdyn.model.assumed import ISO_SHORT, RIG
 from trbdyn.model.core_table import parameter
 from trbdyn.model.material import Material
 
 
 class Profile(Model):
-    """Shape of the roller's generator; only the numbers of its kind are used.
+    """Shape of a generator, of the roller or of a raceway; only the numbers of its kind are used.
 
     Parameters
     ----------
-    kind : {'logarithmic', 'crowned', 'straight'}
-        Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((abs(y) - a)/(k2 a) + 1)^2]} for abs(y) > a - k2 a with A = 2 k1 Q/(pi
-        L E'), a = L/2.
+    kind : {'iso', 'logarithmic', 'crowned', 'straight', 'table'}
+        ISO: the general form of ISO/TS 16281 (DIN 26281), drop a_p Dwe ln{1/[1 - ((2 abs(y) - d_p)/c_p)^k_p]} for 2 abs(y) >
+        d_p. Logarithmic: drop A ln{1/[1 - (1 - exp(-zm/A)) ((abs(y) - a)/(k2 a) + 1)^2]} for abs(y) > a - k2 a with A = 2 k1
+        Q/(pi L E'), a = L/2. Table: `drops` over `stations`.
     crown_radius : float
-        Radius of the arc of a crowned roller (m).
+        Radius of the arc of a crowned generator (m).
     k1, k2 : float
         Constants of the logarithmic profile (1).
     zm : float
@@ -32,16 +35,46 @@ class Profile(Model):
     load : float
         Design load Q of the logarithmic profile (N); by default the one of the 30310 rig times diameter and length of
         the roller over those of the rig, that is at the same pressure.
+    a_p, k_p : float
+        Factor of the roller's diameter, and exponent, of the ISO profile (1); by default those of the standard: 0.00035 for
+        rollers up to 2.5 diameters long, 0.0005 for longer ones; 2.
+    c_p, d_p : float
+        Length over which the ISO profile drops, both ends together, and length of its straight middle (m); by default those of
+        the standard: the effective length and 0, of longer rollers 2.5 diameters and the rest.
+    stations, drops : sequence of float
+        Places from mid length towards the large end (m), rising, over the whole effective length, and the drop there (m), two or
+        more. Between them a monotone cubic (SciPy's ``PchipInterpolator``).
+
+    Notes
+    -----
+    0.00035 with the factor Dwe for rollers up to 2.5 Dwe is what the package `tribology` has as DIN 26281; the numbers for longer
+    rollers are from memory of ISO/TS 16281 (docs/theory/geometry.md#roller-profile).
     """
 
     _assumed: ClassVar[bool] = True
 
-    kind: Literal["logarithmic", "crowned", "straight"] = "logarithmic"
+    kind: Literal["iso", "logarithmic", "crowned", "straight", "table"] = "iso"
     crown_radius: Annotated[Number, parameter("crown_radius")] = 100.0
     k1: Annotated[Number, parameter("profile_k1")] = 1.5
     k2: Annotated[Number, parameter("profile_k2")] = 0.4
     zm: Annotated[Number, parameter("profile_zm")] = 10e-6
     load: Annotated[Number, parameter("profile_load")] = RIG["load"]
+    a_p: Annotated[Number, parameter("profile_a")] = ISO_SHORT
+    c_p: Annotated[Number, parameter("profile_c")] = RIG["effective_length"]
+    d_p: Annotated[Number, parameter("profile_d")] = 0.0
+    k_p: Annotated[Number, parameter("profile_k")] = 2.0
+    stations: tuple[Annotated[Number, unit("m", ge=-1, le=1)], ...] = ()
+    drops: tuple[Annotated[Number, unit("m", ge=-1e-3, le=1e-3)], ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.kind != "table":
+            return self
+        if len(self.stations) < 2 or np.any(np.diff(self.stations) <= 0.0):
+            raise InputError.of("stations", self.stations, "must be two or more rising places (m)")
+        if len(self.drops) != len(self.stations):
+            raise InputError.of("drops", self.drops, f"must have one entry for each station, {len(self.stations)} (m)")
+        return self
 
     @classmethod
     def straight(cls) -> Self:
@@ -58,6 +91,46 @@ class Profile(Model):
         """A logarithmic profile for a design load (N); without it the one that the roller's size gives."""
         given = {} if load is None else {"load": load}
         return cls(kind="logarithmic", k1=k1, k2=k2, zm=zm, **given)
+
+    @classmethod
+    def iso(
+        cls,
+        *,
+        a_p: float | None = None,
+        c_p: float | None = None,
+        d_p: float | None = None,
+        k_p: float | None = None,
+    ) -> Self:
+        """The profile of ISO/TS 16281, or its general form with these constants (1, m, m, 1)."""
+        given = {"a_p": a_p, "c_p": c_p, "d_p": d_p, "k_p": k_p}
+        return cls(kind="iso", **{name: value for name, value in given.items() if value is not None})
+
+    @classmethod
+    def table(cls, stations: Sequence[float], drops: Sequence[float]) -> Self:
+        """Measured drops (m) at places from mid length (m)."""
+        return cls(kind="table", stations=tuple(stations), drops=tuple(drops))
+
+    @classmethod
+    def from_csv(cls, path: str | PathLike[str]) -> Self:
+        """Measured drops from a CSV file, whose first line names its columns: ``station_mm`` or ``station_m``, and
+        ``drop_um`` or ``drop_m``.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or lacks a column.
+        """
+        try:
+            found = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, dtype=float))
+        except (OSError, ValueError) as error:
+            raise InputError.of("path", str(path), f"must be a CSV file of numbers: {error}") from None
+        columns = []
+        for names in ({"station_mm": 1e-3, "station_m": 1.0}, {"drop_um": 1e-6, "drop_m": 1.0}):
+            name = next((one for one in names if one in (found.dtype.names or ())), None)
+            if name is None:
+                raise InputError.of("path", str(path), f"must have a column {' or '.join(names)}")
+            columns.append((names[name] * found[name]).tolist())
+        return cls.table(*columns)
 
 
 class Scatter(Model):

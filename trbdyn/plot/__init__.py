@@ -32,6 +32,7 @@ from trbdyn.plot.assembly import (
 )
 from trbdyn.plot.assembly import of_result as of_assembly
 from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map
+from trbdyn.plot.contact_line import contact_line
 from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
@@ -55,6 +56,7 @@ __all__ = [
     "cage_shape",
     "cage_stress",
     "conditions",
+    "contact_line",
     "contact_loads",
     "contact_map",
     "drawable",

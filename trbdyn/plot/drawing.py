@@ -16,7 +16,8 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
-from trbdyn.model.outlines import cone_outline, cup_outline, profile_drop, rail_bands
+from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
+from trbdyn.model.profiles import profile_drop
 from trbdyn.plot.style import COLOURS, GREY, canvas, styled
 
 if TYPE_CHECKING:

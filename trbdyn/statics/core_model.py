@@ -18,6 +18,7 @@ from trbdyn.model.flatten import (
     parameter_block,
     scene_entries,
 )
+from trbdyn.model.profiles import drop_rows
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -40,7 +41,13 @@ def build_model(scene: Scene, instruction_set: str = "") -> _core.Model:
 def model_of(scene: Scene, block: NDArray[np.float64], instruction_set: str = "") -> _core.Model:
     """The core's model of a scene with a parameter block of its own."""
     return _core.Model(
-        block, diameter_deviation(scene), face_rows(scene), instruction_set, mode_rows(scene), form_rows(scene)
+        block,
+        diameter_deviation(scene),
+        face_rows(scene),
+        instruction_set,
+        mode_rows(scene),
+        form_rows(scene),
+        drop_rows(scene),
     )
 
 
@@ -50,4 +57,4 @@ def normal_contacts(scene: Scene) -> _core.Model:
     quiet |= {"rolling_resistance": False, "rolling_pressure_force": False}
     rigid = scene.replace(elastic_cage=None)
     entries = scene_entries(rigid.replace(effects=scene.effects.replace(**quiet)))
-    return _core.Model(block_of(entries), diameter_deviation(scene), face_rows(scene))
+    return _core.Model(block_of(entries), diameter_deviation(scene), face_rows(scene), drops=drop_rows(scene))

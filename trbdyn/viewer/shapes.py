@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull
 
-from trbdyn.model.outlines import cone_outline, cup_outline, profile_drop, rail_bands
+from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
+from trbdyn.model.profiles import profile_drop
 from trbdyn.viewer.meshes import Mesh, flat_mesh, join, revolve, strip
 
 if TYPE_CHECKING:
