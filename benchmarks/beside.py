@@ -10,7 +10,6 @@ import common
 import numpy as np
 
 from trbdyn import Scene, Simulation, Start
-from trbdyn.run.assembly import AssemblySimulation
 from trbdyn.run.options import Tolerances
 
 SHOWN = ("ms_per_turn", "steps_per_turn", "evaluations_per_turn", "error", "time_ratio")
@@ -46,7 +45,7 @@ def close_report(report: common.Report, shown: Sequence[str]) -> common.Report:
     return report
 
 
-def advance(simulation: Simulation | AssemblySimulation, duration: float) -> float:
+def advance(simulation: Simulation, duration: float) -> float:
     """Step on for some bearing time (s); gives the processor time (s)."""
     end, begin = simulation.time + duration, time.process_time()
     while simulation.time < end:
@@ -91,9 +90,7 @@ def front_of(scene: Scene, factors: Sequence[float], windows: int, speed_rpm: fl
     return list(1e3 * taken / turns), list(np.exp(np.mean(np.log(errors), axis=0)))
 
 
-def rows_of(
-    variants: Mapping[str, Scene | AssemblySimulation], pieces: int, speed_rpm: float
-) -> dict[str, dict[str, Any]]:
+def rows_of(variants: Mapping[str, Scene | Simulation], pieces: int, speed_rpm: float) -> dict[str, dict[str, Any]]:
     """Every variant, pieces of a quarter of a turn in turns; the first one is what the others are compared with.
 
     The error of bearings on a shaft is not measured: nan.

@@ -116,7 +116,7 @@ def digest(arrays: Iterable[tuple[str, np.ndarray]]) -> str:
 def tolerance_of(simulation: trb.Simulation) -> list[float]:
     """Absolute tolerance of every coordinate of rollers and cage; infinite for spin angles and quadratures."""
     out = np.full(simulation.state.vector.size, np.inf)
-    for name, offset, shape in simulation._model.state_layout():
+    for name, offset, shape in simulation.bearings[0].model.state_layout():
         body, _, coordinate = name.partition("_")
         for setting, coordinates in TOLERANCES.values():
             if body in ("roller", "cage") and coordinate in coordinates:

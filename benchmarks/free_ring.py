@@ -19,8 +19,7 @@ import beside
 import common
 import numpy as np
 
-from trbdyn import Housing, RingBody, Scene, Start, cases
-from trbdyn.run.assembly import AssemblySimulation
+from trbdyn import Housing, RingBody, Scene, Simulation, Start, cases
 from trbdyn.statics.seat import Seat, Seating
 
 SHOWN = ("scene", "ring", *beside.SHOWN)
@@ -55,7 +54,7 @@ def scenes() -> dict[str, Scene]:
     }
 
 
-def pair() -> dict[str, Scene | AssemblySimulation]:
+def pair() -> dict[str, Scene | Simulation]:
     """One held bearing, and two on a shaft, the second one the other way round."""
     body = RingBody(mass=5.0, inertia_axial=5e-3, inertia_transverse=3e-2)
     preload, weight = -20e-6, 9.80665
@@ -75,7 +74,7 @@ def pair() -> dict[str, Scene | AssemblySimulation]:
         for name, sign in (("left", 1.0), ("right", -1.0))
     }
     shaft = np.array([0.0, 0.0, preload, 0.0, 0.0])
-    return {"held": seats["left"].scene, "two on a shaft": AssemblySimulation(Seating(seats, body, shaft))}
+    return {"held": seats["left"].scene, "two on a shaft": Simulation(Seating(seats, body, shaft))}
 
 
 def main(arguments: Sequence[str] | None = None) -> common.Report:

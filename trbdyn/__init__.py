@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from trbdyn.results import observables
     from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result, load
-    from trbdyn.run.assembly import AssemblySimulation
     from trbdyn.run.options import RunOptions
     from trbdyn.run.rating import rating
     from trbdyn.run.resume import resume
@@ -74,7 +73,6 @@ _MODULES = {
 _NAMES = {
     "Assembly": "trbdyn.model.assembly",
     "AssemblyResult": "trbdyn.results.assembly",
-    "AssemblySimulation": "trbdyn.run.assembly",
     "Bearing": "trbdyn.model.bearing",
     "Cage": "trbdyn.model.bearing",
     "CageBody": "trbdyn.model.bearing",
@@ -142,7 +140,6 @@ _NAMES = {
 __all__ = [
     "Assembly",
     "AssemblyResult",
-    "AssemblySimulation",
     "Bearing",
     "Cage",
     "CageBody",

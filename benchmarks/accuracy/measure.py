@@ -261,7 +261,7 @@ def timed_run(sim: Simulation, revolutions: float, save_every: float) -> dict[st
     end = RunOptions(revolutions=revolutions).end_time(sim.scene.speed_rpm, sim.time)
     bearing = end - sim.time
     times = np.append(np.arange(sim.time + save_every, end - 1e-9, save_every), end)
-    records = np.empty((times.size, sim._model.record_length))
+    records = np.empty((times.size, sim.bearings[0].model.record_length))
     wall, cpu = clock.perf_counter(), clock.thread_time()
     sim._core.run(times, records, 10**9)
     wall, cpu = clock.perf_counter() - wall, clock.thread_time() - cpu

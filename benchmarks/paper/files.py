@@ -154,7 +154,7 @@ def write_point(path: Path, result: Result, history: History, about: Mapping[str
     FileError
         If it cannot be written.
     """
-    from trbdyn.results.result_file import ResultWriter
+    from trbdyn.results.result_file import Part, ResultWriter
 
     fields = [entry for entry in result.fields if entry.name not in OMITTED]
     arrays = [result[entry.name].reshape(len(result), -1) for entry in fields]
@@ -164,17 +164,13 @@ def write_point(path: Path, result: Result, history: History, about: Mapping[str
         offset += values.shape[1]
     part = path.with_name(f".{path.stem}.part.h5")
     stats = dict(result.stats) | {"wall_s": result.stats["wall_s"] + history.wall}
-    with ResultWriter(
-        part,
-        scene=result.scene,
-        layout=layout,
-        fields=fields,
-        meta=result.meta,
-        geometry=result.geometry,
-        overwrite=True,
-    ) as writer:
+    ending = {"stats": stats} | {
+        name: getattr(result, name) for name in ("success", "message", "counters", "final_time", "final_state")
+    }
+    whole = Part(result.scene, layout, fields, result.meta, result.geometry)
+    with ResultWriter(part, whole, overwrite=True) as writer:
         writer.append(np.hstack(arrays))
-        writer.finish(result.success, result.message, stats, result.counters, result.final_time, result.final_state)
+        writer.finish(ending)
     try:
         with h5py.File(part, "r+") as file:
             file.attrs["paper"] = json.dumps(dict(about))

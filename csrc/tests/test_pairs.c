@@ -428,7 +428,8 @@ static void test_refused(void)
   system->pairs[system->n_pairs] = system->pairs[TRB_PAIR_pocket];
   system->pairs[system->n_pairs++].name = "second pocket";
   CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
-  CHECK_SAYS(message.text, "pair second pocket: a system has one pair of the kind 'roller in a pocket with oil' at most, and has pair pocket");
+  CHECK_SAYS(message.text,
+             "pair second pocket: a system has one pair of the kind 'roller in a pocket with oil' at most, and has pair pocket");
   *system = good;
   rig_free(system);
 }

@@ -109,7 +109,7 @@ def _judge_pair(table: Table) -> Verdict:
     accuracy = (pairs.ORDINARY | table)["accuracy"]
     try:
         assembly = pairs.make(table)
-        trb.AssemblySimulation(assembly, accuracy=accuracy)
+        trb.Simulation(assembly, accuracy=accuracy)
     except trb.TrbError as error:
         verdict.status, verdict.broken = "refused", [f"{type(error).__name__}: {str(error).splitlines()[0][:200]}"]
         return verdict
@@ -262,7 +262,7 @@ def bounded_run(
     place = sim.state
     found: list[str] = []
     length = duration / pieces
-    watch = Watch(sim, begin + length, found) if Watch is not None and watched else None
+    watch = Watch(sim, sim.bearings[0], begin + length, found) if Watch is not None and watched else None
     looks = np.linspace(0.0, duration, 17 if pieces == 1 else pieces + 1)[1:] + begin
     began, half = clock.process_time(), (begin, 0)
     # a run that is cut short is looked at as often as a whole one, so that no exchange of energy is missed
@@ -270,7 +270,7 @@ def bounded_run(
     try:
         for look in looks:
             if pieces > 1 and watch is not None:
-                watch = Watch(sim, look, found)
+                watch = Watch(sim, sim.bearings[0], look, found)
             while sim.time < look and run.steps < most_steps:
                 place = sim.state
                 sim.step()

@@ -161,7 +161,7 @@ def run(assembly: trb.Assembly, duration: float, **options: Any) -> tuple[dict[s
     began = clock.process_time()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        result = trb.AssemblySimulation(assembly, **options).run(duration=duration, save_every=duration / 100)
+        result = trb.Simulation(assembly, **options).run(duration=duration, save_every=duration / 100)
     audit, stored = result.energy, sum(float(one["kinetic_energy"].max()) for one in result.values())
     lost = sum(
         float(one[entry.name][-1] - one[entry.name][0])

@@ -20,7 +20,7 @@ from trbdyn.cli import main
 from trbdyn.cli.called import command
 from trbdyn.errors import LoadError, StepError
 from trbdyn.results.result import Result, load
-from trbdyn.results.result_file import ResultWriter
+from trbdyn.results.result_file import Part, ResultWriter
 
 
 class FakeSimulation:
@@ -41,11 +41,9 @@ class FakeSimulation:
             raise self.error
         run = self.run_data
         ending = run.ending() | {"success": self.success}
-        with ResultWriter(
-            output, scene=self.scene, layout=run.layout, fields=run.fields, geometry=run.geometry
-        ) as writer:
+        with ResultWriter(output, Part(self.scene, run.layout, run.fields, geometry=run.geometry)) as writer:
             writer.append(run.records)
-            writer.finish(**ending)
+            writer.finish(ending)
         return load(output)
 
 

@@ -21,7 +21,6 @@ ASSEMBLY = trb.Assembly.pair(
     speed_rpm=3000.0,
 )
 OF_SCENE: dict[str, Callable[[Any], Any]] = {
-    "simulation": trb.Simulation,
     "stiffness": trb.stiffness,
     "plan": lambda given: trb.plan(given, {"torque": 0.02}),
     "uncertainty": trb.uncertainty,
@@ -41,7 +40,6 @@ OF_RESULT: dict[str, Callable[[Any], Any]] = {
     if name not in ("housing_orbit", "housing_motion")
 }
 OF_ASSEMBLY: dict[str, Callable[[Any], Any]] = {
-    "simulation": trb.AssemblySimulation,
     "equilibrium": trb.equilibrium,
     "preload_diagram": trb.preload_diagram,
 }
@@ -64,7 +62,7 @@ def test_of_a_scene(name: str) -> None:
 @pytest.mark.parametrize("name", OF_RESULT)
 def test_of_a_result(name: str) -> None:
     assert "trb.Simulation(scene).run(revolutions=...) makes one" in refused(OF_RESULT[name], SCENE)
-    assert "trb.AssemblySimulation(assembly).run" in refused(OF_RESULT[name], ASSEMBLY)
+    assert "trb.Simulation(assembly).run" in refused(OF_RESULT[name], ASSEMBLY)
     assert "trb.load reads one" in refused(OF_RESULT[name], "run.h5")
     assert refused(OF_RESULT[name], None).startswith("must be a Result")
 
@@ -76,6 +74,10 @@ def test_of_an_assembly(name: str) -> None:
 
 
 def test_others() -> None:
+    assert refused(trb.Simulation, BEARING).startswith(
+        "must be a Scene or an Assembly: put it into one, trb.Scene(bearing"
+    )
+    assert refused(trb.Simulation, None) == "must be a Scene or an Assembly"
     assert refused(trb.rating, BEARING).startswith("must be a Scene, a Result, an Assembly or a ShaftEquilibrium")
     assert refused(lambda given: trb.torque_map(given, [1000.0], [1000.0]), None) == "must be a Scene or a Bearing"
     assert "trb.uncertainty(scene) makes one" in refused(lambda given: trb.surrogate(given, "torque"), SCENE)

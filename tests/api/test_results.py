@@ -31,17 +31,16 @@ from trbdyn.results import hdf5_file, result_file, sources
 from trbdyn.results.file_format import BLOCK_ROWS, SCHEMA_VERSION, SINGLE
 from trbdyn.results.file_format import as_kept as kept_in_a_file
 from trbdyn.results.result import Result, load
-from trbdyn.results.result_file import ResultWriter
+from trbdyn.results.result_file import Part, ResultWriter
 
 
 def write(path: Path, run: Any, scene: Any, *, chunk: int = 500, finish: bool = True, **options: Any) -> Path:
-    with ResultWriter(
-        path, scene=scene, layout=run.layout, fields=run.fields, geometry=run.geometry, **options
-    ) as writer:
+    part = Part(scene, run.layout, run.fields, options.pop("meta", {}), run.geometry)
+    with ResultWriter(path, part, **options) as writer:
         for start in range(0, len(run.records), chunk):
             writer.append(run.records[start : start + chunk])
         if finish:
-            writer.finish(**run.ending())
+            writer.finish(run.ending())
     return path
 
 
@@ -401,8 +400,8 @@ spec.loader.exec_module(module)
 from trbdyn.results import result_file
 result_file.FLUSH_SECONDS = 0.0
 run = module.make_run(n=2001)
-options = {"scene": module.StubScene(), "layout": run.layout, "fields": run.fields, "beside": sys.argv[3] == "True"}
-writer = result_file.ResultWriter(sys.argv[1], **options)
+part = result_file.Part(module.StubScene(), run.layout, run.fields)
+writer = result_file.ResultWriter(sys.argv[1], part, beside=sys.argv[3] == "True")
 """
 
 WRITE_ON = """
@@ -423,7 +422,7 @@ try:
         writer.append(run.records[start : start + 40])
 except FileError as error:
     print(error)
-    writer.finish(**run.ending() | {"success": False, "message": "the disk was full"})
+    writer.finish(run.ending() | {"success": False, "message": "the disk was full"})
 """
 
 
@@ -470,7 +469,7 @@ def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, seed: int, besid
 
 
 def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:
-    writer = ResultWriter(tmp_path / "run.h5", scene=stub_scene, layout=synthetic.layout, fields=synthetic.fields)
+    writer = ResultWriter(tmp_path / "run.h5", Part(stub_scene, synthetic.layout, synthetic.fields))
     writer.append(synthetic.records[:10])
     writer.append(synthetic.records[10])
     writer.append(synthetic.records[:0])
@@ -480,7 +479,7 @@ def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: An
     writer.close()
     writer.close()
     with pytest.raises(FileError, match="closed already"):
-        writer.finish(**synthetic.ending())
+        writer.finish(synthetic.ending())
     np.testing.assert_array_equal(load(tmp_path / "run.h5").time, synthetic.column("time")[:11])
 
 
@@ -496,9 +495,9 @@ def test_what_is_written_is_what_was_recorded(
 ) -> None:
     """In chunks of all lengths, full or not, that come in pieces of other lengths; some are flushed halfway."""
     monkeypatch.setattr(result_file, "FLUSH_BYTES", 100_000)
-    options: dict[str, Any] = {"scene": stub_scene, "layout": synthetic.layout, "fields": synthetic.fields}
+    part = Part(stub_scene, synthetic.layout, synthetic.fields)
     path = tmp_path / "run.h5"
-    with ResultWriter(path, **options, expected=expected, beside=beside) as writer:
+    with ResultWriter(path, part, expected=expected, beside=beside) as writer:
         start, sizes = 0, itertools.cycle([40, 1, 333, 512, 2])
         while start < len(synthetic.records):
             stop = start + next(sizes)
@@ -508,7 +507,7 @@ def test_what_is_written_is_what_was_recorded(
                 with h5py.File(path, locking=False) as file:  # as any program does: the writer has closed it
                     np.testing.assert_array_equal(file["time"], synthetic.column("time")[:stop])
             start = stop
-        writer.finish(**synthetic.ending())
+        writer.finish(synthetic.ending())
     loaded = load(path)
     assert len(loaded) == len(synthetic.records)
     for field in synthetic.fields:
@@ -519,8 +518,8 @@ def test_what_is_written_is_what_was_recorded(
 def test_a_full_disk_keeps_what_it_has_room_for(
     tmp_path: Path, synthetic: Any, stub_scene: Any, expected: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    options: dict[str, Any] = {"scene": stub_scene, "layout": synthetic.layout, "fields": synthetic.fields}
-    writer = ResultWriter(tmp_path / "run.h5", **options, expected=expected)
+    part = Part(stub_scene, synthetic.layout, synthetic.fields)
+    writer = ResultWriter(tmp_path / "run.h5", part, expected=expected)
     room, reserve, asked = 6_000_000, writer._reserve, []
 
     def limited(size: int) -> None:
@@ -550,9 +549,7 @@ def test_an_error_of_the_second_thread_reaches_the_next_call(
 ) -> None:
     """The records before it stay, those after it are not written."""
     monkeypatch.setattr(result_file, "FLUSH_SECONDS", 0.0)
-    writer = ResultWriter(
-        tmp_path / "run.h5", scene=stub_scene, layout=synthetic.layout, fields=synthetic.fields, beside=True
-    )
+    writer = ResultWriter(tmp_path / "run.h5", Part(stub_scene, synthetic.layout, synthetic.fields), beside=True)
     writer.append(synthetic.records[:40])
     writer.flush()
     threads = []
@@ -684,7 +681,7 @@ def test_files_that_cannot_be_made(tmp_path: Path, synthetic: Any, stub_scene: A
     with pytest.raises(FileError, match=r"cannot be written: no such file or directory$"):
         write(tmp_path / "missing" / "run.h5", synthetic, stub_scene)
     with (
-        ResultWriter(tmp_path / "open.h5", scene=stub_scene, layout=synthetic.layout, fields=synthetic.fields),
+        ResultWriter(tmp_path / "open.h5", Part(stub_scene, synthetic.layout, synthetic.fields)),
         pytest.raises(FileError),
     ):
         write(tmp_path / "open.h5", synthetic, stub_scene)

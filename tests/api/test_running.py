@@ -82,7 +82,7 @@ def test_a_start_that_fails_leaves_a_simulation_without_looks(tmp_path: Path, mo
         patch.setattr(checkpoint, "write", fail)
         with pytest.raises(FileError, match="no space left"):
             sim.run(duration=1e-3, checkpoint_every=1e-4, output=tmp_path / "run.h5")
-    assert sim._core.row_length == sim._model.record_length
+    assert sim._core.row_length == sim.bearings[0].model.record_length
     assert sim.run(duration=1e-3).success
 
 

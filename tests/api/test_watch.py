@@ -74,22 +74,25 @@ class _Core:
         return {"steps": self.steps, "error_failures": 0.0, "nonlinear_failures": 0.0}
 
 
-class _Model:
-    def record_layout(self) -> list[tuple[str, int, tuple[int, ...]]]:
-        names = ("work_shaft", "loss_rib", "kinetic_energy", "elastic_energy")
-        return [(name, place, ()) for place, name in enumerate(names)]
+NAMES = ("work_shaft", "loss_rib", "kinetic_energy", "elastic_energy")
+BEARING: Any = SimpleNamespace(
+    name="",
+    said="",
+    seat=None,
+    scene=SimpleNamespace(ring_body=None, housing=None),
+    record_layout=[(name, place, ()) for place, name in enumerate(NAMES)],
+)
 
 
 class _Sim:
     def __init__(self) -> None:
-        self._core, self._model = _Core(), _Model()
-        self.scene = SimpleNamespace(ring_body=None, housing=None)
+        self._core, self._accounts = _Core(), dict[str, Any]()
         self.options = SimpleNamespace(tolerances=SimpleNamespace(rtol=1e-6))
 
 
 def _window(work: float, loss: float, kinetic: float, elastic: float, **options: Any) -> tuple[str | None, list[str]]:
     sim, found = _Sim(), []
-    watch = Watch(sim, WINDOWS * 1e-3, found, **options)  # type: ignore[arg-type]
+    watch = Watch(sim, BEARING, WINDOWS * 1e-3, found, **options)  # type: ignore[arg-type]
     sim._core.time, sim._core.row = 1e-3, [work, loss, kinetic, elastic]
     return watch.look(), found
 
@@ -129,7 +132,7 @@ def test_what_is_missing_beside_the_losses_is_said(loss, missing, said):
     """Also where it is less than a millionth of the energy that is stored, 38.7 J; the run goes on."""
     sim, found = _Sim(), []
     sim._core.row = [0.0, 0.0, 38.0, 0.7]
-    watch = Watch(sim, 1.0, found)  # type: ignore[arg-type]
+    watch = Watch(sim, BEARING, 1.0, found)  # type: ignore[arg-type]
     sim._core.time, sim._core.row = 1.0, [loss + missing, loss, 38.0, 0.7]
     assert watch.look(final=True) is None
     assert [said in text for text in found] == [True] * bool(said)
@@ -148,7 +151,7 @@ def test_vibrations_that_die_away_end_no_run():
 @pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
 def test_steps_that_lead_nowhere_end_a_run():
     sim, found = _Sim(), []
-    watch = Watch(sim, 1.0, found)  # type: ignore[arg-type]
+    watch = Watch(sim, BEARING, 1.0, found)  # type: ignore[arg-type]
     reasons = []
     for _ in range(60):
         sim._core.steps += 4000.0
@@ -217,7 +220,7 @@ def test_energy_that_is_off_by_little_in_each_piece_is_seen_over_all_of_them():
     sim, found = _Sim(), []
     sim._core.row = [0.0, 0.0, 0.0, 1.0]
     for piece in range(1, 41):
-        watch = Watch(sim, sim._core.time + 1e-3, found)  # type: ignore[arg-type]
+        watch = Watch(sim, BEARING, sim._core.time + 1e-3, found)  # type: ignore[arg-type]
         sim._core.time, sim._core.row = piece * 1e-3, [piece * 9e-6, 0.0, 0.0, 1.0]
         watch.look(final=True)
     assert any("from 0 s to" in text for text in found)

@@ -32,7 +32,7 @@ def runs() -> dict[float, Result]:
 @pytest.mark.parametrize("every", EVERY[1:])
 def test_peaks_do_not_depend_on_records(runs: dict[float, Result], every: float) -> None:
     one, other = runs[EVERY[0]].peaks, runs[every].peaks
-    assert set(one) == {name for name, _, _ in Simulation(whirling())._model.peak_layout()}
+    assert set(one) == {name for name, _, _ in Simulation(whirling()).bearings[0].model.peak_layout()}
     for name in one:
         np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 
@@ -131,7 +131,7 @@ def test_step_by_step(name: str) -> None:
     while sim.time < 4e-3:
         sim.step()
         rows.append(sim.record())
-    found = peak_table.from_row(sim._core.whole_peaks(sim.time), sim._model.peak_layout())
+    found = peak_table.from_row(sim._core.whole_peaks(sim.time), sim.bearings[0].model.peak_layout())
     records = {field: np.array([row[field] for row in rows]) for field in rows[0]}
     time = records["time"]
     np.testing.assert_array_equal(found["pocket_force_peak"], records["pocket_force"].max(axis=0))
@@ -172,7 +172,7 @@ def test_rollers_thrown_at_the_front_rib_have_their_peaks() -> None:
     while sim.time < 1e-3:
         sim.step()
         rows.append(sim.record())
-    found = peak_table.from_row(sim._core.whole_peaks(sim.time), sim._model.peak_layout())
+    found = peak_table.from_row(sim._core.whole_peaks(sim.time), sim.bearings[0].model.peak_layout())
     loads = np.array([row["front_rib_load"] for row in rows])
     assert {*np.flatnonzero(loads.max(axis=0))} >= {2, 7}
     np.testing.assert_allclose(found["front_rib_load_peak"], loads.max(axis=0), rtol=SHARE)
@@ -191,13 +191,13 @@ def test_nobody_pays_who_does_not_ask(kit: SimpleNamespace, tmp_path: Path) -> N
         output=tmp_path / "r.h5",
         callback=lambda now: seen.append(now._core.row_length),
     )
-    assert set(seen) == {sim._model.record_length}
+    assert set(seen) == {sim.bearings[0].model.record_length}
     assert not result._info.peaks
     with pytest.raises(trb.InputError, match="without the group 'peaks'"):
         _ = result.peaks
     assert result.summary()["pocket_force_peak"] is None
     sim.run(duration=1e-3)
-    assert sim._core.row_length == sim._model.record_length
+    assert sim._core.row_length == sim.bearings[0].model.record_length
     assert not sim._core.save_peaks().size
 
 

@@ -310,7 +310,7 @@ def test_datasets_that_claim_more_than_the_file_holds(written: Path, tmp_path: P
 
 def test_a_packed_file_of_zeros_is_no_damage(tmp_path: Path) -> None:
     """What is compressed may be much smaller than what it holds."""
-    from trbdyn.results.result_file import ResultWriter
+    from trbdyn.results.result_file import Part, ResultWriter
 
     scene, rows = paper_30310(), 200_000
     layout = [("time", 0, ()), ("cage_angular_velocity", 1, (3,)), ("roller_position", 4, (17, 3))]
@@ -319,9 +319,10 @@ def test_a_packed_file_of_zeros_is_no_damage(tmp_path: Path) -> None:
     path = tmp_path / "zeros.h5"
     from trbdyn.results import fields
 
-    with ResultWriter(path, scene=scene, layout=layout, fields=fields.table()) as writer:
+    with ResultWriter(path, Part(scene, layout, fields.table())) as writer:
         writer.append(records)
-        writer.finish(True, "", {}, {}, 1.0, None)
+        ending = {"success": True, "message": "", "stats": {}, "counters": {}, "final_time": 1.0, "final_state": None}
+        writer.finish(ending)
     assert path.stat().st_size < 4 << 20
     assert trb.load(path).roller_position.shape == (rows, 17, 3)
 

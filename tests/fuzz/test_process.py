@@ -48,7 +48,7 @@ ASKED = ("record", "contacts", "derivative", "restart", "state", "copy", "set_st
 def test_one_simulation_in_two_threads_is_refused(what: str) -> None:
     """Whatever a thread asks of a simulation that another thread steps."""
     sim = trb.Simulation(scene(0))
-    state, records = sim.state, np.empty((1, sim._model.record_length))
+    state, records = sim.state, np.empty((1, sim.bearings[0].model.record_length))
     enough = threading.Event()
 
     def ask() -> None:

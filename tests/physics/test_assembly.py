@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 import trbdyn as trb
 from trbdyn import Effects, FileError, InputError, RingBody, RunWarning, Scene, Simulation, Start
 from trbdyn.results.assembly import AssemblyResult
-from trbdyn.run.assembly import AssemblySimulation
 from trbdyn.run.replay import Replay
 from trbdyn.statics.seat import Seat, Seating
 
@@ -57,9 +56,9 @@ def pair(
     shaft: Array = STILL,
     options: dict[str, float] | None = None,
     **given: Any,
-) -> AssemblySimulation:
+) -> Simulation:
     seats = {"left": seat(**given), "right": seat(turned=True, **given)}
-    return AssemblySimulation(Seating(seats, body, shaft, loads or {}), **(options or {}))
+    return Simulation(Seating(seats, body, shaft, loads or {}), **(options or {}))
 
 
 def closures(result: AssemblyResult) -> list[float]:
@@ -145,7 +144,7 @@ def test_a_heavy_shaft_stands_still() -> None:
     body = RingBody(mass=1e5, inertia_axial=1e3, inertia_transverse=1e4)
     effects = Effects.standard().replace(gravity=False)
     seats = {"left": seat(effects=effects, start=Start.whirl(0.9)), "right": seat(turned=True, effects=effects)}
-    together = AssemblySimulation(Seating(seats, body, STILL), **FINE).run(duration=4e-3)
+    together = Simulation(Seating(seats, body, STILL), **FINE).run(duration=4e-3)
     for name, one in seats.items():
         alone = Simulation(one.scene, **FINE).run(duration=4e-3)
         moved = np.abs(alone.cage_position - alone.cage_position[0]).max()
@@ -266,18 +265,18 @@ def test_what_single_bearings_warn_of_is_said(tmp_path: Path) -> None:
     """Pressures that dent raceways, and scenes that can hardly be meant, with the bearing's name."""
     heavy = {"left": seat(displacement=(0.0, 0.0, -8e-4)), "right": seat(turned=True, shift=-1.6e-3)}
     with pytest.warns(UserWarning, match=r"left: .*GPa"):
-        simulation = AssemblySimulation(Seating(heavy, SHAFT, np.array([0.0, 0.0, -8e-4, 0.0, 0.0])))
-    with pytest.warns(RunWarning, match=r"right: the largest pressure"):
-        result = simulation.run(duration=1e-4, output=tmp_path / "heavy.h5")
-    assert any("ISO 76" in text for text in result["left"].warnings)
-    (tmp_path / "other.right.h5").touch()
-    with pytest.raises(FileError, match=r"other\.right\.h5: the file exists already"):
+        simulation = Simulation(Seating(heavy, SHAFT, np.array([0.0, 0.0, -8e-4, 0.0, 0.0])))
+    result = simulation.run(duration=1e-4, output=tmp_path / "heavy.h5")
+    for one in result.values():
+        assert sum("ISO 76" in text for text in one.warnings) == 1
+    (tmp_path / "other.h5").touch()
+    with pytest.raises(FileError, match=r"other\.h5: the file exists already"):
         simulation.run(duration=1e-4, output=tmp_path / "other.h5")
 
 
 def test_refused() -> None:
     with pytest.raises(InputError, match="first bearing has the shaft's axes"):
-        AssemblySimulation(Seating({"left": seat(turned=True)}, SHAFT, STILL))
+        Simulation(Seating({"left": seat(turned=True)}, SHAFT, STILL))
     wrong = seat(turned=True)
     for scene, text in (
         (wrong.scene.replace(speed_rpm=3000.0), r"seats\[1\]\.scene\.speed_rpm = 3000\.0 : must be -3000"),
@@ -285,7 +284,7 @@ def test_refused() -> None:
         (wrong.scene.replace(start=Start.equal().replace(time=1.0)), r"start\.time = 1\.0 : must be 0"),
     ):
         with pytest.raises(InputError, match=text):
-            AssemblySimulation(Seating({"left": seat(), "right": replace(wrong, scene=scene)}, SHAFT, STILL))
+            Simulation(Seating({"left": seat(), "right": replace(wrong, scene=scene)}, SHAFT, STILL))
     with pytest.raises(InputError, match=r"loads\.force_q.*must be one of force_x"):
         pair({"force_q": 1.0})
     with pytest.raises(InputError, match=r"mass_offset.*each seat"):
@@ -293,7 +292,7 @@ def test_refused() -> None:
     with pytest.raises(InputError, match=r"unbalance.*torque"):
         pair({"torque": 1.0}, body=SHAFT.replace(unbalance=1e-5))
     with pytest.raises(InputError, match="checkpoint_every"):
-        AssemblySimulation(Seating({"left": seat()}, SHAFT, STILL), checkpoint_every=0.1).run(duration=1e-4)
+        Simulation(Seating({"left": seat()}, SHAFT, STILL), checkpoint_every=0.1).run(duration=1e-4)
     with pytest.raises(InputError, match="must be one of left"):
         pair().run(duration=1e-4)["middle"]
     with pytest.raises(InputError, match=r"revolutions"):
@@ -307,7 +306,7 @@ def test_elastic_cages_on_one_shaft() -> None:
         changes = {"bearing.cage.body": trb.cases.cage_body_30310(), "elastic_cage": trb.ElasticCage(n_modes=count)}
         one = seat(turned=turned)
         seats[name] = replace(one, scene=one.scene.replace(changes | {"start": trb.Start.whirl(0.9)}))
-    result = AssemblySimulation(Seating(seats, SHAFT, STILL)).run(duration=5e-3)
+    result = Simulation(Seating(seats, SHAFT, STILL)).run(duration=5e-3)
     assert [result[name]["cage_mode"].shape[1] for name in seats] == [8, 5]
     for one in result.values():
         assert np.abs(one["cage_mode"]).max() > 1e-8

@@ -327,7 +327,7 @@ def test_bearings_on_a_shaft_have_their_own_defects() -> None:
             loads=(ShaftLoad(position=0.0, force=(0.0, -1000.0, 0.0)),),
             speed_rpm=2000.0,
         )
-        result = trb.AssemblySimulation(pair).run(revolutions=0.5, save_every=2e-5)
+        result = trb.Simulation(pair).run(revolutions=0.5, save_every=2e-5)
         return [result[name]["inner_load"] for name in ("bearing_1", "bearing_2")]
 
     pitted, plain = loads(pit("inner")), loads()

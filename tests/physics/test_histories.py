@@ -79,7 +79,7 @@ def test_what_repeats_goes_on_through_any_time(start: float, frequency: float, p
 def test_times_too_far_apart_are_bad_input() -> None:
     sim = Simulation(scene_of())
     with pytest.raises(TrbError):
-        sim._motion.open(sim._model, 0.0, np.full(sim.state.vector.size, np.nan), {})
+        sim._seated.open(0.0, np.full(sim.state.vector.size, np.nan), {})
 
 
 def test_knots_that_sample_a_smooth_curve_stop_no_step() -> None:
@@ -89,8 +89,8 @@ def test_knots_that_sample_a_smooth_curve_stop_no_step() -> None:
     given_points = History.table((0.0, 0.1, 0.2), (0.0, 1.0, 3.0))
     assert not knot_table([given_points]).T[-1].any()
     sim = Simulation(scene_of(rotating_load=RotatingLoad(14_000.0), ring="follows"), accuracy="fast")
-    assert len(sim._motion.table) > 300
-    assert np.count_nonzero(sim._motion.table[:, -1] == 0.0) < len(sim._motion.table) / 10
+    assert len(sim.bearings[0].motion.table) > 300
+    assert np.count_nonzero(sim.bearings[0].motion.table[:, -1] == 0.0) < len(sim.bearings[0].motion.table) / 10
 
 
 @pytest.mark.parametrize("integrator", ["erk", "bdf"])
@@ -158,7 +158,7 @@ class TestSteps:
         load = History.step((0.004, 0.012), (3000.0, 0.0, 3000.0))
         scene = scene_of(axial_load=load, ring="follows", unloaded="rests")
         sim = Simulation(scene, accuracy="fast")
-        place = sim._motion.table[:, 5]
+        place = sim.bearings[0].motion.table[:, 5]
         assert -4e-7 < place.max() < -2e-7  # the rollers' centrifugal forces press them this far into the cup
         result = sim.run(duration=0.02, save_every=2e-4)
         force, time = np.asarray(result["ring_force"])[:, 2], np.asarray(result["time"])

@@ -254,7 +254,7 @@ def test_housings_on_one_shaft(tmp_path: Path) -> None:
     )
     housings = (HOUSING.replace(damping=500.0), HOUSING.replace(support_radial=1e8, damping=900.0))
     bearings = tuple(one.replace(housing=housing) for one, housing in zip(made.bearings, housings, strict=True))
-    result = trb.AssemblySimulation(made.replace(bearings=bearings)).run(duration=0.02, output=tmp_path / "pair.h5")
+    result = trb.Simulation(made.replace(bearings=bearings)).run(duration=0.02, output=tmp_path / "pair.h5")
     for one, housing in zip(result.values(), housings, strict=True):
         assert one.energy_closure < 1e-3
         late = slice(-len(one) // 4, None)
@@ -291,7 +291,7 @@ def test_an_outer_ring_on_a_spring_slides_to_the_next_equilibrium() -> None:
     sliding = sliding.replace(support_radial=1e9, support_axial=2e7, support_tilt=1e6, damping=2e3)
     right = right.replace(spring=trb.PreloadSpring(force=2000.0, stiffness=2e7), housing=sliding)
     sprung = made.replace(bearings=(left, right))
-    result = trb.AssemblySimulation(sprung).run(duration=0.03)
+    result = trb.Simulation(sprung).run(duration=0.03)
     way = np.diff([trb.equilibrium(sprung, time=time).outer_ring_places[1] for time in (0.0, 0.03)])[0]
     assert abs(way) > 5e-6
     found = result["right"]["housing_position"][-len(result.time) // 5 :, 2].mean()

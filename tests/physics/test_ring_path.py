@@ -56,8 +56,8 @@ TURNS = {
 
 def offsets(sim: Simulation, times: np.ndarray) -> np.ndarray:
     """Distance of the ring from its equilibria at times (m); rotations at half the pitch diameter."""
-    scene, table = sim.scene, sim._motion.table
-    solver = EquilibriumSolver(sim._model, scene, nominal_angles(scene))
+    scene, table = sim.scene, sim.bearings[0].motion.table
+    solver = EquilibriumSolver(sim.bearings[0].model, scene, nominal_angles(scene))
     arm = 0.5 * scene.bearing.pitch_diameter
     # the core does not record the ring's rotation: columns of rotation_x and rotation_y of its table
     turn = CubicHermiteSpline(table[:, 0], table[:, [7, 9]], table[:, [8, 10]]) if len(table) > 1 else None
@@ -65,7 +65,9 @@ def offsets(sim: Simulation, times: np.ndarray) -> np.ndarray:
     for time in times:
         expected = solver.solve(float(time)).displacement
         place = sim.record(sim.state.vector, time=float(time))["ring_position"]
-        assert sim._motion.displacement(float(time))[:3] == pytest.approx(place, abs=1e-15)  # as states keep it
+        assert sim.bearings[0].motion.displacement(float(time))[:3] == pytest.approx(
+            place, abs=1e-15
+        )  # as states keep it
         found.append(float(np.abs(place - expected[:3]).max()))
         if turn is not None and time < table[-1, 0]:
             found.append(arm * float(np.abs(turn(time) - expected[3:]).max()))
@@ -84,7 +86,7 @@ def test_path_lies_at_the_equilibria_between_its_knots(name: str) -> None:
 
 def test_velocity_of_the_path_is_continuous() -> None:
     sim = Simulation(paper_30310(3000.0, 4930.0, 2000.0, rotating_load=RotatingLoad(800.0), ring="follows"))
-    knots = sim._motion.table[:, 0]
+    knots = sim.bearings[0].motion.table[:, 0]
     for knot in [*knots[1:-1], 7 * knots[-1]]:
         before, after = (sim.record(time=float(knot + step))["ring_position"] for step in (-1e-7, 1e-7))
         at = sim.record(time=float(knot))["ring_position"]

@@ -11,7 +11,6 @@ import pytest
 import trbdyn as trb
 from trbdyn import (
     Assembly,
-    AssemblySimulation,
     InputError,
     LoadError,
     PreloadSpring,
@@ -19,6 +18,7 @@ from trbdyn import (
     Shaft,
     ShaftBearing,
     ShaftLoad,
+    Simulation,
 )
 from trbdyn.statics.assembly import ShaftEquilibrium
 from trbdyn.statics.seat import Seat
@@ -93,7 +93,7 @@ def test_a_run_begins_in_equilibrium(assembly: Assembly) -> None:
     """The rings of the core stand where the equilibrium has them, with its forces; its rollers' friction hardly moves the
     shaft."""
     found = trb.equilibrium(assembly)
-    simulation = AssemblySimulation(assembly)
+    simulation = Simulation(assembly)
     for name, record in simulation.record().items():
         one = found[name]
         assert record["ring_position"] == pytest.approx(one.displacement[:3], abs=1e-12)
@@ -211,7 +211,7 @@ def test_loads_that_change_in_time_act_at_their_points() -> None:
     wave = trb.History.harmonic(0.0, 300.0, frequency_hz=100.0)
     loads = (ShaftLoad(position=0.1, force=(step, 0.0, 0.0)), ShaftLoad(position=-0.02, force=(0.0, wave, wave)))
     assembly = pair(loads=loads)
-    result = AssemblySimulation(assembly).run(duration=0.012, save_every=1e-4)
+    result = Simulation(assembly).run(duration=0.012, save_every=1e-4)
     signs = {
         name: np.array([1.0, -one.side, -one.side]) for name, one in zip(assembly.names, assembly.bearings, strict=True)
     }
@@ -229,7 +229,7 @@ def test_loads_that_change_in_time_act_at_their_points() -> None:
 def test_run_up_under_a_torque() -> None:
     """The speed grows as torque less friction over the inertia about the axis says, with the first bearing either way round."""
     for arrangement in ("back to back", "face to face"):
-        result = AssemblySimulation(pair(arrangement, speed_rpm=600.0, torque=8.0)).run(duration=0.02)
+        result = Simulation(pair(arrangement, speed_rpm=600.0, torque=8.0)).run(duration=0.02)
         signs = [-one.side for one in result.assembly.bearings] if result.assembly else []
         speed = signs[0] * result["left"]["shaft_speed"]
         assert speed[-1] > speed[0] == pytest.approx(600.0 * math.pi / 30.0)
@@ -254,7 +254,7 @@ def test_run_up_under_a_torque() -> None:
 )
 def test_bad_input(changed: dict[str, Any], says: str) -> None:
     with pytest.raises(InputError, match=says):
-        AssemblySimulation(pair(**changed))
+        Simulation(pair(**changed))
 
 
 def test_what_nothing_holds_is_said() -> None:

@@ -15,12 +15,13 @@ import pytest
 import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.errors import FileError, InputError
-from trbdyn.results.assembly_file import part_path
+from trbdyn.run import running
 from trbdyn.run.checkpoint import checkpoint_path
+from trbdyn.run.running import Run
 
 
-def simulation(**options: object) -> trb.AssemblySimulation:
-    return trb.AssemblySimulation(trb.load_assembly("pair_30310"), accuracy="fast", **options)
+def simulation(**options: object) -> trb.Simulation:
+    return trb.Simulation(trb.load_assembly("pair_30310"), accuracy="fast", **options)
 
 
 class Cut(BaseException):
@@ -29,18 +30,23 @@ class Cut(BaseException):
 
 def cut_off(path: Path, after: float, monkeypatch: pytest.MonkeyPatch, **how: object) -> None:
     """A run of 0.5 turns that ends at a time as if it were killed: nothing is written after that."""
-    from trbdyn.run.assembly_run import AssemblyRun
-
     sim = simulation(checkpoint_every=2e-3)
-    keep = AssemblyRun._keep
+    keep = Run._keep
 
-    def watched(self: AssemblyRun, records: np.ndarray) -> None:
+    def watched(self: Run, records: np.ndarray) -> None:
         keep(self, records)
         if self.sim.time >= after:
             raise Cut
 
+    def killed(self: Run, *_: object) -> None:
+        assert self.writer is not None
+        self.writer._waiting.take()
+        self.writer._let_go()
+
     with monkeypatch.context() as patch:
-        patch.setattr(AssemblyRun, "_keep", watched)
+        patch.setattr(Run, "_keep", watched)
+        patch.setattr(Run, "_finish", killed)
+        patch.setattr(running, "_hand_over", lambda *_: None)
         with pytest.raises(Cut):
             sim.run(revolutions=0.5, save_every=1e-4, output=path, **how)
 
@@ -49,7 +55,7 @@ def test_a_pair_goes_on_to_the_same_bits(tmp_path: Path, monkeypatch: pytest.Mon
     whole = simulation(checkpoint_every=2e-3).run(revolutions=0.5, save_every=1e-4, output=tmp_path / "whole.h5")
     path = tmp_path / "pair.h5"
     cut_off(path, 7e-3, monkeypatch)
-    assert not path.exists()
+    assert not trb.AssemblyResult.load(path).success
     assert checkpoint_path(path).exists()
     resumed = trb.resume(path)
     assert isinstance(resumed, trb.AssemblyResult)
@@ -74,19 +80,38 @@ def test_what_a_cut_off_pair_needs_is_named(tmp_path: Path, monkeypatch: pytest.
     cut_off(path, 5e-3, monkeypatch)
     with pytest.raises(FileError, match=r"another run|overwrite"):
         simulation().run(revolutions=0.1, output=path, checkpoint_every=1e-3)
-    with pytest.raises(InputError, match="callback"):
-        trb.resume(path, callback=lambda sim: False)
-    kept = part_path(path, "right").read_bytes()
-    part_path(path, "right").unlink()
-    with pytest.raises(FileError, match=r"pair\.right\.h5"):
-        trb.resume(path)
-    part_path(path, "right").write_bytes(kept[: len(kept) // 2])
-    with pytest.raises(FileError, match=r"pair\.right\.h5"):
-        trb.resume(path)
-    part_path(path, "right").write_bytes(kept)
-    assert trb.resume(path).success
+    for wanted in ("left", "right"):
+        assert len(trb.load(path, bearing=wanted)) >= 20
+    path.unlink()
+    with pytest.warns(UserWarning, match="its records are lost"):
+        resumed = trb.resume(path, callback=lambda sim: False)
+    assert resumed.success
+    assert "records of it are missing" in resumed.message
     with pytest.raises(FileError, match="no such file"):
         trb.resume(tmp_path / "other.h5")
+
+
+def test_a_pair_that_replaces_another_leaves_no_checkpoints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "pair.h5"
+    cut_off(path, 5e-3, monkeypatch)
+    assert checkpoint_path(path).exists()
+    simulation().run(revolutions=0.05, output=path, overwrite=True)
+    assert [place.name for place in tmp_path.iterdir()] == ["pair.h5"]
+    assert trb.resume(path).success
+
+
+def test_a_file_of_the_version_before_is_read(tmp_path: Path) -> None:
+    """A pair that an earlier trbdyn wrote, with its bearings put together at the end of the run."""
+    path = tmp_path / "pair.h5"
+    path.write_bytes((Path(__file__).parent / "pair_version_1.h5").read_bytes())
+    old = trb.AssemblyResult.load(path)
+    assert list(old) == ["left", "right"]
+    assert old.success
+    assert old.assembly == trb.load_assembly("pair_30310")
+    new = simulation().run(duration=4e-4, save_every=1e-4, save_groups=["time", "cage"])
+    for name, one in old.items():
+        assert one.cage_position == pytest.approx(new[name].cage_position, abs=1e-9)
+    assert trb.resume(path).success
 
 
 @pytest.mark.slow
@@ -100,7 +125,7 @@ def test_a_killed_command_is_resumed(tmp_path: Path) -> None:
     time.sleep(0.3)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    assert not path.exists()
+    assert not trb.AssemblyResult.load(path).success
     done = subprocess.run(
         [sys.executable, "-m", "trbdyn", "resume", "pair.h5"], cwd=tmp_path, capture_output=True, text=True, check=True
     )
@@ -115,18 +140,16 @@ def test_a_killed_command_is_resumed(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_leaves_what_can_be_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from trbdyn.run.assembly_run import AssemblyRun
+    look = Run._is_enough
 
-    look = AssemblyRun._is_enough
-
-    def interrupt(self: AssemblyRun) -> bool:
+    def interrupt(self: Run) -> bool:
         if self.sim.time > 3e-3:
             signal.raise_signal(signal.SIGINT)
         return look(self)
 
     path = tmp_path / "pair.h5"
     with monkeypatch.context() as patch:
-        patch.setattr(AssemblyRun, "_is_enough", interrupt)
+        patch.setattr(Run, "_is_enough", interrupt)
         ended = simulation().run(revolutions=0.5, save_every=1e-4, output=path, checkpoint_every=1e-3)
     assert not ended.success
     assert "stopped by the user" in ended["left"].message

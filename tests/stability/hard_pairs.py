@@ -143,7 +143,7 @@ def judge_pair(hard: HardPair, *, quick: bool = False) -> Verdict:
 
 
 def _run(assembly: Assembly, duration: float, **options: Any) -> AssemblyResult:
-    return trb.AssemblySimulation(assembly, **options).run(duration=duration, save_every=max(duration / 1000, 1e-5))
+    return trb.Simulation(assembly, **options).run(duration=duration, save_every=max(duration / 1000, 1e-5))
 
 
 def _look_at(hard: HardPair, result: AssemblyResult, verdict: Verdict) -> None:

@@ -14,7 +14,7 @@ from trbdyn.results.assembly import AssemblyResult
 
 @pytest.fixture(scope="module")
 def pair() -> AssemblyResult:
-    return trb.AssemblySimulation(trb.load_assembly("pair_30310")).run(revolutions=0.5)
+    return trb.Simulation(trb.load_assembly("pair_30310")).run(revolutions=0.5)
 
 
 def test_the_bearings_stand_on_their_shaft(pair: AssemblyResult, browser: Any, tmp_path: Path) -> None:

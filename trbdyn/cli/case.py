@@ -120,18 +120,12 @@ def simulate(
     given: Collection[str] = (),
 ) -> Result | AssemblyResult:
     """Run a case; what is not given of what to keep is chosen by the length of the run."""
-    from trbdyn.model.assembly import Assembly
-    from trbdyn.run.assembly import AssemblySimulation
     from trbdyn.run.simulation import Simulation
 
     run.end_time(subject.speed_rpm)
-    simulation: Simulation | AssemblySimulation
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)
-        if isinstance(subject, Assembly):
-            simulation = AssemblySimulation(subject, **run.of_simulation())
-        else:
-            simulation = Simulation(subject, **run.of_simulation())
+        simulation = Simulation(subject, **run.of_simulation())
     for note in notes:
         print(f"trbdyn: warning: {note.message}", file=sys.stderr)
     how: dict[str, Any] = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
@@ -25,7 +25,7 @@ from trbdyn.model.ring_body import Housing, RingBody, check_inertias
 from trbdyn.model.scene import MAX_SPEED_RPM, Scene, oil_by_name
 from trbdyn.model.start import Start
 
-__all__ = ["Assembly", "PreloadSpring", "Shaft", "ShaftBearing", "ShaftLoad", "load_centre_offset"]
+__all__ = ["Assembly", "PreloadSpring", "Shaft", "ShaftBearing", "ShaftLoad", "assembly_of", "load_centre_offset"]
 
 Arrangement = Literal["back to back", "face to face"]
 MAX_END_PLAY: Final = 3e-4
@@ -597,3 +597,19 @@ class Assembly(Model):
 
     def __hash__(self) -> int:
         return hash(self.fingerprint)
+
+
+def assembly_of(subject: object) -> Assembly | None:
+    """A subject that is an assembly; None for any other."""
+    return subject if isinstance(subject, Assembly) else None
+
+
+def subject_from_dict(values: Mapping[str, Any]) -> Scene | Assembly:
+    """The scene or the assembly that `to_dict` has described.
+
+    Raises
+    ------
+    InputError
+        If a value is not allowed.
+    """
+    return (Assembly if "shaft" in values else Scene).from_dict(values)

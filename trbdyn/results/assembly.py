@@ -13,9 +13,9 @@ from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import Assembly
-from trbdyn.results.assembly_file import description_in
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
 from trbdyn.results.result import Result, load
+from trbdyn.results.sources import assembly_in
 from trbdyn.results.summary import Summary
 
 Array = NDArray[np.float64]
@@ -47,7 +47,7 @@ class AssemblyResult(Mapping[str, Result], Displayed):
     Examples
     --------
     >>> import trbdyn as trb
-    >>> result = trb.AssemblySimulation(trb.load_assembly("pair_30310")).run(revolutions=0.1)
+    >>> result = trb.Simulation(trb.load_assembly("pair_30310")).run(revolutions=0.1)
     >>> result["left"].cage_position.shape == result["right"].cage_position.shape
     True
     """
@@ -63,14 +63,14 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         Parameters
         ----------
         path : path-like
-            A file that `AssemblySimulation.run` has written.
+            A file that `Simulation.run` has written.
 
         Raises
         ------
         FileError
             If the file is missing, damaged, of another kind or of a later version.
         """
-        table = description_in(path)
+        table = assembly_in(path)
         if table is None:
             raise FileError(f"{path}: this file holds one bearing alone: load it with trb.load")
         assembly = None if table["assembly"] is None else Assembly.from_dict(table["assembly"])
@@ -235,4 +235,4 @@ def load_any(path: str | os.PathLike[str]) -> Result | AssemblyResult:
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
-    return load(path) if description_in(path) is None else AssemblyResult.load(path)
+    return load(path) if assembly_in(path) is None else AssemblyResult.load(path)

@@ -16,7 +16,7 @@ Schema ``trbdyn-result``, version 2:
 - attributes of the root, as text and numbers: for other programs; `trbdyn.load` reads the head
 
 The file of an assembly has a group for each bearing, named as the bearing, that holds all this, and ``/assembly``: what the
-bearings sit on, as JSON. While its run goes on, each bearing has a file of its own beside it (``pair.left.h5``).
+bearings sit on, as JSON.
 
 All of ``/run`` but the head is empty until the run has ended. A file is data: nothing in it is executed, and links or storage
 that lead out of the file are refused.

@@ -21,40 +21,57 @@ from trbdyn.base.locks import is_locked
 from trbdyn.base.version import __version__
 from trbdyn.results.chunks import LEVEL, packed
 from trbdyn.results.fields import DIMENSIONS, Field
-from trbdyn.results.file_format import LIBVER, SCHEMA, SCHEMA_VERSION, json_text, stored_type
+from trbdyn.results.file_format import (
+    ASSEMBLY,
+    ASSEMBLY_SCHEMA,
+    ASSEMBLY_VERSION,
+    LIBVER,
+    SCHEMA,
+    SCHEMA_VERSION,
+    json_text,
+    stored_type,
+)
 
 _LABELS = {dim for dims in DIMENSIONS.values() for dim in dims} - {"roller", "slot", "mode"}
 """Dimensions whose entries have the letters of the name as labels."""
 
 
-def make(
-    path: Path,
-    head: Mapping[str, Any],
-    fields: Sequence[Field],
-    shapes: Mapping[str, tuple[int, ...]],
-    *,
-    rows: int,
-) -> None:
+Bearing = tuple[str, Mapping[str, Any], Sequence[Field], Mapping[str, tuple[int, ...]]]
+"""A bearing of a file: its group, what is known before the run, the fields that are kept, and their shapes in one record."""
+
+
+def make(path: Path, bearings: Sequence[Bearing], assembly: Mapping[str, Any] | None, *, rows: int) -> None:
     """Make a result file without records.
 
     Parameters
     ----------
     path : Path
         File to write; one that is there is emptied.
-    head : mapping
-        What is known before the run: name of the run, place of its first record, scene, settings, geometry.
-    fields : sequence of Field
-        The fields that are kept.
-    shapes : mapping of str to tuple of int
-        Shape of each field in one record.
+    bearings : sequence of tuple
+        The bearings. Where the first one has no group, it has the file for itself.
+    assembly : mapping, optional
+        What several bearings sit on.
     rows : int
         Records of a chunk.
     """
+    names = [name for name, *_ in bearings]
     with h5py.File(path, "w", libver=LIBVER, locking=False) as file:
-        fill(file, head, fields, shapes, rows=rows)
+        if names[0]:
+            about = {"schema": ASSEMBLY_SCHEMA, "schema_version": ASSEMBLY_VERSION, "trbdyn_version": __version__}
+            about |= {"created": datetime.now(UTC).isoformat()}
+            file.attrs.update(about)
+            text = json_text(about | {"bearings": names, "assembly": assembly}).encode()
+            file.create_dataset(ASSEMBLY, data=np.array([text]), chunks=(1,), fletcher32=True)
+        for name, head, fields, shapes in bearings:
+            _fill(file.create_group(name) if name else file, head, fields, shapes, rows=rows)
 
 
-def fill(
+def group_of(file: h5py.File, bearing: str) -> h5py.Group:
+    """A bearing's part of a file of `make`."""
+    return file[bearing] if bearing else file
+
+
+def _fill(
     file: h5py.Group,
     head: Mapping[str, Any],
     fields: Sequence[Field],
@@ -62,7 +79,7 @@ def fill(
     *,
     rows: int,
 ) -> None:
-    """Make the objects of a result in an empty file or group; see `make`."""
+    """Make the objects of a result in an empty file or group."""
     created = datetime.now(UTC).isoformat()
     about = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "trbdyn_version": __version__, "created": created}
     table = [[entry.name, entry.group, entry.kind, entry.unit, entry.text] for entry in fields]
@@ -181,15 +198,6 @@ def append(group: h5py.Group, name: str, rows: NDArray[Any]) -> None:
         if len(chunk) < size:  # a chunk is a whole one in the file
             chunk = np.concatenate([chunk, np.zeros((size - len(chunk), *rows.shape[1:]), dtype=rows.dtype)])
         dataset.write_direct_chunk((start + at, *origin), packed(chunk))
-
-
-def copy_chunks(source: h5py.Dataset, target: h5py.Dataset) -> None:
-    """Take over what a dataset holds into an empty one that was made alike, chunk by chunk as it is packed."""
-    target.resize(source.shape)
-    for number in range(source.id.get_num_chunks()):
-        place = source.id.get_chunk_info(number).chunk_offset
-        mask, data = source.id.read_direct_chunk(place)
-        target.id.write_direct_chunk(place, data, mask)
 
 
 def commit(file: h5py.Group, n_records: int, n_ending: int = 0) -> None:

@@ -8,12 +8,15 @@ import shutil
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
 from weakref import WeakSet
 
+import h5py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -49,6 +52,71 @@ SPARE_BYTES = 1 << 20
 """Room for HDF5's own bookkeeping that is made sure of before a write."""
 
 
+@dataclass(frozen=True)
+class Part:
+    """A bearing of a run, as its file has it.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene; ``scene.to_dict()`` is stored.
+    layout : sequence of (name, offset, shape)
+        Places of the fields in a record.
+    fields : sequence of Field
+        The table that describes them.
+    meta : mapping
+        Versions, instruction set, settings: anything that JSON can hold.
+    geometry : mapping of str to float
+        Derived geometry of the bearing, SI.
+    name : str
+        Its group in the file; none where it has the file for itself.
+    """
+
+    scene: Any
+    layout: Layout
+    fields: Sequence[Field]
+    meta: Mapping[str, Any] = field(default_factory=dict)
+    geometry: Mapping[str, float] = field(default_factory=dict)
+    name: str = ""
+
+    @property
+    def head(self) -> dict[str, Any]:
+        """What its head says of it."""
+        return {"scene": self.scene.to_dict(), "meta": dict(self.meta), "geometry": dict(self.geometry)}
+
+    def kept(self, groups: Sequence[str] | None) -> _Kept:
+        """What of it is kept of some groups."""
+        places = {name: (offset, tuple(shape)) for name, offset, shape in self.layout}
+        fields = tuple(entry for entry in field_table.select(self.fields, groups) if entry.name in places)
+        return _Kept(self.name, fields, places)
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """What is kept of a bearing: its group, the fields, and their places in a record."""
+
+    name: str
+    fields: tuple[Field, ...]
+    places: Mapping[str, tuple[int, tuple[int, ...]]]
+
+    @property
+    def shapes(self) -> dict[str, tuple[int, ...]]:
+        return {entry.name: self.places[entry.name][1] for entry in self.fields}
+
+    @property
+    def row_bytes(self) -> int:
+        shapes = self.shapes
+        return sum(stored_type(entry).itemsize * int(np.prod(shapes[entry.name])) for entry in self.fields)
+
+    def append(self, group: h5py.Group, pieces: Sequence[Array], count: int) -> None:
+        """Add the first records of some pieces."""
+        for entry in self.fields:
+            offset, shape = self.places[entry.name]
+            end = offset + int(np.prod(shape))
+            rows = np.concatenate([piece[:, offset:end] for piece in pieces])[:count]
+            hdf5_file.append(group, entry.name, as_kept(entry, rows).reshape(-1, *shape))
+
+
 class ResultWriter:
     """Writes the records of a run into an HDF5 file while it goes on.
 
@@ -56,24 +124,18 @@ class ResultWriter:
     ----------
     path : path-like
         File to write.
-    scene : Scene
-        The scene; ``scene.to_dict()`` is stored.
-    layout : sequence of (name, offset, shape)
-        Places of the fields in a record.
-    fields : sequence of Field
-        The table that describes them.
+    *parts : Part
+        The bearings.
+    assembly : mapping, optional
+        What several bearings sit on.
     groups : iterable of str, optional
         Groups of fields to write; all by default. The group ``"time"`` is always written.
-    meta : mapping, optional
-        Versions, instruction set, settings: anything that JSON can hold.
-    geometry : mapping of str to float, optional
-        Derived geometry of the bearing, SI.
     run_id : str, optional
         Name of the run; a new one by default.
     first_record : int
         Place of the file's first record in the run.
-    taken_over : tuple of FileSource and int, optional
-        An older file of the same run, and how many of its records come first in this one, which takes its place.
+    taken_over : tuple of sequence of FileSource and int, optional
+        Each bearing in an older file of the same run, and how many of its records come first in this one, which takes its place.
     expected : int, optional
         Records that will come at most, where it is known: the file is made for them.
     overwrite : bool
@@ -102,16 +164,12 @@ class ResultWriter:
     def __init__(
         self,
         path: str | os.PathLike[str],
-        *,
-        scene: Any,
-        layout: Layout,
-        fields: Sequence[Field],
+        *parts: Part,
+        assembly: Mapping[str, Any] | None = None,
         groups: Sequence[str] | None = None,
-        meta: Mapping[str, Any] | None = None,
-        geometry: Mapping[str, float] | None = None,
         run_id: str | None = None,
         first_record: int = 0,
-        taken_over: tuple[FileSource, int] | None = None,
+        taken_over: tuple[Sequence[FileSource], int] | None = None,
         expected: int | None = None,
         overwrite: bool = False,
         beside: bool = False,
@@ -119,19 +177,20 @@ class ResultWriter:
         self.path = output_path(path, overwrite=overwrite)
         self.run_id = run_id or uuid.uuid4().hex
         self.n_written = 0
-        self._places = {name: (offset, tuple(shape)) for name, offset, shape in layout}
-        self.fields = tuple(f for f in field_table.select(fields, groups) if f.name in self._places)
-        shapes = {entry.name: self._places[entry.name][1] for entry in self.fields}
-        self._row_bytes = sum(stored_type(entry).itemsize * int(np.prod(shapes[entry.name])) for entry in self.fields)
+        self._parts = [part.kept(groups) for part in parts]
+        self._row_bytes = sum(part.row_bytes for part in self._parts)
         self._block = block_rows(expected, self._row_bytes)
         self._waiting = WaitingRows(self._block)
         self._patience = FLUSH_SECONDS
         self._failed = False
         self._second = SecondThread() if beside else None
         self._lock: BinaryIO | None = None
-        head = {"run_id": self.run_id, "first_record": first_record, "scene": scene.to_dict()}
-        head |= {"meta": dict(meta or {}), "geometry": dict(geometry or {})}
-        make = partial(hdf5_file.make, head=head, fields=self.fields, shapes=shapes, rows=self._block)
+        run = {"run_id": self.run_id, "first_record": first_record}
+        bearings = [
+            (kept.name, run | part.head, kept.fields, kept.shapes)
+            for part, kept in zip(parts, self._parts, strict=True)
+        ]
+        make = partial(hdf5_file.make, bearings=bearings, assembly=assembly, rows=self._block)
         with self._guard("cannot be written"):
             replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
@@ -147,7 +206,7 @@ class ResultWriter:
                     replaced.close()
 
     def _begin(
-        self, draft: Path, make: partial[None], taken_over: tuple[FileSource, int] | None, *, replace: bool
+        self, draft: Path, make: partial[None], taken_over: tuple[Sequence[FileSource], int] | None, *, replace: bool
     ) -> None:
         """Make every object of the file in a draft, which then takes its place."""
         try:
@@ -164,15 +223,18 @@ class ResultWriter:
             draft.unlink(missing_ok=True)
             raise
 
-    def _take_over(self, draft: Path, older: FileSource, count: int) -> None:
+    def _take_over(self, draft: Path, older: Sequence[FileSource], count: int) -> None:
         """Copy the first records of an older file of the run."""
         self._reserve(count * self._row_bytes + SPARE_BYTES)
-        with hdf5_file.opened_to_append(draft) as file, older.held_open():
-            for start in range(0, count, COPIED_ROWS):
-                part = slice(start, min(start + COPIED_ROWS, count))
-                for entry in self.fields:
-                    hdf5_file.append(file, entry.name, older.part(entry.name, part))
-            hdf5_file.commit(file, count)
+        with hdf5_file.opened_to_append(draft) as file:
+            for part, source in zip(self._parts, older, strict=True):
+                group = hdf5_file.group_of(file, part.name)
+                with source.held_open():
+                    for start in range(0, count, COPIED_ROWS):
+                        rows = slice(start, min(start + COPIED_ROWS, count))
+                        for entry in part.fields:
+                            hdf5_file.append(group, entry.name, source.part(entry.name, rows))
+                hdf5_file.commit(group, count)
         self.n_written = count
 
     @contextmanager
@@ -242,9 +304,9 @@ class ResultWriter:
         if self._second is not None:
             self._second.wait()
 
-    def _write(self, pieces: list[Array], ending: Mapping[str, NDArray[Any]] | None = None) -> None:
-        """Add pieces of records, and at the end what is known of it. After an error nothing more is written: it would lie behind
-        a gap.
+    def _write(self, pieces: list[Array], endings: Sequence[Mapping[str, NDArray[Any]]] = ()) -> None:
+        """Add pieces of records, and at the end what is known of each bearing. After an error nothing more is written: it would
+        lie behind a gap.
         """
         stream, lost = self._lock, None
         if stream is None:
@@ -257,16 +319,15 @@ class ResultWriter:
                 raise OSError("records before these could not be written")
             failed, self._failed = self._failed, True
             count, full = self._room_for(sum(map(len, pieces)))
-            if count or ending:
+            if count or endings:
                 with hdf5_file.opened_to_append(self.path) as file:
-                    for entry in self.fields if count else ():
-                        offset, shape = self._places[entry.name]
-                        end = offset + int(np.prod(shape))
-                        rows = np.concatenate([piece[:, offset:end] for piece in pieces])[:count]
-                        hdf5_file.append(file, entry.name, as_kept(entry, rows).reshape(-1, *shape))
-                    for name, values in (ending or {}).items():
-                        hdf5_file.append(file["run"], name, values)
-                    hdf5_file.commit(file, self.n_written + count, len(ending["ending"]) if ending else 0)
+                    for part, ending in zip_longest(self._parts, endings):
+                        group = hdf5_file.group_of(file, part.name)
+                        if count:
+                            part.append(group, pieces, count)
+                        for name, values in (ending or {}).items():
+                            hdf5_file.append(group["run"], name, values)
+                        hdf5_file.commit(group, self.n_written + count, len(ending["ending"]) if ending else 0)
             self.n_written += count
             if full is not None:
                 raise full
@@ -333,37 +394,15 @@ class ResultWriter:
         elif shutil.disk_usage(self.path.parent).free < size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    def finish(
-        self,
-        success: bool,
-        message: str,
-        stats: Mapping[str, Any],
-        counters: Mapping[str, int],
-        final_time: float,
-        final_state: ArrayLike | None,
-        peaks: Mapping[str, Array] | None = None,
-        warnings: Sequence[str] = (),
-    ) -> None:
+    def finish(self, *endings: Mapping[str, Any]) -> None:
         """Write how the run ended, and close the file.
 
         Parameters
         ----------
-        success : bool
-            Whether the run reached its end.
-        message : str
-            How it ended, in a sentence.
-        stats : mapping
-            Solver statistics.
-        counters : mapping of str to int
-            Evaluations of each effect.
-        final_time : float
-            Time of the final state, s.
-        final_state : array_like or None, shape (n_state,)
-            The last good state.
-        peaks : mapping of str to ndarray, optional
-            Peaks of the whole run.
-        warnings : sequence of str
-            What the watch over the run found.
+        *endings : mapping
+            Of each bearing: ``success``, whether the run reached its end, ``message``, how it ended in a sentence, ``stats`` and
+            ``counters``, what the integrator did, ``warnings``, what the watch found, ``final_time`` (s), ``final_state``, the
+            last good state or None, and ``peaks`` of the whole run by name.
 
         Raises
         ------
@@ -372,15 +411,8 @@ class ResultWriter:
         """
         self.wait()
         rows = self._waiting.take()
-        how = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
-        how |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
-        ending: dict[str, NDArray[Any]] = {"ending": np.frombuffer(json_text(how).encode(), dtype="u1")}
-        if final_state is not None:
-            ending["final_state"] = np.asarray(final_state, dtype=float)
-        kept = [np.ravel(peaks[entry.name]) for entry in self.fields if entry.group == PEAKS] if peaks else []
-        if kept:
-            ending["peaks"] = np.concatenate(kept, dtype=float)
-        self._write([] if self._failed else rows, ending)
+        written = [_ending(part.fields, **ending) for part, ending in zip(self._parts, endings, strict=True)]
+        self._write([] if self._failed else rows, written)
         self.close()
 
     def close(self) -> None:
@@ -400,6 +432,29 @@ class ResultWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _ending(
+    fields: Sequence[Field],
+    success: bool,
+    message: str,
+    stats: Mapping[str, Any],
+    counters: Mapping[str, int],
+    final_time: float,
+    final_state: ArrayLike | None,
+    peaks: Mapping[str, Array] | None = None,
+    warnings: Sequence[str] = (),
+) -> dict[str, NDArray[Any]]:
+    """What the group ``run`` holds of how a run ended."""
+    how = {"success": bool(success), "message": str(message), "final_time": float(final_time)}
+    how |= {"stats": dict(stats), "counters": dict(counters), "warnings": list(warnings)}
+    ending: dict[str, NDArray[Any]] = {"ending": np.frombuffer(json_text(how).encode(), dtype="u1")}
+    if final_state is not None:
+        ending["final_state"] = np.asarray(final_state, dtype=float)
+    kept = [np.ravel(peaks[entry.name]) for entry in fields if entry.group == PEAKS] if peaks else []
+    if kept:
+        ending["peaks"] = np.concatenate(kept, dtype=float)
+    return ending
 
 
 _WRITERS: WeakSet[ResultWriter] = WeakSet()

@@ -19,7 +19,17 @@ from trbdyn.base.own_files import file_path
 from trbdyn.errors import FileError
 from trbdyn.results import hdf5_file
 from trbdyn.results.fields import Field
-from trbdyn.results.file_format import ASSEMBLY, PEAKS, SCHEMA, SCHEMA_VERSION, RunInfo, reason, stored_type
+from trbdyn.results.file_format import (
+    ASSEMBLY,
+    ASSEMBLY_SCHEMA,
+    ASSEMBLY_VERSION,
+    PEAKS,
+    SCHEMA,
+    SCHEMA_VERSION,
+    RunInfo,
+    reason,
+    stored_type,
+)
 from trbdyn.results.hdf5_checks import read_own
 
 Array = NDArray[np.float64]
@@ -168,10 +178,47 @@ def _table_of_head(path: Path, head: bytes) -> dict[str, Any]:
 def run_id_in(path: Path) -> str | None:
     """Name of the run whose records are in a file; None where there is no result that can be opened."""
     try:
-        with opened(path) as file:
-            return str(_table_of_head(path, _read_head(path, file))["run_id"])
+        return FileSource(path, names_in(path)[0]).run_id
     except FileError:
         return None
+
+
+def assembly_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
+    """What a file says of its assembly: ``bearings``, their names, and ``assembly``; None where it is the file of one bearing.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or is of a later version.
+    """
+    where = file_path(path, "path")
+    with opened(where) as file:
+        if ASSEMBLY not in file:
+            return None
+        table = _table(json.loads(bytes(read_own(file, ASSEMBLY)[0])))
+        names = table.get("bearings")
+        if table.get("schema") == ASSEMBLY_SCHEMA and not (
+            isinstance(names, list) and names and all(isinstance(name, str) for name in names)
+        ):
+            raise FileError(f"{where}: the file is damaged (the names of its bearings are missing)")
+    if table.get("schema") != ASSEMBLY_SCHEMA or table.get("schema_version") != ASSEMBLY_VERSION:
+        raise FileError(
+            f"{where}: written with schema version {table.get('schema_version')!r} of an assembly; this trbdyn reads version "
+            f"{ASSEMBLY_VERSION}"
+        )
+    return table
+
+
+def names_in(path: str | os.PathLike[str]) -> tuple[str, ...]:
+    """Names of the bearings in a file; one without a name where it has the file for itself.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or is of a later version.
+    """
+    table = assembly_in(path)
+    return ("",) if table is None else tuple(table["bearings"])
 
 
 class FileSource:

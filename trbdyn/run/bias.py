@@ -27,6 +27,9 @@ READ: Final = {
 }
 """What is told: in words, and whether it needs a cage."""
 NONE_SEEN: Final = "peaks, percentiles and contact times: no bias by these tolerances was seen"
+ON_A_SHAFT: Final = (
+    "The bias of the presets was measured with one bearing whose ring is held, not with bearings on a shaft."
+)
 CHANGING: Final = (
     "that was measured under constant loads and speeds; after a change the largest forces differ more from start to start than "
     "from accuracy to accuracy: a summary gives their band where a load drops, several seeds of Start.unequal that of this scene"
@@ -68,6 +71,8 @@ def _bias(preset: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def note(sim: Simulation) -> str:
     """Biases in a sentence for a result; empty where nothing like it was measured."""
+    if len(sim.bearings) > 1:
+        return ON_A_SHAFT
     found = measured(sim)
     if found is None:
         return ""

@@ -234,7 +234,7 @@ def estimate(
         steps=round(length * rates["steps"]),
         evaluations=round(length * rates["rhs_evaluations"]),
         records=records,
-        memory_mb=8e-6 * records * (sim._model.record_length + sim._model.peak_length),
+        memory_mb=8e-6 * records * sum(one.model.record_length + one.model.peak_length for one in sim.bearings),
         **found,
     )
 
@@ -301,7 +301,12 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     window = float(np.median(measured["windows_s"][case]))
     place = {"window": window, "case": case} | dict.fromkeys(_BIASES, math.nan)
     standard = options.max_order == 2 and options.rings_share is None and options.impact_share is None
-    known = options.integrator == "bdf" and standard and sim.scene.effects.bodies == "rollers_and_cage"
+    known = (
+        len(sim.bearings) == 1
+        and options.integrator == "bdf"
+        and standard
+        and sim.scene.effects.bodies == "rollers_and_cage"
+    )
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
     tolerances = options.tolerances.model_dump()
@@ -363,7 +368,8 @@ def _axial(sim: Simulation) -> float:
 
 
 def _whirls(sim: Simulation) -> bool:
-    record = sim.record()
+    row = sim._core.observe(*sim._place(None, None))
+    record = {name: row[at : at + math.prod(shape)] for name, at, shape in sim.bearings[0].record_layout}
     speed = record["cage_velocity"]
     spin = float(record["cage_angular_velocity"][2])
     return fast_cage(float(np.hypot(speed[0], speed[1])), spin, sim.scene.bearing.cage.play_radial)

@@ -12,6 +12,7 @@ from trbdyn.errors import StepError
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
+    from trbdyn.statics.seat import Layout, SeatedBearing
 
 Array = NDArray[np.float64]
 
@@ -23,17 +24,17 @@ def culprit(text: str) -> tuple[str | None, str | None]:
     return (body or None, quantity or None) if quantity else (None, None)
 
 
-def check_apart(sim: Simulation, records: Array) -> None:
+def check_apart(sim: Simulation, bearing: SeatedBearing, layout: Layout, records: Array) -> None:
     """Rollers without a cage must not touch each other, as nothing in the model keeps them apart."""
-    places = {name: (offset, shape) for name, offset, shape in sim._model.record_layout()}
+    places = {name: (offset, shape) for name, offset, shape in layout}
     offset, (count,) = places["roller_orbit_angle"]
     angles = np.sort(np.mod(records[:, offset : offset + count], 2.0 * math.pi), axis=1)
     gaps = np.diff(np.concatenate([angles, angles[:, :1] + 2.0 * math.pi], axis=1), axis=1)
-    bearing = sim.scene.bearing
-    nearest = bearing.pitch_diameter * np.sin(0.5 * gaps.min(axis=1))
-    if float(nearest.min()) < bearing.roller.diameter:
+    sizes = bearing.scene.bearing
+    nearest = sizes.pitch_diameter * np.sin(0.5 * gaps.min(axis=1))
+    if float(nearest.min()) < sizes.roller.diameter:
         raise StepError(
-            f"two rollers touch before {sim.time:.6g} s: without a cage nothing in the model keeps them apart; "
+            f"{bearing.said}two rollers touch before {sim.time:.6g} s: without a cage nothing in the model keeps them apart; "
             "shorten the run or give effects.bodies = 'rollers_and_cage'",
             time=sim.time,
             body="rollers",

@@ -201,14 +201,14 @@ class Replay:
         channels = [values.get(name, (0.0, 0.0)) for name, _, _ in _core.motion_table()]
         table = np.array([[time, *(number for channel in channels for number in channel), 0.0]])
         motion = RingMotion(table, 0.0, time, time, angle, outer_angle)
-        return motion.open(self._simulation._model, time, self.state(index), {})
+        return motion.open(self._simulation.bearings[0].model, time, self.state(index), {})
 
     def record(self, index: int) -> dict[str, Array]:
         """A record, evaluated again: what was recorded, to rounding, but for spin angles and energies."""
         time, state = float(self.result["time"][index]), self.state(index)
         if not self._on_shaft:
             return self._simulation.record(state, time)
-        row, layout = self._place(index).observe(time, state), self._simulation._model.record_layout()
+        row, layout = self._place(index).observe(time, state), self._simulation.bearings[0].model.record_layout()
         return {name: row[offset : offset + math.prod(shape)].reshape(shape) for name, offset, shape in layout}
 
 

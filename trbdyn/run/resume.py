@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from trbdyn import _core
 from trbdyn.base.locks import take_lock
 from trbdyn.base.own_files import file_path, set_aside
 from trbdyn.errors import FileError, InputError
-from trbdyn.model.scene import Scene
-from trbdyn.results.assembly import AssemblyResult
+from trbdyn.model.assembly import subject_from_dict
+from trbdyn.results.assembly import AssemblyResult, load_any
 from trbdyn.results.file_format import reason
-from trbdyn.results.result import Result, load
-from trbdyn.results.sources import FileSource
+from trbdyn.results.result import Result
+from trbdyn.results.sources import FileSource, names_in
 from trbdyn.run import checkpoint
-from trbdyn.run.assembly_resume import is_of_assembly, resume_assembly
+from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.keeping import groups_of, kept_by_default
-from trbdyn.run.revive import revive
-from trbdyn.run.running import Callback, Run, output_times
+from trbdyn.run.options import OF_ONE_RUN, RunOptions
+from trbdyn.run.running import Callback, Run, motions_digest, output_times
 from trbdyn.run.simulation import Simulation
 
 
@@ -44,7 +46,7 @@ def resume(
     progress : bool
         Show a progress bar.
     callback : callable, optional
-        As in `Simulation.run`; not for bearings on a shaft.
+        As in `Simulation.run`.
 
     Returns
     -------
@@ -74,42 +76,33 @@ def resume(
         notes.append(note)
         warnings.warn(note, UserWarning, stacklevel=3)
 
-    if is_of_assembly(output):
-        if callback is not None:
-            raise InputError.of("callback", callback, "must not be given for an assembly")
-        return resume_assembly(output, instruction_set=instruction_set, progress=progress, tell=tell)
-
-    def run_on(older: FileSource | None) -> Result:
+    def run_on(older: Sequence[FileSource] | None) -> Result | AssemblyResult:
         found = checkpoint.read_last_good(output, tell)
-        if older is not None and older.run_id != found.run_id:
+        if older is not None and any(one.run_id != found.run_id for one in older):
             raise FileError(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint belongs to another run than {output}"
             )
-        sim, options = revive(
-            output,
-            found,
-            instruction_set,
-            tell,
-            subject=lambda: Scene.from_dict(found.scene),
-            make=Simulation,
-            motion=lambda sim: checkpoint.digest_of(sim._motion.table),
-        )
+        sim, options = _revived(output, found, instruction_set, tell)
         kept = kept_by_default(
             found.end - found.start,
             sim.scene.turning_rpm,
             options.save_every,
             options.save_groups,
-            optional=groups_of([sim.scene]),
+            optional=groups_of(one.scene for one in sim.bearings),
         )
         times = output_times(found.start, found.end, kept["save_every"])
         if found.done >= times.size:
             raise FileError(
                 f"{checkpoint.checkpoint_path(output)}: the checkpoint cannot be used: it has too many records"
             )
-        if older is not None and older.first_record + older.n_records < found.done:
+        if older is not None and any(one.first_record + one.n_records < found.done for one in older):
             raise FileError(f"{output}: the result file holds fewer records than its checkpoint says")
         run = Run(sim, options, times, callback, found.done)
-        run.notes, run.spent, run.doubts = notes, found.stepping_s, list(found.warnings)
+        run.spent = found.stepping_s
+        for one in run.bearings:
+            one.notes[:] = notes
+            said = [text for text in found.warnings if text.startswith(one.of.said)]
+            one.doubts[:] = [text.removeprefix(one.of.said) for text in said]
         run.write_to(output, found.run_id, older=older, overwrite=older is not None)
         return run.go(progress=progress)
 
@@ -119,12 +112,13 @@ def resume(
             tell(f"{output}: there is no such file; its records are lost, those from the checkpoint on will be written")
         # refused if another process has begun to write the file meanwhile
         return run_on(None)
-    older: FileSource | None = None
+    older: list[FileSource] | None = None
     try:
         take_lock(output).close()
         try:
-            older = FileSource(output)
-            older.check()
+            older = [FileSource(output, name) for name in names_in(output)]
+            for one in older:
+                one.check()
         except FileError as error:
             older, kept = None, ""
             if output.stat().st_size:
@@ -135,6 +129,41 @@ def resume(
             tell(f"{error}; its records are lost, those from the checkpoint on will be written{kept}")
     except OSError as error:
         raise FileError(f"{output}: cannot be resumed: {reason(error)}") from error
-    if older is not None and older.info.success:
-        return load(output)
+    if older is not None and older[0].info.success:
+        return load_any(output)
     return run_on(older)
+
+
+def _revived(
+    output: Path, found: Checkpoint, instruction_set: str | None, tell: Callable[[str], None]
+) -> tuple[Simulation, RunOptions]:
+    """A simulation as it was when a checkpoint was written, and the options of its run.
+
+    Raises
+    ------
+    FileError
+        If the checkpoint cannot be used.
+    """
+    where = checkpoint.checkpoint_path(output)
+    variant = checkpoint.check_instruction_set(found, instruction_set, tell)
+    try:
+        subject, options = subject_from_dict(found.scene), RunOptions.from_dict(found.options)
+        if subject.fingerprint != found.model:
+            kind = type(subject).__name__.lower()
+            why = f"its {kind} is not the one that its model hash belongs to"
+            if found.build != checkpoint.build_digest():
+                why = f"another build wrote it, to which its {kind} meant other numbers; run the {kind} again from its start"
+            raise FileError(f"{where}: the checkpoint cannot be used: {why}")
+        settings = {name: getattr(options, name) for name in RunOptions.model_fields if name not in OF_ONE_RUN}
+        sim = Simulation(subject, instruction_set=variant, **settings)
+        if found.build != checkpoint.build_digest():
+            tell("going on with another build of the core: results may differ in rounding from the uninterrupted run")
+        elif found.motion != motions_digest(sim):
+            tell("the equilibrium differs in rounding on this machine: results may differ from the uninterrupted run")
+        sim._begin(found.time, found.state)
+        if found.peaks.size:
+            sim._core.restore_peaks(found.peaks)
+    except (InputError, _core.CoreInputError) as error:
+        raise FileError(f"{where}: the checkpoint cannot be used: {error}") from error
+    sim._totals, sim._counted = dict(found.statistics), dict(found.counters)
+    return sim, options

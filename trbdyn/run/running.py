@@ -7,8 +7,9 @@ import math
 import os
 import time as clock
 import warnings
-from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn import _core
+from trbdyn.base.validation import Model
 from trbdyn.errors import FileError, InputError, RunWarning, StepError
 from trbdyn.model.shaft import turns
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.file_format import RunInfo, reason
 from trbdyn.results.result import Result, load
-from trbdyn.results.result_file import ResultWriter
+from trbdyn.results.result_file import Part, ResultWriter
 from trbdyn.results.sources import FileSource, run_id_in
 from trbdyn.run import bias, checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
@@ -33,6 +36,7 @@ from trbdyn.run.process import has_a_spare_core, interrupts
 from trbdyn.run.until import Until, check_wanted
 from trbdyn.run.watch import Watch
 from trbdyn.statics.plausible import dented
+from trbdyn.statics.seat import Layout, SeatedBearing
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -48,11 +52,66 @@ MOST_RECORDS = 50_000_000
 CHUNK_STEPS = 2000
 """Steps between looks at signals: about a twentieth of a second."""
 
+WITHOUT_CONFIDENCE = (
+    "the run has reached its end without the confidence that was asked for: {}. A longer run may reach it"
+)
+
 _BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"
 
 
+@dataclass
+class RunningBearing:
+    """A bearing while it runs.
+
+    Attributes
+    ----------
+    of : SeatedBearing
+        The bearing.
+    layout : list
+        Places of its fields in its part of a row.
+    part : slice
+        Its part of a row.
+    fields : tuple of Field
+        What its records are.
+    until : Until
+        How well its averages are known.
+    kept : Kept
+        Its records in memory.
+    notes, doubts : list of str
+        What is said of it with the result, and what the watch has found.
+    """
+
+    of: SeatedBearing
+    layout: Layout
+    part: slice
+    fields: tuple[field_table.Field, ...]
+    until: Until
+    kept: Kept
+    notes: list[str]
+    doubts: list[str]
+
+    def doubt(self, text: str, stacklevel: int) -> None:
+        """Keep a warning with the result, and show it."""
+        self.doubts.append(text)
+        warnings.warn(f"{self.of.said}{text}", RunWarning, stacklevel=stacklevel + 1)
+
+
 class Run:
-    """One call of `Simulation.run`, or what is left of it when it is resumed."""
+    """One call of `Simulation.run`, or what is left of it when it is resumed.
+
+    Parameters
+    ----------
+    sim : Simulation
+        Whose run it is.
+    options : RunOptions
+        Its options.
+    times : ndarray
+        Times of its records (s).
+    callback : callable, optional
+        As in `Simulation.run`.
+    done : int
+        Records that it has made already.
+    """
 
     def __init__(
         self, sim: Simulation, options: RunOptions, times: Array, callback: Callback | None, done: int = 0
@@ -62,8 +121,6 @@ class Run:
         self.times = times
         self.callback = callback
         self.done = done
-        self.notes: list[str] = list(sim.warnings)
-        self.doubts: list[str] = list(sim.warnings)
         self.filling: Array | None = None
         self.writer: ResultWriter | None = None
         self.output: Path | None = None
@@ -72,29 +129,42 @@ class Run:
         self.began = clock.perf_counter()
         self.spent = 0.0
         self.beside = has_a_spare_core()
-        self.fields = field_table.table()
-        self.layout = list(sim._model.record_layout())
-        has_cage = sim.scene.effects.bodies == "rollers_and_cage"
-        check_wanted(options.until, options.save_groups, {name for name, _, _ in self.layout}, has_cage)
-        self.until = Until(options.until, times.size)
-        self.accuracy_note = bias.note(sim)
         self.enough = ""
         self.with_peaks = peak_table.GROUP in options.save_groups
+        self.bearings: list[RunningBearing] = []
+        for bearing in sim.bearings:
+            self._add(bearing)
+        self.accuracy_note = bias.note(sim)
+
+    def _add(self, bearing: SeatedBearing) -> None:
+        options, model, fields = self.options, bearing.model, field_table.table()
+        layout, length = list(model.record_layout()), model.record_length
+        has_cage = bearing.scene.effects.bodies == "rollers_and_cage"
+        check_wanted(options.until, options.save_groups, {name for name, _, _ in layout}, has_cage)
         if self.with_peaks:
-            self.fields += peak_table.table()
-            self.layout += [
-                (name, at + sim._model.record_length, shape) for name, at, shape in sim._model.peak_layout()
-            ]
-        self.kept = Kept(self.layout, field_table.select(self.fields, options.save_groups))
+            fields += peak_table.table()
+            layout += [(name, at + length, shape) for name, at, shape in model.peak_layout()]
+            length += model.peak_length
+        first = self.bearings[-1].part.stop if self.bearings else 0
+        kept = Kept(layout, field_table.select(fields, options.save_groups))
+        until, said = Until(options.until, self.times.size), bearing.unusual
+        self.bearings.append(
+            RunningBearing(bearing, layout, slice(first, first + length), fields, until, kept, list(said), list(said))
+        )
 
     def _keep_peaks(self, since: float) -> None:
         """Start to keep peaks from a time of the last step on, if the run asks for them and does not keep them yet."""
         core = self.sim._core
-        if self.with_peaks and core.row_length == self.sim._model.record_length:
+        if self.with_peaks and core.row_length == sum(one.model.record_length for one in self.sim.bearings):
             core.begin_peaks(since)
 
     def write_to(
-        self, output: Path, run_id: str | None = None, *, older: FileSource | None = None, overwrite: bool = False
+        self,
+        output: Path,
+        run_id: str | None = None,
+        *,
+        older: Sequence[FileSource] | None = None,
+        overwrite: bool = False,
     ) -> None:
         """Write records to a file, and checkpoints beside it if there is a schedule.
 
@@ -106,17 +176,15 @@ class Run:
         scheduled = self.options.checkpoint_every is not None
         if run_id is None and scheduled:
             checkpoint.check_free(output, replaced, overwrite=overwrite)
+        first = done if older is None else older[0].first_record
         self.writer = ResultWriter(
             output,
-            scene=sim.scene,
-            layout=self.layout,
-            fields=self.fields,
+            *map(self._in_file, self.bearings),
+            assembly=None if sim.assembly is None else sim.assembly.to_dict(),
             groups=self.options.save_groups,
-            meta=self._meta(),
-            geometry=asdict(sim.scene.bearing.geometry),
             run_id=run_id,
-            first_record=done if older is None else older.first_record,
-            taken_over=None if older is None else (older, done - older.first_record),
+            first_record=first,
+            taken_over=None if older is None else (older, done - first),
             expected=self.times.size,
             overwrite=overwrite,
             beside=self.beside,
@@ -139,7 +207,13 @@ class Run:
             self.writer.close()
             raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
 
-    def go(self, *, progress: bool) -> Result:
+    def _in_file(self, bearing: RunningBearing) -> Part:
+        layout = [(name, at + bearing.part.start, shape) for name, at, shape in bearing.layout]
+        scene = bearing.of.scene
+        geometry = asdict(scene.bearing.geometry)
+        return Part(scene, layout, bearing.fields, self._meta(bearing), geometry, bearing.of.name)
+
+    def go(self, *, progress: bool) -> Result | AssemblyResult:
         sim = self.sim
         with progress_bar(self.times, shown=progress) as bar:
             try:
@@ -175,9 +249,10 @@ class Run:
         sim._end = None
         self._keep_peaks(float(self.times[0]))
         due = checkpoint.next_time(sim._begun, every)
-        watch = Watch(sim, float(self.times[-1]), self.doubts, going_on=self.options.when_wrong == "go_on")
+        going_on = self.options.when_wrong == "go_on"
+        watches = [Watch(sim, one.of, float(self.times[-1]), one.doubts, going_on=going_on) for one in self.bearings]
         while self.done < self.times.size:
-            look = self.until.next_look(self.done)
+            look = self.bearings[0].until.next_look(self.done)
             chunk = self.times[self.done : min(self.done + CHUNK_RECORDS, look or self.times.size)]
             # a signal may come before the core answers: rows that are filled are those with a finite time
             self.filling = records = np.empty((chunk.size, sim._core.row_length))
@@ -199,36 +274,45 @@ class Run:
                 if peaks.size:
                     sim._core.restore_peaks(peaks)
                 due = checkpoint.next_time(sim.time, every)
-                watch.renew()
+                for watch in watches:
+                    watch.renew()
                 self._write_checkpoint()
-            doubt = watch.look(final=self.done >= self.times.size)
+            doubt = look_at_all(watches, final=self.done >= self.times.size)
             bar.update(min(sim.time, float(self.times[-1])) - float(self.times[0]) - bar.n)
-            if sim.scene.effects.bodies == "rollers" and rows:
-                check_apart(sim, records[:rows])
+            for one in self.bearings if rows else ():
+                if one.of.scene.effects.bodies == "rollers":
+                    check_apart(sim, one.of, one.layout, records[:rows, one.part])
             ended = self._call_back()
             if self.interrupted:
                 raise KeyboardInterrupt
             if doubt is not None:
                 return doubt
-            if self.done < self.times.size and self.kept.is_full():
-                return self.kept.said(sim.time)
-            if rows and self.until.reached(self.done, self._so_far):
+            full = next((one.kept for one in self.bearings if one.kept.is_full()), None)
+            if self.done < self.times.size and full is not None:
+                return full.said(sim.time)
+            if rows and self._is_enough():
                 self.times = self.times[: self.done]
-                self.enough = f"reached {sim._reached:.6g} s, as far as was needed: {self.until.said}"
-                doubt = watch.look(final=True)
+                said = "; ".join(f"{one.of.said}{one.until.said}" for one in self.bearings)
+                self.enough = f"reached {sim._reached:.6g} s, as far as was needed: {said}"
+                doubt = look_at_all(watches, final=True)
                 if doubt is not None:
                     return doubt
             if ended:
                 return f"ended by the callback at {sim.time:.6g} s"
         return None
 
-    def _so_far(self) -> Result:
+    def _is_enough(self) -> bool:
+        """Whether all bearings are known well enough; each is looked at, so that each says what is known."""
+        reached = [one.until.reached(self.done, partial(self._so_far, one)) for one in self.bearings]
+        return all(reached)
+
+    def _so_far(self, bearing: RunningBearing) -> Result:
         """The records up to here."""
         if self.writer is None:
-            return self._from_memory(final_time=self.sim._reached)
+            return self._from_memory(bearing, final_time=self.sim._reached)
         assert self.output is not None
         self.writer.flush()
-        return load(self.output)
+        return load(self.output, bearing=bearing.of.name)
 
     def _call_back(self) -> bool:
         """What the callback answers. It may look at the simulation, but not move it.
@@ -256,25 +340,27 @@ class Run:
             return
         self.done += len(records)
         self.sim._reached = float(self.times[self.done - 1])
-        if self.writer is None:
-            self.kept.append(records)
-        else:
+        if self.writer is not None:
             self.writer.append(records)
+            return
+        for one in self.bearings:
+            one.kept.append(np.ascontiguousarray(records[:, one.part]))
 
     def _write_checkpoint(self) -> None:
         """Write where the run is now; its records are written to the disk first."""
         if self.writer is None or self.output is None:
             return
-        sim = self.sim
+        sim, subject = self.sim, self.sim.subject
+        assert isinstance(subject, Model)
         self.writer.sync()
         found = Checkpoint(
             run_id=self.writer.run_id,
-            scene=sim.scene.to_dict(),
-            model=sim.scene.fingerprint,
+            scene=subject.to_dict(),
+            model=subject.fingerprint,
             options=self.options.to_dict(),
             instruction_set=sim.instruction_set,
             build=checkpoint.build_digest(),
-            motion=checkpoint.digest_of(sim._motion.table),
+            motion=motions_digest(sim),
             start=float(self.times[0]),
             end=float(self.times[-1]),
             time=sim.time,
@@ -284,7 +370,7 @@ class Run:
             stepping_s=self.spent,
             state=sim._core.state(),
             peaks=sim._core.save_peaks(),
-            warnings=list(self.doubts),
+            warnings=[f"{one.of.said}{text}" for one in self.bearings for text in one.doubts],
         )
         checkpoint.write(checkpoint.checkpoint_path(self.output), found)
 
@@ -297,53 +383,43 @@ class Run:
             with contextlib.suppress(FileError):
                 self.writer.close()
 
-    def _meta(self) -> dict[str, Any]:
+    def _meta(self, bearing: RunningBearing) -> dict[str, Any]:
         settings = {name: value for name, value in self.options.to_dict().items() if name not in ("save_groups",)}
-        return {
+        meta: dict[str, Any] = {
             "instruction_set": self.sim.instruction_set,
             "sundials_version": _core.sundials_version(),
             "core_version": _core.version(),
             "settings": settings,
             "kept": keeping.said(self.options.save_every or 0.0, self.options.save_groups),
-            "notes": self.notes,
+            "notes": bearing.notes,
             "accuracy": self.accuracy_note,
         }
+        if bearing.of.seat is not None:
+            names = [one.name for one in self.sim.bearings]
+            meta["assembly"] = {"bearing": bearing.of.name, "bearings": names, "seat": bearing.of.seat.numbers()}
+        return meta
 
-    def _written(self) -> Result:
+    def _written(self, bearing: RunningBearing) -> Result:
         """The result as it is in the file."""
         assert self.output is not None
         assert self.writer is not None
-        result = load(self.output)
+        result = load(self.output, bearing=bearing.of.name)
         if run_id_in(self.output) != self.writer.run_id:
             raise FileError(f"{self.output}: the result file was replaced by another program after the run had ended")
         return result
 
-    def _say_what_is_missing(self) -> None:
-        said = self.until.said or "it was too short for a look"
-        text = (
-            f"the run has reached its end without the confidence that was asked for: {said}. A longer run may reach it"
-        )
-        self.doubts.append(text)
-        warnings.warn(text, RunWarning, stacklevel=4)
-
-    def _finish(self, success: bool, message: str) -> Result:
+    def _finish(self, success: bool, message: str) -> Result | AssemblyResult:
         sim = self.sim
         if success:
             sim._stand_at(float(self.times[-1]))
-            if self.until.wanted and not self.enough:
-                self._say_what_is_missing()
         else:
             # a run that stopped between two records goes on from there
             sim._reached, sim._end = sim._core.time, None
         ended = sim.state
-        row = sim._core.whole_peaks(ended.time)
-        peaks = peak_table.from_row(row, sim._model.peak_layout()) if row.size else {}
+        row, at = sim._core.whole_peaks(ended.time), 0
         sim._core.end_peaks()
-        if (text := dented(peaks)) and not any("(ISO 76)" in doubt for doubt in self.doubts):
-            self.doubts.append(text)
-            warnings.warn(text, RunWarning, stacklevel=4)
+        alone = len(self.bearings) == 1 and not self.bearings[0].of.name
         how: dict[str, Any] = {
-            "peaks": peaks,
             "success": success,
             "message": message,
             "stats": statistics_of(
@@ -357,32 +433,59 @@ class Run:
                 instruction_set=sim.instruction_set,
             ),
             "counters": sim.counters,
-            "warnings": self.doubts,
             "final_time": ended.time,
-            "final_state": ended.vector,
+            "final_state": ended.vector if alone else None,
         }
+        endings = []
+        for one in self.bearings:
+            model = one.of.model
+            own = row[at : at + model.peak_length]
+            peaks = peak_table.from_row(own, model.peak_layout()) if own.size else {}
+            at += model.peak_length
+            if success and one.until.wanted and not self.enough:
+                one.doubt(WITHOUT_CONFIDENCE.format(one.until.said or "it was too short for a look"), 4)
+            if (text := dented(peaks)) and not any("(ISO 76)" in doubt for doubt in one.doubts):
+                one.doubt(text, 4)
+            endings.append({**how, "peaks": peaks, "warnings": one.doubts})
         if self.writer is not None:
             assert self.output is not None
-            self.writer.finish(**how)
+            self.writer.finish(*endings)
             if success:
                 checkpoint.remove(self.output, self.writer.run_id)
-            return self._written()
-        return self._from_memory(**how)
+            results = [self._written(one) for one in self.bearings]
+        else:
+            results = [self._from_memory(one, **how) for one, how in zip(self.bearings, endings, strict=True)]
+        if alone:
+            return results[0]
+        return AssemblyResult(
+            {one.of.name: result for one, result in zip(self.bearings, results, strict=True)}, sim.assembly
+        )
 
-    def _from_memory(self, **how: Any) -> Result:
-        scene = self.sim.scene
-        how |= {"warnings": tuple(self.doubts), "geometry": asdict(scene.bearing.geometry), "meta": self._meta()}
-        return Result(self.kept.source(), RunInfo(scene=scene.to_dict(), **how), scene)
+    def _from_memory(self, bearing: RunningBearing, **how: Any) -> Result:
+        scene = bearing.of.scene
+        how |= {"warnings": tuple(bearing.doubts), "geometry": asdict(scene.bearing.geometry)}
+        how["meta"] = self._meta(bearing)
+        return Result(bearing.kept.source(), RunInfo(scene=scene.to_dict(), **how), scene)
 
 
-def _hand_over(result: Result, error: BaseException) -> None:
+def look_at_all(watches: Sequence[Watch], *, final: bool) -> str | None:
+    """Look at each bearing; gives the first reason why the run should end, or None."""
+    return next((reason for reason in [watch.look(final=final) for watch in watches] if reason is not None), None)
+
+
+def motions_digest(sim: Simulation) -> str:
+    """Digest of what is prescribed for the bearings."""
+    return checkpoint.digest_of(np.concatenate([one.motion.table.ravel() for one in sim.bearings]))
+
+
+def _hand_over(result: Result | AssemblyResult, error: BaseException) -> None:
     """Give an error that ends a run the records so far, which nobody could get at otherwise."""
     if hasattr(error, "result"):
         return
     with contextlib.suppress(AttributeError, TypeError):
         vars(error)["result"] = result
         error.add_note(
-            f"The run ended by this; its {len(result)} records so far are in the error's attribute 'result'."
+            f"The run ended by this; its {result.time.size} records so far are in the error's attribute 'result'."
         )
 
 

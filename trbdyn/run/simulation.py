@@ -5,48 +5,47 @@ from __future__ import annotations
 import contextlib
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NoReturn, Self
+from typing import Any, Generic, NoReturn, Self, TypeVar, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
-from trbdyn.base.expected import expect
 from trbdyn.base.own_files import output_path
 from trbdyn.base.shown import Displayed, Shown, field_rows
-from trbdyn.base.validation import number_of
+from trbdyn.base.validation import Model, number_of
 from trbdyn.errors import MISSING, InputError, Problem, StepError
+from trbdyn.model.assembly import Assembly, assembly_of
 from trbdyn.model.motion import MAX_TIME
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import State as State
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.estimate import Estimate, estimate
 from trbdyn.run.keeping import groups_of, kept_by_default
 from trbdyn.run.options import Group, RunOptions
 from trbdyn.run.running import Callback, Run, output_times
-from trbdyn.run.system import System, system_of
+from trbdyn.run.system import system_of
 from trbdyn.run.watch import Account
-from trbdyn.statics.cage_start import pressed_rollers
-from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium
-from trbdyn.statics.plausible import UnusualInput, unusual
-from trbdyn.statics.ring_motion import placed_again, ring_motion
-from trbdyn.statics.start import start_state
-from trbdyn.statics.state_view import StateView
+from trbdyn.statics.plausible import UnusualInput
+from trbdyn.statics.seat import SeatedBearing, Seating
+from trbdyn.statics.seating import seated
 
 Array = NDArray[np.float64]
+R = TypeVar("R", Result, AssemblyResult)
 
 
-class Simulation(Displayed):
-    """Steps a scene.
+class Simulation(Displayed, Generic[R]):
+    """Steps a scene, or bearings on one shaft.
 
     Parameters
     ----------
-    scene : Scene
-        What is simulated.
+    subject : Scene, Assembly or Seating
+        What is simulated. An assembly begins in its equilibrium at speed; a seating says where the shaft stands.
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances.
     instruction_set : str
@@ -59,60 +58,122 @@ class Simulation(Displayed):
     Raises
     ------
     InputError
-        If the scene or an option cannot be used.
+        If the subject or an option cannot be used.
     LoadError
-        If the bearing cannot carry the load.
+        If a bearing cannot carry the load.
 
     Warns
     -----
     UnusualInput
         Where numbers are allowed but can hardly be meant; the texts are kept in `warnings` and in the result's notes.
+
+    Notes
+    -----
+    docs/theory/motion.md#bearings-on-one-shaft has the equations of several bearings. What this class gives of one bearing it
+    gives of several by their names.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    >>> pair = trb.Assembly.pair(trb.cases.rig_30310(), "back to back", spread=0.15, end_play=-40e-6, shaft=shaft, speed_rpm=3000)
+    >>> result = trb.Simulation(pair).run(revolutions=0.05)
+    >>> sorted(result), result.success
+    (['left', 'right'], True)
     """
 
-    def __init__(self, scene: Scene, *, accuracy: str = "standard", instruction_set: str = "", **options: Any) -> None:
-        expect("scene", scene, Scene)
-        self.scene = scene
+    @overload
+    def __init__(
+        self: Simulation[Result], subject: Scene, *, accuracy: str = ..., instruction_set: str = ..., **options: Any
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Simulation[AssemblyResult],
+        subject: Assembly | Seating,
+        *,
+        accuracy: str = ...,
+        instruction_set: str = ...,
+        **options: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self, subject: Scene | Assembly, *, accuracy: str = ..., instruction_set: str = ..., **options: Any
+    ) -> None: ...
+
+    def __init__(
+        self,
+        subject: Scene | Assembly | Seating,
+        *,
+        accuracy: str = "standard",
+        instruction_set: str = "",
+        **options: Any,
+    ) -> None:
         self.options = RunOptions(accuracy=accuracy, **options)
-        self._model = build_model(scene, instruction_set)
-        self._motion, self.equilibrium = ring_motion(self._model, scene)
-        vector = start_state(self._model, scene, self._motion, self.equilibrium)
-        pressed = pressed_rollers(self._model, scene, self._motion, vector)
-        again = placed_again(self._model, scene, self._motion)
-        self.warnings = (*unusual(scene, self.equilibrium), *(text for text in (pressed, again) if text))
+        self.subject = subject
+        self._seated = seated(subject, instruction_set)
+        self.bearings = self._seated.bearings
+        self.warnings = tuple(f"{one.said}{text}" for one in self.bearings for text in one.unusual)
         for text in self.warnings:
             warnings.warn(text, UnusualInput, stacklevel=2)
         self._running = False
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
-        self._account = None
-        self._begin(scene.start.time, vector)
-        self._reached = scene.start.time
+        self._accounts: dict[str, Account] = {}
+        self._begin(self.scene.start.time, self._seated.vector)
+        self._reached = self.scene.start.time
 
     def __repr__(self) -> str:
-        return f"<Simulation: {self.scene._title()}; at {self.time:g} s, accuracy {self.options.accuracy!r}>"
+        return f"<Simulation: {self._title}; at {self.time:g} s, accuracy {self.options.accuracy!r}>"
 
     def _shown(self) -> Shown:
         rows: list[tuple[str, ...]] = [("time", f"{self.time:g}", "s", "bearing time that it has reached")]
         rows += [row for row in field_rows(self.options) if row[0] in self.options.settings() or row[0] == "accuracy"]
-        scene = replace(self.scene._shown(), title=f"scene: {self.scene._title()}")
-        return Shown(f"Simulation: {self.scene._title()}", tuple(rows), notes=self.warnings, parts=(scene,))
+        scenes = tuple(
+            replace(one.scene._shown(), title=f"{one.name or 'scene'}: {one.scene._title()}") for one in self.bearings
+        )
+        return Shown(f"Simulation: {self._title}", tuple(rows), notes=self.warnings, parts=scenes)
 
-    equilibrium: Equilibrium
+    @property
+    def _title(self) -> str:
+        return ", ".join(f"{one.said}{one.scene._title()}" for one in self.bearings)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene; of several bearings that of the first one, which has the speed of the shaft."""
+        return self.bearings[0].scene
+
+    @property
+    def assembly(self) -> Assembly | None:
+        """What several bearings sit on; None for one bearing, and where seats were given in place of an assembly."""
+        return assembly_of(self.subject)
+
+    @property
+    def equilibrium(self) -> Equilibrium:
+        """Rollers and ring at the start; of several bearings those of the first one."""
+        return self.bearings[0].equilibrium
+
+    def _of_each(self, value: Callable[[SeatedBearing], Any]) -> Any:
+        """A value of one bearing, or of several by their names."""
+        alone = not self.bearings[0].name
+        return value(self.bearings[0]) if alone else {one.name: value(one) for one in self.bearings}
+
     warnings: tuple[str, ...]
     _end: State | None
     """Where a run has ended, inside the integrator's last step; None where the present state is the end of that
     step.
     """
-    _account: Account | None
-    """What the watch over its runs has seen since it began, or since a state was set."""
+    _accounts: dict[str, Account]
+    """What the watch over its runs has seen of each bearing since it began, or since a state was set."""
 
     def _open(self, time: float, vector: Array) -> _core.Simulation:
         if not abs(time) <= MAX_TIME:
             raise InputError.of("time", time, f"must be from {-MAX_TIME:g} to {MAX_TIME:g} (s)")
         first = self.scene.start.time
-        if time < first and len(self._motion.table) > 1:
+        if time < first and self._seated.moves:
             raise InputError.of("time", time, f"must be >= {first:g}, the start: histories are known from there on (s)")
-        return self._motion.open(self._model, time, vector, self.options.settings())
+        return self._seated.open(time, vector, self.options.settings())
 
     def _begin(self, time: float, vector: Array) -> None:
         """Make a new integrator, without any history: as in a new process."""
@@ -154,7 +215,7 @@ class Simulation(Displayed):
     @property
     def instruction_set(self) -> str:
         """Kernel variant in use."""
-        return self._model.instruction_set
+        return self.bearings[0].model.instruction_set
 
     @property
     def state(self) -> State:
@@ -164,16 +225,19 @@ class Simulation(Displayed):
         else:
             time, vector = self._core.time, self._core.state()
         angle = self.scene.start_shaft_angle + self.scene.shaft_turn(time)
-        return State(time, vector, angle, self._motion.displacement(time))
+        return State(time, vector, angle, self.bearings[0].motion.displacement(time))
 
-    def view(self, vector: Array | None = None) -> StateView:
-        """Parts of a state vector by name; of a copy of the present one by default."""
-        return StateView(self._model.state_layout(), self.state.vector if vector is None else vector)
+    def view(self, vector: Array | None = None) -> Any:
+        """Parts of a state vector by name (`StateView`); of a copy of the present one by default. Those of the first bearing's
+        inner ring are the shaft's.
+        """
+        given = self.state.vector if vector is None else vector
+        return self._of_each(lambda one: one.view(given))
 
     @property
-    def system(self) -> System:
-        """The bodies and the pairs that are simulated, and those that the effects leave out; prints as a table."""
-        return system_of(self._model)
+    def system(self) -> Any:
+        """The `System`: the bodies and the pairs that are simulated, and those that the effects leave out; prints as a table."""
+        return self._of_each(lambda one: system_of(one.model))
 
     def set_state(self, vector: ArrayLike | State, time: float | None = None) -> None:
         """Go on from another state; the integrator is started again.
@@ -199,14 +263,14 @@ class Simulation(Displayed):
         core = self._open(when, given)
         self._count()
         self._core, self._begun, self._reached, self._end = core, when, when, None
-        self._account = None
+        self._accounts = {}
 
     def copy(self) -> Self:
         """An independent simulation at the same state; its integrator starts there."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other._running = False
-        other._totals, other._counted, other._account = {}, {}, None
+        other._totals, other._counted, other._accounts = {}, {}, {}
         present = self.state
         other._begin(present.time, present.vector)
         other._reached = present.time
@@ -235,9 +299,9 @@ class Simulation(Displayed):
             If it is called from the callback of a run.
         """
         self._check_not_running("restart")
-        account = self._account
+        accounts = self._accounts
         self.set_state(self.state)
-        self._account = account
+        self._accounts = accounts
 
     def step(self) -> float:
         """One step of the integrator, from the end of its last one; gives the new time (s).
@@ -269,13 +333,17 @@ class Simulation(Displayed):
         """Rates of the state, shape (n_state,); at the present state by default."""
         return self._core.derivative(*self._place(vector, time))
 
-    def record(self, vector: ArrayLike | None = None, time: float | None = None) -> dict[str, Array]:
-        """Every recorded quantity by name; at the present state by default."""
+    def record(self, vector: ArrayLike | None = None, time: float | None = None) -> Any:
+        """Every recorded quantity by name, a dict of arrays; at the present state by default."""
         row = self._core.observe(*self._place(vector, time))
-        layout = self._model.record_layout()
-        return {name: row[offset : offset + math.prod(shape)].reshape(shape) for name, offset, shape in layout}
+        return self._of_each(
+            lambda one: {
+                name: row[offset : offset + math.prod(shape)].reshape(shape)
+                for name, offset, shape in one.record_layout
+            }
+        )
 
-    def contacts(self, vector: ArrayLike | None = None, time: float | None = None) -> dict[str, Array]:
+    def contacts(self, vector: ArrayLike | None = None, time: float | None = None) -> Any:
         """Every intermediate quantity of every contact; at the present state by default.
 
         Returns
@@ -288,16 +356,17 @@ class Simulation(Displayed):
             shape (), of the cage on a land; ``hub_cage_force`` and other wrenches on cage, inner and outer ring by pairs
             without a roller, shape (3,), in axes that turn with the kinematic cage angle; all SI.
         """
-        return self._core.contacts(*self._place(vector, time))
+        when, given = self._place(vector, time)
+        return self._of_each(lambda one: self._core.contacts(when, given, one.number))
 
     def _place(self, vector: ArrayLike | None, time: float | None) -> tuple[float, Array]:
         when = self.time if time is None else number_of("time", time)
         if vector is None:
             return when, self.state.vector
         given = _numbers(vector)
-        if given.shape != (self._model.n_state,):
+        if given.shape != self._seated.vector.shape:
             raise InputError.of(
-                "state", f"an array of shape {given.shape}", f"must have the shape ({self._model.n_state},)"
+                "state", f"an array of shape {given.shape}", f"must have the shape {self._seated.vector.shape}"
             )
         return when, given
 
@@ -324,7 +393,7 @@ class Simulation(Displayed):
         callback: Callback | None = None,
         checkpoint_every: float | None = None,
         overwrite: bool = False,
-    ) -> Result:
+    ) -> R:
         """Step on and keep records; output times never change the steps.
 
         Parameters
@@ -359,8 +428,9 @@ class Simulation(Displayed):
 
         Returns
         -------
-        Result
-            Ended by Ctrl-C or the callback it has ``success`` False and says so in ``message``.
+        Result or AssemblyResult
+            Of one bearing, or of several by their names. Ended by Ctrl-C or the callback it has ``success`` False and says so in
+            ``message``.
 
         Raises
         ------
@@ -385,14 +455,19 @@ class Simulation(Displayed):
             self.scene.turning_rpm,
             save_every,
             save_groups,
-            optional=groups_of([self.scene]),
+            optional=groups_of(one.scene for one in self.bearings),
         )
         options = options.replace(**kept)
+        if options.checkpoint_every is not None and not isinstance(self.subject, Model):
+            limit = (
+                "must not be given where seats are given in place of an assembly: a checkpoint describes an assembly"
+            )
+            raise InputError.of(("run", "checkpoint_every"), options.checkpoint_every, limit)
         times = output_times(self._reached, end, kept["save_every"])
         run = Run(self, options, times, callback)
         if path is not None:
             run.write_to(path, overwrite=overwrite)
-        return run.go(progress=progress)
+        return cast(R, run.go(progress=progress))
 
 
 _OTHER_FORMATS = frozenset(

@@ -25,6 +25,7 @@ from trbdyn.run.options import ACCURACY, RunOptions
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
+    from trbdyn.statics.seat import SeatedBearing
 
 Array = NDArray[np.float64]
 
@@ -150,13 +151,17 @@ def tighter(options: RunOptions) -> RunOptions:
     return options.replace(accuracy="reference", **values)
 
 
-def probe(sim: Simulation, time: float, vector: Array, most_steps: int, length: float = LENGTH) -> Probe | None:
+def probe(
+    sim: Simulation, bearing: SeatedBearing, time: float, vector: Array, most_steps: int, length: float = LENGTH
+) -> Probe | None:
     """Repeat a piece of a run with its own tolerances and with tighter ones, which leaves the simulation as it is.
 
     Parameters
     ----------
     sim : Simulation
         Whose run it is.
+    bearing : SeatedBearing
+        Whose losses and loads are compared.
     time, vector : float, ndarray
         Where the piece begins (s), and the state there.
     most_steps : int
@@ -177,13 +182,13 @@ def probe(sim: Simulation, time: float, vector: Array, most_steps: int, length: 
     own, _ = _run(sim, sim.options, times[:rows], vector, 4 * most_steps)
     if len(own) < rows:
         return None
-    return Probe(time, float(times[rows - 1]), *_compared(sim, times[:rows], own, fine), steps)
+    return Probe(time, float(times[rows - 1]), *_compared(bearing, times[:rows], own, fine), steps)
 
 
 def _run(sim: Simulation, options: RunOptions, times: Array, vector: Array, most_steps: int) -> tuple[Array, int]:
     """The records that were reached, and the steps that it took."""
     try:
-        core = sim._motion.open(sim._model, float(times[0]), vector, options.settings())
+        core = sim._seated.open(float(times[0]), vector, options.settings())
         rows = np.empty((times.size, core.row_length))
         try:
             reached, steps = core.run(times, rows, most_steps)
@@ -194,10 +199,10 @@ def _run(sim: Simulation, options: RunOptions, times: Array, vector: Array, most
     return rows[:reached], steps
 
 
-def _compared(sim: Simulation, times: Array, own: Array, fine: Array) -> tuple[Difference, Difference]:
+def _compared(bearing: SeatedBearing, times: Array, own: Array, fine: Array) -> tuple[Difference, Difference]:
     """Differences of loss and load over the second half of a piece: the first one is where vibrations grow to their size."""
     losses, load = [], slice(0, 0)
-    for name, at, shape in sim._model.record_layout():
+    for name, at, shape in bearing.record_layout:
         if name.startswith("loss_"):
             losses.append(at)
         if name == "outer_load":

@@ -26,6 +26,7 @@ from trbdyn.run.vibrations import Probe
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
+    from trbdyn.statics.seat import SeatedBearing
 
 Array = NDArray[np.float64]
 
@@ -121,29 +122,29 @@ class Watch:
     ----------
     sim : Simulation
         The simulation that runs; what was seen in its earlier runs is kept with it.
+    bearing : SeatedBearing
+        The bearing that is watched.
     end : float
         When the run ends (s).
     found : list of str
         Where it writes what it finds, in sentences.
     going_on : bool
         Whether a run that is found wrong goes on all the same.
-    of : str
-        Name of the bearing, where several are simulated together: what is shown on the screen begins with it.
     """
 
-    def __init__(self, sim: Simulation, end: float, found: list[str], *, going_on: bool = False, of: str = "") -> None:
-        self._sim = sim
+    def __init__(
+        self, sim: Simulation, bearing: SeatedBearing, end: float, found: list[str], *, going_on: bool = False
+    ) -> None:
+        self._sim, self._bearing = sim, bearing
         self._found = found
         self._length = max(end - sim._core.time, 0.0) / WINDOWS
         self._going_on = going_on
-        self._of = f"{of}: " if of else ""
         self._suppressed = 0
         self._noted: set[str] = set()
         now, time = self._energies(), sim._core.time
-        account = getattr(sim, "_account", None)
-        if account is None:
-            account = sim._account = Account(Span(time, now, state=sim._core.state()), small_since=time)
-        self._account: Account = account
+        if bearing.name not in sim._accounts:
+            sim._accounts[bearing.name] = Account(Span(time, now, state=sim._core.state()), small_since=time)
+        self._account = sim._accounts[bearing.name]
         self._last = now
         self._run = Span(time, now, state=sim._core.state())
         self._window = Span(time, now, state=sim._core.state())
@@ -158,8 +159,8 @@ class Watch:
         final : bool
             Whether the run has reached its end.
         """
-        reason = self._look_at_steps() or self._look_at_ring()
         now, time = self._energies(), self._sim._core.time
+        reason = self._look_at_steps() or self._look_at_ring() or self._look_at_shaft()
         exchanged = sum(0.5 * abs(now[name] - self._last[name]) for name in now)
         for span in (self._window, self._vibrating, self._run, self._account.whole):
             span.add(exchanged, now["elastic_energy"])
@@ -191,7 +192,9 @@ class Watch:
         core = self._sim._core
         row = core.observe(core.time, core.state())
         out: dict[str, float] = {}
-        for name, offset, shape in self._sim._model.record_layout():
+        for name, offset, shape in self._bearing.record_layout:
+            if name == "ring_position":
+                self._moved = float(np.abs(row[offset : offset + 3]).max())
             if shape == () and (name.startswith(("work_", "loss_")) or name in ("kinetic_energy", "elastic_energy")):
                 out[name] = float(row[offset])
         return out
@@ -248,7 +251,7 @@ class Watch:
             return
         if time - whole.since < vibrations.SHORTEST or most < vibrations.LEAST_STEPS:
             return
-        probe = vibrations.probe(self._sim, whole.since, whole.state, most, length=time - whole.since)
+        probe = vibrations.probe(self._sim, self._bearing, whole.since, whole.state, most, length=time - whole.since)
         account.probe_steps += most if probe is None else probe.steps
         if probe is not None and not probe.notable:
             return
@@ -279,7 +282,7 @@ class Watch:
         size, span, share = account.suspect
         most = max(vibrations.STEPS, int(vibrations.STEPS_SHARE * self._sim.statistics["steps"])) - account.probe_steps
         if size > account.probed_size and most >= vibrations.LEAST_STEPS and span.state is not None:
-            account.probed = vibrations.probe(self._sim, span.since, span.state, most)
+            account.probed = vibrations.probe(self._sim, self._bearing, span.since, span.state, most)
             account.probe_steps += account.probed.steps if account.probed is not None else most
             account.probed_size = size
         damped = self._damped(now)
@@ -340,12 +343,12 @@ class Watch:
 
     def _look_at_ring(self) -> str | None:
         """A free ring that nothing holds any more leaves its bearing: what follows means nothing."""
-        sim = self._sim
-        free = {"inner": sim.scene.ring_body, "outer": sim.scene.housing}
+        sim, scene = self._sim, self._bearing.scene
+        free = {"inner": scene.ring_body, "outer": scene.housing}
         rings = [ring for ring, body in free.items() if body is not None]
         if not rings:
             return None
-        state, diameter = sim.view(sim._core.state()), sim.scene.bearing.roller.diameter
+        state, diameter = self._bearing.view(sim._core.state()), scene.bearing.roller.diameter
         moved, ring = max((abs(float(state[f"{ring}_ring_{name}"])), ring) for ring in rings for name in "xyz")
         if not moved > RING_LOOSE * diameter:
             return None
@@ -360,6 +363,15 @@ class Watch:
         body = "ring_body" if ring == "inner" else "housing"
         return f"ended: {text}. Look for an axial load that holds it, a support of {body}, or effects.back_rib"
 
+    def _look_at_shaft(self) -> str | None:
+        """The same of a ring on a shaft with other bearings."""
+        if self._bearing.seat is None or not self._moved > RING_GONE * self._bearing.scene.bearing.roller.diameter:
+            return None
+        text = f"the ring stands {1e3 * self._moved:.3g} mm from its place: nothing holds the shaft there"
+        if "ring" not in self._noted:
+            self._say(text, "ring")
+        return f"ended: {self._bearing.said}{text}"
+
     def _say(self, text: str, kind: str) -> None:
         """Keep a warning with the result, and show the first of its kind on the screen."""
         if len(self._found) < MOST_WARNINGS:
@@ -370,7 +382,7 @@ class Watch:
         self._noted.add(kind)
         if kind not in self._account.said:
             self._account.said.add(kind)
-            warnings.warn(self._of + text, RunWarning, stacklevel=2)
+            warnings.warn(self._bearing.said + text, RunWarning, stacklevel=2)
 
 
 def _missing(then: dict[str, float], now: dict[str, float]) -> tuple[float, float, float]:

@@ -1,4 +1,4 @@
-"""Bearings that sit on one shaft: where their rings stand, and what the core takes of them.
+"""One bearing alone, or bearings that sit on one shaft: where their rings stand, and what the core takes of them.
 
 The shaft has axes of its own (docs/theory/motion.md#bearings-on-one-shaft): z along it, x and y across. A bearing whose rollers'
 large ends point along the shaft's z has the same axes. One that sits the other way round has axes that are turned by half a turn
@@ -36,11 +36,12 @@ from trbdyn.statics.core_model import build_model, model_of
 from trbdyn.statics.equilibrium import Equilibrium
 from trbdyn.statics.free_ring import axis_of, put_axis, turn_of
 from trbdyn.statics.plausible import unusual
-from trbdyn.statics.ring_motion import RingMotion, housing_hold, ring_motion
+from trbdyn.statics.ring_motion import RingMotion, housing_hold, placed_again, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
 
 Array = NDArray[np.float64]
+Layout = list[tuple[str, int, tuple[int, ...]]]
 
 _ALONG = np.array([0.0, 0.0, 1.0])
 
@@ -135,41 +136,113 @@ class Seating:
 
 
 @dataclass(frozen=True)
-class Seated:
-    """What the core takes of bearings on one shaft.
+class SeatedBearing:
+    """What the core takes of a bearing.
 
     Attributes
     ----------
-    models : tuple of _core.Model
-        A model of each bearing; the first has the shaft.
-    motions : tuple of RingMotion
-        What is prescribed for each.
-    equilibria : tuple of Equilibrium
-        Rollers and ring of each at the start.
-    layouts : list
-        Where the parts of each bearing's state lie in the whole, as of `_core.state_layouts`.
-    vector : ndarray
-        The state at the start.
-    unusual : tuple of tuple of str
-        What can hardly be meant in each bearing's scene.
+    name : str
+        Its name; none where it is simulated alone.
+    number : int
+        Its place among the bearings.
+    scene : Scene
+        The bearing, its oil, effects and start, in its own axes.
+    model : _core.Model
+        Its model; the first bearing of a shaft has the shaft.
+    motion : RingMotion
+        What is prescribed.
+    equilibrium : Equilibrium
+        Rollers and ring at the start.
+    layout : list
+        Where the parts of its state lie in the state of the whole.
+    unusual : tuple of str
+        What can hardly be meant in its scene.
+    first : int
+        Where its quantities begin in a row of the core, without peaks.
+    seat : Seat, optional
+        Where it sits on a shaft.
     """
 
-    models: tuple[_core.Model, ...]
-    motions: tuple[RingMotion, ...]
-    equilibria: tuple[Equilibrium, ...]
-    layouts: list[list[tuple[str, int, tuple[int, ...]]]]
+    name: str
+    number: int
+    scene: Scene
+    model: _core.Model
+    motion: RingMotion
+    equilibrium: Equilibrium
+    layout: Layout
+    unusual: tuple[str, ...]
+    first: int = 0
+    seat: Seat | None = None
+
+    @property
+    def said(self) -> str:
+        """Its name before a sentence that concerns it."""
+        return f"{self.name}: " if self.name else ""
+
+    @property
+    def record_layout(self) -> Layout:
+        """Where its quantities lie in a row of the core, without peaks."""
+        return [(name, at + self.first, shape) for name, at, shape in self.model.record_layout()]
+
+    def view(self, vector: Array) -> StateView:
+        """Its part of the state of the whole, by name."""
+        return StateView(self.layout, vector)
+
+
+@dataclass(frozen=True)
+class Seated:
+    """What the core takes of one bearing, or of several on one shaft.
+
+    Attributes
+    ----------
+    bearings : tuple of SeatedBearing
+        The bearings.
+    vector : ndarray
+        The state at the start.
+    """
+
+    bearings: tuple[SeatedBearing, ...]
     vector: Array
-    unusual: tuple[tuple[str, ...], ...]
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything that is prescribed changes in time."""
+        return any(len(one.motion.table) > 1 for one in self.bearings)
 
     def open(self, time: float, vector: Array, settings: dict[str, float | str]) -> _core.Simulation:
-        """The core's simulation from a time (s) and state on."""
-        return _core.Simulation(
-            self.models, tuple(motion.prescribed for motion in self.motions), time, vector, settings
-        )
+        """The core's simulation from a time (s) and state on.
 
-    def view(self, bearing: int, vector: Array) -> StateView:
-        """A bearing's part of a state by name."""
-        return StateView(self.layouts[bearing], vector)
+        Raises
+        ------
+        InputError
+            If the core cannot use the state, or times so far apart.
+        """
+        models = tuple(one.model for one in self.bearings)
+        try:
+            return _core.Simulation(
+                models, tuple(one.motion.prescribed for one in self.bearings), time, vector, settings
+            )
+        except ValueError as error:
+            raise InputError.of("state", "given", str(error)) from None
+
+
+def seat_alone(scene: Scene, instruction_set: str = "") -> Seated:
+    """What the core takes of one bearing: its ring is held, follows its load, or is free.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not fit together.
+    LoadError
+        If the bearing cannot carry the load.
+    """
+    model = build_model(scene, instruction_set)
+    motion, equilibrium = ring_motion(model, scene)
+    vector = start_state(model, scene, motion, equilibrium)
+    said = (pressed_rollers(model, scene, motion, vector), placed_again(model, scene, motion))
+    unusual_there = (*unusual(scene, equilibrium), *(text for text in said if text))
+    bearing = SeatedBearing("", 0, scene, model, motion, equilibrium, model.state_layout(), unusual_there)
+    return Seated((bearing,), vector)
 
 
 def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
@@ -197,18 +270,24 @@ def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
     free = 2.0 if "torque" in loads else 1.0
     models = tuple(_model(seat, body, number, free, instruction_set) for number, seat in enumerate(placed))
     size, layouts = _core.state_layouts(models)
-    vector, said = np.zeros(size), []
-    for model, seat, (motion, equilibrium), layout in zip(held, placed, found, layouts, strict=True):
-        alone = start_state(model, seat.scene, motion, equilibrium)
-        pressed = pressed_rollers(model, seat.scene, motion, alone)
-        said.append((*unusual(seat.scene, equilibrium), *((pressed,) if pressed else ())))
-        own, whole = StateView(model.state_layout(), alone), StateView(layout, vector)
-        for name in own.names:
-            if name != "quadratures":
-                whole[name] = own[name]
+    vector, bearings, first = np.zeros(size), [], 0
+    for number, name in enumerate(seating.seats):
+        seat, (alone_motion, equilibrium), layout = placed[number], found[number], layouts[number]
+        alone = start_state(held[number], seat.scene, alone_motion, equilibrium)
+        pressed = pressed_rollers(held[number], seat.scene, alone_motion, alone)
+        said = (*unusual(seat.scene, equilibrium), *((pressed,) if pressed else ()))
+        own, whole = StateView(held[number].state_layout(), alone), StateView(layout, vector)
+        for entry in own.names:
+            if entry != "quadratures":
+                whole[entry] = own[entry]
+        bearings.append(
+            SeatedBearing(
+                name, number, seat.scene, models[number], motions[number], equilibrium, layout, said, first, seat
+            )
+        )
+        first += models[number].record_length
     put_axis(StateView(layouts[0], vector), shaft[:3], axis_of(shaft[3:]), 0.0)
-    equilibria = tuple(equilibrium for _, equilibrium in found)
-    return Seated(models, tuple(motions), equilibria, layouts, vector, tuple(said))
+    return Seated(tuple(bearings), vector)
 
 
 def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, Load]) -> None:

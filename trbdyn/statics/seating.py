@@ -1,4 +1,4 @@
-"""How the bearings of an assembly sit on its shaft when a run begins: in the equilibrium at speed.
+"""What the core takes of a subject. The bearings of an assembly begin in the equilibrium at speed.
 
 The core has the coordinates of the shaft in the axes of the first bearing (`trbdyn.statics.seat`). Where that one sits the other
 way round, all that belongs to the shaft is turned by half a turn about x.
@@ -6,19 +6,48 @@ way round, all that belongs to the shaft is turned by half a turn about x.
 
 from __future__ import annotations
 
+from functools import singledispatch
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.expected import expect
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.flatten import Load
 from trbdyn.model.motion import History
 from trbdyn.model.ring_body import RingBody
+from trbdyn.model.scene import Scene
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
-from trbdyn.statics.seat import Seat, Seating
+from trbdyn.statics.seat import Seat, Seated, Seating, seat_all, seat_alone
 from trbdyn.statics.shaft_balance import axis_of, turns_of
 
 Array = NDArray[np.float64]
 Parts = list[tuple[float, float | History]]
+
+
+@singledispatch
+def seated(subject: Any, instruction_set: str = "") -> Seated:
+    """What the core takes of a scene, of an assembly in its equilibrium, or of a seating.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not fit together.
+    LoadError
+        If bearings cannot carry the load.
+    """
+    expect("scene", subject, Scene, Assembly)
+    raise AssertionError
+
+
+seated.register(Scene, seat_alone)
+seated.register(Seating, seat_all)
+
+
+@seated.register(Assembly)
+def _of_assembly(assembly: Assembly, instruction_set: str = "") -> Seated:
+    return seat_all(seating_of(assembly), instruction_set)
 
 
 def seating_of(assembly: Assembly) -> Seating:
