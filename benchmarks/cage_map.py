@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     }
     print(found)
     if not options.quick:
-        found.picture(common.HERE / "pictures" / "cage_map.png")
+        found.picture(common.HERE / "pictures" / "cage_map.png", overwrite=True)
         plt.close("all")
     words = [word for word in str(found).splitlines() if word.strip()]
     report.readme = "```\n" + "\n".join(words) + "\n```\n\n" + _summary(report)

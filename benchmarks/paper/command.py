@@ -24,9 +24,8 @@ from trbdyn.base.own_files import folder_path
 from trbdyn.cli.outcome import DONE, FAILED, Parser, let_any_name_be_printed, run_command
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.motion import MAX_TIME
-from trbdyn.results.summary import clean
+from trbdyn.results.summary import clean, write_json
 from trbdyn.study.executors import execute
-from trbdyn.study.index import write_json
 from trbdyn.study.work import said
 
 SCHEMA: Final = "trbdyn-paper-1"
@@ -234,7 +233,7 @@ def report(runs: Runs, folder: Path, plan: Plan, failures: dict[str, str], early
         "statements": [entry.to_dict() for entry in judged],
         "statements_from_half_a_second_to_one": [entry.to_dict() for entry in then],
     }
-    write_json(folder / NUMBERS, json.loads(json.dumps(clean(values))))
+    write_json(json.loads(json.dumps(clean(values))), folder / NUMBERS, overwrite=True)
     try:
         (folder / TABLE).write_text(table, encoding="utf-8")
     except OSError as error:

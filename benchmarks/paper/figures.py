@@ -480,5 +480,5 @@ def draw_all(runs: Runs, folder: Path, limits: MovableLimits | None = None) -> l
     written = []
     for make in makers:
         for name, figure in make(runs).items():
-            written.append(plot.save(figure, folder / f"{name}.png"))
+            written.append(plot.save(figure, folder / f"{name}.png", overwrite=True))
     return written

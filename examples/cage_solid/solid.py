@@ -227,6 +227,7 @@ def main() -> None:
     options.add_argument("--modes", type=int, default=20)
     options.add_argument("--material", default="steel", help="a maker of trb.Material")
     options.add_argument("--output", default="solid_modes.h5")
+    options.add_argument("--overwrite", action="store_true", help="replace the file if it is there")
     given = options.parse_args()
     if shutil.which("ccx") is None:
         sys.exit("CalculiX is not installed: apt-get install calculix-ccx")
@@ -263,7 +264,7 @@ def main() -> None:
         print(
             f"{k + 1:4} {solid.frequency[k]:10.1f} {beams.frequency[j]:10.1f} {100 * ratio:+10.1f} %   {likeness[j]:.3f}"
         )
-    print(solid.save(given.output))
+    print(solid.save(given.output, overwrite=given.overwrite))
 
 
 if __name__ == "__main__":

@@ -119,7 +119,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     patch.setattr(runner, "execute", lambda work, tasks, executor, workers: execute(work, tasks, "serial", workers))
     # drawing has tests of its own, and takes seconds each time
     patch.setattr(plot, "PICTURES", {"tilt": (lambda result: plt.figure(), ("cage",))})
-    patch.setattr(Figure, "savefig", lambda self, path, **how: Path(path).write_bytes(b""))
+    patch.setattr(Figure, "savefig", lambda self, picture, **how: picture.write(b""))
     patch.setattr(animation, "animate", lambda result: FuncAnimation(plt.figure(), lambda frame: [], frames=1))
     patch.setattr(FuncAnimation, "save", lambda self, path, **how: Path(path).write_bytes(b""))
     if paper is not None:

@@ -360,7 +360,7 @@ def test_pictures_need_no_later_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_
     monkeypatch.setattr(Axes, "get_figure", lambda self: self.figure)
     with pytest.raises(TypeError):
         picture.get_figure(root=True)
-    monkeypatch.setattr(picture.figure, "savefig", lambda path, dpi: Path(path).touch())
+    monkeypatch.setattr(picture.figure, "savefig", lambda target, **how: target.write(b"x"))
     assert plot.save(picture, tmp_path / "tilt.png").is_file()
 
 

@@ -249,7 +249,7 @@ def test_what_does_not_go_together_is_refused(tmp_path: Path) -> None:
     known = scene(trb.ElasticCage(n_modes=4, file=str(path)))
     assert Scene.from_json(known.to_json()) == known
     Simulation(known)
-    CageModes.of_frame(BEARING, 5).save(path)
+    CageModes.of_frame(BEARING, 5).save(path, overwrite=True)
     _modes.cache_clear()
     with pytest.raises(InputError, match="which has changed since"):
         Simulation(known)

@@ -244,7 +244,9 @@ def test_commands(command: str, root: Path) -> None:
 
 def forget(root: Path) -> None:
     """Results of commands before: a new run does not replace them."""
-    for place in (*root.glob("*.h5"), *root.glob("*.checkpoint*")):
+    for place in (
+        place for kind in ("*.h5", "*.checkpoint*", "*.png", "*.html", "*.json") for place in root.glob(kind)
+    ):
         place.unlink()
 
 

@@ -12,6 +12,7 @@ import os
 import re
 import stat
 import uuid
+from collections.abc import Collection, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -81,8 +82,15 @@ def _is_encodable(text: str) -> bool:
     return True
 
 
-def output_path(value: object, *, overwrite: bool, field: str = "output") -> Path:
-    """Where a result shall be written. A symbolic link is followed: its target is written.
+def output_path(
+    value: object,
+    *,
+    overwrite: bool,
+    field: str = "output",
+    endings: Collection[str] = (),
+    reads: Iterable[str | os.PathLike[str]] = (),
+) -> Path:
+    """Where a file shall be written. A symbolic link is followed: its target is written.
 
     Parameters
     ----------
@@ -92,24 +100,35 @@ def output_path(value: object, *, overwrite: bool, field: str = "output") -> Pat
         Whether a file that is there may be replaced.
     field : str
         Name of the argument, for the message.
+    endings : collection of str
+        Endings that the file may have; by default any.
+    reads : iterable of path-like
+        Files that are read to make this one: none of them is ever replaced.
 
     Raises
     ------
     InputError
-        If it names no file, or has an ending that checkpoints have.
+        If it names no file, one that is read, or has an ending that is not allowed.
     FileError
-        If something lies there that must not be replaced.
+        If there is no folder for it, or something lies there that must not be replaced.
     """
     path = file_path(value, field)
     if path.is_symlink():
         path = Path(os.path.realpath(path))
     if path.name.endswith(RESERVED):
         raise InputError.of(field, value, f"must not end in {', '.join(RESERVED)}: runs give such names themselves")
+    if endings and path.suffix.lower() not in endings:
+        to = f"; it is a link to {path}" if path != Path(os.fspath(value)) else ""  # type: ignore[call-overload]
+        raise InputError.of(field, value, f"must end in {' or '.join(endings)}{to}")
     if len(os.fsencode(path.name)) > LONGEST_NAME:
         raise FileError(f"{path}: the file name is too long: at most {LONGEST_NAME} bytes")
+    if any(_is_one_file(path, other) for other in reads):
+        raise InputError.of(field, value, "must be another file than the one that is read")
     try:
         there = path.lstat()
     except FileNotFoundError:
+        if not path.parent.is_dir():
+            raise FileError(f"{path}: cannot be written: there is no folder {path.parent}") from None
         return path
     except OSError as error:
         raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
@@ -120,6 +139,13 @@ def output_path(value: object, *, overwrite: bool, field: str = "output") -> Pat
     if not overwrite:
         raise exists_already(path)
     return path
+
+
+def _is_one_file(path: Path, other: str | os.PathLike[str]) -> bool:
+    try:
+        return os.path.samefile(path, other)
+    except (OSError, ValueError):
+        return os.path.abspath(path) == os.path.abspath(other)
 
 
 def exists_already(path: Path) -> FileError:
@@ -195,28 +221,55 @@ def put_in_place(draft: Path, path: Path, *, replace: bool) -> None:
     os.unlink(draft)
 
 
-def write_whole(path: Path, content: bytes, *, overwrite: bool) -> None:
-    """Write a file that is either the old one or the whole new one.
+def write_whole(
+    path: object,
+    content: bytes | str,
+    *,
+    overwrite: bool,
+    field: str = "path",
+    endings: Collection[str] = (),
+    reads: Iterable[str | os.PathLike[str]] = (),
+) -> Path:
+    """Write a file that is either the old one or the whole new one. Whatever trbdyn writes at once is written by this function.
+
+    Parameters
+    ----------
+    path : object
+        What the user gave.
+    content : bytes or str
+        What to write; text as UTF-8.
+    overwrite, field, endings, reads
+        As in `output_path`.
+
+    Returns
+    -------
+    Path
+        The file, by the name that was given.
 
     Raises
     ------
+    InputError
+        If the path cannot be used.
     FileError
-        If it is there and shall not be replaced.
-    OSError
-        If it cannot be written.
+        If it is there and shall not be replaced, or cannot be written; what was there is unchanged.
     """
-    draft, stream = create_draft(path, uuid.uuid4().hex)
+    target = output_path(path, overwrite=overwrite, field=field, endings=endings, reads=reads)
     try:
-        with stream:
-            stream.write(content)
-            stream.flush()
-            put_in_place(draft, path, replace=overwrite)
+        draft, stream = create_draft(target, uuid.uuid4().hex)
+        try:
+            with stream:
+                stream.write(content.encode("utf-8", "replace") if isinstance(content, str) else content)
+                stream.flush()
+                os.fsync(stream.fileno())
+                put_in_place(draft, target, replace=overwrite)
+        except BaseException:
+            draft.unlink(missing_ok=True)
+            raise
     except FileExistsError:
-        draft.unlink(missing_ok=True)
-        raise exists_already(path) from None
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
+        raise exists_already(target) from None
+    except OSError as error:
+        raise FileError(f"{target}: cannot be written: {error.strerror or error}") from error
+    return file_path(path, field)
 
 
 def read_text(path: Path, largest: int = 16 << 20) -> str:

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.base.own_files import write_whole
 from trbdyn.cage.frame import CageFrame, cage_frame
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.bearing import Bearing
@@ -170,8 +170,15 @@ class CageModes:
             source=source,
         )
 
-    def save(self, path: str | os.PathLike[str], *, overwrite: bool = True) -> Path:
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
         """Write the modes as HDF5.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write.
+        overwrite : bool
+            Replace a file that is there.
 
         Raises
         ------
@@ -180,7 +187,6 @@ class CageModes:
         """
         import h5py
 
-        target = output_path(path, overwrite=overwrite, field="path")
         memory = io.BytesIO()
         with h5py.File(memory, "w") as file:
             file.attrs.update({"format": FORMAT, "version": VERSION, "source": self.source})
@@ -189,11 +195,7 @@ class CageModes:
                 text = name.endswith("_name")
                 data = file.create_dataset(name, data=list(values) if text else np.asarray(values))
                 data.attrs["unit"] = symbol
-        try:
-            write_whole(target, memory.getvalue(), overwrite=overwrite)
-        except OSError as error:
-            raise FileError(f"{path}: the modes cannot be written: {error.strerror or error}") from error
-        return Path(path)
+        return write_whole(path, memory.getvalue(), overwrite=overwrite)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> CageModes:

@@ -6,13 +6,13 @@ import argparse
 import inspect
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.cli.called import command
 from trbdyn.cli.case import case_with_changes
 from trbdyn.cli.outcome import DONE
-from trbdyn.errors import FileError, InputError
+from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -37,7 +37,8 @@ def add_case_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
     new = commands.add_parser(
         "new", parents=[*common], help="write a case with every number, to change for your own bearing"
     )
-    new.add_argument("file", metavar="FILE", help="a TOML file that does not exist yet")
+    new.add_argument("file", metavar="FILE", help="a TOML file")
+    new.add_argument("--overwrite", action="store_true", help="replace the file if it is there")
     begin = new.add_mutually_exclusive_group()
     begin.add_argument(
         "--case",
@@ -57,17 +58,10 @@ def add_case_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
 def _new(options: argparse.Namespace) -> int:
     from trbdyn.run.case_text import case_text
 
-    path = Path(options.file)
-    if path.suffix != ".toml":
-        raise InputError.of("FILE", options.file, "must end in .toml")
+    how: dict[str, Any] = {"overwrite": options.overwrite, "endings": (".toml",)}
+    output_path(options.file, field="FILE", **how)
     text = case_text(*_first_case(options), title=_title(options))
-    try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(text)
-    except FileExistsError:
-        raise FileError(f"{path}: exists already; choose another name, nothing was written") from None
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror or error}") from None
+    path = write_whole(options.file, text, field="FILE", **how)
     print(f"{path} written: change its numbers, then run it with: {command('run', path)}")
     return DONE
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any, Final
 
+from trbdyn.base.own_files import output_path
 from trbdyn.cli.case import simulate
 from trbdyn.cli.outcome import DONE, FAILED
 
@@ -36,7 +37,7 @@ def add_demo_parser(
         "demo", parents=[*common, *length], help="the 30310 at 3000 rpm and 4930 N, from a whirling start"
     )
     demo.add_argument("-o", "--output", metavar="FOLDER", default="demo", help="folder (default: demo)")
-    demo.add_argument("--overwrite", action="store_true", help="replace the run that is in the folder")
+    demo.add_argument("--overwrite", action="store_true", help="replace the files of a demo that are in the folder")
     demo.set_defaults(command=_demo)
 
 
@@ -55,15 +56,19 @@ def _demo(options: argparse.Namespace) -> int:
     scene = scene_30310(3000.0, 4930.0, start=Start.whirl(0.9))
     run.end_time(scene.speed_rpm)
     folder = plot.make_folder(options.output)
+    again = {"overwrite": options.overwrite}
+    pictures = [f"{name}.png" for name in DEMO_PICTURES]
+    for name in ("run.h5", "summary.json", "report.html", "view.html", *pictures):
+        output_path(folder / name, **again)
     if not options.quiet:
         print(DEMO_WORDS.format(turns=revolutions, folder=folder))
-    result = simulate(scene, run, folder / "run.h5", quiet=options.quiet, overwrite=options.overwrite)
-    plot.all(result, folder, DEMO_PICTURES)
+    result = simulate(scene, run, folder / "run.h5", quiet=options.quiet, **again)
+    plot.all(result, folder, DEMO_PICTURES, **again)
     numbers = result.summary()
-    summary.write_json(numbers, folder / "summary.json")
-    page = report(result, folder / "report.html", pictures=DEMO_REPORT)
+    summary.write_json(numbers, folder / "summary.json", **again)
+    page = report(result, folder / "report.html", pictures=DEMO_REPORT, **again)
     moving = folder / "view.html"
-    view(result, moving)
+    view(result, moving, **again)
     if not options.quiet:
         print("\n" + "\n".join(f"{number}. {text}" for number, text in enumerate(what_matters(result, numbers), 1)))
         print(f"\nreport: {page}\n3-D view: {moving}")

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trbdyn.base.own_files import file_path
+from trbdyn.base.own_files import file_path, output_path
 from trbdyn.cli.case import add_set, subject_with_changes
 from trbdyn.cli.outcome import DONE
 
@@ -24,6 +24,7 @@ def add_look_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
     plot.add_argument("-o", "--output", metavar="FOLDER", help="folder (default: FILE without its ending, + _plots)")
     plot.add_argument("--only", nargs="+", metavar="NAME", help="draw these pictures only")
     plot.add_argument("--animation", action="store_true", help="also write animation.gif")
+    plot.add_argument("--overwrite", action="store_true", help="replace pictures that are there")
     plot.set_defaults(command=_plot)
 
     info = commands.add_parser("info", parents=[*common], help="show what a result file or a case holds")
@@ -35,17 +36,20 @@ def add_look_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
 
 def _plot(options: argparse.Namespace) -> int:
     from trbdyn import plot
+    from trbdyn.plot import animation
     from trbdyn.results.assembly import load_any
     from trbdyn.results.result import Result
 
     result = load_any(options.file)
     folder = Path(f"{Path(options.file).with_suffix('')}_plots" if options.output is None else options.output)
-    written = plot.all(result, folder, options.only)
-    if options.animation:
-        from trbdyn.plot import animation
-
-        for name, one in {"": result}.items() if isinstance(result, Result) else result.items():
-            written.append(animation.save(animation.animate(one), folder / name / "animation.gif"))
+    parts = {"": result} if isinstance(result, Result) else result
+    moving = {folder / name / "animation.gif": one for name, one in parts.items() if options.animation}
+    for path in moving:
+        if path.parent.is_dir():
+            output_path(path, overwrite=options.overwrite)
+    written = plot.all(result, folder, options.only, overwrite=options.overwrite)
+    for path, one in moving.items():
+        written.append(animation.save(animation.animate(one), path, overwrite=options.overwrite))
     for path in written:
         print(path)
     return DONE

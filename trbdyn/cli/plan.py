@@ -50,9 +50,8 @@ def _plan(options: argparse.Namespace) -> int:
     want = _wishes(options.want)
     scene, _ = case_with_changes(options.case, options.changes)
     name = options.output or f"{Path(options.case).stem}_plan"
-    files = [output_path(f"{name}{ending}", overwrite=options.overwrite) for ending in (".toml", ".png")]
-    if not files[0].parent.is_dir():
-        raise InputError.of("--output", name, f"must lie in a folder that is there: there is no {files[0].parent}")
+    again = {"overwrite": options.overwrite}
+    files = [output_path(f"{name}{ending}", reads=[options.case], **again) for ending in (".toml", ".png")]
     effort = {} if options.effort is None else {"effort": options.effort}
     found = plan(scene, want, budget=options.budget, **effort)
     print(found)
@@ -60,8 +59,8 @@ def _plan(options: argparse.Namespace) -> int:
     text = case_text(
         found.scene, found.options.replace(**rounded(kept)), title=f"The plan of {options.case} for {_words(want)}"
     )
-    write_whole(files[0], text.encode(), overwrite=options.overwrite)
-    found.picture(files[1])
+    write_whole(files[0], text, **again)
+    found.picture(files[1], **again)
     print(f"\n{files[0]}\n{files[1]}\n{command('run', files[0])}")
     print(
         "(The promise is for the averages from the end of the settling on; the summary of a run averages over its second half.)"

@@ -17,6 +17,7 @@ def add_report_parser(commands: Any, parents: Sequence[argparse.ArgumentParser])
         "-o", "--output", metavar="HTML", help="HTML file to write (default: FILE without its ending, + _report.html)"
     )
     report.add_argument("--pdf", action="store_true", help="also write a PDF (needs Chromium)")
+    report.add_argument("--overwrite", action="store_true", help="replace the report if it is there")
     report.add_argument("--title", default="", metavar="TEXT", help="title")
     report.set_defaults(command=_report)
 
@@ -31,7 +32,8 @@ def _report(options: argparse.Namespace) -> int:
     if names[0] == names[1]:
         names = [str(options.file), str(options.other)]
     other = load(options.other) if options.other else None
-    print(report(load_any(options.file), output, other=other, names=names, title=options.title, pdf=options.pdf))
+    how = {"names": names, "title": options.title, "pdf": options.pdf, "overwrite": options.overwrite}
+    print(report(load_any(options.file), output, other=other, **how))
     if options.pdf:
         print(output.with_suffix(".pdf"))
     return 0

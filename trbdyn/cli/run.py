@@ -13,7 +13,7 @@ from trbdyn.base.own_files import file_path, output_path
 from trbdyn.cli.called import command
 from trbdyn.cli.case import add_set, simulate, subject_with_changes
 from trbdyn.cli.outcome import DONE, FAILED, one_line
-from trbdyn.errors import FileError, InputError
+from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
     from trbdyn.results.assembly import AssemblyResult
@@ -81,30 +81,25 @@ def _run(options: argparse.Namespace) -> int:
     if "duration" in changes and "revolutions" not in changes:
         changes["revolutions"] = None
     name = f"{Path(options.case).stem}.h5" if options.output is None else options.output
-    output = output_path(name, overwrite=options.overwrite)
-    _check_summary(options.summary, output, overwrite=options.overwrite)
+    output = output_path(name, overwrite=options.overwrite, reads=[options.case])
+    _check_summary(options.summary, [options.case, output], overwrite=options.overwrite)
     given = run.model_fields_set | changes.keys()
     result = simulate(
         subject, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite, given=given
     )
-    return _finish(result, output, options.summary, quiet=options.quiet)
+    return _finish(result, output, options)
 
 
-def _check_summary(summary_file: str | None, output: Path, *, overwrite: bool) -> None:
+def _check_summary(summary_file: str | None, others: Sequence[str | Path], *, overwrite: bool) -> None:
     """See before a run that its summary can be written."""
-    if summary_file is None:
-        return
-    path = output_path(summary_file, overwrite=overwrite, field="summary")
-    if path.absolute() == output.absolute():
-        raise InputError.of("summary", summary_file, "must be another file than the result")
-    if not path.parent.is_dir():
-        raise FileError(f"{path}: cannot be written: there is no folder {path.parent}")
+    if summary_file is not None:
+        output_path(summary_file, overwrite=overwrite, field="summary", reads=others)
 
 
 def _resume(options: argparse.Namespace) -> int:
     from trbdyn.run.resume import resume
 
-    _check_summary(options.summary, file_path(options.file, "file"), overwrite=options.overwrite)
+    _check_summary(options.summary, [file_path(options.file, "file")], overwrite=options.overwrite)
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)
         try:
@@ -112,7 +107,7 @@ def _resume(options: argparse.Namespace) -> int:
         finally:
             for note in notes:
                 print(f"trbdyn: {one_line(str(note.message))}", file=sys.stderr)
-    return _finish(result, Path(options.file), options.summary, quiet=options.quiet)
+    return _finish(result, Path(options.file), options)
 
 
 def _how_to_go_on(output: Path) -> str:
@@ -122,7 +117,7 @@ def _how_to_go_on(output: Path) -> str:
     return f"; go on with: {command('resume', output)}" if checkpoint_path(output).exists() else ""
 
 
-def _finish(result: Result | AssemblyResult, output: Path, summary_file: str | Path | None, *, quiet: bool) -> int:
+def _finish(result: Result | AssemblyResult, output: Path, options: argparse.Namespace) -> int:
     """Write and print the summary; the exit code says whether the run reached its end."""
     from trbdyn.results import summary
     from trbdyn.results.assembly import AssemblyResult
@@ -133,9 +128,9 @@ def _finish(result: Result | AssemblyResult, output: Path, summary_file: str | P
     else:
         values, one = result.summary(), result
         table = summary.table(values)
-    if summary_file is not None:
-        summary.write_json(values, summary_file)
-    if not quiet:
+    if options.summary is not None:
+        summary.write_json(values, options.summary, overwrite=options.overwrite)
+    if not options.quiet:
         print(table)
         print(f"\n{len(one)} records in {output}: {one.meta.get('kept', '')}")
     if not result.success:

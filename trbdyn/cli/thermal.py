@@ -52,11 +52,10 @@ def _thermal(options: argparse.Namespace) -> int:
             raise InputError.of("--heat", text, "must be NAME=VALUE, for instance outer_ring_to_surroundings=3.2")
     paths = HeatPaths(**given)
     scene, run = case_with_changes(options.case, options.changes)
-    picture = output_path(options.output or f"{Path(options.case).stem}_thermal.png", overwrite=options.overwrite)
-    if not picture.parent.is_dir():
-        raise InputError.of("--output", picture, f"must lie in a folder that is there: there is no {picture.parent}")
+    picture = options.output or f"{Path(options.case).stem}_thermal.png"
+    output_path(picture, overwrite=options.overwrite, reads=[options.case])
     found = thermal(scene, paths, options=run)
-    found.picture(picture)
+    found.picture(picture, overwrite=options.overwrite)
     print(found)
     print(f"\n{picture}")
     return DONE

@@ -58,9 +58,8 @@ def _torque(options: argparse.Namespace) -> int:
     own: list[float | tuple[float, float]] = [(value_at(scene.axial_load, 0.0), value_at(scene.radial_load, 0.0))]
     loads = own if options.loads is None else [_load(text) for text in options.loads]
     name = options.output or f"{Path(options.case).stem}_torque"
-    numbers, picture = (output_path(f"{name}{ending}", overwrite=options.overwrite) for ending in (".nc", ".png"))
-    if not numbers.parent.is_dir():
-        raise InputError.of("--output", name, f"must lie in a folder that is there: there is no {numbers.parent}")
+    again = {"overwrite": options.overwrite}
+    numbers, picture = (output_path(f"{name}{ending}", **again) for ending in (".nc", ".png"))
     found = torque_map(
         scene,
         options.speeds,
@@ -73,8 +72,8 @@ def _torque(options: argparse.Namespace) -> int:
         workers=options.workers,
         progress=not options.quiet,
     )
-    save(found.data, numbers)
-    found.picture(picture)
+    save(found.data, numbers, **again)
+    found.picture(picture, **again)
     if not options.quiet:
         print(found)
         print(f"\n{numbers}\n{picture}")

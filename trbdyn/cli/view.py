@@ -6,7 +6,12 @@ import argparse
 import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from trbdyn.base.own_files import file_path, output_path
+
+if TYPE_CHECKING:
+    from trbdyn.results.result import Result
 
 
 def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
@@ -34,6 +39,7 @@ def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -
         help="factor by which motion and clearances are drawn larger at the start",
     )
     view.add_argument("--gltf", metavar="GLB", help="also write an animated glTF file (its last 2 turns of the shaft)")
+    view.add_argument("--overwrite", action="store_true", help="replace these files if they are there")
     view.add_argument("--no-open", action="store_true", help="write the file, open no browser")
     view.set_defaults(command=_view)
 
@@ -41,10 +47,19 @@ def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -
 def _view(options: argparse.Namespace) -> int:
     from trbdyn.results.assembly import load_any
     from trbdyn.results.result import Result
-    from trbdyn.viewer import view
+    from trbdyn.viewer import save_gltf, view
 
     result = load_any(options.file)
     output = Path(options.output or f"{Path(options.file).with_suffix('')}_view.html")
+    moving: dict[Path, Result] = {}
+    if options.gltf:
+        path = file_path(options.gltf, "gltf")
+        parts = {"": result} if isinstance(result, Result) else result
+        moving = {
+            path.with_name(f"{path.stem}.{name}{path.suffix}") if name else path: one for name, one in parts.items()
+        }
+        for path in moving:
+            output_path(path, overwrite=options.overwrite, field="gltf")
     view(
         result,
         output,
@@ -52,15 +67,11 @@ def _view(options: argparse.Namespace) -> int:
         max_frames=options.frames,
         max_size_mb=options.max_size,
         exaggeration=options.exaggeration,
+        overwrite=options.overwrite,
     )
     print(f"{output}: open it in a browser; it needs no network")
-    if options.gltf:
-        from trbdyn.viewer.gltf import save_gltf
-
-        path = Path(options.gltf)
-        for name, one in {"": result}.items() if isinstance(result, Result) else result.items():
-            own = path.with_name(f"{path.stem}.{name}{path.suffix}") if name else path
-            print(save_gltf(one, own, exaggeration=options.exaggeration))
+    for path, one in moving.items():
+        print(save_gltf(one, path, exaggeration=options.exaggeration, overwrite=options.overwrite))
     if not options.no_open:
         webbrowser.open(output.resolve().as_uri())
     return 0

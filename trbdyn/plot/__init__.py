@@ -19,7 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trbdyn.base.expected import expect
-from trbdyn.base.own_files import folder_path
+from trbdyn.base.own_files import folder_path, output_path
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
 from trbdyn.plot.assembly import (
@@ -38,7 +38,7 @@ from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
 from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
-from trbdyn.plot.style import SAVE_DPI, STYLE, styled
+from trbdyn.plot.style import STYLE, styled, write
 from trbdyn.plot.wearing import wear_map
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
 from trbdyn.results.assembly import AssemblyResult
@@ -153,7 +153,9 @@ SPECTRUM_RECORDS: Final = 8
 """Fewest records of a spectrum."""
 
 
-def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None = None) -> Path:
+def save(
+    picture: Axes | Figure, path: str | os.PathLike[str], title: str | None = None, *, overwrite: bool = False
+) -> Path:
     """Save a picture and close its figure.
 
     Parameters
@@ -164,6 +166,8 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
         File to write; its ending gives the format.
     title : str, optional
         A line under the figure's own title, which names the quantity.
+    overwrite : bool
+        Replace a file that is there.
 
     Returns
     -------
@@ -172,8 +176,10 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
 
     Raises
     ------
+    InputError
+        If no picture has this ending.
     FileError
-        If the file cannot be written.
+        If the file is there and shall not be replaced, or cannot be written.
     """
     figure = picture.figure
     while not isinstance(figure, Figure):
@@ -183,12 +189,9 @@ def save(picture: Axes | Figure, path: str | os.PathLike[str], title: str | None
             if title:
                 quantity = figure.get_suptitle()
                 figure.suptitle(f"{quantity}\n{title}" if quantity else title, fontsize=10)
-            figure.savefig(path, dpi=SAVE_DPI)
-    except (OSError, ValueError) as error:
-        raise FileError(f"{path}: the picture cannot be written: {error}") from error
+            return write(figure, path, overwrite=overwrite)
     finally:
         plt.close(figure)
-    return Path(path)
 
 
 def all(
@@ -196,6 +199,8 @@ def all(
     folder: str | os.PathLike[str],
     only: Iterable[str] | None = None,
     title: str | None = None,
+    *,
+    overwrite: bool = False,
 ) -> list[Path]:
     """Save every picture that the recorded groups allow, as PNG; those of the cage only if there is one.
 
@@ -209,6 +214,8 @@ def all(
         Names of the pictures to draw, of those in `PICTURES`; all by default.
     title : str, optional
         A line under the title of every picture, which names the quantity; by default bearing, speed and loads.
+    overwrite : bool
+        Replace files that are there.
 
     Returns
     -------
@@ -218,12 +225,12 @@ def all(
     Raises
     ------
     FileError
-        If the folder or a file cannot be written.
+        If a file is there and shall not be replaced (nothing is written then), or cannot be written.
     InputError
         If a picture is unknown, or needs a group that was not recorded.
     """
     if not isinstance(result, Result):
-        return _all_of_assembly(result, folder, only, title)
+        return _all_of_assembly(result, folder, only, title, overwrite=overwrite)
     chosen = list(drawable(result) if only is None else only)
     if only is None and len(result) < SPECTRUM_RECORDS:
         chosen = [name for name in chosen if name != "spectrum"]
@@ -235,21 +242,31 @@ def all(
         raise InputError.of("result", len(result), f"must have at least {least} records to draw this")
     folder = make_folder(folder)
     heading = conditions(result) if title is None else title
-    return [save(PICTURES[name][0](result), folder / f"{name}.png", heading) for name in chosen]
+    files = {name: folder / f"{name}.png" for name in chosen}
+    for path in files.values():  # before the first is drawn
+        output_path(path, overwrite=overwrite)
+    return [save(PICTURES[name][0](result), path, heading, overwrite=overwrite) for name, path in files.items()]
 
 
 def _all_of_assembly(
-    result: AssemblyResult, folder: str | os.PathLike[str], only: Iterable[str] | None, title: str | None
+    result: AssemblyResult,
+    folder: str | os.PathLike[str],
+    only: Iterable[str] | None,
+    title: str | None,
+    *,
+    overwrite: bool,
 ) -> list[Path]:
     of_shaft = of_assembly(result)
     wanted = None if only is None else list(only)
     own = of_shaft if wanted is None else [name for name in wanted if name in of_shaft]
     of_bearings = None if wanted is None else [name for name in wanted if name not in of_shaft]
     folder = make_folder(folder)
-    written = [save(of_shaft[name](), folder / f"{name}.png", title) for name in own]
+    for name in own:
+        output_path(folder / f"{name}.png", overwrite=overwrite)
+    written = [save(of_shaft[name](), folder / f"{name}.png", title, overwrite=overwrite) for name in own]
     for name, one in result.items():
         if of_bearings is None or of_bearings:
-            written += all(one, folder / name, of_bearings, title)
+            written += all(one, folder / name, of_bearings, title, overwrite=overwrite)
     return written
 
 

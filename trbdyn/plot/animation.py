@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -13,7 +14,8 @@ from matplotlib.patches import Circle
 from scipy.integrate import cumulative_trapezoid
 
 from trbdyn.base.expected import expect
-from trbdyn.errors import FileError, InputError
+from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.errors import FileError, InputError, TrbError
 from trbdyn.plot.cage import last_turns, revolutions
 from trbdyn.plot.style import COLOURS, GREY, LIGHT, styled
 from trbdyn.results.result import Result
@@ -26,6 +28,7 @@ def __dir__() -> list[str]:
 
 
 RING_POINTS = 181
+ENDINGS = (".gif",)
 
 
 def animate(
@@ -110,7 +113,9 @@ def animate(
     return FuncAnimation(figure, draw, frames=picked.size, interval=1000.0 / fps, blit=False)
 
 
-def save(animation: FuncAnimation, path: str | os.PathLike[str], fps: int = 20, dpi: int = 80) -> Path:
+def save(
+    animation: FuncAnimation, path: str | os.PathLike[str], fps: int = 20, dpi: int = 80, *, overwrite: bool = False
+) -> Path:
     """Write an animation as a GIF and close its figure.
 
     Parameters
@@ -123,6 +128,8 @@ def save(animation: FuncAnimation, path: str | os.PathLike[str], fps: int = 20, 
         Frames a second.
     dpi : int
         Dots per inch.
+    overwrite : bool
+        Replace a file that is there.
 
     Returns
     -------
@@ -131,13 +138,21 @@ def save(animation: FuncAnimation, path: str | os.PathLike[str], fps: int = 20, 
 
     Raises
     ------
+    InputError
+        If its name does not end in .gif.
     FileError
-        If the file cannot be written.
+        If the file is there and shall not be replaced, or cannot be written.
     """
     try:
-        animation.save(os.fspath(path), writer=PillowWriter(fps=fps), dpi=dpi)
+        output_path(path, overwrite=overwrite, field="path", endings=ENDINGS)
+        with tempfile.TemporaryDirectory() as folder:
+            made = Path(folder) / "animation.gif"
+            animation.save(made, writer=PillowWriter(fps=fps), dpi=dpi)
+            content = made.read_bytes()
     except (OSError, ValueError) as error:
+        if isinstance(error, TrbError):
+            raise
         raise FileError(f"{path}: the animation cannot be written: {error}") from error
     finally:
         plt.close(animation._fig)  # type: ignore[attr-defined]
-    return Path(path)
+    return write_whole(path, content, overwrite=overwrite, endings=ENDINGS)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
-from trbdyn.plot.style import SAVE_DPI, styled
+from trbdyn.plot.style import styled
 
 if TYPE_CHECKING:
     import xarray
@@ -25,7 +24,7 @@ SHADES: Final = {
 STARTED: Final = {"equal": "from rest in the middle", "whirl": "from a large whirl"}
 
 
-def draw_map(data: xarray.Dataset, path: str | Path | None = None) -> Any:
+def draw_map(data: xarray.Dataset) -> Any:
     """Draw a map for each start: a field for each speed and load, coloured by class, with the orbit over the radial play.
 
     Fields of runs that were not decided are hatched.
@@ -34,8 +33,6 @@ def draw_map(data: xarray.Dataset, path: str | Path | None = None) -> Any:
     ----------
     data : xarray.Dataset
         `CageMap.data`.
-    path : path-like, optional
-        Where to save the picture.
     """
     starts, loads, speeds = (data[name].values for name in ("start", "axial_load", "speed_rpm"))
     width = 1.6 + 0.75 * len(speeds)
@@ -59,8 +56,6 @@ def draw_map(data: xarray.Dataset, path: str | Path | None = None) -> Any:
             keys.append(Patch(facecolor="white", edgecolor="0.4", hatch="///", label="not decided"))
         figure.suptitle(f"Motion of the cage of {data.attrs['bearing']}, with its orbit over the radial play")
         figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
-        if path is not None:
-            figure.savefig(path, dpi=SAVE_DPI)
     return figure
 
 

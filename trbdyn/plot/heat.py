@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, GREY, MARKERS, SAVE_DPI, styled
+from trbdyn.plot.style import COLOURS, GREY, MARKERS, styled
 
 
-def draw_balance(found: Any, path: str | Path | None = None) -> Any:
+def draw_balance(found: Any) -> Any:
     """Draw the power that is lost over the temperature of films, the point where it balances, and all temperatures.
 
     Parameters
     ----------
     found : Thermal
         What `trbdyn.thermal` gave.
-    path : path-like, optional
-        Where to save the picture.
     """
     with styled():
         figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 4.0), width_ratios=(1.2, 1.0))
@@ -40,6 +37,4 @@ def draw_balance(found: Any, path: str | Path | None = None) -> Any:
         right.set_yticks(np.arange(len(names)), [name.replace("_", " ") for name in names])
         right.set_ylim(len(names) - 0.5, -0.5)
         right.set(xlabel="temperature (°C)", title="95 % of the draws of conductances")
-        if path is not None:
-            figure.savefig(path, dpi=SAVE_DPI)
     return figure

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import io
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -12,8 +15,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, ListedColormap
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
+
+from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.errors import FileError
 
 Array = NDArray[np.float64]
 
@@ -143,3 +150,30 @@ def line(ax: Axes, x: Array, y: Array, index: int = 0, label: str | None = None,
     """A thinned curve in the colour and dashes of its index."""
     style = {"color": COLOURS[index % len(COLOURS)], "linestyle": LINES[index % len(LINES)], "label": label} | options
     return ax.plot(*thin(x, y), **style)[0]
+
+
+def write(figure: Figure, path: str | os.PathLike[str], *, overwrite: bool) -> Path:
+    """Write a figure; the ending of the file gives the format.
+
+    Raises
+    ------
+    InputError
+        If no picture has this ending.
+    FileError
+        If the file is there and shall not be replaced, or cannot be written.
+    """
+    formats = [f".{name}" for name in figure.canvas.get_supported_filetypes()]
+    target, picture = output_path(path, overwrite=overwrite, field="path", endings=formats), io.BytesIO()
+    try:
+        figure.savefig(picture, dpi=SAVE_DPI, format=target.suffix[1:].lower())
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path}: the picture cannot be written: {error}") from error
+    return write_whole(path, picture.getvalue(), overwrite=overwrite)
+
+
+def kept(figure: Figure, path: str | os.PathLike[str] | None, *, overwrite: bool) -> Figure:
+    """The figure, written where a path is given."""
+    if path is not None:
+        with styled():
+            write(figure, path, overwrite=overwrite)
+    return figure

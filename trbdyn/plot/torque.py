@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, LINES, MARKERS, SAVE_DPI, styled
+from trbdyn.plot.style import COLOURS, LINES, MARKERS, styled
 
 if TYPE_CHECKING:
     import xarray
 
 
-def draw_map(data: xarray.Dataset, path: str | Path | None = None, temperature: int | None = None) -> Any:
+def draw_map(data: xarray.Dataset, temperature: int | None = None) -> Any:
     """Draw torque over speed: a line for each load and temperature, and what loses the torque of the last of them.
 
     Points whose torque has not settled are hollow.
@@ -23,8 +22,6 @@ def draw_map(data: xarray.Dataset, path: str | Path | None = None, temperature: 
     ----------
     data : xarray.Dataset
         `TorqueMap.data`.
-    path : path-like, optional
-        Where to save the picture.
     temperature : int, optional
         The one temperature to draw, by its place; all by default.
     """
@@ -51,8 +48,6 @@ def draw_map(data: xarray.Dataset, path: str | Path | None = None, temperature: 
         right.legend(loc="lower right", frameon=True)
         right.set_title("what loses it: " + (_words(lines[-1], True, True)))
         left.set_title(f"{data.attrs['bearing']}, shaft")
-        if path is not None:
-            figure.savefig(path, dpi=SAVE_DPI)
     return figure
 
 

@@ -8,15 +8,20 @@ import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, Final
 
 from trbdyn.base.expected import expect
+from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
+from trbdyn.results.sources import files_of
 
 __all__ = ["report", "save_pdf"]
 
-CONVERTERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "chromium-headless-shell")
+HTML: Final = (".html", ".htm")
+PDF: Final = (".pdf",)
+CONVERTERS: Final = ("chromium", "chromium-browser", "google-chrome", "chrome", "chromium-headless-shell")
 
 
 def report(
@@ -28,6 +33,7 @@ def report(
     title: str = "",
     pictures: Sequence[str] | None = None,
     pdf: bool = False,
+    overwrite: bool = False,
 ) -> Path:
     """Write a report of a run as one HTML file that needs nothing else.
 
@@ -39,7 +45,7 @@ def report(
     result : Result or AssemblyResult
         The run. Of an assembly the page has the shaft first, and then each bearing.
     path : path-like
-        HTML file to write.
+        HTML file to write, ``NAME.html``.
     other : Result, optional
         A second run to compare with.
     names : sequence of str
@@ -51,6 +57,8 @@ def report(
         allow.
     pdf : bool
         Also write a PDF beside it; needs Chromium.
+    overwrite : bool
+        Replace files that are there; never the file of a result that is reported.
 
     Returns
     -------
@@ -60,9 +68,9 @@ def report(
     Raises
     ------
     InputError
-        If a picture is unknown, or names are not two.
+        If a picture is unknown, names are not two, or the file's name does not end in .html.
     FileError
-        If a file cannot be written, or there is no converter for the PDF.
+        If a file is there and shall not be replaced, or cannot be written, or there is no converter for the PDF.
 
     Examples
     --------
@@ -83,6 +91,10 @@ def report(
             raise InputError.of("pictures", name, unknown_name(name, known))
     if len(names) != 2 or isinstance(names, str):
         raise InputError.of("names", names, "must be two names")
+    how: dict[str, Any] = {"overwrite": overwrite, "reads": [*files_of(result), *files_of(other)]}
+    target = output_path(path, endings=HTML, field="path", **how)  # before the pictures are drawn, which takes a while
+    if pdf:
+        output_path(target.with_suffix(".pdf"), field="path", **how)
     if isinstance(result, Result):
         results = [result] if other is None else [result, other]
         heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in results))}"
@@ -91,14 +103,10 @@ def report(
         raise InputError.of("other", other, "must not be given: assemblies are reported one by one")
     else:
         text = page_of_assembly(result, title or f"Report: {', '.join(result)} on one shaft", pictures)
-    target = Path(path)
-    try:
-        target.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise FileError(f"{target}: the report cannot be written: {error.strerror}") from error
+    written = write_whole(path, text, endings=HTML, **how)
     if pdf:
-        save_pdf(target, target.with_suffix(".pdf"))
-    return target
+        save_pdf(written, written.with_suffix(".pdf"), overwrite=overwrite)
+    return written
 
 
 def converter() -> str | None:
@@ -106,7 +114,7 @@ def converter() -> str | None:
     return next((path for name in CONVERTERS if (path := shutil.which(name))), None)
 
 
-def save_pdf(page: str | os.PathLike[str], path: str | os.PathLike[str]) -> Path:
+def save_pdf(page: str | os.PathLike[str], path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Print an HTML file as PDF.
 
     Parameters
@@ -115,6 +123,8 @@ def save_pdf(page: str | os.PathLike[str], path: str | os.PathLike[str]) -> Path
         HTML file.
     path : path-like
         PDF to write.
+    overwrite : bool
+        Replace a file that is there.
 
     Returns
     -------
@@ -124,27 +134,30 @@ def save_pdf(page: str | os.PathLike[str], path: str | os.PathLike[str]) -> Path
     Raises
     ------
     FileError
-        If this machine has no converter, or it fails.
+        If this machine has no converter, or it fails; if the file is there and shall not be replaced, or cannot be written.
     """
     program = converter()
     if program is None:
         raise FileError("a PDF needs Chromium or Chrome on this machine; the HTML report prints from any browser")
-    target = Path(path).resolve()
-    with tempfile.TemporaryDirectory() as profile:
+    output_path(path, overwrite=overwrite, field="path", endings=PDF, reads=[page])
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "page.pdf"
         command = [
             program,
             "--headless=new",
             "--no-sandbox",
             "--disable-gpu",
-            f"--user-data-dir={profile}",
+            f"--user-data-dir={folder}",
             "--no-pdf-header-footer",
-            f"--print-to-pdf={target}",
+            f"--print-to-pdf={made}",
             Path(page).resolve().as_uri(),
         ]
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=180, check=False)
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise FileError(f"{target}: the PDF cannot be written: {error}") from error
-    if done.returncode != 0 or not target.exists():
-        raise FileError(f"{target}: the PDF cannot be written: {done.stderr.strip()[-300:]}")
-    return target
+            if done.returncode == 0:
+                return write_whole(path, made.read_bytes(), overwrite=overwrite, endings=PDF, reads=[page])
+        except FileNotFoundError:
+            pass
+        except subprocess.TimeoutExpired as error:
+            raise FileError(f"{path}: the PDF cannot be written: {error}") from error
+    raise FileError(f"{path}: the PDF cannot be written: {done.stderr.strip()[-300:]}")

@@ -399,3 +399,15 @@ def _table(value: Any) -> dict[str, Any]:
 def _texts(value: object) -> tuple[str, ...]:
     """A list of sentences; nothing where a file holds anything else."""
     return tuple(str(text) for text in value) if isinstance(value, list) else ()
+
+
+def files_of(result: Any) -> list[Path]:
+    """The files that a result, or results by name, or None, is read from."""
+    found = []
+    for part in result.values() if isinstance(result, Mapping) else [result]:
+        source = getattr(part, "_source", None)
+        while isinstance(source, WindowSource):
+            source = source.source
+        if isinstance(source, FileSource):
+            found.append(source.path)
+    return found

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.base.own_files import write_whole
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.cage.simulated import cage_modes
-from trbdyn.errors import FileError, TrbError
+from trbdyn.errors import TrbError
 from trbdyn.model.motion import is_constant
 from trbdyn.results import observables, peak_band
 from trbdyn.results.confidence import confidence
@@ -337,7 +337,7 @@ def clean(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def write_json(values: Mapping[str, Any], path: str | os.PathLike[str], *, overwrite: bool = True) -> Path:
+def write_json(values: Mapping[str, Any], path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a summary as JSON.
 
     Parameters
@@ -359,14 +359,8 @@ def write_json(values: Mapping[str, Any], path: str | os.PathLike[str], *, overw
     FileError
         If the file cannot be written.
     """
-    target = output_path(path, overwrite=overwrite, field="summary")
-    try:
-        write_whole(target, (json.dumps(values, indent=2, allow_nan=False) + "\n").encode(), overwrite=overwrite)
-    except FileError:
-        raise
-    except OSError as error:
-        raise FileError(f"{path}: the summary cannot be written: {error.strerror or error}") from error
-    return Path(path)
+    text = json.dumps(values, indent=2, allow_nan=False) + "\n"
+    return write_whole(path, text, overwrite=overwrite, field="summary")
 
 
 def table(values: Mapping[str, Any]) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -35,13 +34,15 @@ class CageMap(Displayed):
 
     data: xarray.Dataset
 
-    def picture(self, path: str | Path | None = None) -> Any:
+    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
         """Draw the map: a field for each point, coloured by class, with the orbit over the radial play.
 
         Parameters
         ----------
         path : path-like, optional
             Where to save the picture.
+        overwrite : bool
+            Replace a file that is there.
 
         Returns
         -------
@@ -49,8 +50,9 @@ class CageMap(Displayed):
             The matplotlib figure, one map for each start.
         """
         from trbdyn.plot.cage_map import draw_map
+        from trbdyn.plot.style import kept
 
-        return draw_map(self.data, path)
+        return kept(draw_map(self.data), path, overwrite=overwrite)
 
     def __str__(self) -> str:
         return self._shown().text(names=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.own_files import file_path, write_whole
+from trbdyn.base.own_files import write_whole
 from trbdyn.errors import FileError
 from trbdyn.model.scene import Scene
 from trbdyn.results.quantities import QUANTITIES
@@ -140,15 +140,28 @@ def _attributes(name: str) -> dict[str, str]:
     return {}
 
 
-def save(data: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
+def save(data: xarray.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a dataset as netCDF (version 3, 64-bit offsets), with its SHA-256 as an attribute, which `load` checks.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        What to write.
+    path : path-like
+        File to write.
+    overwrite : bool
+        Replace a file that is there.
+
+    Returns
+    -------
+    Path
+        The file.
 
     Raises
     ------
     FileError
         If it cannot be written.
     """
-    target = file_path(path, "path")
     limit = np.iinfo(np.int32).max
     written = data.copy()
     for name, variable in data.variables.items():
@@ -159,11 +172,9 @@ def save(data: xarray.Dataset, path: str | os.PathLike[str]) -> Path:
         written.attrs["sha256"] = _UNKNOWN
         content = bytes(written.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
         content = content.replace(_UNKNOWN.encode(), hashlib.sha256(content).hexdigest().encode(), 1)
-        write_whole(target, content, overwrite=True)
-    except (OSError, ValueError, TypeError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise FileError(f"{target}: the dataset cannot be written: {why}") from error
-    return target
+    except (ValueError, TypeError) as error:
+        raise FileError(f"{path}: the dataset cannot be written: {error}") from error
+    return write_whole(path, content, overwrite=overwrite)
 
 
 def _renamed(data: xarray.Dataset, change: Callable[[str], str]) -> xarray.Dataset:

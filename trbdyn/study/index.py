@@ -20,7 +20,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from trbdyn.base.own_files import write_whole
 from trbdyn.errors import FileError
 
 INDEX = "index.jsonl"
@@ -191,17 +190,3 @@ def _is_observable(value: object) -> bool:
         return isinstance(value, list) and np.array(value, dtype=float).size >= 0
     except (ValueError, TypeError, OverflowError):
         return False
-
-
-def write_json(path: Path, values: Mapping[str, Any] | list[Any]) -> None:
-    """Write JSON to a file that is either the old one or the whole new one.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
-    try:
-        write_whole(path, (json.dumps(values, indent=1, allow_nan=False) + "\n").encode(), overwrite=True)
-    except OSError as error:
-        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error

@@ -111,7 +111,7 @@ def run(
             bar.update()
     data = gather.dataset(study, [_observed(index, case, functions) for case in study.cases])
     if place is not None:
-        gather.save(data, place / DATASET)
+        gather.save(data, place / DATASET, overwrite=True)
     return data
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -118,13 +117,15 @@ class Thermal(Displayed):
         ribs = self.scene.bearing.ribs
         return rise(self.paths, LossCurves(self.known), heat_capacities, duration, points, ribs=ribs)
 
-    def picture(self, path: str | Path | None = None) -> Any:
+    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
         """Draw the balance of heat made and given off, and the temperatures with their bands.
 
         Parameters
         ----------
         path : path-like, optional
             Where to save the picture.
+        overwrite : bool
+            Replace a file that is there.
 
         Returns
         -------
@@ -132,8 +133,9 @@ class Thermal(Displayed):
             The matplotlib figure.
         """
         from trbdyn.plot.heat import draw_balance
+        from trbdyn.plot.style import kept
 
-        return draw_balance(self, path)
+        return kept(draw_balance(self), path, overwrite=overwrite)
 
     def __str__(self) -> str:
         return self._shown().text(names=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -90,13 +89,17 @@ class TorqueMap(Displayed):
         place = int(np.argmin(torque))
         return float(line["speed_rpm"][place]), float(torque[place])
 
-    def picture(self, path: str | Path | None = None, *, temperature: int | None = None) -> Any:
+    def picture(
+        self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False, temperature: int | None = None
+    ) -> Any:
         """Draw torque over speed, a line for each load or temperature, and its sources.
 
         Parameters
         ----------
         path : path-like, optional
             Where to save the picture.
+        overwrite : bool
+            Replace a file that is there.
         temperature : int, optional
             The one temperature to draw, by its place; all by default.
 
@@ -105,9 +108,10 @@ class TorqueMap(Displayed):
         Figure
             The matplotlib figure.
         """
+        from trbdyn.plot.style import kept
         from trbdyn.plot.torque import draw_map
 
-        return draw_map(self.data, path, temperature)
+        return kept(draw_map(self.data, temperature), path, overwrite=overwrite)
 
     def __str__(self) -> str:
         return self._shown().text(names=True)

@@ -12,15 +12,18 @@ from __future__ import annotations
 
 import html as markup
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from trbdyn.base.expected import expect
-from trbdyn.errors import FileError, InputError
+from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.errors import InputError
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
+from trbdyn.results.sources import files_of
 from trbdyn.viewer import data as data_of
 from trbdyn.viewer.gltf import save_gltf
 from trbdyn.viewer.page import Shown, page
@@ -30,6 +33,7 @@ __all__ = ["MAX_SIZE_MB", "View", "save_gltf", "view"]
 
 MAX_SIZE_MB: Final = 12.0
 """Largest file that the view writes unless told otherwise (MB)."""
+ENDINGS: Final = (".html", ".htm")
 _FIXED_BYTES: Final = 900_000
 """Program, three.js and page (bytes)."""
 
@@ -43,6 +47,8 @@ class View:
         The page.
     height : int
         Height in a notebook (pixels).
+    reads : iterable of Path
+        Files of the result that is shown: the view never replaces them.
 
     Attributes
     ----------
@@ -50,9 +56,10 @@ class View:
         The page: everything that it needs is in it.
     """
 
-    def __init__(self, html: str, *, height: int = 640) -> None:
+    def __init__(self, html: str, *, height: int = 640, reads: Iterable[Path] = ()) -> None:
         self.html = html
         self.height = height
+        self._reads = tuple(reads)
 
     def __repr__(self) -> str:
         return f"<View: {len(self.html) / 1e6:.1f} MB; save(path) writes it as one HTML file>"
@@ -61,13 +68,15 @@ class View:
         inside = markup.escape(self.html, quote=True)
         return f'<iframe srcdoc="{inside}" width="100%" height="{self.height}" style="border:1px solid #ccc"></iframe>'
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
         """Write the view as one HTML file.
 
         Parameters
         ----------
         path : path-like
-            File to write.
+            File to write, ``NAME.html``.
+        overwrite : bool
+            Replace a file that is there.
 
         Returns
         -------
@@ -76,14 +85,12 @@ class View:
 
         Raises
         ------
+        InputError
+            If its name does not end in .html, or it is the file of the result.
         FileError
-            If the file cannot be written.
+            If the file is there and shall not be replaced, or cannot be written.
         """
-        try:
-            Path(path).write_text(self.html, encoding="utf-8")
-        except OSError as error:
-            raise FileError(f"{path}: the view cannot be written: {error.strerror}") from error
-        return Path(path)
+        return write_whole(path, self.html, overwrite=overwrite, endings=ENDINGS, reads=self._reads)
 
 
 def view(
@@ -96,6 +103,7 @@ def view(
     exaggeration: float | None = None,
     title: str = "",
     height: int = 640,
+    overwrite: bool = False,
 ) -> View:
     """Show a result as a moving 3-D view.
 
@@ -109,7 +117,7 @@ def view(
         Needs the groups time, cage and rollers; colours and arrows come from contacts and pocket. The bearings of an assembly
         are shown where they sit on the shaft, with one scale of colours and arrows for all of them.
     path : path-like, optional
-        HTML file to write.
+        HTML file to write, ``NAME.html``.
     revolutions : float or None
         Number of last turns of the shaft to show; None shows the whole run.
     max_frames : int
@@ -125,6 +133,8 @@ def view(
         Title of the page.
     height : int
         Height in a notebook (pixels).
+    overwrite : bool
+        Replace a file that is there; never the file of the result.
 
     Returns
     -------
@@ -136,7 +146,7 @@ def view(
     InputError
         If a group was not recorded or an argument is not allowed.
     FileError
-        If the file cannot be written, or three.js is not installed.
+        If the file is there and shall not be replaced, or cannot be written, or three.js is not installed.
 
     Examples
     --------
@@ -149,14 +159,16 @@ def view(
     expect("result", result, Result, AssemblyResult)
     if exaggeration is not None and not 1.0 <= exaggeration <= 1e4:
         raise InputError.of("exaggeration", exaggeration, "must be from 1 to 10000 (1)")
+    if path is not None:  # before the view is made, which takes a while
+        output_path(path, overwrite=overwrite, field="path", endings=ENDINGS, reads=files_of(result))
     if isinstance(result, Result):
         shown, shaft = [_shown(result, revolutions, max_frames, max_size_mb)], None
     else:
         shown, shaft = _on_shaft(result, revolutions, max_frames, max_size_mb)
         title = title or f"{', '.join(result)} on one shaft"
-    made = View(page(shown, factor=exaggeration, title=title, shaft=shaft), height=height)
+    made = View(page(shown, factor=exaggeration, title=title, shaft=shaft), height=height, reads=files_of(result))
     if path is not None:
-        made.save(path)
+        made.save(path, overwrite=overwrite)
     return made
 
 

@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from trbdyn.errors import FileError, InputError
+from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.errors import InputError
+from trbdyn.results.sources import files_of
 from trbdyn.viewer.data import Frames, check, default_factor, frames
 from trbdyn.viewer.fit import largest_factor
 from trbdyn.viewer.meshes import Mesh, join
@@ -49,6 +51,7 @@ def save_gltf(
     max_frames: int = 600,
     exaggeration: float | None = None,
     seconds_per_turn: float = 4.0,
+    overwrite: bool = False,
 ) -> Path:
     """Write the motion as an animated glTF file.
 
@@ -57,7 +60,7 @@ def save_gltf(
     result : Result
         Needs the groups time, cage and rollers.
     path : path-like
-        File to write, .glb.
+        File to write, ``NAME.glb``.
     revolutions : float or None
         Number of last turns of the shaft; None takes the whole run.
     max_frames : int
@@ -67,6 +70,8 @@ def save_gltf(
         `trbdyn.view`. It stands in the name of the animation.
     seconds_per_turn : float
         Time that a turn of the shaft takes when played (s).
+    overwrite : bool
+        Replace a file that is there; never the file of the result.
 
     Returns
     -------
@@ -78,7 +83,7 @@ def save_gltf(
     InputError
         If a group was not recorded or an argument is not allowed.
     FileError
-        If the file cannot be written.
+        If the file is there and shall not be replaced, or cannot be written.
 
     Examples
     --------
@@ -88,6 +93,8 @@ def save_gltf(
     >>> save_gltf(result, tempfile.mkdtemp() + "/bearing.glb").suffix
     '.glb'
     """
+    how: dict[str, Any] = {"overwrite": overwrite, "endings": (".glb",), "reads": files_of(result)}
+    output_path(path, field="path", **how)  # before the frames are made, which takes a while
     check(result, revolutions, max_frames)
     if not 1e-3 <= seconds_per_turn <= 1e4:
         raise InputError.of("seconds_per_turn", seconds_per_turn, "must be from 0.001 to 10000 (s)")
@@ -101,11 +108,7 @@ def save_gltf(
     largest = largest_factor(bearing, meshes, taken.pose) if result.has_cage else math.inf
     factor = min(default_factor(result, largest) if exaggeration is None else exaggeration, largest)
     data = _Document(bearing, meshes, factor, result.has_cage).write(taken, seconds_per_turn)
-    try:
-        Path(path).write_bytes(data)
-    except OSError as error:
-        raise FileError(f"{path}: the glTF file cannot be written: {error.strerror}") from error
-    return Path(path)
+    return write_whole(path, data, **how)
 
 
 class _Document:

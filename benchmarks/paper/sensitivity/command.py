@@ -126,7 +126,7 @@ def run(
     """
     from paper.sensitivity.picture import tornado
     from trbdyn import plot
-    from trbdyn.study.index import write_json
+    from trbdyn.results.summary import write_json
     from trbdyn.study.runner import collect
     from trbdyn.study.runner import run as run_study
 
@@ -147,7 +147,7 @@ def run(
     found, judged = effects.effects(runs, chosen), effects.judge(runs, chosen)
     values = report.to_dict(chosen, data, nominal, found, judged)
     plot.make_folder(folder)
-    write_json(json_file or folder / JSON, values)
+    write_json(values, json_file or folder / JSON, overwrite=True)
     try:
         (folder / TABLES).write_text(report.markdown(chosen, nominal, found, judged), encoding="utf-8")
     except OSError as error:
@@ -156,5 +156,5 @@ def run(
         table = nominal[place.name]
         if table and all(value.count >= LEAST_PICTURE for value in table.values()):
             figure = tornado(place, table, found, chosen.inputs)
-            plot.save(figure, folder / f"sensitivity_{place.name}.png")
+            plot.save(figure, folder / f"sensitivity_{place.name}.png", overwrite=True)
     return values

@@ -8,26 +8,22 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, SAVE_DPI, styled
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, MARKERS, styled
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from trbdyn.study.planning.proposal import Plan, Row
 
 LEAST = 1e-2
 """Smallest change that is drawn (%)."""
 
 
-def draw(plan: Plan, path: str | Path | None = None) -> Any:
+def draw(plan: Plan) -> Any:
     """Draw the influence of each simplification on each wanted average, and its computing time.
 
     Parameters
     ----------
     plan : Plan
         The plan.
-    path : path-like, optional
-        Where to save the picture.
     """
     rows = [row for row in plan.rows if math.isfinite(row.time_ratio)][::-1]
     with styled():
@@ -46,8 +42,6 @@ def draw(plan: Plan, path: str | Path | None = None) -> Any:
         figure.suptitle(
             "What each simplification changes in the averages that were asked for, and what it saves", fontsize=11
         )
-    if path is not None:
-        figure.savefig(path, dpi=SAVE_DPI)
     return figure
 
 

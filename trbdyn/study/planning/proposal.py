@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -15,8 +16,6 @@ from trbdyn.run.simulation import Simulation
 from trbdyn.study.planning.probes import Influence
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from trbdyn.model.scene import Scene
     from trbdyn.results.result import Result
 
@@ -152,22 +151,25 @@ class Plan(Displayed):
         found = averages(result.window(float(time[0]) + self.settle))
         return {name: float(found[name]) for name in self.want}
 
-    def picture(self, path: str | Path | None = None) -> Any:
+    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
         """Draw what each effect gives and costs.
 
         Parameters
         ----------
         path : path-like, optional
             Where to save the picture.
+        overwrite : bool
+            Replace a file that is there.
 
         Returns
         -------
         Figure
             The matplotlib figure.
         """
+        from trbdyn.plot.style import kept
         from trbdyn.study.planning.picture import draw
 
-        return draw(self, path)
+        return kept(draw(self), path, overwrite=overwrite)
 
     def __repr__(self) -> str:
         return str(self)
