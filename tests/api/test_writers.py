@@ -101,12 +101,6 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
         "a.h5",
         lambda run, path, **how: trb.Simulation(paper_30310()).run(output=path, **SPAN, **how),
     ),
-    "trbdyn.run.assembly.AssemblySimulation.run": (
-        "a.h5",
-        lambda run, path, **how: trb.AssemblySimulation(trb.load_assembly("pair_30310")).run(
-            output=path, duration=2e-5, save_every=1e-5, **how
-        ),
-    ),
 } | {f"{owner}.picture": ("a.png", picture_of(*where, owner)) for owner, where in PICTURES.items()}
 RUNS = {name for name in WRITERS if name.endswith("Simulation.run")}
 """Runs have tests of their own for a full disk: tests/restart and tests/api/test_results.py."""
@@ -128,7 +122,9 @@ READERS = {
     "trbdyn.cage.modes.CageModes.load",
     "trbdyn.results.assembly.AssemblyResult.load",
     "trbdyn.results.assembly.load_any",
-    "trbdyn.results.assembly_file.description_in",
+    "trbdyn.results.sources.assembly_in",
+    "trbdyn.results.sources.names_in",
+    "trbdyn.model.roller.Profile.from_csv",
     "trbdyn.results.result.load",
     "trbdyn.results.sources.FileSource",
     "trbdyn.run.resume.resume",
@@ -174,9 +170,7 @@ def test_every_function_that_takes_the_path_of_a_file_is_known() -> None:
     inner = {
         "trbdyn.cli.case.simulate",
         "trbdyn.plot.make_folder",
-        "trbdyn.results.assembly_file.gather",
         "trbdyn.results.result_file.ResultWriter",
-        "trbdyn.run.assembly_run.AssemblyRun.write_to",
         "trbdyn.run.running.Run.write_to",
     }
     assert set(found) - known - inner == set(), "a new function takes a file: say here whether it writes, and how"
@@ -200,7 +194,6 @@ MAY_WRITE = {
     "base/own_files.py": "the one way",
     "base/locks.py": "opens what is there",
     "results/hdf5_file.py": "fills a draft",
-    "results/assembly_file.py": "fills a draft",
     "cage/modes.py": "fills memory",
     "run/checkpoint.py": "moves its own checkpoints",
     "study/gather.py": "fills memory",
