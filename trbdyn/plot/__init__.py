@@ -7,7 +7,6 @@ the figure, back. The style holds for the new picture only: nothing global is ch
 from __future__ import annotations
 
 import inspect
-import math
 import os
 from collections.abc import Callable, Iterable
 from functools import partial, wraps
@@ -42,6 +41,7 @@ from trbdyn.plot.style import STYLE, styled, write
 from trbdyn.plot.wearing import wear_map
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
 from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.conditions import ranges, spoken
 from trbdyn.results.result import Result
 
 __all__ = [
@@ -290,17 +290,18 @@ def drawable(result: Result) -> tuple[str, ...]:
 def conditions(result: Result) -> str:
     """Bearing, speed and loads of a run, for a title."""
     scene = result.scene
-    parts = [f"{float(abs(result['shaft_speed']).mean()) * 30.0 / math.pi:.4g} rpm"]
+    found = ranges(result)
+    parts = [f"{spoken(found['speed'])} rpm"]
     if scene.outer_turns:
-        parts.append(f"outer ring {float(result.outer_speed.mean()) * 30.0 / math.pi:.4g} rpm")
+        parts.append(f"outer ring {spoken(found['outer ring'])} rpm")
     if "assembly" in result.meta:
         parts.insert(0, f"{result.meta['assembly']['bearing']} on its shaft")
         if "ring" in result.groups:
             axial, radial = (float(load.mean()) for load in result.ring_loads)
             parts.append(f"mean $F_a$ {axial:.4g} N, $F_r$ {radial:.4g} N")
-    for load, name in ((scene.axial_load, "$F_a$"), (scene.radial_load, "$F_r$")):
-        if isinstance(load, int | float) and load:
-            parts.append(f"{name} {load:g} N")
+    for symbol, name in (("Fa", "$F_a$"), ("Fr", "$F_r$")):
+        if any(found.get(symbol, ())):
+            parts.append(f"{name} {spoken(found[symbol])} N")
     return f"{scene.bearing.name}: {', '.join(parts)}"
 
 

@@ -79,6 +79,13 @@ def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     turns = f"{numbers['revolutions']:.4g} turns of the {_ring(numbers)} ({numbers['duration']:.4g} s)"
     if not result.success:
         return "bad", "The run did not reach its end", f"{turns} were simulated. {result.message}"
+    if numbers.get("changing"):
+        return (
+            "plain",
+            "A run that changes",
+            f"{turns} were simulated; {numbers['changing']}. {_averages(numbers)} and hold for this stretch alone; largest and "
+            "smallest values are those of the whole run.",
+        )
     if _settled(numbers):
         return (
             "plain",
@@ -86,13 +93,30 @@ def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
             f"{turns} were simulated. The motion settled; averages are taken from {numbers['window_start']:.4g} s on.",
         )
     drifts = numbers.get("settling") == "drifting"
-    known = "the motion still drifts" if drifts else "whether the motion has settled cannot be told yet"
     reason = f": {numbers['settling_reason']}" if numbers.get("settling_reason") else ""
+    known = sorted(
+        set(numbers.get("confidence") or ()) & {"torque", "power_loss", "outer_load_mean", "film_parameter_outer"}
+    )
+    others = (
+        "Torque, loads and films do not wait for it: their intervals stand beside them. Take averages of the cage's motion"
+        if known
+        else "Take averages"
+    )
     return (
         "care",
-        "Not settled",
-        f"{turns} were simulated; {known}{reason}. {_needed(numbers)}Take averages as a first look.",
+        "The cage's motion still drifts" if drifts else "Too short to tell how the cage moves in the long run",
+        f"{turns} were simulated{reason}. {_needed(numbers)}{others} as a first look.",
     )
+
+
+def _averages(numbers: dict[str, Any]) -> str:
+    return f"Averages are taken from {numbers['window_start']:.4g} to {numbers['window_end']:.4g} s"
+
+
+def _at(numbers: dict[str, Any], name: str) -> str:
+    """When an extreme was, with a space before it."""
+    time = numbers.get(f"{name}_time")
+    return "" if time is None else f" (at {time:.4g} s)"
 
 
 def _needed(numbers: dict[str, Any]) -> str:
@@ -137,6 +161,12 @@ def _whirl(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     if _settled(numbers) and kind != "unknown":
         return grade, headline, sentence
     so_far = "" if kind == "unknown" else f"So far: {headline[0].lower()}{headline[1:]}. "
+    if numbers.get("changing"):
+        return (
+            "plain",
+            "The cage's motion is not judged, as the run changes",
+            f"{_averages(numbers)}. {so_far}{sentence}",
+        )
     return "plain", "The cage's motion cannot be told yet", f"{so_far}{sentence} {_needed(numbers)}".strip()
 
 
@@ -194,7 +224,7 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     so_far = "" if settled else " so far"
     if peak == 0.0:
         grade = "good" if settled else "plain"
-        return grade, f"No roller touched the cage{so_far}", "No force was recorded in any pocket after the transient."
+        return grade, f"No roller touched the cage{so_far}", "No force acted in any pocket."
     weight = result.scene.bearing.cage.mass * GRAVITY
     compared = f"{peak / weight:.3g} times the weight of the cage"
     load = numbers.get("outer_load_mean")
@@ -209,7 +239,8 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     return (
         "good" if settled and _soft(numbers) else "plain",
         f"Hits on the cage{so_far}",
-        f"The hardest force between a roller and its pocket{so_far} is {peak:.3g} N, {compared}; while they touch, 95 % of the "
+        f"The hardest force between a roller and its pocket{so_far} is {peak:.3g} N{_at(numbers, 'pocket_force_peak')}, "
+        f"{compared}; while they touch, 95 % of the "
         f"forces stay below {numbers['pocket_force_p95']:.3g} N. A pocket is touched "
         f"{100.0 * numbers['pocket_duty']:.2g} % of the time.{_bias(result, 'pocket_force_peak')}{band}",
     )
@@ -256,9 +287,19 @@ def _films(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     if not values or not result.scene.effects.films:
         return None
     thinnest = min(values, key=lambda name: values[name])
-    value = values[thinnest]
+    value, mean = values[thinnest], values[thinnest]
     number = f"The mean film parameter (film thickness over roughness) is smallest at the {thinnest}: {value:.3g}."
-    if not _whole_turn(numbers):
+    if numbers.get("changing"):
+        least = {
+            (name, side): numbers[f"film_parameter_{side}_min"]
+            for side, name in contacts().items()
+            if numbers.get(f"film_parameter_{side}_min") is not None
+        }
+        if least:
+            (thinnest, side), value = min(least.items(), key=lambda one: one[1])
+            when = _at(numbers, f"film_parameter_{side}_min")
+            number = f"The film parameter (film thickness over roughness) is smallest at the {thinnest}: {value:.3g}{when}. {number}"
+    elif not _whole_turn(numbers):
         return _too_short("Films", number)
     full = result.scene.effects.friction.lambda_full
     limit = f"effects.friction.lambda_full = {full:.3g}"
@@ -269,6 +310,12 @@ def _films(result: Result, numbers: dict[str, Any]) -> Sentence | None:
             "care",
             "Films carry, with some contact",
             f"{number} Below {limit} the highest asperities touch and add boundary friction.",
+        )
+    if mean >= full:
+        return (
+            "care",
+            "Films are thin for a while",
+            f"{number} Below {MIXED_FILM:.3g} asperities carry a part of the load.",
         )
     return (
         "bad",
@@ -293,16 +340,16 @@ def _too_short(headline: str, number: str) -> Sentence:
 
 def _pressure(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     found = {
-        name: numbers[f"{side}_pressure_max"]
+        (name, side): numbers[f"{side}_pressure_max"]
         for side, name in contacts().items()
         if numbers.get(f"{side}_pressure_max")
     }
     if not found:
         return None
-    where = max(found, key=lambda name: found[name])
-    value = found[where]
-    number = f"The largest pressure, {1e-9 * value:.3g} GPa, is at the {where}."
-    if value < STATIC_LIMIT and not _whole_turn(numbers):
+    (where, side), value = max(found.items(), key=lambda one: one[1])
+    when = _at(numbers, f"{side}_pressure_max")
+    number = f"The largest pressure of the run, {1e-9 * value:.3g} GPa, is at the {where}{when}."
+    if value < FATIGUE_LIMIT and not _whole_turn(numbers):
         return _too_short("Pressures", number)
     if value < FATIGUE_LIMIT:
         return (

@@ -2,10 +2,12 @@
 
 Each number of the summary that is an average is computed again in each turn of the cage (in several turns where there are many),
 and the values of the turns tell the error of the whole, with all slow motion that they leave possible
-(`trbdyn.observables.mean_error`). What is no mean, such as a percentile or a root mean square about the mean place, is first made
-one by its change with the records (its influence function), so that what a slow change adds to it counts. Nothing is told of a
-motion that is not known to have settled: what still creeps goes on where no scatter of this window reaches, and takes torque and
-loads with it. A second whirl that another start would lead to, and errors of the model, are not in it.
+(`trbdyn.observables.mean_error`). What is no mean, such as a percentile or a root mean square about the mean place, is first made one by
+its change with the records (its influence function), so that what a slow change adds to it counts. Each average is judged by itself.
+Where the cage's motion is not known to have settled, averages of that motion have no interval: what still creeps goes on where no
+scatter of this window reaches. Loads, films, speeds and losses follow the load at once; they have intervals, and what the cage takes
+of the losses in this window is added to those of torque and power loss, as another motion of the cage may take as much more or less.
+A second whirl that another start would lead to, and errors of the model, are not in it.
 """
 
 from __future__ import annotations
@@ -55,6 +57,21 @@ AVERAGES: Final = (
 )
 """Entries of the summary that are averages over its window."""
 
+FOLLOWING: Final = (
+    "cage_speed_ratio",
+    "cage_slip",
+    *(f"{side}_load_mean" for side in contacts()),
+    *(f"film_parameter_{side}" for side in contacts()),
+    "torque",
+    "torque_outer",
+    "power_loss",
+)
+"""Those that follow load and speed at once, whatever the cage does."""
+LOST: Final = ("torque", "torque_outer", "power_loss")
+"""Those of them in which the losses at the cage are a part."""
+OF_CAGE: Final = ("pocket", "land", "cage")
+"""Beginnings of the names of losses at the cage."""
+
 
 SLOPE: Final = 0.04
 """Share of the records on either side of a percentile whose distance tells how dense they are there."""
@@ -72,7 +89,7 @@ def confidence(
     average : callable
         Gives the averages of a part of them, by the names of `AVERAGES`.
     unsettled : str
-        Why the motion is not known to have settled: then nothing is told.
+        Why the cage's motion is not known to have settled: then only the averages of `FOLLOWING` have intervals.
 
     Returns
     -------
@@ -81,11 +98,6 @@ def confidence(
     words : str
         From how many batches of which length, or why it cannot be told.
     """
-    if unsettled:
-        return None, (
-            f"they cannot be told, as the motion is not known to have settled: {unsettled}. What still changes slowly takes all "
-            "averages with it, and a scatter within this window does not show how far"
-        )
     edges, turns = _batches(window)
     if len(edges) <= LEAST_BATCHES:
         found = f"the window has {turns:.3g} turns of the cage" if turns else f"the window has {len(window)} records"
@@ -95,7 +107,7 @@ def confidence(
     of_records = _as_means(window)
     widths: dict[str, float] = {}
     untold: list[str] = []
-    for name in AVERAGES:
+    for name in FOLLOWING if unsettled else AVERAGES:
         if name in of_records:
             values = np.array([of_records[name][a:b].mean() for a, b in pairwise(edges)])
         else:
@@ -107,15 +119,26 @@ def confidence(
             continue
         width = observables.half_width(values)
         if math.isfinite(width):
-            widths[name] = width
+            widths[name] = width + (_of_cage(window) * abs(float(values.mean())) if unsettled and name in LOST else 0.0)
         else:
             untold.append(name)
     each = f"{turns / (len(edges) - 1):.2g} turns of the cage" if turns else f"{time[edges[1]] - time[edges[0]]:.3g} s"
     none = f"; none for what drifts in the window: {', '.join(untold)}" if untold else ""
-    return widths, (
+    if unsettled:
+        none += f"; none for the cage's motion, which is not known to have settled: {unsettled}"
+    return widths or None, (
         f"half widths of 95 % confidence intervals, from {len(edges) - 1} batches of {each}{none}; another whirl that another "
         "start leads to, and errors of the model, are not in them"
     )
+
+
+def _of_cage(window: Result) -> float:
+    """Share of the losses that the cage has part in."""
+    if "power" not in window.groups:
+        return 0.0
+    split = window.power_split
+    lost = sum(split.values())
+    return sum(value for name, value in split.items() if name.startswith(OF_CAGE)) / lost if lost > 0.0 else 0.0
 
 
 def _batches(window: Result) -> tuple[list[int], float]:

@@ -31,6 +31,14 @@ def _of_contacts(name: str, words: str, unit: str, meaning: str) -> dict[str, Qu
     }
 
 
+def _peaks_of_contacts(name: str, words: str, unit: str, meaning: str) -> dict[str, Quantity]:
+    """An extreme of each contact, and when it was."""
+    out: dict[str, Quantity] = {}
+    for key, quantity in _of_contacts(name, words, unit, meaning).items():
+        out |= {key: quantity, f"{key}_time": Quantity("    at", "s", "When that was.")}
+    return out
+
+
 QUANTITIES: Final[dict[str, Quantity]] = {
     "success": Quantity("finished", "", "Whether the run reached its end."),
     "message": Quantity("how it ended", "", "How it ended."),
@@ -54,7 +62,10 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     ),
     "window_start": Quantity("averages from", "s", "Averages are taken from this time on."),
     "window_end": Quantity("averages to", "s", "Averages are taken up to this time."),
-    "speed_rpm": Quantity("shaft speed", "rpm", "Mean speed of the inner ring."),
+    "changing": Quantity(
+        "what changes in the run", "", "Speeds and loads that change: averages hold for their window alone."
+    ),
+    "speed_rpm": Quantity("shaft speed", "rpm", "Mean speed of the inner ring over the window of the averages."),
     "outer_speed_rpm": Quantity("outer ring's speed", "rpm", "Mean speed of an outer ring that turns."),
     "cage_speed_ratio": Quantity("cage speed / shaft speed", "", "Turns of the cage for each turn of the shaft."),
     "cage_speed_ratio_kinematic": Quantity(
@@ -129,7 +140,10 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "pocket_force_p95": Quantity(
         "pocket force, 95 % in contact", "N", "While a roller touches the cage, 95 % of the forces stay below this."
     ),
-    "pocket_force_peak": Quantity("pocket force, largest at any step", "N", "The hardest hit on a pocket."),
+    "pocket_force_peak": Quantity(
+        "pocket force, largest in the run", "N", "The hardest hit on a pocket in the whole run."
+    ),
+    "pocket_force_peak_time": Quantity("    at", "s", "When that was."),
     "pocket_force_peak_low": Quantity(
         "the same with other starts or accuracies, at least",
         "N",
@@ -139,23 +153,27 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "pocket_force_peak_high": Quantity(
         "the same with other starts or accuracies, at most", "N", "And one below this in 97 of 100 cases."
     ),
-    "pocket_impacts": Quantity("impacts in the pockets", "", "How often a roller began to touch its pocket."),
+    "pocket_impacts": Quantity(
+        "impacts in the pockets, in the run", "", "How often a roller began to touch its pocket."
+    ),
     "pocket_impulse_peak": Quantity(
-        "largest impulse of one impact", "N s", "Momentum that the hardest impact passed on."
+        "largest impulse of one impact, in the run", "N s", "Momentum that the hardest impact passed on."
     ),
     "land_force_peak": Quantity(
-        "force of the land on the cage, largest at any step", "N", "The hardest push of the land that guides the cage."
+        "force of the land on the cage, largest in the run", "N", "The hardest push of the land that guides the cage."
     ),
+    "land_force_peak_time": Quantity("    at", "s", "When that was."),
     "land_gap_min": Quantity(
-        "gap between cage and land, smallest at any step",
+        "gap between cage and land, smallest in the run",
         "m",
         "How near the cage came to the land; below bearing.land.contact_film they touch.",
     ),
+    "land_gap_min_time": Quantity("    at", "s", "When that was."),
     "pocket_duty": Quantity(
         "share of time that a pocket is touched", "", "Share of the time for which a pocket is touched."
     ),
     **_of_contacts("{}_load_mean", "load a roller", "N", "Mean load of a roller at the {}."),
-    **_of_contacts("{}_pressure_max", "largest pressure at any step", "Pa", "Largest Hertz pressure at the {}."),
+    **_peaks_of_contacts("{}_pressure_max", "largest pressure in the run", "Pa", "Largest Hertz pressure at the {}."),
     "equivalent_load": Quantity(
         "equivalent dynamic load P (ISO 281)",
         "N",
@@ -201,11 +219,11 @@ QUANTITIES: Final[dict[str, Quantity]] = {
         "",
         "Film thickness over roughness at the {}; from effects.friction.lambda_full on, the film carries all.",
     ),
-    **_of_contacts(
+    **_peaks_of_contacts(
         "film_parameter_{}_min",
-        "smallest film parameter",
+        "smallest film parameter in the run",
         "",
-        "The thinnest film over roughness at the {}, at any moment.",
+        "The thinnest film over roughness at the {}, at any moment of the run.",
     ),
     "skew_rms": Quantity("roller skew, rms", "rad", "How far the rollers turn out of their rolling direction."),
     "torque": Quantity("friction torque of the shaft", "N m", "Friction torque that the shaft has to overcome."),

@@ -1,6 +1,7 @@
 """The numbers of a run that an engineer asks for first: as a dictionary, as JSON, as a table.
 
-Averages are taken over the window after the transient (``window_start`` to ``window_end``), half of the run at least. Whether the
+Averages are taken over the window after the transient (``window_start`` to ``window_end``), half of the run at least; peaks,
+smallest films and impacts are those of the whole run, with their times. Whether the
 motion has settled there is told in three answers, in ``settling``: settled, drifting (with its time scale) or unknown, which
 means that it cannot be told from this run (see `Result.settling`). Energies are those of the whole run. Numbers whose fields were
 not recorded, or that do not exist (a whirl ratio at standstill), are None.
@@ -22,7 +23,7 @@ from trbdyn.base.shown import Displayed, Shown
 from trbdyn.cage.simulated import cage_modes
 from trbdyn.errors import TrbError
 from trbdyn.model.motion import is_constant
-from trbdyn.results import observables, peak_band
+from trbdyn.results import conditions, observables, peak_band
 from trbdyn.results.confidence import confidence
 from trbdyn.results.fields import carrying
 from trbdyn.results.quantities import QUANTITIES
@@ -143,8 +144,9 @@ def _motion(result: Result) -> dict[str, Any]:
     out["speed_rpm"] = float(window["shaft_speed"].mean()) * 30.0 / np.pi
     if window.scene.outer_turns:
         out["outer_speed_rpm"] = float(window.outer_speed.mean()) * 30.0 / np.pi
-    out |= averages(window)
-    if "pocket_force_peak" in out and peak_band.drops(window):
+    out |= averages(window) | extremes(result)
+    out["changing"] = conditions.words(result)
+    if "pocket_force_peak" in out and peak_band.drops(result):
         out["pocket_force_peak_low"], out["pocket_force_peak_high"] = peak_band.band(out["pocket_force_peak"])
     out["confidence"], out["confidence_note"] = confidence(window, averages, unsettled)
     if not result.has_cage:
@@ -160,7 +162,7 @@ def averages(window: Result) -> dict[str, Any]:
         "cage": _cage,
         "rollers": _rollers,
         "pocket": _pocket,
-        "peaks": _peaks,
+        "peaks": _means_of_loads,
         "torque": _torque,
         "power": _power,
     }
@@ -235,22 +237,40 @@ def _contacts(window: Result) -> dict[str, Any]:
     return out
 
 
-def _peaks(window: Result) -> dict[str, Any]:
-    """Extremes at the ends of all steps in the window, and time integrals between them; not those of the records."""
+def _means_of_loads(window: Result) -> dict[str, Any]:
+    """Time integrals between the ends of steps, in place of means of records."""
     peaks = window.peaks
+    return {f"{side}_load_mean": peaks[f"{side}_load_mean"].mean() for side in carrying(peaks, "_load_peak")}
+
+
+def extremes(result: Result) -> dict[str, Any]:
+    """Extremes of a run at the ends of all its steps, not those of its records, each with its time (s); and its impacts."""
+    if "peaks" not in result.groups:
+        return {}
+    peaks = result.peaks
     out: dict[str, Any] = {}
+
+    def put(name: str, peak: str, *, smallest: bool = False) -> None:
+        values = np.atleast_1d(peaks[peak])
+        if np.isnan(values).all():
+            out[name] = out[f"{name}_time"] = None
+            return
+        at = int(np.nanargmin(values) if smallest else np.nanargmax(values))
+        out[name] = float(values.flat[at])
+        out[f"{name}_time"] = float(np.atleast_1d(peaks[f"{peak}_time"]).flat[at])
+
     for side in carrying(peaks, "_load_peak"):
-        out[f"{side}_load_mean"] = peaks[f"{side}_load_mean"].mean()
         if f"{side}_pressure_peak" in peaks:
-            out[f"{side}_pressure_max"] = peaks[f"{side}_pressure_peak"].max()
-            out[f"film_parameter_{side}_min"] = np.fmin.reduce(peaks[f"{side}_film_parameter_min"])
-    if window.scene.effects.guidance != "rollers":
-        out |= {name: float(peaks[name]) for name in ("land_force_peak", "land_gap_min")}
-    return out | {
-        "pocket_force_peak": peaks["pocket_force_peak"].max(),
-        "pocket_impacts": int(peaks["pocket_impacts"].sum()),
-        "pocket_impulse_peak": peaks["pocket_impulse_peak"].max(),
-    }
+            put(f"{side}_pressure_max", f"{side}_pressure_peak")
+            put(f"film_parameter_{side}_min", f"{side}_film_parameter_min", smallest=True)
+    if result.scene.effects.guidance != "rollers":
+        put("land_force_peak", "land_force_peak")
+        put("land_gap_min", "land_gap_min", smallest=True)
+    if result.has_cage:
+        put("pocket_force_peak", "pocket_force_peak")
+        out["pocket_impacts"] = int(peaks["pocket_impacts"].sum())
+        out["pocket_impulse_peak"] = peaks["pocket_impulse_peak"].max()
+    return out
 
 
 def _torque(window: Result) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from trbdyn.base.expected import expect
 from trbdyn.model.assembly import Assembly
-from trbdyn.model.motion import value_at
+from trbdyn.model.motion import History, value_at
 from trbdyn.model.scene import Scene
 from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
@@ -132,6 +132,9 @@ def of_run(result: Result) -> Loading:
         axial += share * (carried[0] if z else value_at(scene.axial_load, float(time[index])))
         radial += share * (carried[1] if x or y else value_at(scene.radial_load, float(time[index])))
         pressure = max(pressure, float(np.max(contacts["raceway_pressure"])))
+    if "peaks" in result.groups:
+        peaks = result.peaks
+        pressure = max([pressure, *(float(np.max(peaks[f"{side}_pressure_peak"])) for side in ("outer", "inner"))])
     return Loading(
         axial_load=float(axial),
         radial_load=float(radial),
@@ -140,4 +143,20 @@ def of_run(result: Result) -> Loading:
         weights=np.repeat(shares, scene.bearing.n_rollers),
         largest_pressure=pressure,
         source=f"{chosen.size} records from {float(time[chosen[0]]):.3g} to {float(time[chosen[-1]]):.3g} s",
+        moments=_moments(scene, time),
     )
+
+
+def _moments(scene: Scene, time: Any) -> tuple[tuple[float, float], ...]:
+    """Axial and radial load (N) at the knots of histories of loads within a run, where a load is largest; nothing where none
+    changes.
+    """
+    histories = [load for load in (scene.axial_load, scene.radial_load) if isinstance(load, History)]
+    if not histories:
+        return ()
+    knots = {float(t) for load in histories for t in load.times if time[0] <= t <= time[-1]}
+    at = np.union1d(np.asarray(time, dtype=float), sorted(knots))
+    axial, radial = (
+        np.abs([value_at(load or 0.0, float(t)) for t in at]) for load in (scene.axial_load, scene.radial_load)
+    )
+    return tuple(zip(axial.tolist(), radial.tolist(), strict=True))

@@ -155,7 +155,7 @@ class Until:
             known = "; ".join(_words(name, share, self.wanted[name]) for name, share in found.items())
             why = "" if values["confidence"] else f". Intervals {values['confidence_note'].removeprefix('they ')}"
             self.said = known + why
-        return values["settled"] and all(share <= self.wanted[name] for name, share in found.items())
+        return all(share <= self.wanted[name] for name, share in found.items())
 
 
 def _share(value: float | None, width: float | None) -> float:

@@ -229,6 +229,8 @@ class Loading:
         Largest pressure on a raceway (Pa).
     source : str
         Of what: in words.
+    moments : tuple of tuple of float
+        Axial and radial loads (N) at moments of a run whose loads change: the heaviest of them makes the static safety.
     """
 
     axial_load: float
@@ -238,6 +240,7 @@ class Loading:
     weights: Array | None
     largest_pressure: float
     source: str
+    moments: tuple[tuple[float, float], ...] = ()
 
 
 def lamina_loads(scene: Scene, contacts: dict[str, Array]) -> Array:
@@ -308,7 +311,8 @@ def sheet(
     C, C0, Cu, e, Y, Y0 = _factors(scene, notes)
     axial, radial, speed = abs(loading.axial_load), loading.radial_load, abs(loading.speed_rpm)
     if e is None or Y is None or Y0 is None:
-        P = P0 = radial
+        P = radial
+        P0 = max([radial, *(one for _, one in loading.moments)])
         notes["equivalent_load"] = "Fr (ISO 281, contact angle 0)"
         if axial > RATED_AS_RADIAL * radial:
             said.append(
@@ -316,8 +320,11 @@ def sheet(
             )
     else:
         P = iso281.equivalent_load(radial, axial, e=e, Y=Y)
-        P0 = iso281.static_equivalent_load(radial, axial, Y0=Y0)
+        moments = [(axial, radial), *((abs(a), r) for a, r in loading.moments)]
+        P0 = max(iso281.static_equivalent_load(r, a, Y0=Y0) for a, r in moments)
         notes["equivalent_load"] = "Fr" if axial <= e * radial else "0.4 Fr + Y Fa"
+    if loading.moments:
+        notes["static_equivalent_load"] = "heaviest moment of the run"
     smallest = iso281.SMALLEST_LOAD_SHARE * C
     notes["smallest_load"] = "0.02 C"
     if smallest > P:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
+from trbdyn.results.conditions import ranges, spoken
 from trbdyn.results.fields import carrying, contacts
 from trbdyn.run.replay import Replay
 from trbdyn.run.simulation import Simulation
@@ -268,21 +269,19 @@ def default_factor(result: Result, largest: float) -> float:
 
 def facts(result: Result) -> dict[str, Any]:
     """Words and numbers for the head of the view."""
-    scene = result.scene
+    scene, found = result.scene, ranges(result)
     loads = []
     on_shaft = "assembly" in result.meta and "ring" in result.groups
     for label, load in zip(("mean Fa", "mean Fr"), result.ring_loads if on_shaft else (), strict=False):
         loads.append(f"{label} {float(load.mean()):.4g} N")
-    for name, label in () if on_shaft else (("axial_load", "Fa"), ("radial_load", "Fr")):
-        value = getattr(scene, name)
-        if isinstance(value, int | float):
-            loads.append(f"{label} {value:g} N")
-        else:
-            loads.append(f"{label} changes in time")
-    speed = float(np.abs(result.turning_speed).mean()) * 30.0 / np.pi
+    for label in () if on_shaft else ("Fa", "Fr"):
+        if label in found:
+            loads.append(f"{label} {spoken(found[label])} N")
+    turning = np.abs(result.turning_speed) * 30.0 / np.pi
     return {
         "bearing": scene.bearing.name,
-        "speed_rpm": speed,
+        "speed_rpm": float(turning.mean()),
+        "speed": spoken((float(turning.min()), float(turning.max()))),
         "turning": scene.turning_ring,
         "loads": ", ".join(loads),
     }

@@ -135,7 +135,7 @@ def page(
 def _about(shown: Sequence[Shown]) -> str:
     """Bearings, speed and loads in words."""
     said = [facts(one.result) for one in shown]
-    speed = f"{said[0]['speed_rpm']:.4g} rpm"
+    speed = f"{said[0]['speed']} rpm"
     if len(shown) == 1:
         return f"{said[0]['bearing']}, {speed}, {said[0]['loads']}"
     parts = (f"{one.name}: {fact['bearing']}, {fact['loads']}" for one, fact in zip(shown, said, strict=True))
