@@ -36,6 +36,7 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     scene.speed_rpm = scene.turning_rpm = 3000.0
     scene.outer_speed_rpm, scene.outer_turns, scene.turning_ring, scene.torque = 0.0, False, "shaft", None
     scene.elastic_cage = None
+    scene.axial_load, scene.radial_load = build()[1].scene.axial_load, 0.0
     scene.lubricant = build()[1].scene.lubricant
     scene.misalignment_x = scene.misalignment_y = 0.0
     about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -129,7 +129,10 @@ def test_the_summary_says_which_averages_drift() -> None:
     assert widths is not None
     assert set(widths) == {"power_loss"}
     assert "none for what drifts in the window: torque;" in words
-    assert confidence(made, MadeUp.averages, "it creeps")[0] is None  # type: ignore[arg-type]
+    widths, words = confidence(made, MadeUp.averages, "it creeps")  # type: ignore[arg-type]
+    assert widths is not None
+    assert set(widths) == {"power_loss"}
+    assert "none for the cage's motion, which is not known to have settled: it creeps" in words
 
 
 def lingering_whirls(rng: np.random.Generator, cages: int, turns: int, records: int = 40) -> Array:
@@ -181,6 +184,7 @@ class MadeUp:
 
     groups = ("power", "rollers")
     has_cage = False
+    power_split: ClassVar[dict[str, float]] = {"rolling": 1.0}
 
     def __init__(self, time: np.ndarray, power: np.ndarray, torque: np.ndarray, turn: float) -> None:
         angle = 2.0 * math.pi * time[:, np.newaxis] / turn
@@ -228,7 +232,7 @@ def test_a_short_run_has_none_and_says_why() -> None:
     result = trb.Simulation(paper_30310(3000.0, 4930.0)).run(duration=3e-3, save_every=1e-4)
     values = result.summary()
     assert values["confidence"] is None
-    assert "not known to have settled: only 0.063 turns of the cage" in values["confidence_note"]
+    assert "it takes 16 turns" in values["confidence_note"]
     assert "±" not in table(values).replace("behind ±", "")
 
 
@@ -319,24 +323,30 @@ class Looked:
         return self
 
     def summary(self) -> dict[str, Any]:
-        told = {"confidence": {"torque": 1e-3}, "confidence_note": "half widths"}
-        return {"settling": self.settling, "settled": self.settling == "settled", "torque": 1.0} | told
+        widths = {"torque": 1e-3} | ({"orbit_radius_over_cpr": 1e-3} if self.settling == "settled" else {})
+        return {"torque": 1.0, "orbit_radius_over_cpr": 1.0, "confidence": widths, "confidence_note": "half widths"}
 
 
 @pytest.mark.parametrize("settling", ["settled", "unknown", "drifting"])
-def test_a_run_ends_only_when_its_motion_is_known_to_have_settled(settling: str) -> None:
-    looks = Until({"torque": 0.01}, 1000)
-    ended = [looks.reached(done, lambda: Looked(settling)) for done in looks._looks]  # type: ignore[arg-type, return-value]
-    assert any(ended) == (settling == "settled")
+def test_each_average_is_judged_by_itself(settling: str) -> None:
+    """A torque does not wait for a cage that creeps; an orbit does."""
+    for name, known in (("torque", True), ("orbit_radius_over_cpr", settling == "settled")):
+        looks = Until({name: 0.01}, 1000)
+        ended = [looks.reached(done, lambda: Looked(settling)) for done in looks._looks]  # type: ignore[arg-type, return-value]
+        assert any(ended) == known, name
 
 
-def test_creep_that_a_run_is_short_against_leaves_no_interval() -> None:
-    """Combined load: the rollers creep within 1.3 s, so that half a second tells nothing, and the run goes on to its end."""
+def test_creep_that_a_run_is_short_against_leaves_the_cage_no_interval() -> None:
+    """Combined load: the rollers creep within 1.3 s, so that half a second tells nothing of the cage, and the run goes on."""
     scene = paper_30310(3000.0, 4930.0, 5530.0, effects=trb.Effects.standard(), start=trb.Start.unequal(1))
     with pytest.warns(trb.RunWarning, match="not known to have settled"):
-        result = trb.Simulation(scene, accuracy="fast").run(duration=0.5, save_every=1e-3, until={"torque": 0.1})
+        result = trb.Simulation(scene, accuracy="fast").run(
+            duration=0.5, save_every=1e-3, until={"orbit_radius_over_cpr": 0.1}
+        )
     assert result.duration == pytest.approx(0.5)
-    assert result.summary()["confidence"] is None
+    widths = result.summary()["confidence"]
+    assert "orbit_radius_over_cpr" not in widths
+    assert 0.0 < widths["torque"] < 0.02 * result.summary()["torque"]
 
 
 @pytest.mark.parametrize(

@@ -298,7 +298,10 @@ def _films(result: Result, numbers: dict[str, Any]) -> Sentence | None:
         if least:
             (thinnest, side), value = min(least.items(), key=lambda one: one[1])
             when = _at(numbers, f"film_parameter_{side}_min")
-            number = f"The film parameter (film thickness over roughness) is smallest at the {thinnest}: {value:.3g}{when}. {number}"
+            least_said = (
+                f"The film parameter (film thickness over roughness) is smallest at the {thinnest}: {value:.3g}{when}."
+            )
+            number = f"{least_said} {number}"
     elif not _whole_turn(numbers):
         return _too_short("Films", number)
     full = result.scene.effects.friction.lambda_full

@@ -1,13 +1,14 @@
 """How well the averages of a run are known: half widths of 95 % confidence intervals, from whole turns of the cage.
 
-Each number of the summary that is an average is computed again in each turn of the cage (in several turns where there are many),
-and the values of the turns tell the error of the whole, with all slow motion that they leave possible
-(`trbdyn.observables.mean_error`). What is no mean, such as a percentile or a root mean square about the mean place, is first made one by
-its change with the records (its influence function), so that what a slow change adds to it counts. Each average is judged by itself.
-Where the cage's motion is not known to have settled, averages of that motion have no interval: what still creeps goes on where no
-scatter of this window reaches. Loads, films, speeds and losses follow the load at once; they have intervals, and what the cage takes
-of the losses in this window is added to those of torque and power loss, as another motion of the cage may take as much more or less.
-A second whirl that another start would lead to, and errors of the model, are not in it.
+Each number of the summary that is an average is computed again in each turn of the cage (in several turns where there are
+many), and the values of the turns tell the error of the whole, with all slow motion that they leave possible
+(`trbdyn.observables.mean_error`). What is no mean, such as a percentile or a root mean square about the mean place, is first
+made one by its change with the records (its influence function), so that what a slow change adds to it counts. Each average
+is judged by itself. Where the cage's motion is not known to have settled, averages of that motion have no interval: what
+still creeps goes on where no scatter of this window reaches. Loads, films, speeds and losses follow the load at once; they
+have intervals, and what the cage takes of the losses in this window is added to those of torque and power loss, as another
+motion of the cage may take as much more or less. A second whirl that another start would lead to, and errors of the model,
+are not in it.
 """
 
 from __future__ import annotations
@@ -99,6 +100,8 @@ def confidence(
         From how many batches of which length, or why it cannot be told.
     """
     edges, turns = _batches(window)
+    if len(edges) <= LEAST_BATCHES and unsettled:
+        edges, turns = _of_records(window), 0.0  # what follows the load needs no whole turns of the cage
     if len(edges) <= LEAST_BATCHES:
         found = f"the window has {turns:.3g} turns of the cage" if turns else f"the window has {len(window)} records"
         return None, f"they cannot be told: {found}, and it takes {LEAST_BATCHES} turns"
@@ -146,7 +149,7 @@ def _batches(window: Result) -> tuple[list[int], float]:
 
     Where the rollers stand or were not recorded, batches have one length and there are no turns.
     """
-    most, records = 2 * MOST_COSINES, len(window)
+    most = 2 * MOST_COSINES
     if "rollers" in window.groups:
         angle = window["roller_orbit_angle"].mean(axis=1)
         turned = np.abs(angle[-1] - angle) / (2.0 * math.pi)  # back from the end
@@ -156,8 +159,14 @@ def _batches(window: Result) -> tuple[list[int], float]:
             back = np.arange(whole // each, -1, -1) * each
             edges = [int(np.argmin(np.abs(turned - turn))) for turn in back]
             return edges if min(np.diff(edges)) >= 2 else [], float(back[0])
-    length = max(math.ceil((records - 1) / most), 2)
-    return list(range((records - 1) % length, records, length)), 0.0
+    return _of_records(window), 0.0
+
+
+def _of_records(window: Result) -> list[int]:
+    """First records of batches of one length, with the last record."""
+    records = len(window)
+    length = max(math.ceil((records - 1) / (2 * MOST_COSINES)), 2)
+    return list(range((records - 1) % length, records, length))
 
 
 def _as_means(window: Result) -> dict[str, Array]:

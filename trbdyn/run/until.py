@@ -153,7 +153,8 @@ class Until:
         found = {name: _share(values[name], widths.get(name)) for name in self.wanted}
         if said:
             known = "; ".join(_words(name, share, self.wanted[name]) for name, share in found.items())
-            why = "" if values["confidence"] else f". Intervals {values['confidence_note'].removeprefix('they ')}"
+            unknown = not all(math.isfinite(share) for share in found.values())
+            why = f". Intervals: {values['confidence_note'].removeprefix('they ')}" if unknown else ""
             self.said = known + why
         return all(share <= self.wanted[name] for name, share in found.items())
 
