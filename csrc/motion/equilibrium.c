@@ -26,9 +26,14 @@ enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
 /* Share of it that holds cylindrical rollers in the middle between their ribs, where in a bearing friction does: a thousandth of a newton over
  * their clearance. */
 #define TRB_MIDDLE_SHARE 1e-8
-/* Steps of differences. */
+/* Longest steps of differences. Where the contacts' interference is less than ten of them, steps are a tenth of it: a longer one would lift
+ * a roller off that its centrifugal force presses lightly. Shorter ones than TRB_STEP_LEAST would be lost in rounding. */
 #define TRB_STEP_LENGTH 1e-10
 #define TRB_STEP_ANGLE 1e-8
+#define TRB_STEP_LEAST 1e-15
+/* Centrifugal force with which light rollers are placed, N, and the factor from each such force to the next. */
+#define TRB_PLACING_FORCE 1.0
+#define TRB_PLACING_STEP 0.01
 /* Steps of central differences, in these. */
 #define TRB_FINE_STEPS 10.0
 
@@ -51,8 +56,19 @@ typedef struct solver {
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS]; /* of the ring at fixed rollers */
   double           total[TRB_RING_FREEDOMS];                         /* generalised force on the ring with its load */
   double           energy;
+  double          *elastic;                                          /* per roller: elastic energy where it was evaluated last, J */
+  double          *fine;                                             /* per roller: its steps of differences over the longest ones */
+  double           ring_fine;                                        /* the same of the ring */
   int              held[N]; /* coordinates of the rollers that nothing but friction, or nothing at all, moves */
 } solver;
+
+/* Interference in the contacts of a roller over that where the longest steps of differences are short beside it: from the elastic energy, and
+ * from the centrifugal force of a roller that nothing touches yet. */
+static double fineness(double elastic, double centrifugal)
+{
+  const double interference = sqrt(2.0 * fmax(elastic, 0.0) / TRB_USUAL_CONTACT) + fabs(centrifugal) / TRB_USUAL_CONTACT;
+  return fmin(1.0, fmax(0.1 * interference, TRB_STEP_LEAST) / TRB_STEP_LENGTH);
+}
 
 static const double difference[N] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE, TRB_STEP_ANGLE};
 static const double ring_difference[TRB_RING_FREEDOMS] = {TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_LENGTH, TRB_STEP_ANGLE,
@@ -115,7 +131,8 @@ static double evaluate(solver *s, const double *rollers, const double *displacem
     if (trb_has_cylinders(m)) energy += keep_in_the_middle(rollers[N * j + 1], &f[1]);
     for (int i = 0; i < N; i++)
       if (s->held[i]) f[i] = 0.0;
-    energy += s->d->loads[j].elastic - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[N * j + 2] -
+    s->elastic[j] = s->d->loads[j].elastic;
+    energy += s->elastic[j] - 0.5 * g->roller_mass * orbit * orbit * r->radius * r->radius + gyro * rollers[N * j + 2] -
               spin * cos(rollers[N * j + 3]);
     const trb_vec3 force = trb_turn_z(on_ring->force, r->cosine, r->sine), torque = trb_turn_z(on_ring->moment, r->cosine, r->sine);
     double        *q = ring + TRB_RING_FREEDOMS * j;
@@ -150,8 +167,8 @@ static void evaluate_moved(solver *s, int of_ring, int c, double by, double *for
   double moved[TRB_RING_FREEDOMS];
   memcpy(moved, s->e->displacement, sizeof moved);
   memcpy(s->trial, s->e->rollers, (size_t)s->m->n_rollers * TRB_ROLLER_FREEDOMS * sizeof(double));
-  if (of_ring) moved[c] += by;
-  for (int j = 0; j < s->m->n_rollers && !of_ring; j++) s->trial[N * j + c] += by;
+  if (of_ring) moved[c] += by * s->ring_fine;
+  for (int j = 0; j < s->m->n_rollers && !of_ring; j++) s->trial[N * j + c] += by * s->fine[j];
   (void)evaluate(s, s->trial, moved, forces, ring);
 }
 
@@ -160,21 +177,35 @@ static void put_column(solver *s, int of_ring, int c, double step, const double 
 {
   for (int j = 0; j < s->m->n_rollers; j++) {
     double *own = s->own + (size_t)N * N * j, *from_ring = s->from_ring + (size_t)N * R * j, *to_ring = s->to_ring + (size_t)N * R * j;
+    const double by = step * (of_ring ? s->ring_fine : s->fine[j]);
     for (int i = 0; i < N; i++) {
-      const double slope = -(s->shifted[N * j + i] - forces[N * j + i]) / step;
+      const double slope = -(s->shifted[N * j + i] - forces[N * j + i]) / by;
       *(of_ring ? &to_ring[R * i + c] : &own[N * i + c]) = slope;
     }
     for (int i = 0; i < R; i++) {
-      const double change = (s->ring_shifted[R * j + i] - ring[R * j + i]) / step;
+      const double change = (s->ring_shifted[R * j + i] - ring[R * j + i]) / by;
       if (of_ring) s->stiffness[R * i + c] -= change;
       else from_ring[N * i + c] = -change;
     }
   }
 }
 
+/* Steps of differences at the place that was evaluated last, that of the ring for the heaviest roller. */
+static void choose_steps(solver *s)
+{
+  const trb_geometry *g = &s->m->geometry;
+  const double        orbit = g->cage_speed_ratio * (s->e->shaft_speed - s->e->carried_speed) + s->e->carried_speed;
+  s->ring_fine = 0.0;
+  for (int j = 0; j < s->m->n_rollers; j++) {
+    s->fine[j] = fineness(s->elastic[j], g->roller_mass * orbit * orbit * g->roller_centre_radius);
+    s->ring_fine = fmax(s->ring_fine, s->fine[j]);
+  }
+}
+
 /* Stiffness by differences: one evaluation of all contacts for each column, with all rollers moved at once. */
 static void differentiate(solver *s)
 {
+  choose_steps(s);
   memset(s->stiffness, 0, sizeof s->stiffness);
   for (int c = 0; c < N + R; c++) {
     const int    of_ring = c >= N, at = of_ring ? c - N : c;
@@ -187,6 +218,7 @@ static void differentiate(solver *s)
 /* The same by central differences at the solution, for those who read it: forces and ring are written to. */
 static void differentiate_finely(solver *s)
 {
+  choose_steps(s);
   memset(s->stiffness, 0, sizeof s->stiffness);
   for (int c = 0; c < N + R; c++) {
     const int    of_ring = c >= N, at = of_ring ? c - N : c;
@@ -445,6 +477,29 @@ static trb_status condense(solver *s, trb_message *message)
   return TRB_OK;
 }
 
+/* Rollers that a small centrifugal force alone moves lie in a valley that is as narrow as the interference it makes: Newton's method goes along
+ * it in tiny steps. With the ring held where the search begins they are placed at a speed at which that force is TRB_PLACING_FORCE, and then at
+ * lower ones down to their own. A failure says nothing: the search itself follows. */
+static void place_light_rollers(solver *s, double *step_rollers, double *step_ring)
+{
+  trb_equilibrium    *e = s->e;
+  const trb_geometry *g = &s->m->geometry;
+  const double        orbit = g->cage_speed_ratio * (e->shaft_speed - e->carried_speed) + e->carried_speed;
+  const double        force = g->roller_mass * orbit * orbit * g->roller_centre_radius;
+  const double        shaft = e->shaft_speed, carried = e->carried_speed;
+  int                 fixed[R];
+  trb_message         ignored = {TRB_OK, ""};
+  if (!(force > 0.0 && force < TRB_PLACING_FORCE)) return;
+  memcpy(fixed, e->fixed, sizeof fixed);
+  for (int i = 0; i < R; i++) e->fixed[i] = 1;
+  for (double at = TRB_PLACING_FORCE; at > force; at *= TRB_PLACING_STEP) {
+    e->shaft_speed = shaft * sqrt(at / force), e->carried_speed = carried * sqrt(at / force);
+    (void)iterate(s, step_rollers, step_ring, &ignored);
+  }
+  e->shaft_speed = shaft, e->carried_speed = carried;
+  memcpy(e->fixed, fixed, sizeof fixed);
+}
+
 trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, trb_message *message)
 {
   const trb_model *m = system->model;
@@ -456,7 +511,7 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
   s.held[3] = m->params.planar > 0.0 || trb_has_cylinders(m);
   trb_status status = trb_dynamics_create(system, NULL, "scalar", &s.d, message);
   if (status != TRB_OK) return status;
-  enum { DOUBLES = N + R + N + R + N * N + N * R + N * R + N * (R + 1) + N + N };
+  enum { DOUBLES = N + R + N + R + N * N + N * R + N * R + N * (R + 1) + N + N + 2 };
   double *block = calloc(n * DOUBLES, sizeof(double));
   double  step_ring[TRB_RING_FREEDOMS] = {0};
   if (block == NULL) {
@@ -464,12 +519,13 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the equilibrium");
   }
   double        *at = block,
-         **const parts[] = {&s.forces, &s.ring, &s.shifted, &s.ring_shifted, &s.own, &s.to_ring, &s.from_ring, &s.solved, &s.trial};
-  const size_t   sizes[] = {N, R, N, R, N * N, N * R, N * R, N * (R + 1), N};
+         **const parts[] = {&s.forces, &s.ring, &s.shifted, &s.ring_shifted, &s.own, &s.to_ring, &s.from_ring, &s.solved, &s.trial, &s.elastic, &s.fine};
+  const size_t   sizes[] = {N, R, N, R, N * N, N * R, N * R, N * (R + 1), N, 1, 1};
   for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
     *parts[i] = at;
     at += n * sizes[i];
   }
+  if (!e->warm) place_light_rollers(&s, at, step_ring);
   status = iterate(&s, at, step_ring, message);
   read_reaction(&s);
   read_other(&s);

@@ -1,0 +1,209 @@
+"""Equilibria are found wherever a search of another kind finds them: random shafts and random light loads, drawn by a seed.
+
+The other search solves the forces on shaft or ring with SciPy's root finders from several starts; the package's own follows the
+potential. A case that both refuse has no equilibrium, or none that nine starts find.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import least_squares, root
+
+import trbdyn as trb
+from trbdyn import _core
+from trbdyn.model.flatten import ring_load
+from trbdyn.statics.core_model import normal_contacts
+from trbdyn.statics.equilibrium import EquilibriumSolver, least_axial_load, most_radial_load, nominal_angles
+from trbdyn.statics.shaft_balance import ShaftOnBearings
+
+Array = NDArray[np.float64]
+
+LENGTH = 1e-5
+"""Unit of displacements in the other search (m); of rotations it is this length over a radius."""
+LEFT = 1e-5
+"""Force that the other search may leave, over the largest force that acts."""
+FAR = 1.2e-3
+"""Places (m) beyond which nothing holds a ring."""
+
+
+def tapered() -> dict[str, trb.Bearing]:
+    """Bearings of several sizes and angles."""
+    pages = {
+        "30204": {"bore": 0.020, "outside": 0.047, "width": 0.01525, "C": 27.5e3, "e": 0.35},
+        "32208": {"bore": 0.040, "outside": 0.080, "width": 0.02475, "C": 74.8e3, "e": 0.37},
+        "31311": {"bore": 0.055, "outside": 0.120, "width": 0.0315, "C": 121e3, "e": 0.83},
+    }
+    found = {name: trb.Bearing.from_catalogue(name=name, **page) for name, page in pages.items()}
+    return found | {"30310": trb.cases.rig_30310()}
+
+
+def random_speed(random: np.random.Generator) -> float:
+    """A speed (rpm): every tenth case at rest, else evenly drawn in the logarithm."""
+    speed = float(10.0 ** random.uniform(-0.5, 3.7))
+    return 0.0 if random.random() < 0.1 else round(speed, 3)
+
+
+def shafts(seed: int, count: int) -> Iterator[trb.Assembly]:
+    """Random shafts: pairs with play or preload, with a spring, motor shafts on cylindrical bearings; loads along any direction."""
+    random, bearings = np.random.default_rng(seed), tapered()
+    for _ in range(count):
+        left, right = random.choice(list(bearings), 2)
+        back = random.random() < 0.6
+        kind = random.choice(["pair", "pair", "pair", "spring", "motor"])
+        play, spread = float(random.uniform(-30e-6, 120e-6)), float(random.uniform(0.1, 0.4))
+        across = 10.0 ** random.uniform(0.5, 4.2) * np.exp(2j * math.pi * random.random())
+        along = float(random.choice([0.0, 1.0, -1.0]) * abs(across) * random.uniform(0.0, 0.6))
+        where = float(random.uniform(-0.8, 0.8)) * spread
+        load = trb.ShaftLoad(position=where, force=(across.real, across.imag, along))
+        shaft = trb.Shaft.hollow_cylinder(mass=float(random.uniform(1.0, 30.0)), outer_diameter=0.05, length=spread + 0.1)
+        common: dict[str, Any] = {"shaft": shaft, "loads": [load], "speed_rpm": random_speed(random)}
+        if kind == "motor":
+            guided = trb.cases.bearing_nj210()
+            ends = [
+                trb.ShaftBearing(guided, position=-0.5 * spread, small_ends=random.choice(["left", "right"])),
+                trb.ShaftBearing(bearings[left], position=0.5 * spread, small_ends="left", end_play=0.5 * play),
+                trb.ShaftBearing(bearings[right], position=0.5 * spread + 0.09, small_ends="right", end_play=0.5 * play),
+            ]
+            yield trb.Assembly(bearings=ends, **common)
+            continue
+        pair = trb.Assembly.pair(
+            bearings[left],
+            "back to back" if back else "face to face",
+            other=bearings[right],
+            spread=spread if back else spread + 0.15,
+            end_play=play,
+            **common,
+        )
+        if kind == "spring":
+            first, second = pair.bearings
+            spring = trb.PreloadSpring(force=float(random.uniform(50.0, 2000.0)), stiffness=float(random.uniform(1e4, 1e6)))
+            pair = pair.replace(bearings=(first.replace(spring=spring, end_play=0.0), second))
+        yield pair
+
+
+def light_loads(seed: int, count: int) -> Iterator[trb.Scene]:
+    """Random bearings under light loads: just carried, resting, with play in the axial place, cylinders."""
+    random, bearings = np.random.default_rng(seed), tapered()
+    for _ in range(count):
+        bearing, speed = bearings[random.choice(list(bearings))], random_speed(random)
+        kind = random.choice(["light", "light", "rests", "placed", "cylinder"])
+        direction = float(random.choice([0.0, 90.0, 180.0, random.uniform(0.0, 360.0)]))
+        given: dict[str, Any] = {"speed_rpm": speed, "radial_direction_deg": direction}
+        if kind == "cylinder":
+            yield trb.cases.scene_nj210().replace(radial_load=10.0 ** random.uniform(-1.0, 3.5), axial_load=0.0, **given)
+            continue
+        alone = trb.Scene(bearing, axial_load=1e4, speed_rpm=speed)
+        axial = float(1.05 * least_axial_load(alone) + 10.0 ** random.uniform(-2.0, 2.5))
+        if kind == "rests":
+            axial = float(random.choice([0.0, axial]))
+            yield trb.Scene(bearing, axial_load=axial, unloaded="rests", **given)
+        elif kind == "placed":
+            place = float(random.uniform(-5e-6, 40e-6))
+            radial = float(10.0 ** random.uniform(-1.0, 3.5))
+            yield trb.Scene(bearing, displacement=(None, None, place), radial_load=radial, **given)
+        else:
+            radial = float(random.uniform(0.0, 0.85)) * most_radial_load(alone, axial)
+            yield trb.Scene(bearing, axial_load=axial, radial_load=radial, **given)
+
+
+def other_search(forces: Callable[[Array], Array], starts: list[Array], largest: float) -> Array | None:
+    """A place where forces (over `largest`) vanish, in units of `LENGTH`, found with SciPy from several starts; or none."""
+
+    def guarded(place: Array) -> Array:
+        try:
+            return forces(np.asarray(place))
+        except _core.CoreLoadError:
+            return np.full(len(place), 1e3)
+
+    for start in starts:
+        for way in ("lm", "hybr", "trf"):
+            try:
+                found = least_squares(guarded, start).x if way == "trf" else root(guarded, start, method=way).x
+            except (ValueError, np.linalg.LinAlgError):
+                continue
+            if np.max(np.abs(found)) * LENGTH < FAR and np.max(np.abs(guarded(found))) < max(LEFT, 1e-5 / largest):
+                return np.asarray(found)
+    return None
+
+
+def other_shaft(assembly: trb.Assembly, seed: int = 0) -> Array | None:
+    """Place of a shaft in equilibrium by the other search, shape (5 + S,), or none."""
+    system = ShaftOnBearings(assembly, 0.0)
+    reference = float(np.mean([one.centre_plane for one in assembly.bearings]))
+    size, radius = 5 + len(system.sprung), 0.05
+    unit = LENGTH * np.array([1.0, 1.0, 1.0, 1.0 / radius, 1.0 / radius, *[1.0] * (size - 5)])
+    largest = max(float(np.abs(force).max()) for _, _, force, _ in system.loads)
+    arms = np.array([1.0, 1.0, 1.0, radius, radius, *[1.0] * (size - 5)]) * largest
+    push = sum(force for _, _, force, _ in system.loads)
+    side = push / np.linalg.norm(push)
+    random = np.random.default_rng(seed)
+    starts = [np.zeros(size)]
+    for axial in (0.0, 2.0, -2.0, 6.0, -6.0):
+        start = np.zeros(size)
+        start[:2], start[2], start[5:] = 2.0 * side[:2], axial, 1.0
+        starts.append(start)
+    starts += [np.concatenate([random.uniform(-3.0, 3.0, 5), np.ones(size - 5)]) for _ in range(3)]
+    found = other_search(lambda place: system.at(place * unit, reference).missing / arms, starts, largest)
+    return None if found is None else found * unit
+
+
+def other_ring(scene: trb.Scene) -> Array | None:
+    """Place of a ring in equilibrium by the other search, shape (5,), or none."""
+    model, angles, load = normal_contacts(scene), nominal_angles(scene), ring_load(scene, 0.0)
+    radius, free = 0.5 * scene.bearing.pitch_diameter, load.fixed == 0.0
+    unit = LENGTH * np.array([1.0, 1.0, 1.0, 1.0 / radius, 1.0 / radius])
+    force = np.concatenate([load.force, load.moment])
+    largest = max(float(np.abs(load.force).max()), 1e-3)
+
+    def missing(place: Array) -> Array:
+        whole = load.displacement.copy()
+        whole[free] = (place * unit[free])
+        found = model.equilibrium(np.zeros(5), np.ones(5), whole, load.shaft_speed, angles, None, True)
+        return ((force - found["reaction"]) / np.array([1.0, 1.0, 1.0, radius, radius]) / largest)[free]
+
+    side = load.force[:2] / max(float(np.hypot(*load.force[:2])), 1e-12)
+    starts = [np.array([*(r * side), z, 0.0, 0.0])[free] for r, z in ((0.0, 0.0), (0.1, -0.1), (1.0, -0.3), (1.0, 0.5), (3.0, 0.0))]
+    found = other_search(missing, starts, largest)
+    return None if found is None else found
+
+
+def refused_shafts(seed: int, count: int) -> list[str]:
+    """What the package refuses though the other search finds it."""
+    wrong = []
+    for number, assembly in enumerate(shafts(seed, count)):
+        try:
+            trb.equilibrium(assembly)
+        except trb.LoadError as error:
+            place = other_shaft(assembly)
+            if place is not None:
+                wrong.append(f"{number}: {assembly.speed_rpm} rpm, at {place}: {error}")
+    return wrong
+
+
+def refused_scenes(seed: int, count: int) -> list[str]:
+    """What the package refuses though the other search finds it, or what rests and is refused: it always has an equilibrium."""
+    wrong = []
+    for number, scene in enumerate(light_loads(seed, count)):
+        try:
+            EquilibriumSolver(normal_contacts(scene), scene, nominal_angles(scene)).solve(0.0)
+        except trb.LoadError as error:
+            place = other_ring(scene)
+            if place is not None or scene.unloaded == "rests":
+                wrong.append(f"{number}: {scene.speed_rpm} rpm, at {place}: {error}")
+    return wrong
+
+
+@pytest.mark.parametrize("count", [8, pytest.param(500, marks=pytest.mark.slow)])
+def test_no_shaft_is_refused_that_another_search_finds(count: int) -> None:
+    assert refused_shafts(48, count) == []
+
+
+@pytest.mark.parametrize("count", [20, pytest.param(500, marks=pytest.mark.slow)])
+def test_no_light_load_is_refused_that_another_search_finds(count: int) -> None:
+    assert refused_scenes(49, count) == []
