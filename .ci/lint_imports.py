@@ -6,6 +6,9 @@ not run and do not count.
 Late imports: an import stands at the top of its file. Inside of a function stand only those that would make every start slow, or
 need a package that is optional: the packages of HEAVY, the modules of the package that load them, and what commands need
 (trbdyn/cli).
+
+Kinds of subjects: what works for one bearing works for several on a shaft. Nothing outside of the models looks whether a subject
+is an assembly, or a result that of one.
 """
 
 import ast
@@ -20,6 +23,7 @@ PACKAGE = "trbdyn"
 HEAVY = ("dask", "distributed", "h5py", "matplotlib", "pydantic_core", "SALib", "scipy", "sklearn", "tqdm", "xarray")
 LOAD_HEAVY = ("trbdyn.plot", "trbdyn.reporting.page", "trbdyn.results.result", "trbdyn.study.planning.picture")
 COMMANDS = ("trbdyn/cli/",)
+MODELS = ("trbdyn/model/",)
 
 
 def circles(package: str) -> list[list[str]]:
@@ -66,6 +70,15 @@ def late_imports(tree: ast.AST) -> Iterator[tuple[int, str]]:
                 yield from ((node.lineno, f"{node.module}.{alias.name}") for alias in node.names)
 
 
+def looks_for_assemblies(tree: ast.AST) -> Iterator[int]:
+    """Lines that look whether something is an assembly, or the result of one."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "isinstance":
+            kinds = {part.id for part in ast.walk(node.args[1]) if isinstance(part, ast.Name)}
+            if kinds & {"Assembly", "AssemblyResult"}:
+                yield node.lineno
+
+
 def below(module: str, tops: tuple[str, ...]) -> bool:
     return any(module == top or module.startswith(top + ".") for top in tops)
 
@@ -73,10 +86,12 @@ def below(module: str, tops: tuple[str, ...]) -> bool:
 def main() -> int:
     breaches = [f"imports run in a circle: {', '.join(circle)}" for circle in circles(PACKAGE)]
     for path in sorted((ROOT / PACKAGE).rglob("*.py")):
-        name = path.relative_to(ROOT).as_posix()
+        name, tree = path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
+        for line in () if name.startswith(MODELS) else looks_for_assemblies(tree):
+            breaches.append(f"{name}:{line}: what works for one bearing works for an assembly: use what both have")
         if name.startswith(COMMANDS):
             continue
-        for line, module in sorted(set(late_imports(ast.parse(path.read_text(encoding="utf-8"))))):
+        for line, module in sorted(set(late_imports(tree))):
             if not below(module, HEAVY + LOAD_HEAVY):
                 breaches.append(f"{name}:{line}: {module} is imported inside of a function: import it at the top")
     for breach in breaches:

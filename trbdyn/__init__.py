@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from trbdyn.plot import animation
     from trbdyn.reporting import report
     from trbdyn.results import observables
-    from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.results.result import Result, load
+    from trbdyn.results.assembly import AssemblyResult, load
+    from trbdyn.results.result import Result
     from trbdyn.run.options import RunOptions
     from trbdyn.run.rating import rating
     from trbdyn.run.resume import resume
@@ -45,9 +45,8 @@ if TYPE_CHECKING:
     from trbdyn.run.toml_assembly import load_assembly
     from trbdyn.run.toml_case import load_case
     from trbdyn.run.wear import wear
-    from trbdyn.statics.assembly import equilibrium
+    from trbdyn.statics.assembly import equilibrium, stiffness
     from trbdyn.statics.preload import preload_diagram
-    from trbdyn.statics.stiffness import stiffness
     from trbdyn.study.cage_map import cage_map
     from trbdyn.study.planning import plan
     from trbdyn.study.surrogate import surrogate
@@ -117,7 +116,7 @@ _NAMES = {
     "Waviness": "trbdyn.model.defects",
     "__version__": "trbdyn.base.version",
     "equilibrium": "trbdyn.statics.assembly",
-    "load": "trbdyn.results.result",
+    "load": "trbdyn.results.assembly",
     "load_assembly": "trbdyn.run.toml_assembly",
     "load_case": "trbdyn.run.toml_case",
     "plan": "trbdyn.study.planning",
@@ -126,7 +125,7 @@ _NAMES = {
     "report": "trbdyn.reporting",
     "resume": "trbdyn.run.resume",
     "sensitivity": "trbdyn.study.what_matters",
-    "stiffness": "trbdyn.statics.stiffness",
+    "stiffness": "trbdyn.statics.assembly",
     "thermal": "trbdyn.study.thermal",
     "torque_map": "trbdyn.study.torque_map",
     "surrogate": "trbdyn.study.surrogate",

@@ -21,14 +21,12 @@ ASSEMBLY = trb.Assembly.pair(
     speed_rpm=3000.0,
 )
 OF_SCENE: dict[str, Callable[[Any], Any]] = {
-    "stiffness": trb.stiffness,
     "plan": lambda given: trb.plan(given, {"torque": 0.02}),
-    "uncertainty": trb.uncertainty,
-    "sensitivity": trb.sensitivity,
     "thermal": lambda given: trb.thermal(given, trb.HeatPaths(oil_flow=30.0)),
     "whirl_onset": lambda given: trb.whirl_onset(given, [1000.0, 2000.0]),
     "cage_map": lambda given: trb.cage_map(given, [1000.0, 2000.0], [1000.0]),
 }
+OF_ANY = {name: getattr(trb, name) for name in ("Simulation", "stiffness", "uncertainty", "sensitivity")}
 OF_RESULT: dict[str, Callable[[Any], Any]] = {
     "wear": lambda given: trb.wear(given, coefficient=1e-17),
     "report": lambda given: trb.report(given, "never.html"),
@@ -54,7 +52,7 @@ def refused(call: Callable[[Any], Any], given: Any) -> str:
 @pytest.mark.parametrize("name", OF_SCENE)
 def test_of_a_scene(name: str) -> None:
     assert "must be a Scene: put it into one, trb.Scene(bearing" in refused(OF_SCENE[name], BEARING)
-    assert "trb.equilibrium and its stiffness" in refused(OF_SCENE[name], ASSEMBLY)
+    assert "this is done with one bearing alone" in refused(OF_SCENE[name], ASSEMBLY)
     assert "trb.load_case reads" in refused(OF_SCENE[name], "rig_30310")
     assert refused(OF_SCENE[name], None) == "must be a Scene"
 
@@ -74,17 +72,19 @@ def test_of_an_assembly(name: str) -> None:
 
 
 def test_others() -> None:
-    assert refused(trb.Simulation, BEARING).startswith(
-        "must be a Scene or an Assembly: put it into one, trb.Scene(bearing"
-    )
-    assert refused(trb.Simulation, None) == "must be a Scene or an Assembly"
+    for call in OF_ANY.values():
+        assert refused(call, BEARING).startswith("must be a Scene or an Assembly: put it into one, trb.Scene(bearing")
+        assert refused(call, None) == "must be a Scene or an Assembly"
     assert refused(trb.rating, BEARING).startswith("must be a Scene, a Result, an Assembly or a ShaftEquilibrium")
-    assert refused(lambda given: trb.torque_map(given, [1000.0], [1000.0]), None) == "must be a Scene or a Bearing"
+    assert (
+        refused(lambda given: trb.torque_map(given, [1000.0], [1000.0]), None)
+        == "must be a Scene, an Assembly or a Bearing"
+    )
     assert "trb.uncertainty(scene) makes one" in refused(lambda given: trb.surrogate(given, "torque"), SCENE)
     for given in (SCENE, BEARING, "study.toml", None):
         assert refused(trb.study.run, given).startswith("must be a Study, or scenes in a list")
     assert refused(trb.plot.bearing_loads, SCENE) == "must be an AssemblyResult"
-    for given in (ASSEMBLY, BEARING, None):
+    for given in (BEARING, None):
         assert refused(lambda base: trb.study.grid(base, {"scene.speed_rpm": [1.0]}), given).startswith(
-            "must be a Scene, the tables"
+            "must be a Scene or an Assembly, the tables"
         )

@@ -86,7 +86,7 @@ class TestOverrides:
     def test_a_scene_as_base_comes_back_unchanged(self) -> None:
         for scene in (
             trb.cases.scene_30310(effects=trb.Effects.standard(), radial_load=100.0),
-            trb.cases.scene_32216(start=trb.study.definition.Scene.model_fields["start"].default),
+            trb.cases.scene_32216(start=trb.Scene.model_fields["start"].default),
         ):
             built, run = Base.of(scene, OPTIONS).build({})
             assert built == scene

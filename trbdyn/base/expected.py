@@ -11,7 +11,7 @@ _WAYS: Final = {
     (
         "Scene",
         "Assembly",
-    ): "of a shaft on several bearings there are trb.Simulation, trb.equilibrium and its stiffness",
+    ): "this is done with one bearing alone; trb.equilibrium has the loads of each bearing of a shaft",
     ("Scene", "Result"): "that of a result is result.scene",
     ("Scene", "Simulation"): "that of a simulation is simulation.scene",
     ("Scene", "str"): "trb.load_case reads the scene of a case and its options",

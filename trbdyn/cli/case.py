@@ -41,11 +41,9 @@ def case_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene, RunOpti
 
 def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Assembly, RunOptions]:
     """A case of one bearing or of several on a shaft, with ``table.key=value`` changes put in."""
-    from trbdyn.run.toml_assembly import assembly_from_dict
-    from trbdyn.run.toml_case import case_from_dict
+    from trbdyn.run.toml_assembly import subject_from_dict
 
-    values = _tables(name, changes)
-    return assembly_from_dict(values) if "assembly" in values else case_from_dict(values)
+    return subject_from_dict(_tables(name, changes))
 
 
 def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:

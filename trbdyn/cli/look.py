@@ -37,10 +37,10 @@ def add_look_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
 def _plot(options: argparse.Namespace) -> int:
     from trbdyn import plot
     from trbdyn.plot import animation
-    from trbdyn.results.assembly import load_any
+    from trbdyn.results.assembly import load
     from trbdyn.results.result import Result
 
-    result = load_any(options.file)
+    result = load(options.file)
     folder = Path(f"{Path(options.file).with_suffix('')}_plots" if options.output is None else options.output)
     parts = {"": result} if isinstance(result, Result) else result
     moving = {folder / name / "animation.gif": one for name, one in parts.items() if options.animation}
@@ -56,13 +56,13 @@ def _plot(options: argparse.Namespace) -> int:
 
 
 def _info(options: argparse.Namespace) -> int:
-    from trbdyn.model.assembly import Assembly
+    from trbdyn.model.scene import Scene
 
     path = file_path(options.file, "file")
     if path.is_file() and path.suffix != ".toml":
         return _info_result(path, as_json=options.json)
     scene, run = subject_with_changes(options.file, options.changes)
-    if isinstance(scene, Assembly):
+    if not isinstance(scene, Scene):
         from trbdyn.statics.assembly import equilibrium
 
         as_json = {"assembly": scene.to_dict(), "run": run.to_dict()}
@@ -80,10 +80,10 @@ def _info(options: argparse.Namespace) -> int:
 
 def _info_result(path: Path, *, as_json: bool) -> int:
     from trbdyn.results import summary
-    from trbdyn.results.assembly import load_any
+    from trbdyn.results.assembly import load
     from trbdyn.results.result import Result
 
-    result = load_any(path)
+    result = load(path)
     if not isinstance(result, Result):
         about = {name: summary.clean(values) for name, values in result.summary().items()}
         print(json.dumps(about, indent=2, allow_nan=False) if as_json else result)

@@ -24,8 +24,7 @@ def add_report_parser(commands: Any, parents: Sequence[argparse.ArgumentParser])
 
 def _report(options: argparse.Namespace) -> int:
     from trbdyn.reporting import report
-    from trbdyn.results.assembly import load_any
-    from trbdyn.results.result import load
+    from trbdyn.results.assembly import load
 
     output = Path(options.output or f"{Path(options.file).with_suffix('')}_report.html")
     names = [Path(name).stem for name in (options.file, options.other or "second")]
@@ -33,7 +32,7 @@ def _report(options: argparse.Namespace) -> int:
         names = [str(options.file), str(options.other)]
     other = load(options.other) if options.other else None
     how = {"names": names, "title": options.title, "pdf": options.pdf, "overwrite": options.overwrite}
-    print(report(load_any(options.file), output, other=other, **how))
+    print(report(load(options.file), output, other=other, **how))
     if options.pdf:
         print(output.with_suffix(".pdf"))
     return 0

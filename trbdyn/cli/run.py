@@ -120,18 +120,12 @@ def _how_to_go_on(output: Path) -> str:
 def _finish(result: Result | AssemblyResult, output: Path, options: argparse.Namespace) -> int:
     """Write and print the summary; the exit code says whether the run reached its end."""
     from trbdyn.results import summary
-    from trbdyn.results.assembly import AssemblyResult
 
-    if isinstance(result, AssemblyResult):
-        values, table = dict(result.summary()), str(result)
-        one = next(iter(result.values()))
-    else:
-        values, one = result.summary(), result
-        table = summary.table(values)
+    one = result.parts[0]
     if options.summary is not None:
-        summary.write_json(values, options.summary, overwrite=options.overwrite)
+        summary.write_json(result.summary(), options.summary, overwrite=options.overwrite)
     if not options.quiet:
-        print(table)
+        print(result.overview)
         print(f"\n{len(one)} records in {output}: {one.meta.get('kept', '')}")
     if not result.success:
         print(f"trbdyn: {one_line(result.message)}{_how_to_go_on(output)}", file=sys.stderr)

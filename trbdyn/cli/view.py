@@ -45,11 +45,11 @@ def add_view_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -
 
 
 def _view(options: argparse.Namespace) -> int:
-    from trbdyn.results.assembly import load_any
+    from trbdyn.results.assembly import load
     from trbdyn.results.result import Result
     from trbdyn.viewer import save_gltf, view
 
-    result = load_any(options.file)
+    result = load(options.file)
     output = Path(options.output or f"{Path(options.file).with_suffix('')}_view.html")
     moving: dict[Path, Result] = {}
     if options.gltf:

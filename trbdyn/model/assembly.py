@@ -20,12 +20,21 @@ from trbdyn.model.elastic_cage import ElasticCage
 from trbdyn.model.flatten import scaled
 from trbdyn.model.growth import Growth
 from trbdyn.model.lubricants import Lubricant, vg100
-from trbdyn.model.motion import Quantity, is_constant, value_at, values_of
+from trbdyn.model.motion import History, Quantity, is_constant, value_at, values_of
 from trbdyn.model.ring_body import Housing, RingBody, check_inertias
 from trbdyn.model.scene import MAX_SPEED_RPM, Scene, oil_by_name
 from trbdyn.model.start import Start
 
-__all__ = ["Assembly", "PreloadSpring", "Shaft", "ShaftBearing", "ShaftLoad", "assembly_of", "load_centre_offset"]
+__all__ = [
+    "Assembly",
+    "PreloadSpring",
+    "Shaft",
+    "ShaftBearing",
+    "ShaftLoad",
+    "Subject",
+    "assembly_of",
+    "load_centre_offset",
+]
 
 Arrangement = Literal["back to back", "face to face"]
 MAX_END_PLAY: Final = 3e-4
@@ -570,6 +579,42 @@ class Assembly(Model):
             raise InputError.of(("bearings", 0, "end_play"), self.bearings[0].end_play, limit)
 
     @property
+    def parts(self) -> dict[str, ShaftBearing]:
+        """The bearings by the beginnings of their paths in a study: ``bearings[0].`` and so on."""
+        return {f"bearings[{index}].": one for index, one in enumerate(self.bearings)}
+
+    @property
+    def part(self) -> ShaftBearing:
+        """The first bearing."""
+        return self.bearings[0]
+
+    def with_part(self, prefix: str, **changes: Any) -> Self:
+        """The assembly with fields of a bearing changed."""
+        kept = {key: one.replace(**changes) if key == prefix else one for key, one in self.parts.items()}
+        return self.replace(bearings=tuple(kept.values()))
+
+    def tables(self) -> dict[str, Any]:
+        """The tables of a case file; what was assumed is left out, so that it follows the bearing's size."""
+        values = self.to_dict()
+        own = {name: values.pop(name) for name in ("shaft", "bearings", "loads")}
+        bearings = [
+            table | {"bearing": one.bearing.inputs()} for table, one in zip(own["bearings"], self.bearings, strict=True)
+        ]
+        return {**own, "bearings": bearings, "assembly": values}
+
+    def loaded(self, speed_rpm: float, axial_load: float, radial_load: float) -> dict[str, Any]:
+        """Overrides of a study that put another speed (rpm) and a force (N) on its centre of mass in place of its own: along the
+        shaft, and across it downwards (towards -y).
+        """
+        load = ShaftLoad(position=self.shaft.mass_position, force=(0.0, -radial_load, axial_load))
+        return {"assembly.speed_rpm": speed_rpm, "loads": [load.to_dict()]}
+
+    @property
+    def turning_rpm(self) -> float | History:
+        """The speed by which turns are counted (rpm)."""
+        return self.speed_rpm
+
+    @property
     def title(self) -> str:
         """Bearings, arrangement and speed in words."""
         kinds = ", ".join(f"{name} {one.bearing.name}" for name, one in zip(self.names, self.bearings, strict=True))
@@ -599,12 +644,16 @@ class Assembly(Model):
         return hash(self.fingerprint)
 
 
+Subject = Scene | Assembly
+"""What can be simulated: one bearing, or several on a shaft."""
+
+
 def assembly_of(subject: object) -> Assembly | None:
     """A subject that is an assembly; None for any other."""
     return subject if isinstance(subject, Assembly) else None
 
 
-def subject_from_dict(values: Mapping[str, Any]) -> Scene | Assembly:
+def subject_from_dict(values: Mapping[str, Any]) -> Subject:
     """The scene or the assembly that `to_dict` has described.
 
     Raises

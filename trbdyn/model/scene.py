@@ -261,6 +261,30 @@ class Scene(Model):
         return first + rotating.turns * (self.start_shaft_angle + self.shaft_turn(time))
 
     @property
+    def parts(self) -> dict[str, Self]:
+        """The bearing as `Assembly.parts` gives several: by the beginning of its paths in a study, which is empty."""
+        return {"": self}
+
+    @property
+    def part(self) -> Self:
+        """The bearing; of an assembly the first one."""
+        return self
+
+    def with_part(self, prefix: str, **changes: Any) -> Self:
+        """The scene with fields of its bearing changed."""
+        return self.replace(**changes)
+
+    def tables(self) -> dict[str, Any]:
+        """The tables of a case file; what was assumed is left out, so that it follows the bearing's size."""
+        values = self.to_dict()
+        own = {name: values.pop(name) for name in ("bearing", "lubricant", "effects", "start")}
+        return {**own, "bearing": self.bearing.inputs(), "scene": values}
+
+    def loaded(self, speed_rpm: float, axial_load: float, radial_load: float) -> dict[str, Any]:
+        """Overrides of a study that put other speed (rpm) and loads (N) in place of its own."""
+        return {"scene.speed_rpm": speed_rpm, "scene.axial_load": axial_load, "scene.radial_load": radial_load}
+
+    @property
     def outer_turns(self) -> bool:
         """Whether the outer ring turns at any time."""
         return any(values_of(self.outer_speed_rpm))

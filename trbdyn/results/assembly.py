@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any, Final, Self
+from pathlib import Path
+from typing import Any, Final, Self, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,8 @@ from trbdyn.base.validation import number_of
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import Assembly
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
-from trbdyn.results.result import Result, load
+from trbdyn.results.result import Result
+from trbdyn.results.result import load as load_bearing
 from trbdyn.results.sources import assembly_in
 from trbdyn.results.summary import Summary
 
@@ -32,6 +34,10 @@ TABLE: Final = {
     "energy_closure": "energy audit: residual / dissipated",
 }
 """What the table of an assembly shows of each bearing: names in `AssemblyResult.summary`, and what they are called."""
+
+
+OF_ALL: Final = ("success", "message", "revolutions", "duration")
+"""Entries of a summary that are the same for all bearings."""
 
 
 class AssemblyResult(Mapping[str, Result], Displayed):
@@ -74,7 +80,7 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         if table is None:
             raise FileError(f"{path}: this file holds one bearing alone: load it with trb.load")
         assembly = None if table["assembly"] is None else Assembly.from_dict(table["assembly"])
-        return cls({name: load(path, bearing=name) for name in table["bearings"]}, assembly)
+        return cls({name: load_bearing(path, bearing=name) for name in table["bearings"]}, assembly)
 
     def __getitem__(self, name: str) -> Result:
         """The result of a bearing.
@@ -128,6 +134,42 @@ class AssemblyResult(Mapping[str, Result], Displayed):
             window = result.time >= (numbers["window_start"] or result.time[0])
             numbers |= {load: float(values[window].mean()) for load, values in self.loads(name).items()}
         return found
+
+    def numbers(self) -> dict[str, Any]:
+        """The entries of the summaries, each with its bearing's name before it (``left_torque``), and those of the whole:
+        ``torque``, ``power_loss`` and ``torque_by_loss_...`` are sums, film parameters are the smallest.
+        """
+        each = {name: result.numbers() for name, result in self.items()}
+        first = next(iter(each.values()))
+        found: dict[str, Any] = {name: first[name] for name in OF_ALL}
+        for key in first:
+            values = [numbers.get(key) for numbers in each.values()]
+            if key in ("torque", "power_loss") or key.startswith("torque_by_loss_"):
+                found[key] = None if None in values else sum(values)
+            elif key.startswith("film_parameter_"):
+                found[key] = min((value for value in values if value is not None), default=None)
+        return found | {
+            f"{name}_{key}": value
+            for name, numbers in each.items()
+            for key, value in numbers.items()
+            if key not in OF_ALL
+        }
+
+    @property
+    def overview(self) -> str:
+        """The summaries of the bearings beside each other, as a table."""
+        return str(self)
+
+    @property
+    def parts(self) -> tuple[Result, ...]:
+        """The results of all bearings."""
+        return tuple(self.values())
+
+    def moved(self, path: Path) -> Self:
+        """The result, whose file has another name now; nothing is read again."""
+        for result in self.values():
+            result.moved(path)
+        return self
 
     def loads(self, name: str) -> dict[str, Array]:
         """Loads of the shaft on a bearing at each record (N), shape (T,).
@@ -227,12 +269,34 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         return energy_audit(terms)
 
 
-def load_any(path: str | os.PathLike[str]) -> Result | AssemblyResult:
-    """The result of a file, of one bearing or of an assembly.
+@overload
+def load(path: str | os.PathLike[str], *, bearing: str) -> Result: ...
+
+
+@overload
+def load(path: str | os.PathLike[str]) -> Any: ...
+
+
+def load(path: str | os.PathLike[str], *, bearing: str = "") -> Any:
+    """Load a result file.
+
+    Parameters
+    ----------
+    path : path-like
+        A file written by a run.
+    bearing : str
+        Name of a bearing in the file of several; by default all of them are loaded.
+
+    Returns
+    -------
+    Result or AssemblyResult
+        Its fields are read when they are asked for. If the run was cut off, ``success`` is False and the records up to
+        the last write are there.
 
     Raises
     ------
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
-    return load(path) if assembly_in(path) is None else AssemblyResult.load(path)
+    alone = bearing or assembly_in(path) is None
+    return load_bearing(path, bearing=bearing) if alone else AssemblyResult.load(path)

@@ -379,6 +379,33 @@ class Result(Derived, Displayed):
         with held_open(self._source):
             return summary(self)
 
+    def numbers(self) -> dict[str, Any]:
+        """The entries of `summary`, with those of its tables as ``table_entry``."""
+        found: dict[str, Any] = {}
+        for name, value in self.summary().items():
+            found |= (
+                {f"{name}_{key}": entry for key, entry in value.items()}
+                if isinstance(value, Mapping)
+                else {name: value}
+            )
+        return found
+
+    @property
+    def overview(self) -> str:
+        """The summary as a table."""
+        return str(self.summary())
+
+    @property
+    def parts(self) -> tuple[Self, ...]:
+        """The results of all bearings: this one."""
+        return (self,)
+
+    def moved(self, path: Path) -> Self:
+        """The result, whose file has another name now; nothing is read again."""
+        if isinstance(self._source, FileSource):
+            self._source.path = path
+        return self
+
     def to_xarray(self) -> xarray.Dataset:
         """Every recorded field in an xarray Dataset.
 
@@ -403,23 +430,6 @@ class Result(Derived, Displayed):
             coordinates["roller"] = np.arange(self.n_rollers)
         attributes = {"success": int(self.success), "message": self.message}
         return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
-
-
-def moved(result: Result, path: Path) -> Result:
-    """The result of a run whose file has another name now; nothing is read again.
-
-    Parameters
-    ----------
-    result : Result
-        As `Simulation.run` gave it.
-    path : Path
-        Where its file is now.
-    """
-    source = result._source
-    if not isinstance(source, FileSource):
-        return load(path)
-    source.path = path
-    return result
 
 
 def load(path: str | os.PathLike[str], *, bearing: str = "") -> Result:

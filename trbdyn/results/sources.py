@@ -146,7 +146,7 @@ def _read_head(path: Path, file: h5py.Group) -> bytes:
     if "run/head" not in file:
         if ASSEMBLY in file:
             raise FileError(
-                f"{path}: this file holds several bearings on one shaft: load it with trb.AssemblyResult.load, or one of them "
+                f"{path}: this file holds several bearings on one shaft: load it with trb.load, or one of them "
                 "with trb.load(path, bearing=...)"
             )
         if "schema" in file.attrs and "fields" in file:

@@ -107,7 +107,9 @@ def rating(
         return sheet(subject, at_equilibrium(subject), **options)
     if isinstance(subject, Result):
         return sheet(subject.scene, of_run(subject), **options)
-    return system_sheet(equilibrium(subject) if isinstance(subject, Assembly) else subject, **options)
+    if isinstance(subject, ShaftEquilibrium):
+        return system_sheet(subject, **options)
+    return system_sheet(equilibrium(subject), **options)
 
 
 def of_run(result: Result) -> Loading:

@@ -12,7 +12,7 @@ from trbdyn.base.locks import take_lock
 from trbdyn.base.own_files import file_path, set_aside
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import subject_from_dict
-from trbdyn.results.assembly import AssemblyResult, load_any
+from trbdyn.results.assembly import AssemblyResult, load
 from trbdyn.results.file_format import reason
 from trbdyn.results.result import Result
 from trbdyn.results.sources import FileSource, names_in
@@ -130,7 +130,7 @@ def resume(
     except OSError as error:
         raise FileError(f"{output}: cannot be resumed: {reason(error)}") from error
     if older is not None and older[0].info.success:
-        return load_any(output)
+        return load(output)
     return run_on(older)
 
 

@@ -18,13 +18,16 @@ from trbdyn.base.own_files import file_path
 from trbdyn.base.shipped import DATA
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, Shaft, ShaftBearing, ShaftLoad
+from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
 from trbdyn.run.toml_case import (
     Table,
     bearing_from_table,
     build,
+    case_from_dict,
     check_names,
     effects_from_table,
+    find_case,
     located,
     lubricant_from_table,
     read_tables,
@@ -107,6 +110,28 @@ def assembly_from_dict(values: Mapping[str, Any]) -> tuple[Assembly, RunOptions]
         if any(problem.path and problem.path[0] in inner for problem in error.problems):
             raise
         raise error.under(("assembly",)) from None
+
+
+def subject_from_dict(values: Mapping[str, Any]) -> tuple[Scene | Assembly, RunOptions]:
+    """The scene or the assembly of the tables of a file, and how it is run.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or a value not allowed; the message names the full key.
+    """
+    return assembly_from_dict(values) if "assembly" in values else case_from_dict(values)
+
+
+def find_subject(name: str) -> Path:
+    """The file of a case or an assembly that ships with the package.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
+    return find_assembly(name) if name.removesuffix(".toml") in shipped_assemblies() else find_case(name)
 
 
 def _tables(values: Mapping[str, Any], name: str) -> list[Table]:

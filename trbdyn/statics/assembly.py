@@ -18,9 +18,11 @@ from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError, LoadError
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.motion import value_at
+from trbdyn.model.ring_body import RingBody
 from trbdyn.model.scene import Scene
 from trbdyn.statics.shaft_balance import Answer, Balance, ShaftOnBearings, axis_of, ring_slopes, turns_of
-from trbdyn.statics.stiffness import Modes, vibrations
+from trbdyn.statics.stiffness import Modes, Stiffness
+from trbdyn.statics.stiffness import stiffness as stiffness
 
 Array = NDArray[np.float64]
 
@@ -182,10 +184,17 @@ class ShaftEquilibrium(Displayed):
             Count the gyroscopic moments of the shaft's rotation.
         """
         shaft = self.assembly.shaft
+        body = RingBody(mass=shaft.mass, inertia_axial=shaft.inertia_axial, inertia_transverse=shaft.inertia_transverse)
+        return self.at_mass.modes(body, gyroscopic=gyroscopic)
+
+    @property
+    def at_mass(self) -> Stiffness:
+        """Stiffness at the shaft's centre of mass, with the mass that the rollers add as they follow the shaft."""
+        shaft = self.assembly.shaft
         balance = self._at(shaft.mass_position)
         _, turning = axis_of(balance.place[3:5])
         follows = np.vstack([np.eye(5), balance.sprung_follow])
-        mass = np.diag([shaft.mass] * 3 + [shaft.inertia_transverse] * 2)
+        mass = np.zeros((5, 5))
         for index, (one, answer) in enumerate(zip(self.assembly.bearings, balance.answers, strict=True)):
             spring = self._system.sprung.index(index) if index in self._system.sprung else -1
             arm = one.centre_plane - shaft.mass_position
@@ -195,9 +204,18 @@ class ShaftEquilibrium(Displayed):
             touch = answer.loads[:, 1:].max(axis=1)
             moves[touch <= TOUCH * answer.loads.max()] = 0.0
             mass += np.einsum("jia,i,jib->ab", moves, inertia, moves)
-        speed = value_at(self.assembly.speed_rpm, self.time) * math.pi / 30.0 if gyroscopic else 0.0
-        radius = 0.5 * max(one.bearing.pitch_diameter for one in self.assembly.bearings)
-        return vibrations(balance.stiffness, mass, shaft.inertia_axial * speed, radius)
+        load = np.zeros(5)
+        for position, offset, force, moment in self._system.loads:
+            lever = offset + (position - shaft.mass_position) * axis_of(balance.place[3:5])[0]
+            load += np.concatenate([force, (np.cross(lever, force) + moment)[:2]])
+        return Stiffness(
+            matrix=balance.stiffness,
+            displacement=balance.place[:5],
+            load=load,
+            roller_mass=mass,
+            pitch_diameter=max(one.bearing.pitch_diameter for one in self.assembly.bearings),
+            speed_rpm=value_at(self.assembly.speed_rpm, self.time),
+        )
 
     def _at(self, position: float) -> Balance:
         """The balance with another reference point."""
@@ -274,6 +292,11 @@ def equilibrium(assembly: Assembly, *, time: float = 0.0, axial_displacement: fl
     system = ShaftOnBearings(assembly, number_of("time", time))
     reference = float(np.mean([one.centre_plane for one in assembly.bearings]))
     return _Search(system, reference, axial_displacement).run(time)
+
+
+@stiffness.register(Assembly)
+def _stiffness(assembly: Assembly, *, time: float | None = None) -> Stiffness:
+    return equilibrium(assembly, time=assembly.bearings[0].start.time if time is None else time).at_mass
 
 
 class _Search:

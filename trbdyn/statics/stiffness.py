@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from functools import singledispatch
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from trbdyn import _core
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, LoadError
+from trbdyn.model.assembly import Assembly
 from trbdyn.model.flatten import ring_load
 from trbdyn.model.motion import value_at
 from trbdyn.model.ring_body import RingBody
@@ -47,7 +49,8 @@ class Modes:
 
 @dataclass(frozen=True, eq=False)
 class Stiffness(Displayed):
-    """Stiffness of the inner ring about an equilibrium, with the outer ring at rest and rollers in equilibrium at speed.
+    """Stiffness of the inner ring, or of a shaft, about an equilibrium, with outer rings at rest and rollers in equilibrium at
+    speed.
 
     Attributes
     ----------
@@ -61,7 +64,7 @@ class Stiffness(Displayed):
     roller_mass : ndarray, shape (5, 5)
         What the rollers add to the mass of the ring as they follow it (kg, kg m, kg m2).
     pitch_diameter : float
-        Of the bearing (m).
+        Of the bearing, of several the largest (m).
     speed_rpm : float
         Speed of the shaft (rpm).
     """
@@ -176,13 +179,16 @@ def vibrations(stiffness: Array, mass: Array, spin: float, radius: float) -> Mod
     return Modes(frequencies=values[up].imag / (2.0 * np.pi), shapes=shapes / largest[:, None])
 
 
-def stiffness(scene: Scene, *, time: float | None = None) -> Stiffness:
-    """Stiffness of the inner ring about its equilibrium at speed: what rotor-dynamics programs read of a bearing.
+@singledispatch
+def stiffness(subject: Any, *, time: float | None = None) -> Stiffness:
+    """Stiffness of the inner ring, or of a shaft on its bearings, about the equilibrium at speed: what rotor-dynamics programs
+    read.
 
     Parameters
     ----------
-    scene : Scene
-        The scene; friction, cage and gravity on the rollers do not take part.
+    subject : Scene or Assembly
+        The subject; friction, cage and gravity on the rollers do not take part. Of an assembly the matrix is that at the
+        shaft's centre of mass; `trbdyn.equilibrium` has it at other points, and that of each bearing.
     time : float, optional
         Time of the load (s); that of the start by default.
 
@@ -195,7 +201,7 @@ def stiffness(scene: Scene, *, time: float | None = None) -> Stiffness:
     Raises
     ------
     LoadError
-        If the bearing cannot carry the load, or nothing holds a roller.
+        If bearings cannot carry the load, or nothing holds a roller.
 
     Notes
     -----
@@ -208,7 +214,12 @@ def stiffness(scene: Scene, *, time: float | None = None) -> Stiffness:
     >>> round(trb.stiffness(scene).matrix[2, 2] * 1e-8, 2)
     2.0
     """
-    expect("scene", scene, Scene)
+    expect("scene", subject, Scene, Assembly)
+    raise AssertionError
+
+
+@stiffness.register(Scene)
+def _of_scene(scene: Scene, *, time: float | None = None) -> Stiffness:
     at = scene.start.time if time is None else time
     model, angles = normal_contacts(scene), nominal_angles(scene)
     solver = EquilibriumSolver(model, scene, angles)

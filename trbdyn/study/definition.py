@@ -19,11 +19,15 @@ from trbdyn.base.own_files import file_path
 from trbdyn.base.shown import Displayed, Shown, value_text
 from trbdyn.base.validation import Model
 from trbdyn.errors import InputError, Path, join_path
-from trbdyn.model.scene import Scene
+from trbdyn.model.assembly import Subject
 from trbdyn.run.options import RunOptions
-from trbdyn.run.toml_case import TABLES, case_from_dict, find_case, read_tables, shipped_cases
+from trbdyn.run.toml_assembly import TABLES as OF_ASSEMBLIES
+from trbdyn.run.toml_assembly import find_subject, shipped_assemblies, subject_from_dict
+from trbdyn.run.toml_case import TABLES, read_tables, shipped_cases
 
 Table = dict[str, Any]
+PATHS: Final = tuple(dict.fromkeys((*TABLES, *OF_ASSEMBLIES)))
+"""With what the paths of overrides begin."""
 Overrides = Mapping[str, Any]
 
 LISTED: Final = 50
@@ -52,8 +56,8 @@ class Base:
     whole: bool = False
 
     @classmethod
-    def of(cls, base: Scene | Mapping[str, Any] | str | FilePath | Base, run: RunOptions | None = None) -> Base:
-        """A base from a scene, the tables of a case, or the name of a TOML case.
+    def of(cls, base: Subject | Mapping[str, Any] | str | FilePath | Base, run: RunOptions | None = None) -> Base:
+        """A base from a scene or an assembly, the tables of a case, or the name of a TOML case.
 
         Raises
         ------
@@ -62,47 +66,54 @@ class Base:
         """
         if isinstance(base, Base):
             made = base
-        elif isinstance(base, Scene):
-            values = base.to_dict()
-            own = {name: values.pop(name) for name in ("bearing", "lubricant", "effects", "start")}
-            # what was assumed follows the bearing's size in every case
-            made = cls({**own, "bearing": base.bearing.inputs(), "scene": values}, whole=True)
+        elif isinstance(base, Subject):
+            made = cls(base.tables(), whole=True)
         elif isinstance(base, Mapping):
             made = cls(dict(base))
         else:
             made = cls(read_toml(base))
         return made if run is None else cls({**made.tables, "run": run.to_dict()}, made.whole)
 
-    def build(self, overrides: Overrides) -> tuple[Scene, RunOptions]:
-        """Scene and run options with overrides put in.
+    @property
+    def parts(self) -> dict[str, Table]:
+        """The tables of each bearing by the beginning of its paths: empty for one bearing, else ``bearings[0].`` and so on."""
+        bearings = self.tables.get("bearings")
+        if "assembly" not in self.tables or not isinstance(bearings, list):
+            return {"": self.tables}
+        return {f"bearings[{index}].": table for index, table in enumerate(bearings) if isinstance(table, dict)}
+
+    def build(self, overrides: Overrides) -> tuple[Subject, RunOptions]:
+        """Scene or assembly, and run options, with overrides put in.
 
         Raises
         ------
         InputError
             If a path does not exist or a value is not allowed.
         """
-        tables = copy.deepcopy(self.tables)
-        self._check_oil(overrides)
-        if self.whole:
-            for table, chooser in _CHOOSERS.items():
-                if f"{table}.{chooser}" in overrides:
-                    kept = tables[table].get("temperature_c")
-                    tables[table] = {} if kept is None else {"temperature_c": kept}
+        made = Base(copy.deepcopy(self.tables), self.whole)
+        tables = made.tables
+        for prefix, part in made.parts.items():
+            _check_oil(prefix, part, overrides)
+            for table, chooser in _CHOOSERS.items() if self.whole else ():
+                if f"{prefix}{table}.{chooser}" in overrides:
+                    kept = part[table].get("temperature_c")
+                    part[table] = {} if kept is None else {"temperature_c": kept}
         for path in sorted(overrides, key=lambda name: (name.count(".") + name.count("["), name)):
             put(tables, path, plain(overrides[path]))
-        return case_from_dict(tables)
+        return subject_from_dict(tables)
 
-    def _check_oil(self, overrides: Overrides) -> None:
-        """Numbers of a lubricant without oil belong to its temperature."""
-        name, lubricant = "lubricant.temperature_c", self.tables.get("lubricant") or {}
-        others = {"lubricant.oil", "lubricant", "lubricant.viscosity"}
-        if name in overrides and "viscosity" in lubricant and not others & set(overrides):
-            raise InputError.of(
-                name,
-                overrides[name],
-                "would change the temperature but not the viscosities that belong to it; give lubricant.oil beside it, "
-                "or a whole lubricant",
-            )
+
+def _check_oil(prefix: str, part: Table, overrides: Overrides) -> None:
+    """Numbers of a lubricant without oil belong to its temperature."""
+    name, lubricant = f"{prefix}lubricant.temperature_c", part.get("lubricant") or {}
+    others = {f"{prefix}{other}" for other in ("lubricant.oil", "lubricant", "lubricant.viscosity")}
+    if name in overrides and "viscosity" in lubricant and not others & set(overrides):
+        raise InputError.of(
+            name,
+            overrides[name],
+            f"would change the temperature but not the viscosities that belong to it; give {prefix}lubricant.oil beside it, "
+            "or a whole lubricant",
+        )
 
 
 def read_toml(path: str | FilePath) -> Table:
@@ -118,10 +129,10 @@ def read_toml(path: str | FilePath) -> Table:
     try:
         file = file_path(path, "study")
     except InputError:
-        limit = "must be a Scene, the tables of a case, or the name or file of one; of assemblies there are no studies"
+        limit = "must be a Scene or an Assembly, the tables of a case, or the name or file of one"
         raise InputError.of("base", path, limit) from None
-    if not file.exists() and str(path).removesuffix(".toml") in shipped_cases():
-        file = find_case(str(path))
+    if not file.exists() and str(path).removesuffix(".toml") in (*shipped_cases(), *shipped_assemblies()):
+        file = find_subject(str(path))
     return read_tables(file)
 
 
@@ -142,8 +153,8 @@ def split_path(path: str) -> Path:
             raise InputError.of("override", path, "must be a dotted path, for instance 'scene.speed_rpm'")
         parts.append(match[1])
         parts.extend(int(index) for index in re.findall(r"\d+", match[2]))
-    if parts[0] not in TABLES or parts == ["scene"]:
-        raise InputError.of("override", path, f"must start with one of {', '.join(f'{name}.' for name in TABLES)}")
+    if parts[0] not in PATHS or parts in (["scene"], ["assembly"]):
+        raise InputError.of("override", path, f"must start with one of {', '.join(f'{name}.' for name in PATHS)}")
     return tuple(parts)
 
 
@@ -186,7 +197,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def fingerprint(scene: Scene, run: RunOptions) -> str:
+def fingerprint(scene: Subject, run: RunOptions) -> str:
     """What tells a case from another: SHA-256 of scene and run options, as hexadecimal digits."""
     return hashlib.sha256(f"{scene.fingerprint} {run.fingerprint}".encode()).hexdigest()
 
@@ -199,7 +210,7 @@ class Case:
     ----------
     parameters : dict of str to value
         What tells it from the others: numbers or texts.
-    scene : Scene or None
+    scene : Scene, Assembly or None
         What is run; None if it cannot be built.
     run : RunOptions
         How it is run.
@@ -208,7 +219,7 @@ class Case:
     """
 
     parameters: dict[str, Any]
-    scene: Scene | None
+    scene: Subject | None
     run: RunOptions
     error: str = ""
 

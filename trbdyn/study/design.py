@@ -12,10 +12,9 @@ import numpy as np
 
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
-from trbdyn.model.scene import Scene
+from trbdyn.model.assembly import Subject
 from trbdyn.run.options import RunOptions
-from trbdyn.run.toml_case import TABLES
-from trbdyn.study.definition import Axis, Base, Case, Overrides, Study, label, plain
+from trbdyn.study.definition import PATHS, Axis, Base, Case, Overrides, Study, label, plain
 
 
 def _case(base: Base, parameters: Mapping[str, Any], overrides: Overrides) -> Case:
@@ -42,7 +41,7 @@ def _axis(name: str, values: Any) -> Axis:
         raise InputError.of(("grid", str(name)), name, "must be a path or a name")
     if isinstance(values, str | bytes) or not isinstance(values, Mapping | Iterable):
         raise InputError.of(name, values, "must be a sequence of values, or a table of labels and values")
-    is_path = name.split(".")[0].split("[")[0] in TABLES and not _are_sets(values)
+    is_path = name.split(".")[0].split("[")[0] in PATHS and not _are_sets(values)
     if isinstance(values, Mapping):
         labels = tuple(values)
         if not is_path and not all(isinstance(value, Mapping) for value in values.values()):
@@ -68,7 +67,7 @@ def _short_names(paths: Sequence[str]) -> list[str]:
 
 
 def grid(
-    base: Scene | Mapping[str, Any] | str | FilePath,
+    base: Subject | Mapping[str, Any] | str | FilePath,
     axes: Mapping[str, Sequence[Any] | Mapping[Any, Any]],
     run: RunOptions | None = None,
     *,
@@ -79,8 +78,8 @@ def grid(
 
     Parameters
     ----------
-    base : Scene, mapping, str or Path
-        What the axes change: a scene, the tables of a case, a TOML case or the name of a shipped one.
+    base : Scene, Assembly, mapping, str or Path
+        What the axes change: a scene or an assembly, the tables of a case, a TOML case or the name of a shipped one.
     axes : mapping of str to sequence or mapping
         Values of each path, such as ``{"scene.speed_rpm": [1000, 2000]}``. Labels may be given as ``{label: value}``. A name
         that is no path may have a mapping of labels to sets of overrides, to change several values together.
@@ -117,7 +116,7 @@ def grid(
 
 
 def cases(
-    base: Scene | Mapping[str, Any] | str | FilePath,
+    base: Subject | Mapping[str, Any] | str | FilePath,
     overrides: Iterable[Overrides],
     run: RunOptions | None = None,
     *,
@@ -127,7 +126,7 @@ def cases(
 
     Parameters
     ----------
-    base : Scene, mapping, str or Path
+    base : Scene, Assembly, mapping, str or Path
         As in `grid`.
     overrides : iterable of mapping
         For each case its values by their paths.
@@ -158,7 +157,7 @@ def cases(
     return _checked(Study(tuple(made), (), name))
 
 
-def of_scenes(scenes: Iterable[Scene | tuple[Scene, RunOptions]], run: RunOptions | None = None) -> Study:
+def of_scenes(scenes: Iterable[Subject | tuple[Subject, RunOptions]], run: RunOptions | None = None) -> Study:
     """A study of given scenes, each with the same run options or its own."""
     made = []
     for place, entry in enumerate(scenes):
@@ -170,7 +169,7 @@ def of_scenes(scenes: Iterable[Scene | tuple[Scene, RunOptions]], run: RunOption
 
 
 def random(
-    base: Scene | Mapping[str, Any] | str | FilePath,
+    base: Subject | Mapping[str, Any] | str | FilePath,
     ranges: Mapping[str, Any],
     count: int,
     seed: int,
@@ -183,7 +182,7 @@ def random(
 
     Parameters
     ----------
-    base : Scene, mapping, str or Path
+    base : Scene, Assembly, mapping, str or Path
         As in `grid`.
     ranges : mapping of str to tuple or mapping
         For each path a range ``(low, high)``, or ``{"low": ..., "high": ..., "scale": "linear" | "log"}``, or

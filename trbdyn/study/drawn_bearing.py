@@ -13,10 +13,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.catalogue_rollers import FILL
+
+V = TypeVar("V")
 
 WHOLE: Final = 1e-6
 """What a number of rollers may be below a whole one by rounding."""
@@ -26,7 +28,7 @@ MASS, AXIAL, TRANSVERSE = "bearing.cage.mass", "bearing.cage.inertia_axial", "be
 
 
 def belongs_together(
-    bearing: Bearing, drawn: Mapping[str, Any], bands: Mapping[str, tuple[float, float, float]]
+    bearing: Bearing, drawn: Mapping[str, Any], bands: Mapping[str, tuple[float, float, float]], prefix: str = ""
 ) -> dict[str, Any]:
     """Inputs of a draw, with those that follow from others put right. What is known of the bearing, and is no estimate, stays.
 
@@ -40,11 +42,15 @@ def belongs_together(
         Both ends of the band of each input, and how far between them it was drawn (0 to 1). A band that is not the one of
         the estimate is somebody's knowledge, and what was drawn from it stays.
 
+    prefix : str
+        With what the paths of this bearing begin; others are left out.
+
     Returns
     -------
     dict
         The inputs of the draw, and estimates that were not drawn and follow from them.
     """
+    drawn, bands = _own(prefix, drawn), _own(prefix, bands)
     found, cage = dict(drawn), bearing.cage
     estimates = {f"bearing.{entry.path}": entry for entry in bearing.estimated}
     free = {path for path, entry in estimates.items() if bands.get(path, ())[:2] == (entry.low, entry.high)}
@@ -66,7 +72,12 @@ def belongs_together(
             )  # by distances along the axis
             wider = _width(bearing, found) / _width(bearing, {})
             found[TRANSVERSE] = 0.5 * found.get(AXIAL, cage.inertia_axial) + heavier * along * wider**2
-    return found
+    return {f"{prefix}{path}": value for path, value in found.items()}
+
+
+def _own(prefix: str, by_path: Mapping[str, V]) -> dict[str, V]:
+    """What belongs to the bearing whose paths begin with a prefix, by paths without it."""
+    return {path.removeprefix(prefix): value for path, value in by_path.items() if path.startswith(f"{prefix}bearing.")}
 
 
 def _around(bearing: Bearing, drawn: Mapping[str, Any]) -> float:

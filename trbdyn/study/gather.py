@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.own_files import write_whole
 from trbdyn.errors import FileError
+from trbdyn.model.assembly import Assembly, Shaft, ShaftBearing, ShaftLoad
 from trbdyn.model.scene import Scene
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.run.options import RunOptions
@@ -88,11 +89,21 @@ def _about_path(path: str) -> dict[str, str]:
     return {"path": path} | ({"long_name": path, "units": unit} if unit else {})
 
 
+_OWNERS = {
+    "scene": Scene,
+    "run": RunOptions,
+    "assembly": Assembly,
+    "shaft": Shaft,
+    "bearings": ShaftBearing,
+    "loads": ShaftLoad,
+}
+
+
 def unit_of(path: str) -> str:
     """Unit of the field at a dotted path, for instance "kg" for ``bearing.cage.mass``; empty where it is no field with a unit."""
     table, *parts = re.sub(r"\[\d+\]", "", path).split(".")
-    owner: Any = RunOptions if table == "run" else Scene
-    for name in parts if table in ("scene", "run") else [table, *parts]:
+    owner: Any = _OWNERS.get(table, Scene)
+    for name in parts if table in _OWNERS else [table, *parts]:
         fields = getattr(owner, "model_fields", {})
         if name not in fields:
             return ""

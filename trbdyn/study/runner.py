@@ -14,7 +14,7 @@ from trbdyn.base.own_files import folder_path
 from trbdyn.base.validation import Model
 from trbdyn.base.version import __version__
 from trbdyn.errors import FileError, InputError
-from trbdyn.model.scene import Scene
+from trbdyn.model.assembly import Subject
 from trbdyn.results.result import load
 from trbdyn.run.options import RunOptions
 from trbdyn.study import gather
@@ -31,7 +31,7 @@ DATASET = "observables.nc"
 
 
 def run(
-    study: Study | Iterable[Scene | tuple[Scene, RunOptions]],
+    study: Study | Iterable[Subject | tuple[Subject, RunOptions]],
     folder: str | os.PathLike[str] | None = None,
     *,
     options: RunOptions | None = None,

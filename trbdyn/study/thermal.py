@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -323,7 +323,7 @@ class _Runs:
                 reference_c=growth.reference_c,
                 centrifugal=growth.centrifugal,
             )
-        warm, _ = Base.of(self.scene).build({"lubricant.temperature_c": film})
+        warm = cast(Scene, Base.of(self.scene).build({"lubricant.temperature_c": film})[0])
         return warm.replace(**changes) if changes else warm
 
     def losses(self, film: float, nodes: Mapping[str, float]) -> dict[str, float]:

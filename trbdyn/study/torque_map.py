@@ -14,6 +14,7 @@ from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
+from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.scene import Scene
 from trbdyn.results.fields import table
@@ -162,7 +163,7 @@ def _state(at: xarray.Dataset) -> str:
 
 
 def torque_map(
-    subject: Bearing | Scene,
+    subject: Bearing | Subject,
     speeds: Sequence[float],
     loads: Sequence[float | tuple[float, float]],
     *,
@@ -186,12 +187,13 @@ def torque_map(
 
     Parameters
     ----------
-    subject : Bearing or Scene
-        A bearing takes the default oil and effects; a scene gives all but speed and loads.
+    subject : Bearing, Scene or Assembly
+        A bearing takes the default oil and effects; a scene or an assembly gives all but speed and loads.
     speeds : sequence of float
         Speeds of the shaft (rpm), none of them 0.
     loads : sequence of float or tuple
-        Axial loads (N), or pairs of axial and radial load.
+        Axial loads (N), or pairs of axial and radial load. On an assembly they act on the shaft's centre of mass, in place of its
+        loads: along the shaft, and across it downwards (towards -y).
     temperatures : sequence of float, optional
         Temperatures of the oil (C); that of the scene by default.
     tolerance : float
@@ -233,7 +235,7 @@ def torque_map(
     >>> found.lowest(load=1)[0]
     500.0
     """
-    scene = _scene(subject)
+    scene = _subject(subject)
     run = RunOptions(accuracy="fast") if options is None else options
     places = _places(scene, speeds, loads, temperatures)
     if not 0.0 < number_of("tolerance", tolerance) < 1.0:
@@ -266,17 +268,17 @@ def torque_map(
     return TorqueMap(_gathered(scene, places, rows, len(unit), (speeds, loads, temperatures)), float(tolerance))
 
 
-def _scene(subject: Bearing | Scene) -> Scene:
+def _subject(subject: Bearing | Subject) -> Subject:
     if isinstance(subject, Bearing):
         return Scene(subject, speed_rpm=1000.0, axial_load=1000.0)
-    expect("subject", subject, Scene, Bearing)
+    expect("subject", subject, Scene, Assembly, Bearing)
     return subject
 
 
 Place = tuple[float, float, tuple[float, float]]
 
 
-def _places(scene: Scene, speeds: Any, loads: Any, temperatures: Any) -> list[Place]:
+def _places(scene: Subject, speeds: Any, loads: Any, temperatures: Any) -> list[Place]:
     """(temperature, speed, (axial, radial)) of every point, the last changing fastest."""
     listed = {"speeds": speeds, "loads": loads}
     listed |= {} if temperatures is None else {"temperatures": temperatures}
@@ -292,7 +294,7 @@ def _places(scene: Scene, speeds: Any, loads: Any, temperatures: Any) -> list[Pl
     turned = [number_of("speeds", speed) for speed in speeds]
     if not all(turned):
         raise InputError.of("speeds", speeds, "must not hold 0: a shaft that stands has no friction torque (rpm)")
-    own = [scene.lubricant.temperature_c] if temperatures is None else temperatures
+    own = [_temperature(scene)] if temperatures is None else temperatures
     warm = [number_of("temperatures", temperature) for temperature in own]
     for field, found in (("speeds", turned), ("loads", pairs), ("temperatures", warm)):
         if len(set(found)) != len(found):
@@ -300,11 +302,16 @@ def _places(scene: Scene, speeds: Any, loads: Any, temperatures: Any) -> list[Pl
     return [(t, n, load) for t in warm for n in turned for load in pairs]
 
 
-def _at_place(scene: Scene, place: Place) -> tuple[Base | None, str]:
+def _temperature(subject: Subject) -> float:
+    """Temperature of the oil (C), of several bearings that of the first one."""
+    return subject.part.lubricant.temperature_c
+
+
+def _at_place(scene: Subject, place: Place) -> tuple[Base | None, str]:
     temperature, speed, (axial, radial) = place
-    overrides: dict[str, Any] = {"scene.speed_rpm": speed, "scene.axial_load": axial, "scene.radial_load": radial}
-    if temperature != scene.lubricant.temperature_c:
-        overrides["lubricant.temperature_c"] = temperature
+    overrides = scene.loaded(speed, axial, radial)
+    if temperature != _temperature(scene):
+        overrides |= {f"{prefix}lubricant.temperature_c": temperature for prefix in scene.parts}
     try:
         return Base.of(Base.of(scene).build(overrides)[0]), ""
     except InputError as error:
@@ -355,7 +362,7 @@ def _shares(found: xarray.Dataset) -> Array:
 
 
 def _gathered(
-    scene: Scene, places: Sequence[Place], rows: Mapping[tuple[int, int], Mapping[str, Any]], draws: int, given: Any
+    scene: Subject, places: Sequence[Place], rows: Mapping[tuple[int, int], Mapping[str, Any]], draws: int, given: Any
 ) -> xarray.Dataset:
     import xarray
 
@@ -397,4 +404,6 @@ def _gathered(
         "radial_load": ("load", [load[1] for load in loads], {"units": "N"}),
         "source": ("source", list(SOURCES)),
     }
-    return xarray.Dataset(variables, coords=coordinates, attrs={"bearing": scene.bearing.name})
+    return xarray.Dataset(
+        variables, coords=coordinates, attrs={"bearing": ", ".join(part.bearing.name for part in scene.parts.values())}
+    )

@@ -18,12 +18,13 @@ from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import Model, Number
 from trbdyn.errors import InputError, unknown_name
+from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.lubricants import supply_of
 from trbdyn.model.scene import Scene
 from trbdyn.results.quantities import QUANTITIES as SUMMARY
 from trbdyn.run.options import RunOptions
-from trbdyn.study.definition import Base, Case, Study
+from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
 from trbdyn.study.runner import run as run_study
 
@@ -159,36 +160,46 @@ class Uncertainty(Displayed):
         return f"; {len(self.refused)} more could not be run, so that the bands leave them out: {self.refused[0]}"
 
 
-def open_inputs(scene: Scene) -> tuple[Band, ...]:
-    """Inputs of a scene that are hardly ever known exactly, with the bands they are given without better knowledge.
+def open_inputs(subject: Subject) -> tuple[Band, ...]:
+    """Inputs of a scene or an assembly that are hardly ever known exactly, and the bands they have without better knowledge.
 
     Estimates of a catalogue bearing with their own bands; temperature, roughness, boundary friction and, where oil drags,
     its share in the mixture.
 
     Parameters
     ----------
-    scene : Scene
-        What is simulated.
+    subject : Scene or Assembly
+        What is simulated. The bearings of an assembly have bands of their own, which are drawn by themselves.
 
     Returns
     -------
     tuple of Band
     """
-    oil, effects, rough = scene.lubricant, scene.effects, scene.bearing.roughness
+    return tuple(band for prefix, part in subject.parts.items() for band in _open_inputs(prefix, part))
+
+
+def _open_inputs(prefix: str, part: Scene | ShaftBearing) -> list[Band]:
+    """Those of a bearing, whose paths begin with a prefix."""
+    oil, effects, rough = part.lubricant, part.effects, part.bearing.roughness
     found = [
-        Band(path=f"bearing.{entry.path}", low=entry.low, high=entry.high, source=entry.source)
-        for entry in scene.bearing.estimated
+        Band(path=f"{prefix}bearing.{entry.path}", low=entry.low, high=entry.high, source=entry.source)
+        for entry in part.bearing.estimated
         if entry.low < entry.high
     ]
     if effects.films and oil.oil is not None:
         t = oil.temperature_c
         found.append(
-            Band(path="lubricant.temperature_c", low=t - 3.0, high=t + 3.0, source="thermocouple at the ring: assumed")
+            Band(
+                path=f"{prefix}lubricant.temperature_c",
+                low=t - 3.0,
+                high=t + 3.0,
+                source="thermocouple at the ring: assumed",
+            )
         )
     if effects.films:
         found += [
             Band(
-                path=f"bearing.roughness.{name}",
+                path=f"{prefix}bearing.roughness.{name}",
                 low=0.7 * value,
                 high=1.5 * value,
                 source="finishing and running in: assumed",
@@ -199,7 +210,7 @@ def open_inputs(scene: Scene) -> tuple[Band, ...]:
         limit = effects.friction.boundary_limit
         found.append(
             Band(
-                path="effects.friction.boundary_limit",
+                path=f"{prefix}effects.friction.boundary_limit",
                 low=0.7 * limit,
                 high=2.0 * limit,
                 source="0.07 to 0.2, published",
@@ -209,12 +220,12 @@ def open_inputs(scene: Scene) -> tuple[Band, ...]:
         supply = supply_of(effects.oil_fill)
         low, high = (0.0, min(2.0 * effects.oil_fill, 1.0)) if supply is None else (supply.low, supply.high)
         source = "known in no bearing: assumed" if supply is None else f"{supply.words}: assumed"
-        found.append(Band(path="effects.oil_fill", low=low, high=high, source=source))
-    return tuple(found)
+        found.append(Band(path=f"{prefix}effects.oil_fill", low=low, high=high, source=source))
+    return found
 
 
 def uncertainty(
-    scene: Scene,
+    subject: Subject,
     bands: Mapping[str, tuple[float, float]] | Sequence[Band] | None = None,
     *,
     samples: int = 64,
@@ -233,10 +244,11 @@ def uncertainty(
 
     Parameters
     ----------
-    scene : Scene
-        What is simulated.
+    subject : Scene or Assembly
+        What is simulated. Inputs of a bearing on a shaft have paths such as ``bearings[0].bearing.cup_half_angle_deg``, its
+        observables names such as ``left_torque``; ``torque`` is that of the shaft.
     bands : mapping of str to tuple, or sequence of Band, optional
-        Which inputs are drawn, and between which ends; `open_inputs` of the scene by default.
+        Which inputs are drawn, and between which ends; `open_inputs` of the subject by default.
     samples : int
         Number of draws, at least 8. A larger number keeps the first ones. Shares need twice as many draws as the model has
         numbers: 2 (2 n + 1) for n inputs, else straight lines take the place of parabolas, else there are none.
@@ -276,16 +288,16 @@ def uncertainty(
     >>> found["torque"].low < found["torque"].high
     True
     """
-    expect("scene", scene, Scene)
-    drawn = checked_bands(open_inputs(scene) if bands is None else bands)
+    expect("scene", subject, Scene, Assembly)
+    drawn = checked_bands(open_inputs(subject) if bands is None else bands)
     for field, value, least in (("samples", samples, FEWEST), ("seed", seed, 0)):
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
             raise InputError.of(field, value, f"must be a whole number, at least {least}")
     options = RunOptions(revolutions=5.0, accuracy="fast") if options is None else options
-    base = Base.of(scene, options)
+    base = Base.of(subject, options)
     unit = unit_draws(len(drawn), int(samples), int(seed))
     made = [
-        Case({"draw": 0}, scene, options),
+        Case({"draw": 0}, subject, options),
         *(drawn_case(base, options, drawn, row, k + 1) for k, row in enumerate(unit)),
     ]
     if all(case.scene is None for case in made[1:]):
@@ -327,8 +339,8 @@ def unit_draws(inputs: int, count: int, seed: int) -> Array:
 def _is_whole(base: Base, band: Band) -> bool:
     """Whether an input is drawn in whole numbers: both ends are, and so is what the scene has."""
     value: Any = base.tables
-    for name in band.path.split("."):
-        value = value.get(name) if isinstance(value, dict) else None
+    for name in split_path(band.path):
+        value = value.get(name) if isinstance(value, dict) else value[name] if isinstance(value, list) else None  # type: ignore[index]
     whole = band.path.endswith("n_rollers") or (isinstance(value, int) and not isinstance(value, bool))
     return whole and float(band.low).is_integer() and float(band.high).is_integer()
 
@@ -345,7 +357,8 @@ def drawn_case(base: Base, options: RunOptions, bands: Sequence[Band], row: Arra
     ends = {band.path: (band.low, band.high, float(share)) for band, share in zip(bands, row, strict=True)}
     parameters = {"draw": number, **overrides}
     try:
-        overrides = belongs_together(Bearing.model_validate(base.tables["bearing"]), overrides, ends)
+        for prefix, part in base.parts.items():
+            overrides |= belongs_together(Bearing.model_validate(part["bearing"]), overrides, ends, prefix)
         parameters |= {band.path: overrides[band.path] for band in bands}
         scene, _ = base.build(overrides)
     except InputError as error:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, LoadError, StepError, unknown_name
+from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.scene import Scene, Start
 from trbdyn.run.simulation import Simulation
@@ -27,6 +29,7 @@ from trbdyn.study.drawn_bearing import belongs_together
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
 
@@ -113,15 +116,15 @@ class Sensitivity(Displayed):
 
 
 def sensitivity(
-    scene: Scene,
-    quantity: str | Callable[[Result], float] = "torque",
+    subject: Subject,
+    quantity: str | Callable[[Any], float] = "torque",
     *,
     revolutions: float = 5.0,
     accuracy: str = "fast",
     paths: Sequence[str] | None = None,
     starts: int = STARTS,
 ) -> Sensitivity:
-    """Which estimated inputs of the scene's bearing matter for a result.
+    """Which estimated inputs of a scene's bearing, or of the bearings of an assembly, matter for a result.
 
     Every estimate (`Bearing.estimated`) is put to the low and the high end of its band, and short runs from several starts
     are made for each end. What follows from it moves with it: the number of rollers with their diameter and the pitch
@@ -132,10 +135,11 @@ def sensitivity(
 
     Parameters
     ----------
-    scene : Scene
-        What is simulated; its bearing has estimates.
+    subject : Scene or Assembly
+        What is simulated; a bearing of it has estimates. Those of a bearing on a shaft have paths such as
+        ``bearings[0].bearing.cage.mass``.
     quantity : str or callable
-        Name of an entry of `Result.summary`, or a function that gives a number for a result.
+        Name of an entry of `Result.numbers`, or a function that gives a number for a result.
     revolutions : float
         Turns of the shaft of each run.
     accuracy : {'fast', 'standard', 'reference'}
@@ -164,29 +168,32 @@ def sensitivity(
     >>> found.influences[0].estimated.path
     'cup_half_angle_deg'
     """
-    expect("scene", scene, Scene)
+    expect("scene", subject, Scene, Assembly)
     if isinstance(starts, bool) or not isinstance(starts, int) or not 2 <= starts <= 1000:
         raise InputError.of("starts", starts, "must be a whole number from 2 to 1000: one start shows no scatter")
-    chosen = _chosen(scene.bearing, paths)
+    chosen = _chosen(subject, paths)
     name = quantity if isinstance(quantity, str) else getattr(quantity, "__name__", "result")
-    begun = [scene.replace(start=_start(scene, k)) for k in range(starts)]
+    begun = [_begun(subject, k) for k in range(starts)]
 
-    def measured(bearing: Bearing) -> Array:
+    def measured(prefix: str, bearing: Bearing) -> Array:
         runs = [
-            Simulation(one.replace(bearing=bearing), accuracy=accuracy).run(revolutions=revolutions) for one in begun
+            Simulation(one.with_part(prefix, bearing=bearing), accuracy=accuracy).run(revolutions=revolutions)
+            for one in begun
         ]
         return np.array([_number(run, quantity, name) for run in runs])
 
-    diameter = scene.bearing.roller.diameter
-    same = [scene.bearing] + [
-        scene.bearing.replace({"roller.diameter": diameter * (1.0 + k * BILLIONTH)}) for k in range(1, REPEATS)
+    first, part = next(iter(subject.parts)), subject.part
+    diameter = part.bearing.roller.diameter
+    same = [part.bearing] + [
+        part.bearing.replace({"roller.diameter": diameter * (1.0 + k * BILLIONTH)}) for k in range(1, REPEATS)
     ]
-    base = np.array([measured(bearing) for bearing in same])
-    ends, notes = zip(*(_ends(scene.bearing, entry, measured) for entry in chosen), strict=True)
+    base = np.array([measured(first, bearing) for bearing in same])
+    of_each = [_ends(subject.parts[prefix].bearing, entry, partial(measured, prefix)) for prefix, entry in chosen]
+    ends, notes = zip(*of_each, strict=True)
     limits = told_from(base, ends)
     influences = [
-        _influence(entry, float(base.mean()), *of_entry, note)
-        for entry, note, of_entry in zip(chosen, notes, zip(ends, limits, strict=True), strict=True)
+        _influence(_named(prefix, entry), float(base.mean()), *of_entry, note)
+        for (prefix, entry), note, of_entry in zip(chosen, notes, zip(ends, limits, strict=True), strict=True)
     ]
     influences.sort(key=lambda entry: -entry.span)
     known = [limit for pair in limits for limit in pair if limit is not None]
@@ -227,21 +234,30 @@ def told_from(base: Array, ends: Sequence[Pair]) -> list[tuple[float | None, flo
     return [(limit(low), limit(high)) for low, high in own]
 
 
-def _chosen(bearing: Bearing, paths: Sequence[str] | None) -> list[Estimated]:
-    known = {entry.path: entry for entry in bearing.estimated}
+def _named(prefix: str, entry: Estimated) -> Estimated:
+    """An estimate with its path in the subject: that in the bearing where there is one bearing alone."""
+    return entry.replace(path=f"{prefix}bearing.{entry.path}") if prefix else entry
+
+
+def _chosen(subject: Subject, paths: Sequence[str] | None) -> list[tuple[str, Estimated]]:
+    """Estimates, each with the beginning of its bearing's paths."""
+    known = {
+        _named(prefix, entry).path: (prefix, entry)
+        for prefix, part in subject.parts.items()
+        for entry in part.bearing.estimated
+    }
     if not known:
-        raise InputError.of(
-            "scene", bearing.name, "must have a bearing with estimates, as Bearing.from_catalogue makes it"
-        )
+        names = ", ".join(part.bearing.name for part in subject.parts.values())
+        raise InputError.of("scene", names, "must have a bearing with estimates, as Bearing.from_catalogue makes it")
     for path in paths or ():
         if path not in known:
             raise InputError.of("paths", path, unknown_name(path, known))
     return list(known.values()) if paths is None else [known[path] for path in paths]
 
 
-def _number(result: Result, quantity: str | Callable[[Result], float], name: str) -> float:
+def _number(result: Result | AssemblyResult, quantity: str | Callable[[Any], float], name: str) -> float:
     if isinstance(quantity, str):
-        values = result.summary()
+        values = result.numbers()
         numbers = [
             key for key, value in values.items() if isinstance(value, int | float) and not isinstance(value, bool)
         ]
@@ -255,9 +271,14 @@ def _number(result: Result, quantity: str | Callable[[Result], float], name: str
         raise InputError.of("quantity", name, f"must give a number, not {found!r}") from None
 
 
-def _start(scene: Scene, number: int) -> Start:
-    """The scene's start, or another one."""
-    start = scene.start
+def _begun(subject: Subject, number: int) -> Subject:
+    """The subject with the start of its bearings, or another one."""
+    for prefix, part in subject.parts.items():
+        subject = subject.with_part(prefix, start=_start(part.start, number))
+    return subject
+
+
+def _start(start: Start, number: int) -> Start:
     if number == 0:
         return start
     if start.kind == "whirl":

@@ -23,7 +23,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
-from trbdyn.study.definition import Base, Case, Study
+from trbdyn.study.definition import Case, Study
 from trbdyn.study.runner import run as run_study
 
 if TYPE_CHECKING:
@@ -264,8 +264,7 @@ class CageRuns:
         changes = {"speed_rpm": speed} | ({} if load is None else {"axial_load": load})
         parameters = {"start": start, **changes}
         try:
-            base = Base.of(self.scene.replace(start=STARTS[start]))
-            built, _ = base.build({f"scene.{name}": value for name, value in changes.items()})
+            built = self.scene.replace(start=STARTS[start], **changes)
         except InputError as error:
             return Case(parameters, None, self.options, str(error).splitlines()[0])
         length = turns * 2.0 * np.pi / abs(built.orbit_speed(built.start.time))

@@ -13,12 +13,14 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from trbdyn.errors import StepError, TrbError
-from trbdyn.model.scene import Scene
-from trbdyn.results.result import Result, moved
+from trbdyn.model.assembly import Subject, subject_from_dict
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
 
-Observable = Callable[["Result"], Any]
+AnyResult = Result | AssemblyResult
+Observable = Callable[[Any], Any]
 
 NOT_OBSERVABLE: Final = ("success", "message")
 """Entries of a summary that are told otherwise."""
@@ -72,7 +74,7 @@ class Report:
     wall_s: float = 0.0
 
 
-def simulation(scene: Scene, run: RunOptions) -> Simulation:
+def simulation(scene: Subject, run: RunOptions) -> Simulation[Any]:
     """A simulation with the settings of run options."""
     return Simulation(scene, **run.of_simulation())
 
@@ -102,7 +104,7 @@ def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
         part.replace(kept)
         file = kept.name
         if result is not None:
-            result = moved(result, kept)
+            result = result.moved(kept)
     values: dict[str, Any] = {}
     if result is not None and report.status == "done":
         values, mistakes = observe(result, task.observables)
@@ -111,9 +113,9 @@ def run_case(task: Task, stopped: Callable[[], bool]) -> Report:
     return Report(report.status, report.message, file, values, clock.perf_counter() - began)
 
 
-def _run(task: Task, part: Path | None, stopped: Callable[[], bool]) -> tuple[Result | None, Report]:
+def _run(task: Task, part: Path | None, stopped: Callable[[], bool]) -> tuple[AnyResult | None, Report]:
     try:
-        scene, run = Scene.from_dict(task.scene), RunOptions.from_dict(task.run)
+        scene, run = subject_from_dict(task.scene), RunOptions.from_dict(task.run)
         result = simulation(scene, run).run(
             revolutions=run.revolutions,
             duration=run.duration,
@@ -150,22 +152,17 @@ def said(error: Exception) -> str:
     return f"{type(error).__name__}: {error}{place}"
 
 
-def observe(result: Result, functions: Mapping[str, Observable]) -> tuple[dict[str, Any], list[str]]:
+def observe(result: AnyResult, functions: Mapping[str, Observable]) -> tuple[dict[str, Any], list[str]]:
     """Summary and further observables of a result, as plain data; tables of the summary become ``table_entry``.
 
     An observable that fails has no value, and a sentence says why: it costs neither the run nor the other observables.
     """
-    values: dict[str, Any] = {}
-    for name, value in result.summary().items():
-        if isinstance(value, Mapping):
-            values |= {f"{name}_{part}": entry for part, entry in value.items()}
-        elif name not in NOT_OBSERVABLE:
-            values[name] = value
+    values = {name: value for name, value in result.numbers().items() if name not in NOT_OBSERVABLE}
     found, mistakes = apply(result, functions)
     return values | found, mistakes
 
 
-def apply(result: Result, functions: Mapping[str, Observable]) -> tuple[dict[str, Any], list[str]]:
+def apply(result: AnyResult, functions: Mapping[str, Observable]) -> tuple[dict[str, Any], list[str]]:
     """Observables of a result as plain data, and a sentence for each that failed."""
     values: dict[str, Any] = {}
     mistakes: list[str] = []

@@ -1,0 +1,265 @@
+"""What works for one bearing works for bearings on a shaft: one table of both, and of what is done with them."""
+
+from __future__ import annotations
+
+import json
+import signal
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn.cli import main
+from trbdyn.errors import InputError, StepError
+from trbdyn.run import memory, running
+from trbdyn.run.checkpoint import checkpoint_path
+from trbdyn.study.definition import Base
+
+SCENE = trb.cases.scene_30310(3000.0, 4930.0)
+PAIR = trb.load_assembly("pair_30310")
+SUBJECTS = {"scene": SCENE, "pair": PAIR}
+PREFIX = {"scene": "", "pair": "bearings[1]."}
+SHORT = trb.RunOptions(duration=5e-4, accuracy="fast")
+
+
+@pytest.fixture(params=SUBJECTS)
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+def simulation(name: str, **options: Any) -> Any:
+    return trb.Simulation(SUBJECTS[name], accuracy="fast", **options)
+
+
+def each(given: Any) -> list[Any]:
+    """What is given for each bearing, by its name where there are several."""
+    return list(given.values()) if set(given) == {"left", "right"} else [given]
+
+
+def test_contacts_records_systems_and_states(name: str) -> None:
+    sim = simulation(name)
+    sim.step()
+    for contacts, record, state in zip(each(sim.contacts()), each(sim.record()), each_view(sim), strict=True):
+        assert contacts["raceway_load"].shape[:2] == (2, 12)
+        assert contacts["raceway_load"].sum(axis=2)[1] == pytest.approx(record["inner_load"], rel=1e-9)
+        assert state["roller_psi"].shape == (12,)
+    other = sim.copy()
+    assert other.run(duration=1e-4).success
+    assert sim.time < other.time
+    other.set_state(sim.state)
+    assert np.array_equal(other.state.vector, sim.state.vector)
+    assert other.derivative() == pytest.approx(sim.derivative())
+    with pytest.raises(InputError, match="state"):
+        sim.derivative(np.zeros(3))
+    assert "rollers" in str(sim.system)
+    assert "accuracy 'fast'" in repr(sim)
+    assert sim._shown().text()
+
+
+def each_view(sim: Any) -> list[Any]:
+    view = sim.view()
+    return list(view.values()) if isinstance(view, dict) else [view]
+
+
+def test_a_callback_ends_a_run(name: str) -> None:
+    seen: list[float] = []
+
+    def look(sim: Any) -> bool:
+        seen.append(sim.time)
+        with pytest.raises(InputError, match="while a run goes on"):
+            sim.step()
+        return sim.time > 1e-3
+
+    result = simulation(name).run(duration=0.05, save_every=1e-5, callback=look)
+    assert seen
+    assert not result.success
+    assert "ended by the callback" in result.message
+    assert len(result.time) < 5000
+
+
+def test_what_a_callback_raises_has_the_result(name: str) -> None:
+    def fail(_: Any) -> bool:
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError) as caught:
+        simulation(name).run(duration=0.05, save_every=1e-5, callback=fail)
+    result = caught.value.result  # type: ignore[attr-defined]
+    assert result.time.size > 0
+    assert all(np.isfinite(one.cage_position).all() for one in result.parts)
+
+
+def test_until(name: str) -> None:
+    with pytest.warns(trb.RunWarning, match="without the confidence"):
+        result = simulation(name).run(revolutions=0.5, until={"torque": 1e-4})
+    assert result.success
+
+
+def test_a_step_that_fails_names_the_body(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    from trbdyn import _core
+
+    sim = simulation(name)
+    core = sim._core
+
+    class Failing:
+        def run(self, *_: Any) -> Any:
+            raise _core.CoreStepError("no step; largest error: roller 3, v_t")
+
+        def __getattr__(self, attribute: str) -> Any:
+            return getattr(core, attribute)
+
+    sim._core = Failing()
+    with pytest.raises(StepError) as caught:
+        sim.run(duration=1e-3)
+    assert (caught.value.body, caught.value.quantity) == ("roller 3", "v_t")
+    assert not caught.value.result.success
+
+
+def test_a_full_memory_ends_a_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "LOOK_EVERY", 0)
+    monkeypatch.setattr(memory, "available", lambda: 0)
+    result = simulation(name).run(duration=0.02, save_every=1e-5)
+    assert not result.success
+    assert "memory is nearly full" in result.message
+
+
+def test_a_run_that_was_cut_off_goes_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C in the middle, then a resumed run: the same bits as a run without a break."""
+    how: dict[str, Any] = {"duration": 2e-3, "save_every": 1e-5, "checkpoint_every": 3e-4}
+    whole = simulation(name).run(**how, output=tmp_path / "whole.h5")
+    keep = running.Run._keep
+
+    def interrupted(self: running.Run, records: Any) -> None:
+        keep(self, records)
+        if self.sim.time > 1e-3:
+            signal.raise_signal(signal.SIGINT)
+
+    path = tmp_path / "cut.h5"
+    with monkeypatch.context() as patch:
+        patch.setattr(running.Run, "_keep", interrupted)
+        cut = simulation(name).run(**how, output=path)
+    assert not cut.success
+    assert checkpoint_path(path).exists()
+    resumed: Any = trb.resume(path)
+    assert resumed.success
+    for one, other in zip(whole.parts, resumed.parts, strict=True):
+        for field in one.fields:
+            assert np.array_equal(one[field.name], other[field.name], equal_nan=True), field.name
+    again: Any = trb.resume(path)
+    assert np.array_equal(again.time, whole.time)
+    simulation(name).run(duration=1e-4, output=path, overwrite=True)
+    assert sorted(place.name for place in tmp_path.iterdir()) == ["cut.h5", "whole.h5"]
+
+
+def test_estimate(name: str) -> None:
+    sim = simulation(name)
+    found = sim.estimate(revolutions=2)
+    assert found.steps > 100
+    assert found.wall_s > 0.0
+    assert sim.time == 0.0
+
+
+def test_stiffness_and_modes(name: str) -> None:
+    """The matrix is the slope of the force: compared with equilibria under slightly different forces."""
+    found = trb.stiffness(SUBJECTS[name])
+    assert found.matrix == pytest.approx(found.matrix.T, rel=1e-3, abs=1e-3 * np.abs(found.matrix).max())
+    assert np.linalg.eigvalsh(0.5 * (found.matrix + found.matrix.T))[0] > 0.0
+    body = trb.RingBody.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    assert (np.diff(found.modes(body).frequencies) >= 0.0).all()
+
+
+def test_the_stiffness_of_a_shaft_is_the_slope_of_its_force() -> None:
+    found, step = trb.stiffness(PAIR), 1.0
+    mass = PAIR.shaft.mass_position
+    moved = []
+    for sign in (-1.0, 1.0):
+        load = trb.ShaftLoad(position=mass, force=(0.0, 0.0, sign * step))
+        moved.append(trb.equilibrium(PAIR.replace(loads=(*PAIR.loads, load))).displacement(mass))
+    slope = np.linalg.solve(found.matrix, [0.0, 0.0, step, 0.0, 0.0])[:3]
+    assert 0.5 * (moved[1] - moved[0]) == pytest.approx(slope, rel=2e-3, abs=1e-3 * np.abs(slope).max())
+    same = trb.equilibrium(PAIR).modes()
+    body = trb.RingBody(
+        mass=PAIR.shaft.mass,
+        inertia_axial=PAIR.shaft.inertia_axial,
+        inertia_transverse=PAIR.shaft.inertia_transverse,
+    )
+    assert found.modes(body).frequencies == pytest.approx(same.frequencies)
+
+
+def test_uncertainty(name: str) -> None:
+    path = f"{PREFIX[name]}lubricant.temperature_c"
+    found = trb.uncertainty(SUBJECTS[name], {path: (50.0, 70.0)}, samples=8, options=SHORT, workers=2)
+    assert found.draws == 8
+    assert found["torque"].low < found["torque"].value < found["torque"].high
+    colder = np.argmin(found.data[path].values[1:]) + 1
+    warmer = np.argmax(found.data[path].values[1:]) + 1
+    films = found.data["film_parameter_inner" if name == "scene" else "right_film_parameter_inner"].values
+    assert films[colder] > films[warmer]
+    if name == "pair":
+        others = found.data["left_film_parameter_inner"].values
+        assert np.ptp(others[1:]) < 0.01 * np.ptp(films[1:])
+        assert found["torque"].value == pytest.approx(found["left_torque"].value + found["right_torque"].value)
+    assert all(band.low < band.high for band in trb.study.open_inputs(SUBJECTS[name]))
+
+
+def test_torque_map(name: str) -> None:
+    how: dict[str, Any] = {"temperatures": [60.0], "tolerance": 0.3, "workers": 2}
+    found = trb.torque_map(SUBJECTS[name], [3000.0], [3000.0], **how)
+    torque = found.data["torque"].values.ravel()
+    assert (torque > 0.0).all()
+    shares = found.data["share"].sum("source").values.ravel()
+    assert shares == pytest.approx(torque, rel=0.02)
+    assert "Friction torque of the shaft" in str(found)
+
+
+def test_sensitivity(name: str) -> None:
+    bearing = trb.Bearing.from_catalogue(bore=0.050, outside=0.110, width=0.02925, C=125e3, e=0.35, name="30310")
+    subject = SUBJECTS[name].with_part(next(reversed(SUBJECTS[name].parts)), bearing=bearing)
+    path = "cup_half_angle_deg" if name == "scene" else "bearings[1].bearing.cup_half_angle_deg"
+    quantity = "outer_load_mean" if name == "scene" else "right_outer_load_mean"
+    found = trb.sensitivity(subject, quantity, revolutions=0.01, paths=[path], starts=2)
+    assert found.influences[0].estimated.path == path
+    assert found.influences[0].span > 0.0
+    with pytest.raises(InputError, match="paths"):
+        trb.sensitivity(subject, paths=["nothing"])
+
+
+def test_a_study_over_workers(name: str, tmp_path: Path) -> None:
+    speed = "scene.speed_rpm" if name == "scene" else "assembly.speed_rpm"
+    warm = f"{PREFIX[name]}lubricant.temperature_c"
+    made = trb.study.grid(SUBJECTS[name], {speed: [1000.0, 2000.0], warm: [50.0]}, SHORT)
+    data = trb.study.run(made, tmp_path / "study", workers=2)
+    assert (data["status"] == "done").all()
+    assert (data["torque"].values > 0.0).all()
+    assert data["temperature_c" if "temperature_c" in data.dims else warm].attrs["units"] == "C"
+    files = [str(file) for file in data["file"].values.ravel()]
+    assert len({*files}) == 2
+    assert len(trb.load(tmp_path / "study" / files[0]).parts) == len(SUBJECTS[name].parts)
+    again = trb.study.run(made, tmp_path / "study", workers=2)
+    assert np.array_equal(again["torque"], data["torque"])
+    strange = trb.study.cases(SUBJECTS[name], [{warm: 50.0}, {f"{PREFIX[name]}lubricant.warmth": 1.0}], SHORT)
+    assert "warmth" in strange.cases[1].error
+
+
+def test_a_base_builds_what_it_was_made_of(name: str) -> None:
+    built, _ = Base.of(SUBJECTS[name], SHORT).build({})
+    assert built == SUBJECTS[name]
+    assert built.fingerprint == SUBJECTS[name].fingerprint
+
+
+def test_the_command_line_report_and_view(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    case = "rig_30310" if name == "scene" else "pair_30310"
+    assert main(["run", case, "-o", "run.h5", "--revolutions", "0.05", "--quiet", "--summary", "run.json"]) == 0
+    assert json.loads(Path("run.json").read_text())
+    assert main(["info", "run.h5"]) == 0
+    assert "orbit radius" in capsys.readouterr().out.lower()
+    assert main(["info", case]) == 0
+    assert main(["report", "run.h5", "-o", "run.html"]) == 0
+    assert "<h1>" in Path("run.html").read_text()
+    assert main(["view", "run.h5", "-o", "view.html", "--no-open"]) == 0
+    assert Path("view.html").stat().st_size > 10_000
+    assert main(["resume", "run.h5"]) == 0
