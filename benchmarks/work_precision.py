@@ -380,7 +380,7 @@ def write_table(report: common.Report, path: Path) -> None:
     for row in report.results:
         if row["sweep"] == "statistics" and row["preset"] and "failure" not in row:
             biases = [f"bias_{name}{end}" for name in BIASES for end in ("", "_half_width")]
-            presets[row["case"]][row["preset"]]["bias"] = common.plain(short(row, biases))
+            presets[row["case"]][row["preset"]]["differences"] = common.plain(short(row, biases))
     windows = {name: [one["window_s"] for one in found] for name, found in report.summary["windows"].items()}
     table = {
         "made_by": "python benchmarks/work_precision.py --make-table",
@@ -400,7 +400,7 @@ def write_table(report: common.Report, path: Path) -> None:
         for name, preset in found.items():
             # what preset_bias.py has measured stays
             if "tolerances" in preset.get("bias", {}) and name in presets.get(case, {}):
-                presets[case][name]["bias"] = presets[case][name].get("bias", {}) | preset["bias"]
+                presets[case][name]["bias"] = preset["bias"]
     path.write_text(json.dumps(common.plain(table), indent=1, allow_nan=False) + "\n", encoding="utf-8")
     print(f"wrote {path}")
 

@@ -14,12 +14,12 @@ import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.plot import PICTURES
 from trbdyn.reporting import converter
-from trbdyn.reporting.bias import Bias, biases
 from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import field_texts, rows
 from trbdyn.reporting.verdict import verdict
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.run import estimate
+from trbdyn.run.bias import Bias, biases
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +33,12 @@ def run_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def result(run_file: Path) -> trb.Result:
     return trb.load(run_file)
+
+
+@pytest.fixture(scope="module")
+def usual() -> trb.Result:
+    """A run with the default effects, for which biases were measured."""
+    return trb.Simulation(trb.cases.scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))).run(revolutions=1)
 
 
 @pytest.fixture(scope="module")
@@ -163,12 +169,12 @@ def test_films_have_one_limit_in_sentences_and_pictures(result: trb.Result) -> N
     assert "above 3" not in " ".join([*(quantity.meaning for quantity in QUANTITIES.values()), *CAPTIONS.values()])
 
 
-def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(result: trb.Result, tmp_path: Path) -> None:
+def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(usual: trb.Result, tmp_path: Path) -> None:
     """Each number whose bias stands in the table of accuracy has it in its row, whatever its name."""
-    listed = biases(result)
+    listed = biases(usual)
     assert set(listed) <= set(QUANTITIES)
     assert "pocket_force_p95" in listed
-    text = trb.report(result, tmp_path / "r.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
+    text = trb.report(usual, tmp_path / "r.html", pictures=["cage_locus"]).read_text(encoding="utf-8")
     said = cells(text, QUANTITIES["pocket_force_p95"].words)[-1]
     assert html.escape(str(listed["pocket_force_p95"])) in said
     assert str(Bias(-0.08, 0.04, "fast", "")) == "With accuracy 'fast' it is 4 to 12 % too low."
@@ -177,11 +183,11 @@ def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(result: trb.Resu
     assert "of Cpr" in str(Bias(0.0045, 0.003, "standard", "", "Cpr"))
     orbit = listed.get("orbit_radius_over_cpr")
     assert orbit is None or "of Cpr" in str(orbit)  # the table has it in Cpr
-    own = trb.Simulation(result.scene, rtol=1e-3).run(revolutions=0.1)
+    own = trb.Simulation(usual.scene, rtol=1e-3).run(revolutions=0.1)
     assert biases(own) == {}  # tolerances of one's own: nothing was measured for them
 
 
-def test_the_bias_of_peaks_has_its_place(result: trb.Result, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_bias_of_peaks_has_its_place(usual: trb.Result, monkeypatch: pytest.MonkeyPatch) -> None:
     table = copy.deepcopy(dict(estimate.table()))
     for case in table["presets_of_scenes"].values():
         case["standard"]["bias"] |= {"bias_pocket_peak": -0.075, "bias_pocket_peak_half_width": 0.045}
@@ -191,10 +197,10 @@ def test_the_bias_of_peaks_has_its_place(result: trb.Result, monkeypatch: pytest
             "bias_new": 1.0,
         }
     monkeypatch.setattr(estimate, "table", lambda: table)
-    assert str(biases(result)["pocket_force_peak"]) == "With accuracy 'standard' it is 3 to 12 % too low."
-    assert str(biases(result)["rib_pressure_max"]).endswith("1 to 3 % too low.")
-    assert "new" not in biases(result)
-    hits = {head: text for _, head, text in verdict(result, result.summary())}["Hits on the cage so far"]
+    assert str(biases(usual)["pocket_force_peak"]) == "With accuracy 'standard' it is 3 to 12 % too low."
+    assert str(biases(usual)["rib_pressure_max"]).endswith("1 to 3 % too low.")
+    assert "new" not in biases(usual)
+    hits = {head: text for _, head, text in verdict(usual, usual.summary())}["Hits on the cage so far"]
     assert "3 to 12 % too low" in hits
 
 

@@ -10,12 +10,12 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.reporting import tables
-from trbdyn.reporting.bias import biases
 from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import Row, rows
 from trbdyn.reporting.ratings import ratings_section
 from trbdyn.reporting.tables import safe
 from trbdyn.reporting.verdict import verdict, warnings
+from trbdyn.run.bias import biases
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,10 +10,10 @@ import html
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from trbdyn.reporting.bias import Bias
 from trbdyn.reporting.inputs import Row
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.summary import UNPRINTED
+from trbdyn.run.bias import Bias
 
 SENTENCES: Final = ("_note", "_reason")
 """Ends of the names of entries that are sentences."""

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from trbdyn.model.motion import value_at
-from trbdyn.reporting.bias import biases, preset_of
 from trbdyn.results.fields import contacts
 from trbdyn.run import estimate
+from trbdyn.run.bias import biases, preset_of
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result

@@ -328,8 +328,8 @@ def _number(value: float | None) -> float:
 
 def case_like(sim: Simulation, scenes: Mapping[str, Mapping[str, Any]]) -> str:
     """The measured scene that a simulation is most like."""
-    colliding = sim.scene.effects.bodies != "rollers" and _whirls(sim)
-    return most_like(sim.scene, _axial(sim), colliding, scenes)
+    colliding = sim.scene.effects.bodies != "rollers" and whirls(sim)
+    return most_like(sim.scene, axial_of(sim), colliding, scenes)
 
 
 def most_like(scene: Scene, axial: float, colliding: bool, scenes: Mapping[str, Mapping[str, Any]]) -> str:
@@ -358,7 +358,7 @@ def _largest(quantity: float | History) -> float:
     return max(map(abs, values_of(quantity)))
 
 
-def _axial(sim: Simulation) -> float:
+def axial_of(sim: Simulation) -> float:
     """Axial load, that of the ring's equilibrium where its position is given (N)."""
     displacement = sim.scene.displacement
     if displacement is None or displacement[2] is None:
@@ -367,7 +367,7 @@ def _axial(sim: Simulation) -> float:
     return float(equilibrium.outer_load.sum()) * math.sin(math.radians(bearing.cup_half_angle_deg))
 
 
-def _whirls(sim: Simulation) -> bool:
+def whirls(sim: Simulation) -> bool:
     row = sim._core.observe(*sim._place(None, None))
     record = {name: row[at : at + math.prod(shape)] for name, at, shape in sim.bearings[0].record_layout}
     speed = record["cage_velocity"]
