@@ -26,6 +26,9 @@ enum { WARM_STEPS = 80, USUAL_STEPS = 300, MOST_STEPS = 3000 };
 /* Share of it that holds cylindrical rollers in the middle between their ribs, where in a bearing friction does: a thousandth of a newton over
  * their clearance. */
 #define TRB_MIDDLE_SHARE 1e-8
+/* Share of it from which on ribs hold a cylindrical roller along its axis. Below, friction does: it stays where it is as the ring moves, and
+ * the weak spring above, which only names its place, is not eliminated with the rest. */
+#define TRB_RIB_SHARE 1e-4
 /* Longest steps of differences. Where the contacts' interference is less than ten of them, steps are a tenth of it: a longer one would lift
  * a roller off that its centrifugal force presses lightly. Shorter ones than TRB_STEP_LEAST would be lost in rounding. */
 #define TRB_STEP_LENGTH 1e-10
@@ -464,7 +467,8 @@ static trb_status condense(solver *s, trb_message *message)
       for (int c = 0; c < N; c++) a[WIDTH * i + c] = s->own[N * N * j + N * i + c];
       for (int c = 0; c < R; c++) a[WIDTH * i + N + c] = s->to_ring[N * R * j + R * i + c];
       a[WIDTH * i + i] += TRB_LOOSE_SHARE * usual_stiffness(s->m, i);
-      if (s->held[i]) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
+      const int by_friction = i == 1 && trb_has_cylinders(s->m) && a[WIDTH * i + i] < TRB_RIB_SHARE * TRB_USUAL_CONTACT;
+      if (s->held[i] || by_friction) hold_row(a + (size_t)WIDTH * i, WIDTH, i);
     }
     if (!eliminate(a, N, R))
       return trb_fail(message, TRB_ERR_LOAD, "no stiffness: nothing holds roller %d at its place (standstill without load?)", j);

@@ -27,6 +27,10 @@ EVEN = 2.0 * np.pi * np.arange(400) / 400
 HALF_LOADED = np.maximum(np.cos(EVEN), 0.0) ** 1.1
 
 
+def reference_life(loads: np.ndarray, ratings: np.ndarray, **how: Any) -> float:
+    return lamina.LaminaLoads.of(loads, ratings, **how).reference_life
+
+
 def uniform(loads: np.ndarray, count: int = 50) -> np.ndarray:
     """The same loads of rollers at both rings, evenly spread over the laminas."""
     return np.repeat(np.repeat(loads[None, :, None] / count, count, axis=2), 2, axis=0)
@@ -176,7 +180,7 @@ def test_half_of_the_rollers_loaded_is_the_case_of_the_rating(gamma: float, load
         C, n_rollers=Z, roller_diameter=gamma / math.cos(angle), pitch_diameter=1.0, angle=angle
     )
     loads = HALF_LOADED * load / (np.sum(HALF_LOADED * np.cos(EVEN)) * math.cos(angle))
-    life = lamina.reference_life(uniform(loads), ratings, edges=False)
+    life = reference_life(uniform(loads), ratings, edges=False)
     assert C * life**-0.25 == pytest.approx(0.83 * load, rel=5e-3)
 
 
@@ -200,29 +204,26 @@ def test_centred_axial_load_is_the_closed_form() -> None:
     ratings = lamina.contact_ratings(
         107e3, n_rollers=12, roller_diameter=rig.roller.diameter, pitch_diameter=rig.pitch_diameter, angle=angle
     )
-    life = lamina.reference_life(loading.lamina_loads, ratings, edges=False)
+    life = reference_life(loading.lamina_loads, ratings, edges=False)
     assert life**-0.25 == pytest.approx(closed_form(rig, 107e3, 8e3) ** -0.25, rel=5e-4)
     assert 107e3 * life**-0.25 == pytest.approx(0.7805 * 0.4 * 8e3 / math.tan(angle), rel=5e-3)
-    with_edges = lamina.reference_life(loading.lamina_loads, ratings)
+    with_edges = reference_life(loading.lamina_loads, ratings)
     assert (with_edges / life) ** -0.25 == pytest.approx(1.05, abs=0.005)
 
 
 def test_the_number_of_laminas_does_not_matter() -> None:
     lives = [
-        lamina.reference_life(uniform(HALF_LOADED * 1e3, count), np.array([5e4, 4e4]), edges=False)
-        for count in (30, 300)
+        reference_life(uniform(HALF_LOADED * 1e3, count), np.array([5e4, 4e4]), edges=False) for count in (30, 300)
     ]
     assert lives[0] == pytest.approx(lives[1], rel=1e-12)
 
 
 def test_the_ring_that_stands_against_the_load_wears_out_first() -> None:
     loads, ratings = uniform(HALF_LOADED * 1e3), np.array([5e4, 4e4])
-    still = lamina.reference_life(loads, ratings, inner_turns=False)
-    assert still < lamina.reference_life(loads, ratings)  # the weaker inner contact is then always at the same place
+    still = reference_life(loads, ratings, inner_turns=False)
+    assert still < reference_life(loads, ratings)  # the weaker inner contact is then always at the same place
     even = uniform(np.full(20, 1e3))
-    assert lamina.reference_life(even, ratings, inner_turns=False) == pytest.approx(
-        lamina.reference_life(even, ratings)
-    )
+    assert reference_life(even, ratings, inner_turns=False) == pytest.approx(reference_life(even, ratings))
 
 
 def test_a_steady_run_says_what_the_equilibrium_says() -> None:
@@ -333,3 +334,48 @@ def test_the_report_has_the_sheet(tmp_path: Path) -> None:
     lean = trb.Simulation(SCENE).run(revolutions=0.2, save_groups=["torque"])
     page = trb.report(lean, tmp_path / "lean.html", pictures=[]).read_text(encoding="utf-8")
     assert "No ratings: result" in page
+
+
+@pytest.mark.parametrize(("axial", "radial", "ratio"), [(4930.0, 0.0, 3.70), (5000.0, 8000.0, 2.67)])
+def test_the_modified_reference_life_has_a_life_factor_for_each_lamina(
+    axial: float, radial: float, ratio: float
+) -> None:
+    """Formulas (31) and (33) of ISO 16281, each lamina and ring by itself; one factor at Pref was several times longer."""
+    own = trb.Scene(trb.cases.rig_30310(), speed_rpm=2000.0, axial_load=axial, radial_load=radial)
+    found, loading, bearing = trb.rating(own), at_equilibrium(own), own.bearing
+    angle, count = math.radians(bearing.cup_half_angle_deg), loading.lamina_loads.shape[2]
+    ratings = lamina.contact_ratings(
+        found.dynamic_rating,
+        n_rollers=bearing.n_rollers,
+        roller_diameter=bearing.roller.diameter,
+        pitch_diameter=bearing.pitch_diameter,
+        angle=angle,
+    )
+    outer, inner = ratings / count ** (7.0 / 9.0)
+    edge, damage = lamina.stress_concentration(count), 0.0
+    assert found.viscosity_ratio is not None
+    assert found.contamination_factor is not None
+    for k in range(count):
+        q_i = edge[k] * np.mean(loading.lamina_loads[1, :, k] ** 4.0) ** (1.0 / 4.0)
+        q_e = edge[k] * np.mean(loading.lamina_loads[0, :, k] ** 4.5) ** (1.0 / 4.5)
+        weight = (1.038 * inner / outer) ** 4.5
+        load = 0.323 * bearing.n_rollers * count * math.cos(angle)
+        load *= ((q_i**4.5 + weight * q_e**4.5) / (1.0 + weight)) ** (2.0 / 9.0)
+        factor = iso281.life_factor(found.viscosity_ratio, found.contamination_factor * found.fatigue_limit / load)
+        damage += factor ** (-9.0 / 8.0) * ((q_i / inner) ** 4.5 + (q_e / outer) ** 4.5)
+    assert found.modified_reference_life == pytest.approx(damage ** (-8.0 / 9.0), rel=1e-9)
+    assert found.reference_load is not None
+    assert found.reference_life is not None
+    once = iso281.life_factor(
+        found.viscosity_ratio, found.contamination_factor * found.fatigue_limit / found.reference_load
+    )
+    assert once * found.reference_life / found.modified_reference_life == pytest.approx(ratio, abs=0.01)
+
+
+def test_static_safety_by_pressure_and_by_ratings_differ_by_the_share_of_the_heaviest_roller() -> None:
+    """ISO 76 counts the heaviest roller with 5 Fr/(Z cos alpha); half of the rollers loaded give it 4.08 of them."""
+    places = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 20001)
+    loads = np.cos(places) ** 1.1
+    share = math.pi * 2.0 / (np.trapezoid(loads * np.cos(places), places))
+    assert share == pytest.approx(4.08, rel=5e-3)
+    assert 5.05 / share == pytest.approx(1.24, rel=5e-3)

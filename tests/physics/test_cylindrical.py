@@ -16,6 +16,8 @@ from trbdyn.model.contact_line import stations
 from trbdyn.model.outlines import cone_outline, cup_outline
 from trbdyn.results import fields
 from trbdyn.results.peaks import from_row
+from trbdyn.statics.core_model import normal_contacts
+from trbdyn.statics.equilibrium import nominal_angles
 from trbdyn.viewer.meshes import ears
 
 Array = NDArray[np.float64]
@@ -355,3 +357,42 @@ def test_a_rib_that_is_not_there_carries_no_film() -> None:
     tapered = trb.Simulation(trb.Scene(trb.cases.rig_30310(), speed_rpm=3000.0, axial_load=4930.0))
     with pytest.raises(trb.InputError, match="does not have: outer ring's rib"):
         tapered.run(duration=1e-3, until={"outer_rib_load_mean": 0.1})
+
+
+@pytest.mark.parametrize("flanges", ["NU", "N"])
+@pytest.mark.parametrize("load", [500.0, 3000.0, 12000.0])
+def test_tilting_stiffness_is_that_of_straight_contacts(flanges: str, load: float) -> None:
+    """Rollers of even contact resist tilt of the loaded plane by k L^2/12, k against displacement; nothing weak is eliminated."""
+    found = trb.stiffness(scene(flanges, radial_load=load, speed_rpm=100.0))
+    length = bearing().roller.effective_length
+    matrix = found.matrix
+    assert matrix[4, 4] == pytest.approx(matrix[0, 0] * length**2 / 12.0, rel=0.05)
+    assert matrix[3, 3] == pytest.approx(matrix[1, 1] * length**2 / 12.0, rel=0.05)
+
+
+def test_stiffness_is_that_of_differences_with_rollers_held_along_their_axis() -> None:
+    own = scene(radial_load=3000.0)
+    found, held = trb.stiffness(own), own.replace(effects=own.effects.replace(back_rib=False))
+    model, angles, speed = normal_contacts(held), nominal_angles(held), 100.0 * math.pi
+    steps, slopes = np.array([1e-8, 1e-8, 1e-8, 1e-6, 1e-6]), np.zeros((5, 5))
+    for column, step in enumerate(steps):
+        ends = []
+        for sign in (1.0, -1.0):
+            place = found.displacement.copy()
+            place[column] += sign * step
+            ends.append(model.equilibrium(np.zeros(5), np.ones(5), place, speed, angles, None, True)["reaction"])
+        slopes[:, column] = (ends[0] - ends[1]) / (2.0 * step)
+    arms = np.array([1.0, 1.0, 1.0, 0.01, 0.01])
+    assert np.abs((found.matrix - slopes) / np.outer(arms, arms)).max() < 1e-4 * found.matrix[0, 0]
+
+
+def test_a_motor_shaft_has_five_vibrations() -> None:
+    shaft = trb.Shaft.hollow_cylinder(mass=12.0, outer_diameter=0.05, length=0.4)
+    load = trb.ShaftLoad(position=0.0, force=(0.0, -4000.0, -600.0))
+    ends = [
+        trb.ShaftBearing(trb.cases.bearing_nj210(), position=-0.15, small_ends="left"),
+        trb.ShaftBearing(bearing("NU"), position=0.15, small_ends="right"),
+    ]
+    found = trb.equilibrium(trb.Assembly(bearings=ends, shaft=shaft, loads=[load], speed_rpm=1500.0))
+    assert all(one.stiffness[3, 3] > 0.0 and one.stiffness[4, 4] > 0.0 for one in found.bearings)
+    assert len(found.modes().frequencies) == 5

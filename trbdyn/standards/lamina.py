@@ -7,11 +7,16 @@ concentration f at its place, the load that counts for the lamina is the mean ov
 
 and the life is L10r = {sum over laminas [(q_ei/q_ci)^4.5 + (q_ee/q_ce)^4.5]}^(-8/9) million revolutions, with the dynamic
 load rating of a lamina q_c = Q_c n_s^(-7/9). The ratings Q_c of the contact at one ring follow from C.
+
+The life factor is taken lamina by lamina, too: each has an equivalent load P_sk, and the modified reference life is
+L_nmr = a1 {sum over laminas a_ISO,k^(-9/8) [(q_ei/q_ci)^4.5 + (q_ee/q_ce)^4.5]}^(-8/9) million revolutions.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -82,35 +87,78 @@ def in_laminas(per_length: Array, stations: Array, load: Array, length: float) -
     return np.asarray(found * np.divide(load, total, out=np.zeros_like(total), where=total > 0.0)[..., None])
 
 
-def reference_life(
-    loads: Array, ratings: Array, *, weights: Array | None = None, inner_turns: bool = True, edges: bool = True
-) -> float:
-    """L10r (million revolutions).
+@dataclass(frozen=True)
+class LaminaLoads:
+    """Loads that count for the laminas of all rollers together.
 
-    Parameters
+    Attributes
     ----------
-    loads : ndarray, shape (2, P, n_s)
-        Loads of the laminas at the outer and the inner ring (N), for P places of a roller: all rollers of all records.
+    over_rating : ndarray, shape (2, n_s)
+        q_ee/q_ce and q_ei/q_ci, at the outer and at the inner ring (1).
     ratings : ndarray, shape (2,)
-        See `contact_ratings`.
-    weights : ndarray, shape (P,), optional
-        Share of the revolutions that each place stands for; equal by default.
-    inner_turns : bool
-        Whether the inner ring turns against the load; else the outer ring does.
-    edges : bool
-        Whether `stress_concentration` counts.
-
-    Returns
-    -------
-    float
-        The life; infinite without load.
+        q_ce and q_ci (N).
     """
-    count = loads.shape[2]
-    concentration = stress_concentration(count) if edges else np.ones(count)
-    exponents = (4.5, 4.0) if inner_turns else (4.0, 4.5)
-    total = 0.0
-    for ring, exponent in enumerate(exponents):
-        share = np.maximum(loads[ring], 0.0) * concentration / (ratings[ring] * count ** (-7.0 / 9.0))
-        mean = np.average(share**exponent, axis=0, weights=weights) ** (1.0 / exponent)
-        total += float(np.sum(mean**4.5))
-    return float(total ** (-8.0 / 9.0)) if total > 0.0 else math.inf
+
+    over_rating: Array
+    ratings: Array
+
+    @classmethod
+    def of(
+        cls,
+        loads: Array,
+        ratings: Array,
+        *,
+        weights: Array | None = None,
+        inner_turns: bool = True,
+        edges: bool = True,
+    ) -> LaminaLoads:
+        """The means over all places of the rollers.
+
+        Parameters
+        ----------
+        loads : ndarray, shape (2, P, n_s)
+            Loads of the laminas at the outer and the inner ring (N), for P places of a roller: all rollers of all records.
+        ratings : ndarray, shape (2,)
+            See `contact_ratings`.
+        weights : ndarray, shape (P,), optional
+            Share of the revolutions that each place stands for; equal by default.
+        inner_turns : bool
+            Whether the inner ring turns against the load; else the outer ring does.
+        edges : bool
+            Whether `stress_concentration` counts.
+        """
+        count = loads.shape[2]
+        concentration = stress_concentration(count) if edges else np.ones(count)
+        each = ratings * count ** (-7.0 / 9.0)
+        exponents = (4.5, 4.0) if inner_turns else (4.0, 4.5)
+        means = []
+        for ring, exponent in enumerate(exponents):
+            share = np.maximum(loads[ring], 0.0) * concentration / each[ring]
+            means.append(np.average(share**exponent, axis=0, weights=weights) ** (1.0 / exponent))
+        return cls(np.array(means), each)
+
+    @property
+    def reference_life(self) -> float:
+        """L10r (million revolutions); infinite without load."""
+        return self.modified_life(lambda _: 1.0)
+
+    def equivalent_loads(self, *, n_rollers: int, angle: float) -> Array:
+        """P_sk, the equivalent load of each lamina, to be compared with Cu of the bearing (N), shape (n_s,).
+
+        P_sk = 0.323 Z n_s cos(alpha) {[q_ei^4.5 + (r q_ee)^4.5] / [1 + r^4.5]}^(2/9), r = 1.038 q_ci/q_ce.
+
+        Notes
+        -----
+        ISO 16281:2025, formula (31). The standard itself was not at hand: the formula and the sum of `modified_life`, formula
+        (33) there, were read in published code that cites these numbers.
+        """
+        outer, inner = self.over_rating * self.ratings[:, None]
+        ratio = 1.038 * self.ratings[1] / self.ratings[0]
+        mean = ((inner**4.5 + (ratio * outer) ** 4.5) / (1.0 + ratio**4.5)) ** (2.0 / 9.0)
+        return np.asarray(0.323 * n_rollers * inner.size * math.cos(angle) * mean)
+
+    def modified_life(self, factor: Callable[[int], float]) -> float:
+        """Life with a life factor for each lamina, by its number (million revolutions); infinite without load."""
+        damage = np.sum(self.over_rating**4.5, axis=0)
+        total = sum(factor(k) ** (-9.0 / 8.0) * damage[k] for k in range(damage.size) if damage[k] > 0.0)
+        return float(total ** (-8.0 / 9.0)) if total > 0.0 else math.inf

@@ -125,7 +125,7 @@ class Rating(Displayed):
     life, life_hours : float or None
         L10 (million revolutions, h).
     static_safety, pressure_safety : float or None
-        C0/P0, and (4 GPa over the largest pressure) squared, which is its like for line contacts (1).
+        C0/P0, and (4 GPa over the largest pressure) squared, the same of the heaviest roller alone (1).
     viscosity, reference_viscosity : float or None
         nu and nu1 (mm2/s).
     viscosity_ratio, contamination_factor, life_factor, reliability_factor : float or None
@@ -137,7 +137,7 @@ class Rating(Displayed):
     reference_load : float or None
         Pref = C/L10r^(3/10) (N).
     modified_reference_life, modified_reference_life_hours : float or None
-        Lnmr = a1 a_ISO L10r, with a_ISO at Pref (million revolutions, h).
+        Lnmr of ISO 16281, with a life factor for each lamina (million revolutions, h).
     speed_over_reference, speed_over_limit : float or None
         Speed over those that the catalogue permits (1).
     speed_parameter : float
@@ -337,9 +337,8 @@ def sheet(
         C, n_rollers=bearing.n_rollers, roller_diameter=bearing.roller.diameter, pitch_diameter=pitch, angle=angle
     )
     inner = inner_turns_against_load(scene)
-    reference = _finite(
-        lamina.reference_life(loading.lamina_loads, ratings, weights=loading.weights, inner_turns=inner)
-    )
+    laminas = lamina.LaminaLoads.of(loading.lamina_loads, ratings, weights=loading.weights, inner_turns=inner)
+    reference = _finite(laminas.reference_life)
     notes["reference_life"] = f"ISO 16281, {lamina.LAMINAS} laminas, {loading.source}"
     reference_load = None if reference is None else C / reference ** (1.0 / iso281.LIFE_EXPONENT)
 
@@ -348,11 +347,14 @@ def sheet(
     kappa = None if nu1 is None else viscosity / nu1
     oil = _Oil.of(scene, cleanliness, filtered, contamination)
     factor, e_C = _life_factor(kappa, oil, Cu, P, pitch, notes, said)
-    reference_factor, _ = _life_factor(kappa, oil, Cu, reference_load, pitch, {}, [])
     a1 = iso281.reliability_factor(reliability)
     notes["reliability_factor"] = f"reliability {reliability:g} %"
+    modified_reference = None
+    if factor is not None and reference is not None:
+        parts = laminas.equivalent_loads(n_rollers=bearing.n_rollers, angle=angle)
+        factors = [_life_factor(kappa, oil, Cu, float(part), pitch, {}, [])[0] or 1.0 for part in parts]
+        modified_reference = a1 * laminas.modified_life(factors.__getitem__)
     modified = _times(a1, factor, life)
-    modified_reference = _times(a1, reference_factor, reference)
     if modified is not None and oil.assumed:
         others = (_life_factor(kappa, replace(oil, cleanliness=code), Cu, P, pitch, {}, [])[0] for code in _NEIGHBOURS)
         lives = (_times(a1, other, life) for other in others)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import singledispatch
 from typing import Any, Final
@@ -15,7 +16,7 @@ from scipy.linalg import eig
 from trbdyn import _core
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.errors import InputError, LoadError
+from trbdyn.errors import InputError, LoadError, RunWarning
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.flatten import ring_load
 from trbdyn.model.motion import value_at
@@ -30,6 +31,10 @@ COORDINATES: Final = ("x", "y", "z", "rotation_x", "rotation_y")
 """Coordinates of the ring: translations, and rotations about x and y, through the roller-centre plane on the axis."""
 
 
+UNSTABLE: Final = 1e-6
+"""Negative eigenvalue of a stiffness, over the largest one, from which on it is said; smaller ones are rounding."""
+
+
 @dataclass(frozen=True)
 class Modes:
     """Natural vibrations of a body on a bearing.
@@ -37,7 +42,7 @@ class Modes:
     Attributes
     ----------
     frequencies : ndarray, shape (5,)
-        Natural frequencies (Hz), ascending.
+        Natural frequencies (Hz), ascending; fewer than five where nothing but friction holds the body along its axis.
     shapes : ndarray, shape (5, 5)
         Shape of each vibration, complex: displacement along x, y, z (m) and rotation about x, y (rad), one row each; the largest
         entry is 1, with rotations counted at half the pitch diameter.
@@ -203,9 +208,15 @@ def stiffness(subject: Any, *, time: float | None = None) -> Stiffness:
     LoadError
         If bearings cannot carry the load, or nothing holds a roller.
 
+    Warns
+    -----
+    RunWarning
+        If the matrix has a negative eigenvalue: a free ring would leave this place.
+
     Notes
     -----
-    docs/theory/motion.md#stiffness. All five coordinates of the ring are free in the matrix, prescribed ones as well.
+    docs/theory/motion.md#stiffness. All five coordinates of the ring are free in the matrix, prescribed ones as well. Rollers of
+    a cylindrical bearing that no rib holds along their axis keep their axial place, as friction lets them.
 
     Examples
     --------
@@ -239,6 +250,7 @@ def _of_scene(scene: Scene, *, time: float | None = None) -> Stiffness:
         )
     except _core.CoreLoadError as error:
         raise LoadError(str(error)) from None
+    _check_stable(fine["stiffness"], 0.5 * scene.bearing.pitch_diameter)
     geometry = scene.bearing.geometry
     follow = fine["follow"].reshape(-1, 4, 5)
     inertia = np.array([geometry.roller_mass] * 2 + [geometry.roller_inertia_transverse] * 2)
@@ -250,3 +262,23 @@ def _of_scene(scene: Scene, *, time: float | None = None) -> Stiffness:
         pitch_diameter=scene.bearing.pitch_diameter,
         speed_rpm=value_at(scene.speed_rpm, at),
     )
+
+
+def _check_stable(matrix: Array, radius: float) -> None:
+    """Say that a stiffness has a negative eigenvalue, with rotations counted at a radius (m).
+
+    An axial place that no rib holds, as in an NU, has no stiffness of its own and is left out.
+    """
+    size = np.array([1.0, 1.0, 1.0, radius, radius])
+    scaled = matrix / np.outer(size, size)
+    kept = [number for number in range(5) if number != 2 or scaled[2, 2] > UNSTABLE * np.abs(scaled).max()]
+    values, vectors = np.linalg.eig(scaled[np.ix_(kept, kept)])
+    worst = int(np.argmin(values.real))
+    if values.real[worst] < -UNSTABLE * np.abs(values).max():
+        moved = COORDINATES[kept[int(np.argmax(np.abs(vectors[:, worst])))]]
+        warnings.warn(
+            f"the stiffness has the negative eigenvalue {values.real[worst]:.3g} N/m, mostly of {moved}: a free ring would leave "
+            "this place, and a natural vibration is missing",
+            RunWarning,
+            stacklevel=3,
+        )
