@@ -15,6 +15,7 @@ from trbdyn.cli import main
 from trbdyn.errors import InputError, StepError
 from trbdyn.run import memory, running
 from trbdyn.run.checkpoint import checkpoint_path
+from trbdyn.study import whirl
 from trbdyn.study.definition import Base
 
 SCENE = trb.cases.scene_30310(3000.0, 4930.0)
@@ -223,6 +224,13 @@ def test_sensitivity(name: str) -> None:
     assert found.influences[0].span > 0.0
     with pytest.raises(InputError, match="paths"):
         trb.sensitivity(subject, paths=["nothing"])
+
+
+def test_whirl_onset(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(whirl, "TURNS", (1.0,))
+    found = trb.whirl_onset(SUBJECTS[name], [3000.0], starts=["equal"], longest=1.0, workers=2)
+    assert str(found.data["message"].values[0, 0]) == ""
+    assert float(found.data["orbit"].values[0, 0]) >= 0.0
 
 
 def test_a_study_over_workers(name: str, tmp_path: Path) -> None:

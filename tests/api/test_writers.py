@@ -121,7 +121,7 @@ FOLDERS = {
 READERS = {
     "trbdyn.cage.modes.CageModes.load",
     "trbdyn.results.assembly.AssemblyResult.load",
-    "trbdyn.results.assembly.load_any",
+    "trbdyn.results.assembly.load",
     "trbdyn.results.sources.assembly_in",
     "trbdyn.results.sources.names_in",
     "trbdyn.model.roller.Profile.from_csv",

@@ -8,7 +8,7 @@ import tomllib
 import warnings
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path
 from trbdyn.errors import InputError
@@ -16,8 +16,6 @@ from trbdyn.errors import InputError
 if TYPE_CHECKING:
     from trbdyn.model.assembly import Assembly
     from trbdyn.model.scene import Scene
-    from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.results.result import Result
     from trbdyn.run.options import RunOptions
 
 
@@ -47,16 +45,14 @@ def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Ass
 
 
 def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:
-    from trbdyn.run.toml_assembly import find_assembly, shipped_assemblies
-    from trbdyn.run.toml_case import find_case, read_tables, shipped_cases
+    from trbdyn.run.toml_assembly import find_subject, shipped_assemblies
+    from trbdyn.run.toml_case import read_tables, shipped_cases
 
     path = file_path(name, "case")
-    if not path.exists() and name.removesuffix(".toml") in shipped_assemblies():
-        path = find_assembly(name)
-    elif not path.exists() and (changes or name.removesuffix(".toml") in shipped_cases()):
-        path = find_case(name)
-    shipped = ", ".join((*shipped_cases(), *shipped_assemblies()))
-    values = read_tables(path, f"; cases that ship with the package: {shipped}")
+    shipped = (*shipped_cases(), *shipped_assemblies())
+    if not path.exists() and (changes or name.removesuffix(".toml") in shipped):
+        path = find_subject(name)
+    values = read_tables(path, f"; cases that ship with the package: {', '.join(shipped)}")
     for change in changes:
         key, equals, text = change.partition("=")
         *tables, last = key.strip().split(".")
@@ -90,13 +86,6 @@ def _toml_value(text: str) -> Any:
         raise InputError.of("--set", text, "must be a TOML value that is not that long or deep") from None
 
 
-@overload
-def simulate(
-    subject: Scene, run: RunOptions, output: Path, *, quiet: bool, overwrite: bool, given: Collection[str] = ()
-) -> Result: ...
-
-
-@overload
 def simulate(
     subject: Scene | Assembly,
     run: RunOptions,
@@ -105,19 +94,8 @@ def simulate(
     quiet: bool,
     overwrite: bool,
     given: Collection[str] = (),
-) -> Result | AssemblyResult: ...
-
-
-def simulate(
-    subject: Scene | Assembly,
-    run: RunOptions,
-    output: Path,
-    *,
-    quiet: bool,
-    overwrite: bool,
-    given: Collection[str] = (),
-) -> Result | AssemblyResult:
-    """Run a case; what is not given of what to keep is chosen by the length of the run."""
+) -> Any:
+    """Run a case, which gives a result; what is not given of what to keep is chosen by the length of the run."""
     from trbdyn.run.simulation import Simulation
 
     run.end_time(subject.speed_rpm)

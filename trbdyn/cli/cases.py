@@ -115,17 +115,17 @@ def _title(options: argparse.Namespace) -> str:
 
 def _cases(options: argparse.Namespace) -> int:
     from trbdyn.run.case_text import case_text
-    from trbdyn.run.toml_assembly import find_assembly, shipped_assemblies
+    from trbdyn.run.toml_assembly import find_subject, shipped_assemblies
     from trbdyn.run.toml_case import find_case, shipped_cases
 
     if options.name is not None and options.name.removesuffix(".toml") in shipped_assemblies():
-        print(find_assembly(options.name).read_text(encoding="utf-8"), end="")
+        print(find_subject(options.name).read_text(encoding="utf-8"), end="")
         return DONE
     if options.name is not None:
         first = find_case(options.name).read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
         print(case_text(*case_with_changes(options.name, ()), title=first), end="")
         return DONE
-    for path in (*map(find_case, shipped_cases()), *map(find_assembly, shipped_assemblies())):
+    for path in map(find_subject, (*shipped_cases(), *shipped_assemblies())):
         first = path.read_text(encoding="utf-8").partition("\n")[0]
         print(f"{path.stem:<16} {first.lstrip('# ')}")
     return DONE

@@ -609,6 +609,11 @@ class Assembly(Model):
         load = ShaftLoad(position=self.shaft.mass_position, force=(0.0, -radial_load, axial_load))
         return {"assembly.speed_rpm": speed_rpm, "loads": [load.to_dict()]}
 
+    def orbit_speed(self, time: float) -> float:
+        """Speed at which the slowest of the cages goes round the axis in pure rolling (rad/s)."""
+        ratio = min(one.bearing.geometry.cage_speed_ratio for one in self.bearings)
+        return ratio * value_at(self.speed_rpm, time) * math.pi / 30.0
+
     @property
     def turning_rpm(self) -> float | History:
         """The speed by which turns are counted (rpm)."""

@@ -19,8 +19,10 @@ from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
+from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Case, Study
@@ -49,24 +51,38 @@ def _quarter(result: Result, number: int) -> Result:
     return result.window(start + number * step, start + (number + 1) * step)
 
 
-def kind_before(result: Result) -> float:
+def _kind(result: Result | AssemblyResult, number: int) -> float:
+    """Class of the motion in a quarter of a run. Of several cages: unknown if that of one is, else of those that move most: one
+    that whirls, one that moves without order, one that rocks.
+    """
+    kinds = {_quarter(one, number).cage_motion.kind for one in result.parts}
+    return float(
+        KINDS.index(next(kind for kind in ("unknown", WHIRLS, "unstable", "rocking", "stable") if kind in kinds))
+    )
+
+
+def _orbit(result: Result | AssemblyResult, number: int) -> float:
+    return max(float(_quarter(one, number).cage_motion.orbit_over_play) for one in result.parts)
+
+
+def kind_before(result: Result | AssemblyResult) -> float:
     """Class of the motion in the third quarter of a run, as a place in `KINDS`."""
-    return float(KINDS.index(_quarter(result, 2).cage_motion.kind))
+    return _kind(result, 2)
 
 
-def kind_at_end(result: Result) -> float:
+def kind_at_end(result: Result | AssemblyResult) -> float:
     """Class of the motion in the last quarter, as a place in `KINDS`."""
-    return float(KINDS.index(_quarter(result, 3).cage_motion.kind))
+    return _kind(result, 3)
 
 
-def orbit_before(result: Result) -> float:
-    """Orbit of the cage in the third quarter over the radial play (1)."""
-    return float(_quarter(result, 2).cage_motion.orbit_over_play)
+def orbit_before(result: Result | AssemblyResult) -> float:
+    """Orbit of the cage in the third quarter over the radial play (1); of several cages the largest."""
+    return _orbit(result, 2)
 
 
-def orbit_at_end(result: Result) -> float:
-    """Orbit of the cage in the last quarter over the radial play (1)."""
-    return float(_quarter(result, 3).cage_motion.orbit_over_play)
+def orbit_at_end(result: Result | AssemblyResult) -> float:
+    """Orbit of the cage in the last quarter over the radial play (1); of several cages the largest."""
+    return _orbit(result, 3)
 
 
 OBSERVED: Final = {function.__name__: function for function in (kind_before, kind_at_end, orbit_before, orbit_at_end)}
@@ -146,7 +162,7 @@ class WhirlOnset(Displayed):
 
 
 def whirl_onset(
-    scene: Scene,
+    subject: Subject,
     speeds: Sequence[float],
     *,
     starts: Sequence[Literal["equal", "whirl"]] = ("equal", "whirl"),
@@ -158,14 +174,15 @@ def whirl_onset(
     workers: int | None = None,
     progress: bool = False,
 ) -> WhirlOnset:
-    """What the cage of a scene does at some speeds, and between which of them it begins to whirl.
+    """What the cage of a bearing does at some speeds, and between which of them it begins to whirl. Of bearings on a shaft: what
+    the cage does that moves most.
 
     Every speed is run from each start: from rest in the middle between even rollers, and from a large whirl, which tells whether
     a whirl lasts. A run has 40 turns of the cage; where its motion is not decided it is made again over 160, and then 640.
 
     Parameters
     ----------
-    scene : Scene
+    subject : Scene or Assembly
         Gives all but speed and start.
     speeds : sequence of float
         Speeds of the shaft (rpm), all of one sign, none 0.
@@ -206,12 +223,12 @@ def whirl_onset(
     >>> str(found.data.kind.values[0, 0])
     'stable'
     """
-    expect("scene", scene, Scene)
+    expect("scene", subject, Scene, Assembly)
     wanted = speeds_of(speeds)
     if resolution is not None and not 0.0 < number_of("resolution", resolution) < np.inf:
         raise InputError.of("resolution", resolution, "must be > 0 (rpm)")
     how = {"folder": folder, "executor": executor, "workers": workers, "progress": progress}
-    search = CageRuns(scene, starts, options, longest, how)
+    search = CageRuns(subject, starts, options, longest, how)
     names = search.starts
     search.add([(name, speed, None) for name in names for speed in wanted])
     while resolution is not None and (points := search.between(resolution)):
@@ -232,16 +249,16 @@ class CageRuns:
     """Runs that were made, by start, speed (rpm) and axial load (N; None: that of the scene)."""
 
     def __init__(
-        self, scene: Scene, starts: Sequence[str], options: RunOptions | None, longest: float, how: dict[str, Any]
+        self, subject: Subject, starts: Sequence[str], options: RunOptions | None, longest: float, how: dict[str, Any]
     ) -> None:
         for name in starts:
             if name not in STARTS:
                 raise InputError.of("starts", name, f"must be one of {', '.join(STARTS)}")
-        if scene.effects.bodies == "rollers":
+        if any(part.effects.bodies == "rollers" for part in subject.parts.values()):
             raise InputError.of(("effects", "bodies"), "rollers", "must be 'rollers_and_cage'")
         if not TURNS[0] <= number_of("longest", longest):
             raise InputError.of("longest", longest, f"must be >= {TURNS[0]:g} (1)")
-        self.scene, self.longest, self.how = scene, float(longest), how
+        self.subject, self.longest, self.how = subject, float(longest), how
         self.starts = list(dict.fromkeys(starts))
         self.options = RunOptions(accuracy="fast") if options is None else options
         self.rows: dict[Point, dict[str, Any]] = {}
@@ -264,10 +281,12 @@ class CageRuns:
         changes = {"speed_rpm": speed} | ({} if load is None else {"axial_load": load})
         parameters = {"start": start, **changes}
         try:
-            built = self.scene.replace(start=STARTS[start], **changes)
+            built = self.subject.replace(**changes)
+            for prefix in built.parts:
+                built = built.with_part(prefix, start=STARTS[start])
         except InputError as error:
             return Case(parameters, None, self.options, str(error).splitlines()[0])
-        length = turns * 2.0 * np.pi / abs(built.orbit_speed(built.start.time))
+        length = turns * 2.0 * np.pi / abs(built.orbit_speed(built.part.start.time))
         save_every = length / (turns * RECORDS_A_TURN)
         own = self.options.replace(revolutions=None, duration=length, save_every=save_every, save_groups=GROUPS)
         return Case(parameters, built, own)
@@ -292,7 +311,7 @@ class CageRuns:
         rows = [[self.rows[name, speed, None] for speed in speeds] for name in self.starts]
         variables = variables_of(rows, ("start", "speed_rpm"))
         places = {"start": self.starts, "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"})}
-        return WhirlOnset(xarray.Dataset(variables, places, {"bearing": self.scene.bearing.name}))
+        return WhirlOnset(xarray.Dataset(variables, places, {"bearing": self.subject.part.bearing.name}))
 
 
 def variables_of(rows: Sequence[Any], dims: tuple[str, ...]) -> dict[str, Any]:
