@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from trbdyn.run.toml_assembly import load_assembly
     from trbdyn.run.toml_case import load_case
     from trbdyn.run.wear import wear
+    from trbdyn.standards.frequencies import frequencies
     from trbdyn.statics.assembly import equilibrium, stiffness
     from trbdyn.statics.preload import preload_diagram
     from trbdyn.study.cage_map import cage_map
@@ -116,6 +117,7 @@ _NAMES = {
     "Waviness": "trbdyn.model.defects",
     "__version__": "trbdyn.base.version",
     "equilibrium": "trbdyn.statics.assembly",
+    "frequencies": "trbdyn.standards.frequencies",
     "load": "trbdyn.results.assembly",
     "load_assembly": "trbdyn.run.toml_assembly",
     "load_case": "trbdyn.run.toml_case",
@@ -186,6 +188,7 @@ __all__ = [
     "cases",
     "equilibrium",
     "errors",
+    "frequencies",
     "laws",
     "load",
     "load_assembly",
