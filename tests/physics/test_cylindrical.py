@@ -396,3 +396,15 @@ def test_a_motor_shaft_has_five_vibrations() -> None:
     found = trb.equilibrium(trb.Assembly(bearings=ends, shaft=shaft, loads=[load], speed_rpm=1500.0))
     assert all(one.stiffness[3, 3] > 0.0 and one.stiffness[4, 4] > 0.0 for one in found.bearings)
     assert len(found.modes().frequencies) == 5
+
+
+@pytest.mark.parametrize("flanges", ["NU", "N"])
+def test_a_floating_ring_stands_in_the_middle(flanges: str) -> None:
+    own = trb.Scene(bearing(flanges), speed_rpm=3000.0, radial_load=4000.0)
+    said = own.replace(displacement=PLACED)
+    assert own.displacement == PLACED
+    assert own.fingerprint == said.fingerprint
+    assert trb.Scene.from_dict(own.to_dict()) == own
+    assert np.array_equal(trb.stiffness(own).matrix, trb.stiffness(said).matrix)
+    fixed = own.replace(bearing=bearing("NJ"), axial_load=500.0, displacement=None)
+    assert fixed.displacement is None

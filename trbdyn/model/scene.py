@@ -88,7 +88,7 @@ class Scene(Model):
     displacement : tuple of float, History or None, shape (3,), optional
         Position of the inner ring along x, y, z (m), in place of loads. Where an entry is None, the load along it
         decides: ``(None, None, -20e-6)`` is a preload by displacement under which `radial_load` acts. TOML writes
-        'free' for None.
+        'free' for None. The ring of an NU or N without an axial load stands at z = 0 where nothing else is given.
     unloaded : {'refused', 'rests'}
         What the inner ring does under an axial load that does not hold it, 0 for instance. Refused: an error. Rests: it goes no
         further than where rollers and rings just touch at this speed, and rests there; what else holds the shaft, such as a
@@ -365,6 +365,7 @@ class Scene(Model):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        self._place_floating_ring()
         self._check_motion()
         check_free_ring(self)
         check_housing(self)
@@ -468,6 +469,13 @@ class Scene(Model):
                 path: Path = (field, int(place[:-1])) if place else (field,)
                 limit = "must be constant where the ring is held at an equilibrium; set ring = 'follows'"
                 raise InputError.of(path, quantity, limit)
+
+    def _place_floating_ring(self) -> None:
+        """Without an axial load an NU or N stands in the middle, where nothing else is said: no rib of it holds its ring."""
+        x, y, z = self.displacement or (None, None, None)
+        floats = self.ring != "free" and self.unloaded == "refused" and self.bearing.ribs.flanges in ("NU", "N")
+        if floats and z is None and not any(values_of(self.axial_load)):
+            self.__dict__["displacement"] = (x, y, 0.0)
 
     def _check_cylindrical(self) -> None:
         """What is not known of cylindrical bearings, and what holds their rings along the axis."""
