@@ -94,7 +94,7 @@ def test_from_the_shell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.chdir(tmp_path)
     words = ["--revolutions", "0.1", "--quiet", "--summary", "pair.json", "--set", "bearings.1.end_play=-15e-6"]
     assert main(["run", "pair_30310", "-o", "pair.h5", *words]) == 0
-    result = trb.AssemblyResult.load("pair.h5")
+    result = trb.load("pair.h5")
     assert result.assembly is not None
     assert result.assembly.bearings[1].end_play == -15e-6
     numbers = json.loads(Path("pair.json").read_text())

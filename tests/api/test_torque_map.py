@@ -85,6 +85,10 @@ class FakeRun:
     meta: ClassVar = {}
     scene = SimpleNamespace(torque=None)
 
+    @property
+    def parts(self) -> tuple[FakeRun, ...]:
+        return (self,)
+
     def __init__(self, time: np.ndarray, fields: dict[str, np.ndarray]) -> None:
         self.fields = fields | {"time": time}
         self.rolling_speed, self.rolled = fields["shaft_speed"], fields["shaft_angle"]
@@ -143,7 +147,7 @@ def test_a_folder_is_taken_up_again(tmp_path: Path) -> None:
         ({"tolerance": 0.0}, "tolerance = .*above 0 and below 1"),
         ({"samples": 2, "bands": True}, "samples = 2.*at least 8"),
         ({"loads": [-1e9]}, "no point can be built"),
-        ({"subject": "30310"}, "subject = .*a Scene or a Bearing"),
+        ({"subject": "30310"}, "subject = .*a Scene, an Assembly or a Bearing"),
     ],
 )
 def test_refusals(changes: dict[str, Any], words: str) -> None:

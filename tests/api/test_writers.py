@@ -120,7 +120,6 @@ FOLDERS = {
 """These own a folder, in which every file has the fingerprint of its case in its name."""
 READERS = {
     "trbdyn.cage.modes.CageModes.load",
-    "trbdyn.results.assembly.AssemblyResult.load",
     "trbdyn.results.assembly.load",
     "trbdyn.results.sources.assembly_in",
     "trbdyn.results.sources.names_in",

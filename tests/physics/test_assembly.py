@@ -230,12 +230,6 @@ def test_files(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_file_of_one_bearing_is_no_assembly(tmp_path: Path) -> None:
-    Simulation(seat().scene).run(duration=1e-3, output=tmp_path / "one.h5")
-    with pytest.raises(FileError, match="one bearing alone"):
-        AssemblyResult.load(tmp_path / "one.h5")
-
-
 def test_records_are_evaluated_again() -> None:
     """With the ring where the shaft had it: loads, films and slip of both bearings, and a rating by the loads of the run."""
     load = 2000.0

@@ -265,7 +265,7 @@ def test_housings_on_one_shaft(tmp_path: Path) -> None:
         springs = np.array([housing.support_radial] * 2 + [housing.support_axial])
         moved = place + lever * np.array([tilt[1], -tilt[0], 0.0])
         assert springs * moved == pytest.approx(change, rel=0.08, abs=15.0)
-    again = trb.AssemblyResult.load(tmp_path / "pair.h5")
+    again = trb.load(tmp_path / "pair.h5")
     assert np.array_equal(again["left"]["housing_position"], result["left"]["housing_position"])
     assert Replay(again["right"]).record(-1)["housing_force"] == pytest.approx(
         result["right"]["housing_force"][-1], rel=1e-4, abs=1e-2

@@ -55,7 +55,7 @@ def test_a_pair_goes_on_to_the_same_bits(tmp_path: Path, monkeypatch: pytest.Mon
     whole = simulation(checkpoint_every=2e-3).run(revolutions=0.5, save_every=1e-4, output=tmp_path / "whole.h5")
     path = tmp_path / "pair.h5"
     cut_off(path, 7e-3, monkeypatch)
-    assert not trb.AssemblyResult.load(path).success
+    assert not trb.load(path).success
     assert checkpoint_path(path).exists()
     resumed = trb.resume(path)
     assert isinstance(resumed, trb.AssemblyResult)
@@ -104,7 +104,7 @@ def test_a_file_of_the_version_before_is_read(tmp_path: Path) -> None:
     """A pair that an earlier trbdyn wrote, with its bearings put together at the end of the run."""
     path = tmp_path / "pair.h5"
     path.write_bytes((Path(__file__).parent / "pair_version_1.h5").read_bytes())
-    old = trb.AssemblyResult.load(path)
+    old = trb.load(path)
     assert list(old) == ["left", "right"]
     assert old.success
     assert old.assembly is not None
@@ -126,17 +126,17 @@ def test_a_killed_command_is_resumed(tmp_path: Path) -> None:
     time.sleep(0.3)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    assert not trb.AssemblyResult.load(path).success
+    assert not trb.load(path).success
     done = subprocess.run(
         [sys.executable, "-m", "trbdyn", "resume", "pair.h5"], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     assert "radial load, mean, N" in done.stdout
-    result = trb.AssemblyResult.load(path)
+    result = trb.load(path)
     assert result.success
     times = result["left"]["time"]
     assert times[0] == 0.0
     assert np.ptp(np.diff(times)) < 1e-9
-    assert trb.AssemblyResult.load(path)["right"].message == f"reached {times[-1]:.6g} s"
+    assert trb.load(path)["right"].message == f"reached {times[-1]:.6g} s"
     assert os.listdir(tmp_path) == ["pair.h5"]
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
-from trbdyn.errors import FileError, InputError
+from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
 from trbdyn.results.result import Result
@@ -61,26 +61,6 @@ class AssemblyResult(Mapping[str, Result], Displayed):
     def __init__(self, bearings: Mapping[str, Result], assembly: Assembly | None = None) -> None:
         self._bearings = dict(bearings)
         self.assembly = assembly
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Load the file of a run.
-
-        Parameters
-        ----------
-        path : path-like
-            A file that `Simulation.run` has written.
-
-        Raises
-        ------
-        FileError
-            If the file is missing, damaged, of another kind or of a later version.
-        """
-        table = assembly_in(path)
-        if table is None:
-            raise FileError(f"{path}: this file holds one bearing alone: load it with trb.load")
-        assembly = None if table["assembly"] is None else Assembly.from_dict(table["assembly"])
-        return cls({name: load_bearing(path, bearing=name) for name in table["bearings"]}, assembly)
 
     def __getitem__(self, name: str) -> Result:
         """The result of a bearing.
@@ -298,5 +278,8 @@ def load(path: str | os.PathLike[str], *, bearing: str = "") -> Any:
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
-    alone = bearing or assembly_in(path) is None
-    return load_bearing(path, bearing=bearing) if alone else AssemblyResult.load(path)
+    table = None if bearing else assembly_in(path)
+    if table is None:
+        return load_bearing(path, bearing=bearing)
+    assembly = None if table["assembly"] is None else Assembly.from_dict(table["assembly"])
+    return AssemblyResult({name: load_bearing(path, bearing=name) for name in table["bearings"]}, assembly)

@@ -440,7 +440,7 @@ def load(path: str | os.PathLike[str], *, bearing: str = "") -> Result:
     path : path-like
         A file written by a run.
     bearing : str
-        Name of a bearing in the file of an assembly; `AssemblyResult.load` loads them all.
+        Name of a bearing in the file of an assembly; by default it is the file of one bearing.
 
     Returns
     -------
