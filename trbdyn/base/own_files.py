@@ -272,6 +272,24 @@ def write_whole(
     return file_path(path, field)
 
 
+def read_whole(path: Path, largest: int) -> bytes:
+    """The content of a file, however it is named: a pipe that nobody writes to is empty, a device without an end too long.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    ValueError
+        If it is longer than `largest` bytes.
+    """
+    with os.fdopen(os.open(path, os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NONBLOCK", 0)), "rb") as stream:
+        os.set_blocking(stream.fileno(), True)
+        data = stream.read(largest + 1)
+    if len(data) > largest:
+        raise ValueError(f"it is larger than {largest >> 20} MB")
+    return data
+
+
 def read_text(path: Path, largest: int = 16 << 20) -> str:
     """The text of a small file, UTF-8.
 
@@ -282,13 +300,7 @@ def read_text(path: Path, largest: int = 16 << 20) -> str:
     ValueError
         If it is longer than `largest` bytes, or no text.
     """
-    # a pipe that nobody writes to is empty, and does not make it wait
-    with os.fdopen(os.open(path, os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NONBLOCK", 0)), "rb") as stream:
-        os.set_blocking(stream.fileno(), True)
-        data = stream.read(largest + 1)
-    if len(data) > largest:
-        raise ValueError(f"it is larger than {largest >> 20} MB")
-    return data.decode("utf-8")
+    return read_whole(path, largest).decode("utf-8")
 
 
 def set_aside(path: Path) -> Path:

@@ -40,10 +40,10 @@ def cage_modes(scene: Scene) -> CageModes:
 @lru_cache(maxsize=8)
 def _modes(bearing: Bearing, elastic: ElasticCage) -> CageModes:
     if elastic.file is not None:
-        found = CageModes.load(elastic.file)
         if digest_of(elastic.file) != elastic.file_sha256:
             path = ("elastic_cage", "file_sha256")
             raise InputError.of(path, elastic.file_sha256, f"must be that of {elastic.file}, which has changed since")
+        found = CageModes.load(elastic.file)
         ratio = found.damping_ratio
     else:
         built, frequency, shapes = _natural(bearing, elastic)

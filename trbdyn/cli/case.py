@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path
+from trbdyn.cli.outcome import say
 from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def simulate(
         warnings.simplefilter("always", UserWarning)
         simulation = Simulation(subject, **run.of_simulation())
     for note in notes:
-        print(f"trbdyn: warning: {note.message}", file=sys.stderr)
+        say(f"trbdyn: warning: {note.message}", file=sys.stderr)
     how: dict[str, Any] = {
         name: getattr(run, name) if name in given else None for name in ("save_every", "save_groups")
     }

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.cli.called import command
 from trbdyn.cli.case import case_with_changes
-from trbdyn.cli.outcome import DONE
+from trbdyn.cli.outcome import DONE, say
 from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def _new(options: argparse.Namespace) -> int:
     output_path(options.file, field="FILE", **how)
     text = case_text(*_first_case(options), title=_title(options))
     path = write_whole(options.file, text, field="FILE", **how)
-    print(f"{path} written: change its numbers, then run it with: {command('run', path)}")
+    say(f"{path} written: change its numbers, then run it with: {command('run', path)}")
     return DONE
 
 
@@ -119,13 +119,13 @@ def _cases(options: argparse.Namespace) -> int:
     from trbdyn.run.toml_case import find_case, shipped_cases
 
     if options.name is not None and options.name.removesuffix(".toml") in shipped_assemblies():
-        print(find_subject(options.name).read_text(encoding="utf-8"), end="")
+        say(find_subject(options.name).read_text(encoding="utf-8"), end="")
         return DONE
     if options.name is not None:
         first = find_case(options.name).read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
-        print(case_text(*case_with_changes(options.name, ()), title=first), end="")
+        say(case_text(*case_with_changes(options.name, ()), title=first), end="")
         return DONE
     for path in map(find_subject, (*shipped_cases(), *shipped_assemblies())):
         first = path.read_text(encoding="utf-8").partition("\n")[0]
-        print(f"{path.stem:<16} {first.lstrip('# ')}")
+        say(f"{path.stem:<16} {first.lstrip('# ')}")
     return DONE

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from trbdyn.base.own_files import output_path
 from trbdyn.cli.case import simulate
-from trbdyn.cli.outcome import DONE, FAILED
+from trbdyn.cli.outcome import DONE, FAILED, say
 
 DEMO_PICTURES: Final = ("cage_locus", "spacing_angles", "tilt", "pocket_forces")
 DEMO_REPORT: Final = (
@@ -61,7 +61,7 @@ def _demo(options: argparse.Namespace) -> int:
     for name in ("run.h5", "summary.json", "report.html", "view.html", *pictures):
         output_path(folder / name, **again)
     if not options.quiet:
-        print(DEMO_WORDS.format(turns=revolutions, folder=folder))
+        say(DEMO_WORDS.format(turns=revolutions, folder=folder))
     result = simulate(scene, run, folder / "run.h5", quiet=options.quiet, **again)
     plot.all(result, folder, DEMO_PICTURES, **again)
     numbers = result.summary()
@@ -70,8 +70,8 @@ def _demo(options: argparse.Namespace) -> int:
     moving = folder / "view.html"
     view(result, moving, **again)
     if not options.quiet:
-        print("\n" + "\n".join(f"{number}. {text}" for number, text in enumerate(what_matters(result, numbers), 1)))
-        print(f"\nreport: {page}\n3-D view: {moving}")
+        say("\n" + "\n".join(f"{number}. {text}" for number, text in enumerate(what_matters(result, numbers), 1)))
+        say(f"\nreport: {page}\n3-D view: {moving}")
     if not result.success:
-        print(f"trbdyn: {result.message}", file=sys.stderr)
+        say(f"trbdyn: {result.message}", file=sys.stderr)
     return DONE if result.success else FAILED

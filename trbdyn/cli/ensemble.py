@@ -11,7 +11,7 @@ from typing import Any
 
 from trbdyn.cli.called import command
 from trbdyn.cli.case import add_set, case_with_changes
-from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED
+from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED, say
 from trbdyn.errors import InputError, unknown_name
 
 
@@ -77,7 +77,7 @@ def _ensemble(options: argparse.Namespace) -> int:
             progress=not options.quiet,
         )
     except KeyboardInterrupt:
-        print(
+        say(
             f"trbdyn: stopped; the designs that are done are kept in {folder}. Go on: {_again(options)}",
             file=sys.stderr,
         )
@@ -90,9 +90,9 @@ def _ensemble(options: argparse.Namespace) -> int:
         except InputError as error:  # one that is the same in all runs, say; the others are told nevertheless
             fits.append(error)
     if not options.quiet:
-        print(found, *fits, f"results and observables.nc in {folder}", sep="\n\n")
+        say(found, *fits, f"results and observables.nc in {folder}", sep="\n\n")
     if found.refused:
-        print(f"trbdyn: {len(found.refused)} designs could not be run; the first: {found.refused[0]}", file=sys.stderr)
+        say(f"trbdyn: {len(found.refused)} designs could not be run; the first: {found.refused[0]}", file=sys.stderr)
     return FAILED if found.refused else DONE
 
 

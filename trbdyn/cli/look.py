@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path, output_path
 from trbdyn.cli.case import add_set, subject_with_changes
-from trbdyn.cli.outcome import DONE
+from trbdyn.cli.outcome import DONE, say
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -51,7 +51,7 @@ def _plot(options: argparse.Namespace) -> int:
     for path, one in moving.items():
         written.append(animation.save(animation.animate(one), path, overwrite=options.overwrite))
     for path in written:
-        print(path)
+        say(path)
     return DONE
 
 
@@ -66,15 +66,15 @@ def _info(options: argparse.Namespace) -> int:
         from trbdyn.statics.assembly import equilibrium
 
         as_json = {"assembly": scene.to_dict(), "run": run.to_dict()}
-        print(json.dumps(as_json, indent=2) if options.json else f"{scene._shown().text()}\n\n{equilibrium(scene)}")
+        say(json.dumps(as_json, indent=2) if options.json else f"{scene._shown().text()}\n\n{equilibrium(scene)}")
         return DONE
     if options.json:
-        print(json.dumps({"scene": scene.to_dict(), "run": run.to_dict()}, indent=2))
+        say(json.dumps({"scene": scene.to_dict(), "run": run.to_dict()}, indent=2))
         return DONE
-    print(_describe(scene))
-    print("\nderived geometry (m, rad, kg)")
+    say(_describe(scene))
+    say("\nderived geometry (m, rad, kg)")
     for name, value in asdict(scene.bearing.geometry).items():
-        print(f"    {name:<28} {value:.6g}")
+        say(f"    {name:<28} {value:.6g}")
     return DONE
 
 
@@ -86,18 +86,18 @@ def _info_result(path: Path, *, as_json: bool) -> int:
     result = load(path)
     if not isinstance(result, Result):
         about = {name: summary.clean(values) for name, values in result.summary().items()}
-        print(json.dumps(about, indent=2, allow_nan=False) if as_json else result)
+        say(json.dumps(about, indent=2, allow_nan=False) if as_json else result)
         return DONE
     values = result.summary()
     if as_json:
         about = {"meta": result.meta, "records": len(result), "groups": result.groups, "stats": result.stats}
-        print(json.dumps(summary.clean(about | {"summary": values}), indent=2, allow_nan=False))
+        say(json.dumps(summary.clean(about | {"summary": values}), indent=2, allow_nan=False))
         return DONE
-    print(_describe(result.scene))
-    print(f"{len(result)} records, groups {', '.join(result.groups)}")
-    print(", ".join(f"{name} {value}" for name, value in result.meta.items() if isinstance(value, str | int)))
-    print()
-    print(summary.table(values))
+    say(_describe(result.scene))
+    say(f"{len(result)} records, groups {', '.join(result.groups)}")
+    say(", ".join(f"{name} {value}" for name, value in result.meta.items() if isinstance(value, str | int)))
+    say()
+    say(summary.table(values))
     return DONE
 
 

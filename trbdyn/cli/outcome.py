@@ -8,8 +8,9 @@ import os
 import sys
 import traceback
 from collections.abc import Callable
-from typing import NoReturn
+from typing import NoReturn, TextIO
 
+from trbdyn.base.printable import printable
 from trbdyn.errors import FileError, InputError, LoadError, TrbError
 
 DONE, FAILED, BAD_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
@@ -42,7 +43,7 @@ def run_command(command: Callable[[argparse.Namespace], int], options: argparse.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except KeyboardInterrupt:
-        print("trbdyn: stopped", file=sys.stderr)
+        say("trbdyn: stopped", file=sys.stderr)
         return INTERRUPTED
     except (OSError, MemoryError) as error:
         return report_error(error, BAD_INPUT, options.debug)
@@ -62,17 +63,17 @@ def report_error(error: Exception, code: int, debug: bool) -> int:
     elif code == FAULT:
         lines = [f"a fault of trbdyn itself, please report it: {type(error).__name__}: {error} (--debug shows where)"]
     for line in lines:
-        print(f"trbdyn: {one_line(line)}", file=sys.stderr)
+        say(f"trbdyn: {printable(line)}", file=sys.stderr)
     return code
 
 
-def one_line(text: str) -> str:
-    """A text with everything escaped that would end a line or move a terminal's cursor."""
-    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
+def say(*values: object, sep: str = " ", end: str = "\n", file: TextIO | None = None) -> None:
+    """Print texts, whose signs cannot move the cursor: names and messages come from users, and from files of others."""
+    print(printable(sep.join(map(str, values)), lines=True), end=end, file=file)
 
 
 class Parser(argparse.ArgumentParser):
     """A parser that says what is wrong in one line."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(BAD_INPUT, f"{self.prog}: {one_line(message)} (--help shows what is allowed)\n")
+        self.exit(BAD_INPUT, f"{self.prog}: {printable(message)} (--help shows what is allowed)\n")

@@ -11,7 +11,7 @@ from typing import Any
 
 from trbdyn.cli.called import command
 from trbdyn.cli.case import add_set, case_with_changes
-from trbdyn.cli.outcome import DONE, FAILED
+from trbdyn.cli.outcome import DONE, FAILED, say
 from trbdyn.errors import InputError
 
 
@@ -54,19 +54,19 @@ def _plan(options: argparse.Namespace) -> int:
     files = [output_path(f"{name}{ending}", reads=[options.case], **again) for ending in (".toml", ".png")]
     effort = {} if options.effort is None else {"effort": options.effort}
     found = plan(scene, want, budget=options.budget, **effort)
-    print(found)
+    say(found)
     kept = {"duration": found.duration, "save_every": found.save_every}
     text = case_text(
         found.scene, found.options.replace(**rounded(kept)), title=f"The plan of {options.case} for {_words(want)}"
     )
     write_whole(files[0], text, **again)
     found.picture(files[1], **again)
-    print(f"\n{files[0]}\n{files[1]}\n{command('run', files[0])}")
-    print(
+    say(f"\n{files[0]}\n{files[1]}\n{command('run', files[0])}")
+    say(
         "(The promise is for the averages from the end of the settling on; the summary of a run averages over its second half.)"
     )
     if not found.reached:
-        print("trbdyn: what was wanted is not within reach; see above for what is", file=sys.stderr)
+        say("trbdyn: what was wanted is not within reach; see above for what is", file=sys.stderr)
     return DONE if found.reached else FAILED
 
 

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from trbdyn.cli.outcome import say
+
 
 def add_report_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
     """Add the command ``report``."""
@@ -32,7 +34,7 @@ def _report(options: argparse.Namespace) -> int:
         names = [str(options.file), str(options.other)]
     other = load(options.other) if options.other else None
     how = {"names": names, "title": options.title, "pdf": options.pdf, "overwrite": options.overwrite}
-    print(report(load(options.file), output, other=other, **how))
+    say(report(load(options.file), output, other=other, **how))
     if options.pdf:
-        print(output.with_suffix(".pdf"))
+        say(output.with_suffix(".pdf"))
     return 0

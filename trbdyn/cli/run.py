@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path, output_path
+from trbdyn.base.printable import printable
 from trbdyn.cli.called import command
 from trbdyn.cli.case import add_set, simulate, subject_with_changes
-from trbdyn.cli.outcome import DONE, FAILED, one_line
+from trbdyn.cli.outcome import DONE, FAILED, say
 from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ def _resume(options: argparse.Namespace) -> int:
             result = resume(options.file, instruction_set=options.instruction_set, progress=not options.quiet)
         finally:
             for note in notes:
-                print(f"trbdyn: {one_line(str(note.message))}", file=sys.stderr)
+                say(f"trbdyn: {printable(str(note.message))}", file=sys.stderr)
     return _finish(result, Path(options.file), options)
 
 
@@ -125,8 +126,8 @@ def _finish(result: Result | AssemblyResult, output: Path, options: argparse.Nam
     if options.summary is not None:
         summary.write_json(result.summary(), options.summary, overwrite=options.overwrite)
     if not options.quiet:
-        print(result.overview)
-        print(f"\n{len(one)} records in {output}: {one.meta.get('kept', '')}")
+        say(result.overview)
+        say(f"\n{len(one)} records in {output}: {one.meta.get('kept', '')}")
     if not result.success:
-        print(f"trbdyn: {one_line(result.message)}{_how_to_go_on(output)}", file=sys.stderr)
+        say(f"trbdyn: {printable(result.message)}{_how_to_go_on(output)}", file=sys.stderr)
     return DONE if result.success else FAILED

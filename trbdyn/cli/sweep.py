@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.cli.called import command
-from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED
+from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED, say
 
 if TYPE_CHECKING:
     import xarray
@@ -55,17 +55,17 @@ def run_sweep(options: argparse.Namespace) -> int:
         data = run(study, folder, workers=options.workers, resume=not options.again, progress=not options.quiet)
     except KeyboardInterrupt:
         again = command("sweep", options.study, "-o", folder)
-        print(
+        say(
             f"trbdyn: stopped; the cases that are done are kept in {folder}. Go on with the others: {again}",
             file=sys.stderr,
         )
         return INTERRUPTED
     failed = int((data.status != "done").sum())
     if not options.quiet:
-        print(table(data))
-        print(f"\n{data.status.size} cases, results and observables.nc in {folder}")
+        say(table(data))
+        say(f"\n{data.status.size} cases, results and observables.nc in {folder}")
     for line in problems(data):
-        print(f"trbdyn: {line}", file=sys.stderr)
+        say(f"trbdyn: {line}", file=sys.stderr)
     return FAILED if failed else DONE
 
 

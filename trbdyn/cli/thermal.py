@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from trbdyn.cli.case import add_set, case_with_changes
-from trbdyn.cli.outcome import DONE
+from trbdyn.cli.outcome import DONE, say
 from trbdyn.errors import InputError
 
 
@@ -56,6 +56,6 @@ def _thermal(options: argparse.Namespace) -> int:
     output_path(picture, overwrite=options.overwrite, reads=[options.case])
     found = thermal(scene, paths, options=run)
     found.picture(picture, overwrite=options.overwrite)
-    print(found)
-    print(f"\n{picture}")
+    say(found)
+    say(f"\n{picture}")
     return DONE

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from trbdyn.cli.case import add_set, case_with_changes
-from trbdyn.cli.outcome import DONE, FAILED
+from trbdyn.cli.outcome import DONE, FAILED, say
 from trbdyn.errors import InputError
 
 
@@ -75,10 +75,10 @@ def _torque(options: argparse.Namespace) -> int:
     save(found.data, numbers, **again)
     found.picture(picture, **again)
     if not options.quiet:
-        print(found)
-        print(f"\n{numbers}\n{picture}")
+        say(found)
+        say(f"\n{numbers}\n{picture}")
     if not found.settled:
-        print("trbdyn: not every torque has settled; the table says which, and why", file=sys.stderr)
+        say("trbdyn: not every torque has settled; the table says which, and why", file=sys.stderr)
     return DONE if found.settled else FAILED
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.own_files import file_path, output_path
+from trbdyn.cli.outcome import say
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -69,9 +70,9 @@ def _view(options: argparse.Namespace) -> int:
         exaggeration=options.exaggeration,
         overwrite=options.overwrite,
     )
-    print(f"{output}: open it in a browser; it needs no network")
+    say(f"{output}: open it in a browser; it needs no network")
     for path, one in moving.items():
-        print(save_gltf(one, path, exaggeration=options.exaggeration, overwrite=options.overwrite))
+        say(save_gltf(one, path, exaggeration=options.exaggeration, overwrite=options.overwrite))
     if not options.no_open:
         webbrowser.open(output.resolve().as_uri())
     return 0

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Self
 
 from pydantic import Field, model_validator
 
+from trbdyn.base.own_files import file_path, read_whole
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.core_table import parameter
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 LEAST_WHOLE_BARS: Final = 3
 """Bars that hold both rims of a cracked cage together."""
+
+LARGEST_FILE: Final = 1 << 28
+"""Largest file of modes (bytes)."""
 
 
 class ElasticCage(Model):
@@ -93,7 +96,9 @@ def digest_of(path: str) -> str:
         If it cannot be read.
     """
     try:
-        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+        return hashlib.sha256(read_whole(file_path(path, "file"), LARGEST_FILE)).hexdigest()
+    except ValueError as error:
+        raise FileError(f"{path}: cannot be read: {error}") from error
     except OSError as error:
         raise FileError(f"{path}: cannot be read: {error.strerror or error}") from error
 

@@ -37,7 +37,7 @@ from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
 from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
-from trbdyn.plot.style import STYLE, styled, write
+from trbdyn.plot.style import STYLE, plain, styled, write
 from trbdyn.plot.wearing import wear_map
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
 from trbdyn.results.assembly import AssemblyResult
@@ -232,8 +232,6 @@ def all(
     if not isinstance(result, Result):
         return _all_of_assembly(result, folder, only, title, overwrite=overwrite)
     chosen = list(drawable(result) if only is None else only)
-    if only is None and len(result) < SPECTRUM_RECORDS:
-        chosen = [name for name in chosen if name != "spectrum"]
     for name in chosen:
         if name not in PICTURES:
             raise InputError.of("only", name, unknown_name(name, PICTURES))
@@ -284,6 +282,8 @@ def drawable(result: Result) -> tuple[str, ...]:
     if not result.housing_moves:
         there -= {"housing"}
     names = [name for name, (_, groups) in PICTURES.items() if set(groups) <= there]
+    if len(result) < SPECTRUM_RECORDS:
+        names = [name for name in names if name != "spectrum"]
     return tuple(name for name in names if result.has_cage or name in _OF_ROLLERS or "cage" not in PICTURES[name][1])
 
 
@@ -302,7 +302,7 @@ def conditions(result: Result) -> str:
     for symbol, name in (("Fa", "$F_a$"), ("Fr", "$F_r$")):
         if any(found.get(symbol, ())):
             parts.append(f"{name} {spoken(found[symbol])} N")
-    return f"{scene.bearing.name}: {', '.join(parts)}"
+    return f"{plain(scene.bearing.name)}: {', '.join(parts)}"
 
 
 def make_folder(folder: str | os.PathLike[str]) -> Path:

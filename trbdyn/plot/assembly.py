@@ -19,7 +19,7 @@ from trbdyn.model.motion import value_at
 from trbdyn.model.outlines import cone_outline, cup_outline
 from trbdyn.plot.cage import revolutions, turns_label
 from trbdyn.plot.drawing import ROLLER, STEEL, placed, roller_outline
-from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, sequence, styled
+from trbdyn.plot.style import COLOURS, GREY, LIGHT, LINES, canvas, legend, line, plain, sequence, styled
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.preload import PreloadDiagram
 from trbdyn.statics.preload import preload_diagram as diagram_of
@@ -132,7 +132,7 @@ def shaft_drawing(assembly: Assembly, ax: Axes | None = None) -> Axes:
             ax.plot(centre, 0.0, "o", color=COLOURS[0], ms=4, zorder=5)
             top = max(points[:, 1].max() for points in outlines)
             ax.annotate(
-                f"{name}: {one.bearing.name}",
+                f"{name}: {plain(one.bearing.name)}",
                 (middle[0], top),
                 (0, 5),
                 textcoords="offset points",

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
-from trbdyn.plot.style import styled
+from trbdyn.plot.style import plain, styled
 
 if TYPE_CHECKING:
     import xarray
@@ -54,7 +54,7 @@ def draw_map(data: xarray.Dataset) -> Any:
         keys = [Patch(facecolor=SHADES[kind], edgecolor="0.4", label=kind) for kind in there]
         if not bool(data["decided"].all()):
             keys.append(Patch(facecolor="white", edgecolor="0.4", hatch="///", label="not decided"))
-        figure.suptitle(f"Motion of the cage of {data.attrs['bearing']}, with its orbit over the radial play")
+        figure.suptitle(f"Motion of the cage of {plain(data.attrs['bearing'])}, with its orbit over the radial play")
         figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
     return figure
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from trbdyn.errors import InputError
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
 from trbdyn.model.profiles import profile_drop
-from trbdyn.plot.style import COLOURS, GREY, canvas, styled
+from trbdyn.plot.style import COLOURS, GREY, canvas, plain, styled
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -49,7 +49,7 @@ def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
     'radius (mm)'
     """
     roller = bearing.roller
-    with canvas(ax, (6.4, 5.6), f"{bearing.name}: section through the bearing") as ax:
+    with canvas(ax, (6.4, 5.6), f"{plain(bearing.name)}: section through the bearing") as ax:
         for outline in (cup_outline(bearing), cone_outline(bearing)):
             corners = 1e3 * np.array(outline)[:, ::-1]
             ax.add_patch(Polygon(corners, facecolor=STEEL, edgecolor="black", linewidth=0.9, hatch="///", alpha=0.9))
@@ -189,7 +189,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         top.set_xlim(-1.35 * half, 1.35 * half)
         figure.legend(*end.get_legend_handles_labels(), loc="outside lower center", ncols=2)
         figure.suptitle(
-            f"{bearing.name}, pocket {pocket + 1}, roller centred and its large end touching\n"
+            f"{plain(bearing.name)}, pocket {pocket + 1}, roller centred and its large end touching\n"
             f"Cpr {1e3 * bearing.cage.play_radial:.3g} mm, Cpc {1e3 * bearing.cage.play_circumferential:.3g} mm",
             fontsize=10,
         )

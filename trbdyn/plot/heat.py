@@ -7,7 +7,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, GREY, MARKERS, styled
+from trbdyn.plot.style import COLOURS, GREY, MARKERS, plain, styled
 
 
 def draw_balance(found: Any) -> Any:
@@ -25,7 +25,9 @@ def draw_balance(found: Any) -> Any:
         coldest = min(outside for conductance, outside in found.paths.outer_links.values() if conductance > 0.0)
         left.plot(film, found.power, "s", color=COLOURS[6], ms=8, label="given off as well")
         left.axvline(film, color=GREY, lw=0.8, ls=":")
-        left.set(xlabel="temperature of films (°C)", ylabel="power (W)", title=found.scene.bearing.name or "bearing")
+        left.set(
+            xlabel="temperature of films (°C)", ylabel="power (W)", title=plain(found.scene.bearing.name) or "bearing"
+        )
         left.set_ylim(bottom=0.0)
         left.set_xlim(left=min(coldest, found.curve[0, 0]) - 2.0)
         left.legend()

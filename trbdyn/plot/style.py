@@ -20,6 +20,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.base.printable import printable
 from trbdyn.errors import FileError
 
 Array = NDArray[np.float64]
@@ -150,6 +151,11 @@ def line(ax: Axes, x: Array, y: Array, index: int = 0, label: str | None = None,
     """A thinned curve in the colour and dashes of its index."""
     style = {"color": COLOURS[index % len(COLOURS)], "linestyle": LINES[index % len(LINES)], "label": label} | options
     return ax.plot(*thin(x, y), **style)[0]
+
+
+def plain(text: str) -> str:
+    """A text that a user gave, as Matplotlib shows it letter by letter: no mathematics, nothing that moves a cursor."""
+    return printable(text).replace("$", r"\$")
 
 
 def write(figure: Figure, path: str | os.PathLike[str], *, overwrite: bool) -> Path:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import matplotlib.pyplot as plt
 import numpy as np
 
-from trbdyn.plot.style import COLOURS, LINES, MARKERS, styled
+from trbdyn.plot.style import COLOURS, LINES, MARKERS, plain, styled
 
 if TYPE_CHECKING:
     import xarray
@@ -47,7 +47,7 @@ def draw_map(data: xarray.Dataset, temperature: int | None = None) -> Any:
         right.set_ylabel("share of the torque (%)")
         right.legend(loc="lower right", frameon=True)
         right.set_title("what loses it: " + (_words(lines[-1], True, True)))
-        left.set_title(f"{data.attrs['bearing']}, shaft")
+        left.set_title(f"{plain(data.attrs['bearing'])}, shaft")
     return figure
 
 

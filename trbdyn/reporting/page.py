@@ -90,7 +90,7 @@ def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
 
     lines = []
     for result, name in zip(results, names, strict=True):
-        words = conditions(result).replace("$F_a$", "Fa").replace("$F_r$", "Fr")
+        words = conditions(result).replace("$F_a$", "Fa").replace("$F_r$", "Fr").replace(r"\$", "$")
         made = ", ".join(
             f"{word} {result.meta[key]}"
             for key, word in (("created", "run"), ("trbdyn_version", "trbdyn"), ("instruction_set", "instruction set"))

@@ -236,13 +236,14 @@ def _hits(result: Result, numbers: dict[str, Any]) -> Sentence | None:
         if low and high
         else ""
     )
+    below, duty = numbers.get("pocket_force_p95"), numbers.get("pocket_duty")
+    usual = "" if below is None else f"; while they touch, 95 % of the forces stay below {below:.3g} N"
+    often = "" if duty is None else f" A pocket is touched {100.0 * duty:.2g} % of the time."
     return (
         "good" if settled and _soft(numbers) else "plain",
         f"Hits on the cage{so_far}",
         f"The hardest force between a roller and its pocket{so_far} is {peak:.3g} N{_at(numbers, 'pocket_force_peak')}, "
-        f"{compared}; while they touch, 95 % of the "
-        f"forces stay below {numbers['pocket_force_p95']:.3g} N. A pocket is touched "
-        f"{100.0 * numbers['pocket_duty']:.2g} % of the time.{_bias(result, 'pocket_force_peak')}{band}",
+        f"{compared}{usual}.{often}{_bias(result, 'pocket_force_peak')}{band}",
     )
 
 

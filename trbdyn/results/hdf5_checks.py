@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 import h5py
 import numpy as np
@@ -11,8 +11,16 @@ from numpy.typing import NDArray
 
 from trbdyn.errors import FileError
 
+MOST_TEXT: Final = 64 << 20
+"""Most bytes of what a result holds besides its records: texts, last state, peaks."""
 
-def read_own(group: h5py.Group, name: str, count: int | None = None) -> NDArray[Any]:
+
+def read_text_or_state(group: h5py.Group, name: str, count: int | None = None) -> NDArray[Any]:
+    """What `read_own` gives of a dataset beside the records, which is never large, however small it is packed."""
+    return read_own(group, name, count, most=MOST_TEXT)
+
+
+def read_own(group: h5py.Group, name: str, count: int | None = None, *, most: int | None = None) -> NDArray[Any]:
     """A dataset that lies in this file itself, or its first rows: no links or storage that lead elsewhere, and no values that
     were never written, which take no room in a file but much when they are read.
 
@@ -24,11 +32,13 @@ def read_own(group: h5py.Group, name: str, count: int | None = None) -> NDArray[
         Its name there.
     count : int, optional
         How many rows; all by default.
+    most : int, optional
+        Most bytes that it may take in memory.
 
     Raises
     ------
     FileError
-        If there is no such dataset, or it does not hold so many rows.
+        If there is no such dataset, or it does not hold so many rows, or they take too much memory.
     """
     where, links, key = group.file.filename, group.id.links, name.encode()
     if not links.exists(key):
@@ -50,4 +60,7 @@ def read_own(group: h5py.Group, name: str, count: int | None = None) -> NDArray[
         raise FileError(
             f"{where}: the file is damaged: {wanted} values of {name!r} shall be there, but it holds {held}"
         )
+    size = max(math.prod(dataset.shape[1:]) * wanted, math.prod(shape or ())) * dataset.dtype.itemsize
+    if most is not None and size > most:
+        raise FileError(f"{where}: {name!r} would take {size / 1e6:.0f} MB in memory, more than a result holds there")
     return np.asarray(dataset[:wanted])

@@ -30,7 +30,7 @@ from trbdyn.results.file_format import (
     reason,
     stored_type,
 )
-from trbdyn.results.hdf5_checks import read_own
+from trbdyn.results.hdf5_checks import read_own, read_text_or_state
 
 Array = NDArray[np.float64]
 
@@ -155,7 +155,7 @@ def _read_head(path: Path, file: h5py.Group) -> bytes:
                 f"{SCHEMA_VERSION} only: run the case again"
             )
         raise FileError(f"{path}: this HDF5 file is not a result of trbdyn (no schema {SCHEMA!r})")
-    return bytes(read_own(_run(file), "head")[0])
+    return bytes(read_text_or_state(_run(file), "head")[0])
 
 
 def _run(file: h5py.Group) -> h5py.Group:
@@ -195,7 +195,8 @@ def assembly_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
     with opened(where) as file:
         if ASSEMBLY not in file:
             return None
-        table = _table(json.loads(bytes(read_own(file, ASSEMBLY)[0])))
+        table = _table(json.loads(bytes(read_text_or_state(file, ASSEMBLY)[0])))
+        _check_files(where, table)
         names = table.get("bearings")
         if table.get("schema") == ASSEMBLY_SCHEMA and not (
             isinstance(names, list) and names and all(isinstance(name, str) for name in names)
@@ -207,6 +208,17 @@ def assembly_in(path: str | os.PathLike[str]) -> dict[str, Any] | None:
             f"{ASSEMBLY_VERSION}"
         )
     return table
+
+
+def _check_files(path: Path, values: Any) -> None:
+    """Refuse a scene or an assembly that, when it is built, would open a file to see what is in it."""
+    if isinstance(values, dict):
+        elastic = values.get("elastic_cage")
+        if isinstance(elastic, dict) and elastic.get("file") is not None and elastic.get("file_sha256") is None:
+            raise FileError(f"{path}: the file is damaged: elastic_cage.file has no checksum")
+        values = list(values.values())
+    for entry in values if isinstance(values, list) else ():
+        _check_files(path, entry)
 
 
 def names_in(path: str | os.PathLike[str]) -> tuple[str, ...]:
@@ -263,11 +275,13 @@ class FileSource:
             if not isinstance(self.first_record, int) or self.first_record < 0:
                 raise FileError(f"{self.path}: the file is damaged (first_record = {self.first_record!r})")
             self.fields = tuple(Field(*(str(text) for text in row)) for row in head["fields"])
-            count, size, sound = map(int, read_own(_run(file), "committed", 3))
+            count, size, sound = map(int, read_text_or_state(_run(file), "committed", 3))
             if sound != 1:
                 raise FileError(f"{self.path}: the file is damaged (its number of records is missing)")
             self.n_records, self.finished = count, size > 0
-            ending = _table(json.loads(read_own(_run(file), "ending", size).tobytes())) if self.finished else {}
+            ending = (
+                _table(json.loads(read_text_or_state(_run(file), "ending", size).tobytes())) if self.finished else {}
+            )
             self.info = self._read_info(file, head, ending)
 
     @property
@@ -277,10 +291,11 @@ class FileSource:
 
     def _read_info(self, file: h5py.Group, head: dict[str, Any], ending: dict[str, Any]) -> RunInfo:
         geometry, meta, scene = (_table(head[key]) for key in ("geometry", "meta", "scene"))
+        _check_files(self.path, scene)
         stats, counters = (_table(ending.get(key, {})) for key in ("stats", "counters"))
         meta |= {key: head[key] for key in ("trbdyn_version", "created", "schema_version")}
         message, final_time = str(ending.get("message", "")), float(ending.get("final_time", np.nan))
-        state = np.asarray(read_own(_run(file), "final_state"), dtype=float) if self.finished else np.empty(0)
+        state = np.asarray(read_text_or_state(_run(file), "final_state"), dtype=float) if self.finished else np.empty(0)
         if not self.finished:
             message = "the run was cut off before its end; the records up to the last write are here"
             if self.n_records and self.fields and self.fields[0].name == "time":
@@ -304,7 +319,7 @@ class FileSource:
 
     def _read_peaks(self, file: h5py.Group) -> dict[str, Array]:
         """Peaks of the whole run; none in files of runs that kept none."""
-        row, found, at = np.asarray(read_own(_run(file), "peaks"), dtype=float), {}, 0
+        row, found, at = np.asarray(read_text_or_state(_run(file), "peaks"), dtype=float), {}, 0
         for name in (entry.name for entry in self.fields if entry.group == PEAKS) if row.size else ():
             shape = file[name].shape[1:]
             size = int(np.prod(shape))

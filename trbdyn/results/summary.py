@@ -102,9 +102,10 @@ def _running_plays(scene: Scene) -> dict[str, Any]:
 
 
 def _deflection(result: Result) -> dict[str, Any]:
-    """Largest displacement of the middle of a face by an elastic cage's modes, at any record."""
-    if result.scene.elastic_cage is None or "cage" not in result.groups:
-        return {}
+    """Largest displacement of the middle of a face by the modes of an elastic cage's frame of beams, at any record."""
+    elastic = result.scene.elastic_cage
+    if elastic is None or elastic.file is not None or "cage" not in result.groups:
+        return {}  # a summary opens no file whose name stands in a result
     shape, largest = cage_modes(result.scene).shape[:, :, :3], 0.0
     for first in range(0, len(result), RECORDS_AT_ONCE):
         amplitude = result["cage_mode"][first : first + RECORDS_AT_ONCE]

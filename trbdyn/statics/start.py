@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.errors import InputError
 from trbdyn.model.motion import value_at
+from trbdyn.model.start import Start
 from trbdyn.statics.cage_start import place_cage
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.equilibrium import Equilibrium, nominal_angles
@@ -74,6 +75,10 @@ def contacts_at_start(scene: Scene) -> dict[str, Array]:
     LoadError
         If the bearing cannot carry the load.
     """
+    if scene.elastic_cage is not None and scene.elastic_cage.file is not None:
+        # contacts of rollers do not need the modes, whose file is not opened for the summary of a result
+        start = Start(time=scene.start.time) if scene.start.kind == "state" else scene.start
+        scene = scene.replace(elastic_cage=None, start=start)
     model = build_model(scene)
     motion, equilibrium = ring_motion(model, scene)
     vector = start_state(model, scene, motion, equilibrium)

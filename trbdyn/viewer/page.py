@@ -251,7 +251,7 @@ def _fill(head: dict[str, Any], data: str) -> str:
     parts |= {
         "title": html.escape(head["title"]),
         "three": three_js().replace("</script", "<\\/script"),
-        "head": json.dumps(head, allow_nan=False).replace("</", "<\\/"),
+        "head": json.dumps(head, allow_nan=False).replace("<", "\\u003c"),
         "data": data,
     }
     text = here.joinpath("viewer.html").read_text(encoding="utf-8")
