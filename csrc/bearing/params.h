@@ -55,7 +55,7 @@
   X(effects,    quadrature,                "choice",    0,      1,      "nodes along the contact: 0 uniform slices, 1 Gauss-Legendre") \
   X(effects,    n_slices,                  "count",     1,      200,    "number of slices or nodes along a contact line") \
   /* cage */ \
-  X(cage,       cage_mass,                 "kg",        1e-6,   1e4,    "mass of the cage") \
+  X(cage,       cage_mass,                 "kg",        1e-9,   1e4,    "mass of the cage") \
   X(cage,       cage_inertia_axial,        "kg m2",     1e-12,  1e6,    "moment of inertia about the cage's axis") \
   X(cage,       cage_inertia_transverse,   "kg m2",     1e-12,  1e6,    "moment of inertia about a transverse axis through the cage's centre of mass") \
   X(cage,       cage_offset,               "m",         -1,     1,      "axial position of the cage's centre of mass from the roller-centre plane") \

@@ -139,7 +139,9 @@ def test_what_was_assumed_is_kept_with_the_result(tmp_path: Path) -> None:
     bearing = catalogue("32008", cage=Cage(mass=0.05, play_axial=3e-4))
     assert {"cage.bar_width", "roller.profile.c_p"} <= set(bearing.assumed)
     assert not {"cage.mass", "cage.play_axial", "roller.diameter"} & set(bearing.assumed)
-    assert bearing.cage.inertia_axial == pytest.approx(3.9e-4 * 0.25 * (54.0 / 82.389) ** 2)
+    # the radius of gyration of the rig's cage, 44.159 mm, lies outside of its pitch circle by a share of its roller's diameter
+    gyration = 0.5 * bearing.pitch_diameter + (44.1588e-3 - 41.1945e-3) * bearing.roller.diameter / 14e-3
+    assert bearing.cage.inertia_axial == pytest.approx(0.05 * gyration**2, rel=1e-5)
     sim = Simulation(trb.Scene(bearing, speed_rpm=1000.0, axial_load=4000.0), accuracy="fast")
     result = sim.run(duration=1e-3, output=tmp_path / "run.h5")
     assert result.scene.bearing == bearing

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -423,3 +424,38 @@ def test_what_was_estimated_is_among_what_was_assumed():
     assert trb.Bearing.from_dict(bearing.to_dict()) == bearing
     known = bearing.replace(roller=bearing.roller.replace(diameter=0.99 * bearing.roller.diameter))
     assert "roller.diameter" not in known.assumed
+
+
+THIN_AND_THICK = {
+    "30205": (25, 52, 16.25, 38e3, 0.37),
+    "32016": (80, 125, 29, 138e3, 0.43),
+    "33213": (65, 120, 41, 194e3, 0.40),
+    "32960": (300, 420, 76, 1.05e6, 0.40),
+    "32972": (360, 480, 76, 1.12e6, 0.40),
+}
+
+
+@pytest.mark.parametrize("name", THIN_AND_THICK)
+def test_an_estimated_cage_keeps_its_share_of_the_bearing(name: str) -> None:
+    """Scaled with the pitch diameter squared, the cage of a thin bearing was heavier than all of its rollers."""
+    bore, outside, width, rating, e = THIN_AND_THICK[name]
+    bearing = trb.Bearing.from_catalogue(bore=bore * 1e-3, outside=outside * 1e-3, width=width * 1e-3, C=rating, e=e)
+    roller = bearing.roller
+    rollers = bearing.n_rollers * roller.density * math.pi / 4 * roller.diameter**2 * roller.effective_length
+    assert 0.3 < bearing.cage.mass / rollers < 0.7
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        trb.Simulation(trb.Scene(bearing, speed_rpm=300.0, axial_load=0.05 * rating))
+
+
+def test_an_estimated_cage_follows_its_material() -> None:
+    plastic = trb.Material(youngs_modulus=3e9, poisson_ratio=0.4, density=1140.0)
+    steel = trb.Bearing.from_catalogue(bore=0.040, outside=0.080, width=0.02475, C=74.8e3, e=0.37)
+    light = steel.replace({"cage.material": plastic})
+    assert light.cage.mass == pytest.approx(steel.cage.mass * 1140.0 / 7810.0)
+    before, after = ({one.path: one for one in bearing.estimated}["cage.mass"] for bearing in (steel, light))
+    assert after.value == light.cage.mass
+    assert after.high / after.value == pytest.approx(before.high / before.value)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        trb.Simulation(trb.Scene(light, speed_rpm=300.0, axial_load=3000.0))

@@ -157,7 +157,10 @@ def test_bands_of_ones_own_are_drawn_as_they_are() -> None:
         assert case.scene is not None
         roller, cage = case.scene.bearing.roller, case.scene.bearing.cage
         assert roller.total_length - roller.effective_length == pytest.approx(apart)
-        assert (cage.inertia_axial / cage.mass) == pytest.approx(bearing.cage.inertia_axial / bearing.cage.mass)
+        # inertias follow mass and size: the roller's diameter alone moves the radius of gyration, by 0.1 %
+        assert (cage.inertia_axial / cage.mass) == pytest.approx(
+            bearing.cage.inertia_axial / bearing.cage.mass, rel=4e-3
+        )
 
 
 @pytest.mark.parametrize(

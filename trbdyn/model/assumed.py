@@ -136,8 +136,8 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     height = size.get("contact_height", made["ribs"]["contact_height"]) / RIG["contact_height"]
     made["ribs"] |= {name: RIG[name] * height for name in ("edge_low", "edge_high")}
     dense = size.get("cage_density", RIG["density"]) / RIG["density"]
-    mass = size.get("mass", RIG["mass"] * pitch**2 * along * dense)
-    made["cage"] |= cage_inertias(mass, pitch, along)
+    mass = size.get("mass", cage_mass(pitch, across, along) * dense)
+    made["cage"] |= cage_inertias(mass, pitch, across, along)
     end = _small_end_radius({**size, "total_length": total})
     end = end if end > 0.0 else math.inf  # a roller beyond the apex: the core reports it
     # the rails of a cylindrical bearing's cage stay clear of the outer ring's ribs
@@ -160,12 +160,24 @@ def scaled(size: Mapping[str, float]) -> dict[str, dict[str, float]]:
     return made
 
 
-def cage_inertias(mass: float, pitch: float, along: float) -> dict[str, float]:
-    """Moments of inertia (kg m2) of a cage of this mass (kg): Iz with pitch diameter squared; It = Iz/2 + m <z^2>, its second
-    part with length squared. `pitch` and `along` are pitch diameter and roller length over those of the rig.
+def cage_mass(pitch: float, across: float, along: float) -> float:
+    """Mass (kg) of a cage of steel, whose walls are thicker by the roller's diameter. `pitch`, `across` and `along` are pitch
+    diameter, roller diameter and roller length over those of the rig.
+    """
+    return RIG["mass"] * (pitch * across * along)
+
+
+def cage_inertias(mass: float, pitch: float, across: float, along: float) -> dict[str, float]:
+    """Moments of inertia (kg m2) of a cage of this mass (kg): Iz with the square of its radius of gyration, which lies outside
+    of the pitch circle by a share of the roller's diameter; It = Iz/2 + m <z^2>, its second part with length squared. `pitch`,
+    `across` and `along` as for `cage_mass`.
     """
     heavier = mass / RIG["mass"]
-    axial = RIG["inertia_axial"] * (heavier * pitch**2)
+    circle = (
+        0.5 * RIG["pitch_diameter"] / math.sqrt(RIG["inertia_axial"] / RIG["mass"])
+    )  # over the rig's radius of gyration
+    wider = 1.0 + circle * (pitch - 1.0) + (1.0 - circle) * (across - 1.0)
+    axial = RIG["inertia_axial"] * (heavier * wider**2)
     along_axis = RIG["inertia_transverse"] - 0.5 * RIG["inertia_axial"]
     return {"inertia_axial": axial, "inertia_transverse": 0.5 * axial + along_axis * (heavier * along**2)}
 

@@ -360,19 +360,24 @@ class Bearing(Model):
 
     @property
     def estimated(self) -> tuple[Estimated, ...]:
-        """Inputs that are estimated, with their bands and sources, but for those that were changed since."""
-        return tuple(entry for entry in self.estimates if self._still(entry))
+        """Inputs that are estimated, with bands and sources, but for those that were changed since."""
+        return tuple(found for entry in self.estimates if (found := self._now(entry)) is not None)
 
-    def _still(self, entry: Estimated) -> bool:
-        """Whether the input is the estimate; digits that a case file leaves out change nothing."""
-        value = self._at(entry.path)
-        return isinstance(value, int | float) and math.isclose(value, entry.value, rel_tol=1e-5)
-
-    def _at(self, path: str) -> object:
-        value: object = self
-        for part in path.split("."):
-            value = getattr(value, part, None)
-        return value
+    def _now(self, entry: Estimated) -> Estimated | None:
+        """An estimate as it is now; digits that a case file leaves out change nothing. None: it was changed."""
+        *parts, name = entry.path.split(".")
+        owner: object = self
+        for part in parts:
+            owner = getattr(owner, part, None)
+        value = getattr(owner, name, None)
+        if not isinstance(value, int | float):
+            return None
+        if math.isclose(value, entry.value, rel_tol=1e-5):
+            return entry
+        if not isinstance(owner, Cage) or name in owner.model_fields_set or not entry.value:
+            return None
+        share = value / entry.value
+        return entry.replace(value=float(value), low=share * entry.low, high=share * entry.high)
 
     @model_validator(mode="before")
     @classmethod

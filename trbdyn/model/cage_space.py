@@ -94,27 +94,28 @@ class CageSpace:
         return []
 
     def unusual(self, cage: Cage, material: Material) -> list[str]:
-        """What a cage of this bearing can have, made of this material, but what can hardly be meant."""
+        """What a cage of this bearing can have, made of this material, but what can hardly be meant; only of what was given."""
         said, (light, heavy) = [], USUAL_FILL
+        given = cage.model_fields_set
         radius = math.sqrt(cage.inertia_axial / cage.mass)
-        if not self.near <= radius <= self.far:
+        if not self.near <= radius <= self.far and not given.isdisjoint(("mass", "inertia_axial")):
             said.append(
                 f"bearing.cage.mass = {cage.mass:g} kg and inertia_axial = {cage.inertia_axial:g} kg m2 belong to a cage "
                 f"with most of its mass at a radius of {1e3 * radius:.3g} mm; the rollers are between {1e3 * self.near:.3g} and "
                 f"{1e3 * self.far:.3g} mm; leave the inertias out, and they follow the mass"
             )
-        if not light <= cage.mass / self.volume <= heavy:
+        if "mass" in given and not light <= cage.mass / self.volume <= heavy:
             kind = "light" if cage.mass < light * self.volume else "heavy"
             said.append(
                 f"bearing.cage.mass = {cage.mass:g} kg is {kind} for a cage of this bearing: usual are "
                 f"{light * self.volume:.2g} to {heavy * self.volume:.2g} kg; 86 g are 0.086"
             )
         elif material.density is None:
-            if "mass" not in cage.model_fields_set:
+            if "mass" not in given:
                 said.append(
                     f"bearing.cage.mass = {cage.mass:g} kg is assumed as of steel, as the cage's material has no density"
                 )
-        elif not USUAL_SHARE[0] <= cage.mass / (material.density * self.volume) <= USUAL_SHARE[1]:
+        elif "mass" in given and not USUAL_SHARE[0] <= cage.mass / (material.density * self.volume) <= USUAL_SHARE[1]:
             share = cage.mass / (material.density * self.volume)
             said.append(
                 f"bearing.cage.mass = {cage.mass:g} kg of a material of {material.density:g} kg/m3 fills {100 * share:.2g} % "

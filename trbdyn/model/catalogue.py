@@ -17,6 +17,7 @@ from typing import Any, Final
 from trbdyn.base.validation import as_number, as_whole_number
 from trbdyn.errors import MISSING, InputError, Problem
 from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, RIG, cage_inertias
+from trbdyn.model.assumed import cage_mass as steel_cage
 from trbdyn.model.catalogue_rollers import CUP_WIDTH, FILL, LENGTH, MAKER, PITCH, SECTION, Page, Rollers, solve
 from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.estimated import Estimated
@@ -255,8 +256,8 @@ def _fields(
     """Fields of the bearing: what is left is scaled from the 30310 test bearing, whose inner geometry is published."""
     scale, longer = found.diameter / RIG["diameter"], found.length / RIG["effective_length"]
     wide = found.pitch / RIG["pitch_diameter"]
-    mass = RIG["mass"] * wide**2 * longer if cage_mass is None else cage_mass
-    inertia = cage_inertias(mass, wide, longer)
+    mass = steel_cage(wide, scale, longer) if cage_mass is None else cage_mass
+    inertia = cage_inertias(mass, wide, scale, longer)
     heights = ("contact_height", "edge_low", "edge_high", "front_clearance", "front_low", "front_high")
     ribs = {key: scale * RIG[key] for key in heights}
     lengths = (
@@ -269,7 +270,9 @@ def _fields(
         "wall_half_width",
     )
     cage = {key: scale * RIG[key] for key in lengths}
-    cage |= {"mass": mass, "rail_offset": longer * RIG["rail_offset"]}  # its inertias follow from its mass
+    cage["rail_offset"] = longer * RIG["rail_offset"]
+    if cage_mass is not None:
+        cage["mass"] = cage_mass  # an estimated mass follows the cage's material, inertias follow the mass
     roller = Roller(
         diameter=found.diameter,
         effective_length=found.length,
@@ -277,7 +280,7 @@ def _fields(
         profile=Profile.iso(),
     )
     scaled = "30310 test bearing (Sakaguchi and Harada 2006), scaled with"
-    inertias = f"{scaled} mass and pitch diameter squared, the part along the axis with length squared"
+    inertias = f"{scaled} mass and radius squared, the part along the axis with length squared"
     rows: list[tuple[str, float, float, float, str, str]] = [
         ("roller.total_length", roller.total_length, 1.0, 1.05, "m", f"{scaled} the roller's diameter"),
         ("ribs.contact_height", ribs["contact_height"], 0.7, 1.3, "m", f"{scaled} the roller's diameter"),
@@ -288,7 +291,9 @@ def _fields(
         ("cage.inertia_transverse", inertia["inertia_transverse"], 0.95, 1.35, "kg m2", inertias),
     ]  # fmt: skip
     if cage_mass is None:
-        rows.append(("cage.mass", mass, 0.4, 1.6, "kg", f"{scaled} pitch diameter squared and roller length"))
+        rows.append(
+            ("cage.mass", mass, 0.4, 1.6, "kg", f"{scaled} pitch diameter, roller diameter and roller length; of steel")
+        )
     listed = [
         _entry(path, value, low * value, high * value, unit, source) for path, value, low, high, unit, source in rows
     ]
