@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,9 @@ WITHOUT_CONFIDENCE = (
 )
 
 _BAR = "{percentage:3.0f}% |{bar}| {n:.4g}/{total:.4g} s of bearing time [{elapsed}<{remaining}]"
+
+STOPPED: Final = "stopped by the user"
+"""How the message of a run begins that Ctrl-C has ended."""
 
 
 @dataclass
@@ -231,7 +234,7 @@ class Run:
                     raise
                 if self.filling is not None:
                     self._keep(self.filling[: int(np.count_nonzero(np.isfinite(self.filling[:, 0])))])
-                return self._finish(False, f"stopped by the user at {sim.time:.6g} s")
+                return self._finish(False, f"{STOPPED} at {sim.time:.6g} s")
             except FileError:
                 self._abandon()
                 raise

@@ -24,6 +24,7 @@ from trbdyn.model.scene import Scene, Start
 from trbdyn.results import observables
 from trbdyn.results.result import Result
 from trbdyn.results.summary import averages
+from trbdyn.run.running import STOPPED
 from trbdyn.run.simulation import Simulation
 from trbdyn.statics.core_model import build_model
 from trbdyn.statics.state_view import StateView
@@ -107,6 +108,10 @@ def run_quietly(scene: Scene, accuracy: str, length: Length) -> tuple[Result | N
             spent = clock.process_time() - began
         except (InputError, LoadError, StepError) as error:
             return None, math.nan, str(error).splitlines()[0]
+    if result.message.startswith(
+        STOPPED
+    ):  # a run keeps what it has; a plan has nothing to keep, and ends as a study does
+        raise KeyboardInterrupt
     bearing = max(float(result["time"][-1] - result["time"][0]), 1e-300)
     failure = "" if result.success else TOO_LONG if impatient else result.message
     return result, spent / bearing, failure
