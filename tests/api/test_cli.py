@@ -263,3 +263,28 @@ def test_a_stopped_run_says_how_to_go_on(fake: type[FakeSimulation], capsys: pyt
     Path("b.h5.checkpoint").write_text("")
     assert main(["run", "rig_30310", "-o", "b.h5", "--quiet"]) == 1
     assert "-m trbdyn resume b.h5" in capsys.readouterr().err
+
+
+def test_rating_prints_lives_of_cases_pairs_and_results(tmp_path, capsys):
+    assert main(["rating", "bearing_32216"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "Which life to use" in said
+    assert main(["rating", "bearing_32216", "--json"]) == 0
+    numbers = json.loads(capsys.readouterr().out)
+    assert numbers["life_hours"] == pytest.approx(trbdyn.rating(trbdyn.load_case("bearing_32216")[0]).life_hours)
+    assert main(["rating", "pair_30310"]) == 0
+    rows = capsys.readouterr().out.splitlines()
+    assert [row.split()[0] for row in rows[2:5]] == ["left", "right", "all"]
+    path = tmp_path / "run.h5"
+    trbdyn.Simulation(trbdyn.cases.scene_30310(3000.0, 4930.0)).run(revolutions=0.2, output=path)
+    assert main(["rating", str(path)]) == 0
+    assert "Lnmrh" in capsys.readouterr().out
+    assert main(["rating", str(path), "--set", "scene.speed_rpm=10"]) == 2
+    assert "must not be given with a result" in capsys.readouterr().err
+
+
+def test_a_life_that_means_endless_has_no_digits():
+    light = trbdyn.rating(trbdyn.cases.scene_30310(3000.0, 300.0))
+    assert light.life_hours > 1e6
+    shown = {row.symbol: row.shown for row in light.rows}
+    assert shown["L10h"] == ">1e6"

@@ -80,7 +80,7 @@ def test_axes_carry_units_and_numbers(whirling: Result) -> None:
     spacing = plot.spacing_angles(whirling, n=5)
     assert "5 gaps" in spacing.get_ylabel()
     named = [line for line in spacing.lines if not line.get_label().startswith("_")]
-    assert [line.get_label() for line in named] == ["1–6", "2–7", "3–8", "4–9", "5–10"]
+    assert [line.get_label() for line in named] == ["0–5", "1–6", "2–7", "3–8", "4–9"]
     expected = np.degrees(whirling.spacing_angles(5)[0, 0])
     assert named[0].get_ydata()[0] == pytest.approx(expected)
     loads = plot.contact_loads(whirling)
@@ -181,7 +181,7 @@ def test_pocket_forces_have_a_panel_a_face(whirling: Result) -> None:
     assert np.ma.count_masked(shown) > 0.5 * shown.size
     assert "(N)" in figure.axes[-1].get_ylabel()
     few = plot.pocket_forces(whirling, pockets=[0, 6], last=None)
-    assert [text.get_text() for text in few.axes[0].get_yticklabels()] == ["1", "7"]
+    assert [text.get_text() for text in few.axes[0].get_yticklabels()] == ["0", "6"]
     with pytest.raises(InputError, match="pockets"):
         plot.pocket_forces(whirling, pockets=[12])
     with pytest.raises(InputError, match="rollers"):

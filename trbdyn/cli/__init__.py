@@ -18,6 +18,7 @@ from trbdyn.cli.ensemble import add_ensemble_parser
 from trbdyn.cli.look import add_look_parsers
 from trbdyn.cli.outcome import BAD_INPUT, DONE, FAILED, FAULT, INTERRUPTED, Parser, let_any_name_be_printed, run_command
 from trbdyn.cli.plan import add_plan_parser
+from trbdyn.cli.rating import add_rating_parser
 from trbdyn.cli.report import add_report_parser
 from trbdyn.cli.run import add_run_parsers
 from trbdyn.cli.sweep import add_sweep_parser
@@ -66,6 +67,7 @@ def make_parser() -> argparse.ArgumentParser:
     add_sweep_parser(commands, common)
     add_ensemble_parser(commands, common)
     add_plan_parser(commands, common)
+    add_rating_parser(commands, common)
     add_torque_parser(commands, common)
     add_thermal_parser(commands, common)
     add_case_parsers(commands, common)

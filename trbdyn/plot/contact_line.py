@@ -58,7 +58,7 @@ def contact_line(scene: Scene) -> Figure:
         axes[0].set(ylabel="Gap of the profiles (µm)")
         axes[1].set(xlabel="Place along the roller, towards its large end (mm)", ylabel="Largest pressure (GPa)")
         legend(axes[0])
-        figure.suptitle(f"Gap and pressure along roller {roller + 1}\n{_edges(pressure)}", fontsize=11)
+        figure.suptitle(f"Gap and pressure along roller {roller}\n{_edges(pressure)}", fontsize=11)
     return figure
 
 

@@ -189,7 +189,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         top.set_xlim(-1.35 * half, 1.35 * half)
         figure.legend(*end.get_legend_handles_labels(), loc="outside lower center", ncols=2)
         figure.suptitle(
-            f"{plain(bearing.name)}, pocket {pocket + 1}, roller centred and its large end touching\n"
+            f"{plain(bearing.name)}, pocket {pocket}, roller centred and its large end touching\n"
             f"Cpr {1e3 * bearing.cage.play_radial:.3g} mm, Cpc {1e3 * bearing.cage.play_circumferential:.3g} mm",
             fontsize=10,
         )

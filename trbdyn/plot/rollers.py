@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -54,7 +55,7 @@ def spacing_angles(result: Result, ax: Axes | None = None, n: int = 1, rollers: 
         for roller in sorted(set(range(count)) - set(named)):
             line(ax, turned, angles[:, roller], color=LIGHT, linestyle="-", linewidth=0.6, zorder=1)
         for index, roller in enumerate(named):
-            label = f"{roller + 1}–{(roller + n) % count + 1}"
+            label = f"{roller}–{(roller + n) % count}"
             line(ax, turned, angles[:, roller], index, label, zorder=3)
         ax.axhline(360.0 * n / count, color=GREY, linewidth=0.9, zorder=2)
         ax.set(xlabel=turns_label(result), xlim=(turned[0], turned[-1]))
@@ -122,7 +123,7 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
             )
             ax.set_title(_face_name(result, slot), loc="left", pad=3)
             rows = np.unique(np.linspace(0, len(chosen) - 1, min(len(chosen), 12)).astype(int))
-            ax.set_yticks(rows, [str(chosen[row] + 1) for row in rows])
+            ax.set_yticks(rows, [str(chosen[row]) for row in rows])
             ax.set_ylabel("pocket")
             ax.grid(visible=False)
         axes[-1, 0].set(xlabel=turns_label(result), xlim=(turned[0], turned[-1]))
@@ -155,7 +156,7 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
     stats = result.pocket_statistics(threshold)
     touched = np.flatnonzero(stats.peak.max(axis=0) > 0).tolist()
     with canvas(ax, title="Forces on the pockets: 95 % in contact (filled), peak (open)") as ax:
-        place = np.arange(1, stats.peak.shape[0] + 1)
+        place = np.arange(stats.peak.shape[0])
         for index, slot in enumerate(touched):
             shift = 0.16 * (index - 0.5 * (len(touched) - 1))
             label = f"{_face_name(result, slot)} (touched {100 * stats.duty[:, slot].mean():.2g} % of the time)"
@@ -176,16 +177,24 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
     return ax
 
 
-def _around(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Place (deg), mean, 5 % and 95 % of values in bins of the angle around the bearing; empty bins are left out."""
-    bins = (np.mod(angle, 2 * np.pi) / (2 * np.pi) * BINS).astype(int).ravel() % BINS
-    order = np.argsort(bins, kind="stable")
-    sorted_values, edges = values.ravel()[order], np.searchsorted(bins[order], np.arange(BINS + 1))
-    rows = [
-        ((k + 0.5) * 360.0 / BINS, part.mean(), *np.percentile(part, (5.0, 95.0)))
-        for k in range(BINS)
-        if (part := sorted_values[edges[k] : edges[k + 1]]).size
-    ]
+def _around(
+    angle: np.ndarray, values: np.ndarray, weight: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Place (deg), weighted mean, 5 % and 95 % of values in bins of the angle around the bearing.
+
+    Values without weight, such as the film of a roller without load, are left out. A bin without any has no line.
+    """
+    bins = (np.mod(angle, 2 * np.pi) / (2 * np.pi) * BINS).astype(int)
+    rows = []
+    for k in range(BINS):
+        inside = (bins == k) & (weight > 0.0)
+        found = (math.nan, math.nan, math.nan)
+        if inside.any():
+            part = values[inside]
+            low, high = np.percentile(part, (5.0, 95.0))
+            found = (float(np.average(part, weights=weight[inside])), float(low), float(high))
+        if inside.any() or (bins == k).any():
+            rows.append(((k + 0.5) * 360.0 / BINS, *found))
     place, mean, low, high = np.array(rows).T
     return place, mean, low, high
 
@@ -195,8 +204,9 @@ def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> Non
         if f"{side}_{quantity}" not in result or not result[f"{side}_{quantity}"].any():
             continue
         values = result[f"{side}_{quantity}"]
-        place, mean, low, high = _around(result["roller_orbit_angle"], values)
-        line(ax, place, mean, index, f"{name} (mean {values.mean():.4g}{unit})")
+        weight = result[f"{side}_load"] if quantity == "film_parameter" else np.ones_like(values)
+        place, mean, low, high = _around(result["roller_orbit_angle"], values, weight)
+        line(ax, place, mean, index, f"{name} (mean {np.average(values, weights=weight):.4g}{unit})")
         ax.fill_between(place, low, high, color=COLOURS[index], alpha=0.25, linewidth=0)
     ax.set(xlim=(0, 360), xticks=range(0, 361, 45))
     ax.set_xlabel("place around the bearing from x towards y (deg)\nline: mean, band: 5 to 95 %")
@@ -225,7 +235,7 @@ def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
 
 
 def film_parameter(result: Result, ax: Axes | None = None) -> Axes:
-    """Film parameter Lambda around the bearing: mean, and the range from 5 to 95 %.
+    """Film parameter Lambda of the rollers that carry, around the bearing: mean weighted by load, and the range from 5 to 95 %.
 
     Parameters
     ----------
@@ -238,7 +248,7 @@ def film_parameter(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    with canvas(ax, title="Film parameter around the bearing") as ax:
+    with canvas(ax, title="Film parameter of loaded rollers around the bearing") as ax:
         _draw_around(result, ax, "film_parameter")
         full = result.scene.effects.friction.lambda_full
         ax.axhline(full, color=GREY, linewidth=0.9)

@@ -59,8 +59,8 @@ class RatingRow:
 
     @property
     def shown(self) -> str:
-        """The value as text, four digits."""
-        return _digits(self.value)
+        """The value as text, four digits; a life beyond a million hours as such."""
+        return life_text(self.value) if self.unit == "h" else _digits(self.value)
 
 
 RATED_AS_RADIAL: Final = 1e-3
@@ -202,11 +202,25 @@ class Rating(Displayed):
             title="ratings and lives",
             rows=tuple((f"{row.words} {row.symbol}", row.shown, row.unit, row.note) for row in listed),
             head=("name", "value", "unit", "where it comes from"),
-            notes=self.warnings,
+            notes=(*self.warnings, WHICH_LIFE),
         )
 
     def __str__(self) -> str:
         return self._shown().text()
+
+
+LONGEST_LIFE: Final = 1e6
+"""Life (h) beyond which no number is shown: 114 years, and no standard was tested there."""
+WHICH_LIFE: Final = (
+    "Which life to use: Lnmrh where there is one: it counts how the load spreads along and between the rollers, the oil's film "
+    "and its dirt; Lnmh to compare with a maker's modified life; L10h to compare catalogues; L10rh to see what misalignment, "
+    "preload and play alone do to L10h."
+)
+
+
+def life_text(hours: float | None) -> str:
+    """A life (h) as text, four digits."""
+    return ">1e6" if hours is not None and hours > LONGEST_LIFE else _digits(hours)
 
 
 def _digits(value: float | None) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from trbdyn.base.shown import Displayed, Shown
-from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, sheet
+from trbdyn.standards.sheet import WHICH_LIFE, Loading, Rating, at_equilibrium, life_text, sheet
 from trbdyn.statics.assembly import BearingOnShaft, ShaftEquilibrium
 
 WEIBULL_SLOPE: Final = 9.0 / 8.0
@@ -42,7 +42,7 @@ class SystemRating(Displayed):
     def _shown(self) -> Shown:
         def row(name: str, one: Rating | SystemRating, *loads: str) -> tuple[str, ...]:
             lives = [getattr(one, life) for life in _LIVES]
-            return (name, *(loads or ("", "", "")), *("-" if life is None else f"{life:.4g}" for life in lives))
+            return (name, *(loads or ("", "", "")), *map(life_text, lives))
 
         head = ("bearing", "Fa N", "Fr N", "P N", "L10h h", "Lnmh h", "L10rh h", "Lnmrh h")
         rows = [
@@ -50,7 +50,7 @@ class SystemRating(Displayed):
             for name, one in self.bearings.items()
         ]
         said = tuple(f"{name}: {text}" for name, one in self.bearings.items() for text in one.warnings)
-        return Shown("ratings and lives", (head, *rows, row("all", self)), head=head, notes=said)
+        return Shown("ratings and lives", (head, *rows, row("all", self)), head=head, notes=(*said, WHICH_LIFE))
 
 
 def system_life(lives: Sequence[float | None]) -> float | None:

@@ -189,7 +189,7 @@ class _Document:
                 self._move(land, *self._ring(pose))
         roller = self._mesh("roller", self._primitive(meshes.roller, "rollers"), self._primitive(meshes.mark, "mark"))
         for number in range(count):
-            self._move(self._node(f"roller {number + 1}", roller), *self._roller(pose, number))
+            self._move(self._node(f"roller {number}", roller), *self._roller(pose, number))
         if self.has_cage:
             faces = join([face.mesh for face in meshes.faces])
             whole = meshes.cage if meshes.guide is None else join([meshes.cage, meshes.guide])

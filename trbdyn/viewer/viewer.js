@@ -142,7 +142,7 @@
     outline.visible = Boolean(pick);
     if (!pick) return;
     const one = bearings[pick.bearing], { slots, slot_names, name } = one.part;
-    const what = pick.kind === "roller" ? `Roller ${pick.index + 1}` : `Pocket ${pick.index + 1}, ${slot_names[pick.slot]}`;
+    const what = pick.kind === "roller" ? `Roller ${pick.index}` : `Pocket ${pick.index}, ${slot_names[pick.slot]}`;
     const where = name ? `${what} of ${name}` : what;
     if (box.dataset.shown !== JSON.stringify([pick, state.mode])) {
       box.dataset.shown = JSON.stringify([pick, state.mode]);

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 WORK, LOSS, POWER, TORQUE = "work_", "loss_", "power_", "inner_torque_"
 STORED = ("kinetic_energy", "elastic_energy")
+NOTHING_LOST = 5e-8
+"""Losses over the largest term of the audit up to which nothing is lost; a run is not watched below it, either."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class EnergyAudit:
     dissipated : float
         Sum of the losses.
     closure : float
-        \\|residual\\| over the dissipated work; nan where nothing is dissipated.
+        \\|residual\\| over the dissipated work; nan where as good as nothing is dissipated.
     relative_residual : float
         \\|residual\\| over the largest term: also defined without dissipation.
     """
@@ -127,7 +129,7 @@ def energy_audit(terms: Mapping[str, ArrayLike]) -> EnergyAudit:
         losses=losses,
         residual=residual,
         dissipated=dissipated,
-        closure=abs(residual) / abs(dissipated) if dissipated else float("nan"),
+        closure=abs(residual) / abs(dissipated) if abs(dissipated) > NOTHING_LOST * largest else float("nan"),
         relative_residual=abs(residual) / largest if largest else 0.0,
     )
 
