@@ -126,11 +126,11 @@ class Cage(Model):
     Parameters
     ----------
     mass : float
-        Mass (kg); by default it follows from `body`, or else it is 0.2 kg times the pitch diameter squared, the roller's
-        length and the density of the material over those of the rig, a cage of steel.
+        Mass (kg); by default it follows from `body`, or else it is 0.2 kg times pitch diameter, roller diameter, roller
+        length and density of the material over those of the rig, a cage of steel.
     inertia_axial, inertia_transverse : float
         Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2); by default
-        with mass and pitch diameter squared (what lies along the axis: with length squared), so that they follow a mass
+        with mass and radius squared (what lies along the axis: with length squared), so that they follow a mass
         that is changed; with a `body` they are its own, in proportion to the mass. Given ones must belong to the mass: no
         cage has its mass outside of the bearing.
     play_radial, play_circumferential : float

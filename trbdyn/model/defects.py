@@ -40,7 +40,8 @@ class Pit(Model):
     depth : float
         Depth (m).
     angle_deg : float
-        Place of its middle (deg). On a ring: about the bearing's axis, from +x towards +y where the ring has not turned. On a
+        Place of its middle (deg). On a ring: about the bearing's axis, from +x towards +y where the ring has not turned; a radial
+        load acts at 90 by default, and a defect of a ring at rest where no roller is loaded is warned of. On a
         roller: about its axis, from the side that is away from the bearing's axis where the roller has not turned, in the sense
         of a positive rotation about the axis, which points to the large end.
     position : float

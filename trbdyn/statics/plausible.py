@@ -11,7 +11,7 @@ import numpy as np
 from trbdyn.model.cage_body import Wall, cage_mass
 from trbdyn.model.cage_space import CageSpace
 from trbdyn.model.catalogue_rollers import FILL
-from trbdyn.model.defects import Pit
+from trbdyn.model.defects import DepthMap, Pit
 from trbdyn.model.motion import value_at, values_of
 from trbdyn.statics.equilibrium import Equilibrium
 
@@ -23,6 +23,8 @@ PERMISSIBLE_PRESSURE: Final = 4e9
 bearings.
 """
 
+LOADED_SHARE: Final = 0.05
+"""Share of the heaviest load of a roller up to which a place of the outer ring counts as unloaded."""
 FRAME_MASS: Final = 0.05
 """Share by which a cage may be heavier or lighter than the frame of beams by whose modes it deforms."""
 LARGEST_PLAY_SHARE: Final = 0.1
@@ -67,7 +69,7 @@ def _pressures(scene: Scene, equilibrium: Equilibrium) -> dict[str, float]:
 
 
 def _defects(scene: Scene, equilibrium: Equilibrium) -> list[str]:
-    """Pits that are shorter than the contact: rollers roll over them on their whole width."""
+    """Pits that are shorter than the contact: rollers roll over them on their whole width; defects that no loaded roller meets."""
     geometry, pressures = scene.bearing.geometry, _pressures(scene, equilibrium)
     radii = {"outer": geometry.outer_equivalent_radius, "inner": geometry.inner_equivalent_radius}
     widths = {race: 8.0 * radii[race] * pressure / geometry.effective_modulus for race, pressure in pressures.items()}
@@ -80,7 +82,23 @@ def _defects(scene: Scene, equilibrium: Equilibrium) -> list[str]:
                 f"defects[{place}].length = {length:g} m is less than the width of the most loaded contact, {width:.2g} m: a "
                 "contact is a line here, which sinks in further than one that bears on both sides of the pit"
             )
+        if isinstance(defect, Pit | DepthMap) and defect.on == "outer" and not scene.outer_turns:
+            found += _unmet(place, defect.angle_deg, equilibrium)
     return found
+
+
+def _unmet(place: int, angle_deg: float, equilibrium: Equilibrium) -> list[str]:
+    """What is said of a defect of an outer ring at rest where no roller carries a load that is worth the name."""
+    off = np.abs((np.rad2deg(equilibrium.angles) - angle_deg + 180.0) % 360.0 - 180.0)
+    load = equilibrium.outer_load
+    beside = np.argsort(off)[:2]
+    if load[beside].max() > LOADED_SHARE * load.max():
+        return []
+    heaviest = float(np.rad2deg(equilibrium.angles[int(np.argmax(load))]) % 360.0)
+    return [
+        f"defects[{place}].angle_deg = {angle_deg:g} lies where the rollers carry hardly any load, so that the defect changes "
+        f"nothing: the heaviest load is near {heaviest:.0f} deg, and a radial load acts at radial_direction_deg, by default 90"
+    ]
 
 
 def _pressure(scene: Scene, equilibrium: Equilibrium) -> str:
