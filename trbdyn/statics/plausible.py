@@ -69,7 +69,7 @@ def _pressures(scene: Scene, equilibrium: Equilibrium) -> dict[str, float]:
 
 
 def _defects(scene: Scene, equilibrium: Equilibrium) -> list[str]:
-    """Pits that are shorter than the contact: rollers roll over them on their whole width; defects that no loaded roller meets."""
+    """Pits that are shorter than the contact, which rollers roll over on their whole width; defects that no load meets."""
     geometry, pressures = scene.bearing.geometry, _pressures(scene, equilibrium)
     radii = {"outer": geometry.outer_equivalent_radius, "inner": geometry.inner_equivalent_radius}
     widths = {race: 8.0 * radii[race] * pressure / geometry.effective_modulus for race, pressure in pressures.items()}
