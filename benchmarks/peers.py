@@ -83,13 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         raise SystemExit("the NumPy model does not give what the core gives")
     measured: list[tuple[Method, list[Point], str | None]] = []
     for method in [*own(bench), *alternatives(bench, options.quick)]:
-        points: list[Point] = []
-        failure = None
         began = clock.perf_counter()
-        try:
-            points = bench.measure(method)
-        except Exception as error:
-            failure = f"{type(error).__name__}: {error}"
+        points, failure = attempt(bench, method)
         measured.append((method, points, failure))
         print(f"  {method.name:40s} {clock.perf_counter() - began:6.1f} s  {failure or ''}", flush=True)
     costs = bench.costs()
@@ -152,8 +147,16 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     return report.finish()
 
 
+def attempt(bench: Bench, method: Method) -> tuple[list[Point], str | None]:
+    """Points of an integrator and None, or none and why it could not be measured."""
+    try:
+        return bench.measure(method), None
+    except Exception as error:
+        return [], f"{type(error).__name__}: {error}"
+
+
 def text_of(report: common.Report) -> str:
-    """The tables: the best alternatives first."""
+    """The tables: the best alternatives first; then what could not be measured."""
     summary, bottom = report.summary, report.summary["floor"]
     best = [
         {
@@ -177,7 +180,10 @@ def text_of(report: common.Report) -> str:
             f"A force evaluation; the floor is an estimate: {bottom['nodes']} nodes of {bottom['ns_per_node']:.1f} ns "
             f"({bottom['rates']} rates).",
             common.table([forces], forces),
+            f"One evaluation of the forces takes {forces['NumPy (us)'] / forces['core (us)']:.0f} times as long in NumPy as in "
+            "the core: that part of a ratio is not the integrator's.",
             common.table(report.results, shown),
+            *(f"Not measured: {row['name']} ({row['failure']})." for row in report.results if row["failure"]),
         )
     )
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -170,3 +171,33 @@ def test_report_is_plain_json(tmp_path: Path) -> None:
     assert found["schema"] == SCHEMA
     assert found["results"] == [{"value": None}]
     assert found["machine"]["numpy"] == np.__version__
+
+
+def test_an_alternative_that_is_not_installed_has_a_row_that_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    import peers
+    from numpy_model import Jacobian, NumpyModel, solvers
+    from peer_cost.methods import alternatives
+
+    monkeypatch.setitem(sys.modules, "sksundae", None)
+    monkeypatch.setitem(sys.modules, "sksundae.cvode", None)
+    scene = SCENES["colliding"]()
+    sim, model = Simulation(scene), NumpyModel(scene)
+    start = sim.state.vector[: model.n_state]
+    tolerances = solvers.Tolerances(np.full(model.n_state, 1e-4), np.full(model.n_state, 1e-9))
+    problem = solvers.Problem(model, Jacobian(model), start, sim.time + np.linspace(0.0, 1e-6, 3), limit=60.0)
+
+    class Bench:
+        def peer(self, *_: object, run: Callable[..., Any]) -> Any:
+            return run(problem, tolerances)
+
+        def measure(self, method: Any) -> list[Any]:
+            return [method.run(None, 1.0, 1e-6, True)]
+
+    bench: Any = Bench()
+    found = [method for method in alternatives(bench, True) if "sundae" in method.name]
+    assert [method.name for method in found] == ["scikit-sundae CVODE", "scikit-sundae CVODE, our Jacobian"]
+    for method in found:
+        points, failure = peers.attempt(bench, method)
+        assert points == []
+        assert failure is not None
+        assert "sksundae" in failure
