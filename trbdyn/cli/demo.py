@@ -29,6 +29,10 @@ DEMO_WORDS: Final = (
 )
 
 
+TURNS: Final = 720.0
+"""Turns of the shaft after which the motion is known to have settled."""
+
+
 def add_demo_parser(
     commands: Any, common: Sequence[argparse.ArgumentParser], length: Sequence[argparse.ArgumentParser]
 ) -> None:
@@ -51,7 +55,7 @@ def _demo(options: argparse.Namespace) -> int:
     from trbdyn.run.options import RunOptions
     from trbdyn.viewer import view
 
-    revolutions = 50.0 if options.revolutions is None else options.revolutions
+    revolutions = TURNS if options.revolutions is None else options.revolutions
     run = RunOptions(revolutions=revolutions, accuracy=options.accuracy or "standard")
     scene = scene_30310(3000.0, 4930.0, start=Start.whirl(0.9))
     run.end_time(scene.speed_rpm)

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
+UNFOLD = "addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((one) => { one.open = true; }));"
+"""What is folded on a screen is printed."""
 GRADES = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
 
 
@@ -81,7 +83,7 @@ def _whole(title: str, body: str) -> str:
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{safe(title)}</title><style>{style}</style></head>"
-        f"<body>\n{body}\n</body></html>\n"
+        f"<body>\n{body}\n<script>{UNFOLD}</script></body></html>\n"
     )
 
 
@@ -93,7 +95,7 @@ def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
         words = conditions(result).replace("$F_a$", "Fa").replace("$F_r$", "Fr").replace(r"\$", "$")
         made = ", ".join(
             f"{word} {result.meta[key]}"
-            for key, word in (("created", "run"), ("trbdyn_version", "trbdyn"), ("instruction_set", "instruction set"))
+            for key, word in (("created", "run"), ("trbdyn_version", "trbdyn"))
             if result.meta.get(key)
         )
         label = f"<b>{safe(name)}</b>: " if len(results) > 1 else ""

@@ -14,6 +14,7 @@ from trbdyn.reporting.inputs import Row
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.summary import UNPRINTED
 from trbdyn.run.bias import Bias
+from trbdyn.standards.sheet import life_text
 
 SENTENCES: Final = ("_note", "_reason")
 """Ends of the names of entries that are sentences."""
@@ -105,7 +106,14 @@ def _parts(words: str, unit: str, values: Sequence[Any]) -> list[str]:
 def _number(
     words: str, unit: str, values: Sequence[Any], widths: Sequence[float | None], meaning: str, bias: Sequence[str]
 ) -> str:
-    shown = [_amount(value) + ("" if w is None else f" ± {w:.2g}") for value, w in zip(values, widths, strict=True)]
+    factor, unit = _scale(unit, values)
+    shown = [
+        _amount(value * factor if isinstance(value, float) and factor != 1.0 else value)
+        + ("" if w is None else f" ± {w * factor:.2g}")
+        for value, w in zip(values, widths, strict=True)
+    ]
+    if unit == "h":
+        shown = [life_text(value) if isinstance(value, float) else "-" for value in values]
     differs = " class='differs'" if len(set(shown)) > 1 else ""
     cells = "".join(f"<td class='n {_kind(text)}'>{safe(text)}</td>" for text in shown)
     said = "".join(f"<span class='bias'>{safe(text)}</span>" for text in bias)
@@ -113,6 +121,19 @@ def _number(
         f"<tr{differs}><td class='q'>{safe(words.strip())}</td>{cells}<td class='u'>{safe(unit)}</td>"
         f"<td class='m'>{safe(meaning)}{said}</td></tr>"
     )
+
+
+SCALES: Final[Mapping[str, tuple[tuple[float, float, str], ...]]] = {
+    "Pa": ((1e9, 1e-9, "GPa"), (0.0, 1e-6, "MPa")),
+    "m": ((1e-3, 1e3, "mm"), (0.0, 1e6, "µm")),
+}
+"""Units of a report for those of the summary: from which size on, by what factor, and the unit."""
+
+
+def _scale(unit: str, values: Sequence[Any]) -> tuple[float, str]:
+    """Factor and unit in which a row of numbers is shown."""
+    largest = max((abs(value) for value in values if isinstance(value, float)), default=0.0)
+    return next(((factor, name) for least, factor, name in SCALES.get(unit, ()) if largest >= least), (1.0, unit))
 
 
 def _kind(text: str) -> str:
@@ -139,7 +160,7 @@ def inputs(listed_inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
         )
         of = f" of {safe(name)}" if len(listed_inputs) > 1 else ""
         heads = _heads("input", "value", "unit", "", "what it is")
-        tables.append(f"<details open><summary>All inputs{of}</summary><table>{heads}{body}</table></details>")
+        tables.append(f"<details><summary>All inputs{of}</summary><table>{heads}{body}</table></details>")
     note = (
         "<p>Marked as <b>assumed</b>: no source gives the value, it is the package's default. "
         "Marked as <b>estimated</b>: derived from the catalogue's numbers.</p>"
