@@ -459,3 +459,50 @@ def test_an_estimated_cage_follows_its_material() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         trb.Simulation(trb.Scene(light, speed_rpm=300.0, axial_load=3000.0))
+
+
+ROWS = [
+    line.split(",")
+    for line in (Path(__file__).parent / "catalogue_rows.csv").read_text(encoding="utf-8").splitlines()[2:]
+]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
+def test_rows_of_catalogues(row: list[str]) -> None:
+    """None is refused or warned of what nobody gave; estimates lie in their bands, and rollers within the cup."""
+    d, outside, width, rating, e = (float(cell) for cell in row[1:])
+    bearing = trb.Bearing.from_catalogue(
+        bore=1e-3 * d, outside=1e-3 * outside, width=1e-3 * width, C=1e3 * rating, e=e, name=row[0]
+    )
+    assert all(one.low <= one.value <= one.high for one in bearing.estimated)
+    cup = (0.66 if e > 0.7 else 0.78) * 1e-3 * width / math.cos(math.radians(bearing.cup_half_angle_deg))
+    assert bearing.roller.effective_length < 0.97 * cup
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        trb.Simulation(trb.Scene(bearing, speed_rpm=1000.0, axial_load=40.0 * rating))
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"C0": 86.5}, "86.5 kN are 86500 N"),
+        ({"C0": 865e3}, "0.6 to 4 times C"),
+        ({"C0": 20e3}, "0.6 to 4 times C"),
+        ({"C0": 86.5e3, "Cu": 9.8}, "9.8 kN are 9800 N"),
+        ({"B": 0.023}, "width of the cone"),
+        ({"a": 0.019}, "pressure centre"),
+        ({"Y1": 1.6}, "is called Y here"),
+        ({"Pu": 9800.0}, "is called Cu here"),
+        ({"widht": 0.02}, "did you mean width"),
+    ],
+)
+def test_what_a_page_can_hardly_mean(changes: dict[str, float], said: str) -> None:
+    page = {"bore": 0.040, "outside": 0.080, "width": 0.02475, "C": 74.8e3, "e": 0.37}
+    with pytest.raises(trb.InputError, match=said):
+        trb.Bearing.from_catalogue(**page, **changes)
+
+
+def test_factors_of_a_page_reach_its_rating() -> None:
+    page = {"bore": 0.040, "outside": 0.080, "width": 0.02475, "C": 74.8e3, "e": 0.37}
+    bearing = trb.Bearing.from_catalogue(**page, C0=86.5e3, Y0=0.9, Cu=9800.0)
+    assert (bearing.ratings.static, bearing.ratings.Y0, bearing.ratings.fatigue_limit) == (86.5e3, 0.9, 9800.0)

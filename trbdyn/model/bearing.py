@@ -278,6 +278,8 @@ class Bearing(Model):
         e: float | None = None,
         Y: float | None = None,
         C0: float | None = None,
+        Y0: float | None = None,
+        Cu: float | None = None,
         cup_width: float | None = None,
         n_rollers: int | None = None,
         roller_diameter: float | None = None,
@@ -301,10 +303,10 @@ class Bearing(Model):
         ----------
         bore, outside, width : float
             Boundary dimensions d, D and T (m).
-        C, C0 : float
-            Basic dynamic and static load rating (N); C0 is optional and kept for `trbdyn.rating`.
-        e, Y : float, optional
-            Calculation factors; one of them, or the contact angle, must be given, and they must agree (1).
+        C, C0, Cu : float
+            Ratings and fatigue load limit, also called Pu (N); C alone is needed, the others are for `trbdyn.rating`.
+        e, Y, Y0 : float, optional
+            Calculation factors; e or Y, or the contact angle, must be given, and they must agree (1).
         n_rollers : int, optional
             Z.
         roller_diameter, roller_length, pitch_diameter, cup_width : float, optional
@@ -343,6 +345,8 @@ class Bearing(Model):
             e=e,
             Y=Y,
             C0=C0,
+            Y0=Y0,
+            Cu=Cu,
             cup_width=cup_width,
             n_rollers=n_rollers,
             roller_diameter=roller_diameter,

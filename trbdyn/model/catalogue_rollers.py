@@ -48,6 +48,12 @@ FILL: Final = Usual(0.85, 0.03, 0.80, 0.90)
 """Share of the pitch circle that rollers take, Z Dwe/(pi Dpw)."""
 CUP_WIDTH: Final = Usual(0.78, 0.015, 0.75, 0.82)
 """Width of the cup over that of the bearing, as in ISO 355's dimension series."""
+STEEP_CUP_WIDTH: Final = Usual(0.66, 0.02, 0.60, 0.72)
+"""The same of bearings with a steep cup (e from 0.7, as the series 313), whose cone stands out further."""
+STEEP_DEG: Final = (22.0, 25.0)
+"""Half angles of the cup up to which it is as wide as usual, and from which it is as wide as that of steep bearings (deg)."""
+NEAR: Final = 0.9
+"""C of a catalogue over the smallest one that was found possible, down to which the smallest rollers are taken."""
 MAKER: Final = Usual(1.0, 0.20, 0.80, 1.50)
 """C of a catalogue over that of ISO 281 with b_m = 1.1: steel, finish, and what makers have raised since. One and the same
 bearing, a 32208, has 74.8 kN in one catalogue and 105 kN in another one."""
@@ -94,8 +100,19 @@ class Page:
     def pitch_diameter(self) -> float:
         return PITCH.value * self.mean if self.pitch is None else self.pitch
 
-    def along(self, share: float = CUP_WIDTH.value) -> float:
+    @property
+    def cup_share(self) -> Usual:
+        """Width of the cup over that of the bearing, by the angle."""
+        low, high = STEEP_DEG
+        part = min(max((self.angle - low) / (high - low), 0.0), 1.0)
+        ends = (
+            (getattr(one, name) for one in (CUP_WIDTH, STEEP_CUP_WIDTH)) for name in ("value", "spread", "low", "high")
+        )
+        return Usual(*(usual + part * (steep - usual) for usual, steep in ends))
+
+    def along(self, share: float | None = None) -> float:
         """Width of the cup along the raceway; `share` of the bearing's width where that of the cup is not known."""
+        share = self.cup_share.value if share is None else share
         width = share * self.width if self.cup_width is None else self.cup_width
         return width / math.cos(math.radians(self.angle))
 
@@ -190,6 +207,11 @@ def solve(page: Page, C: float) -> tuple[Rollers, float]:
     known = page.maker_factor is not None and None not in (page.n_rollers, page.diameter, page.length)
     if known and lowest * 0.97 <= C <= 1.03 * highest:
         return sizes(0.0), factor(0.0)
+    if NEAR * lowest <= C < lowest and page.maker_factor is None:
+        smallest = sizes(-_LARGEST)
+        count = smallest.count if page.n_rollers is not None else max(3, math.floor(smallest.count + 0.5))
+        smallest = replace(smallest, count=count)
+        return smallest, C / smallest.rating
     if not lowest <= C <= highest:
         raise _wrong_rating(page, C, lowest, highest)
     found = sizes(brentq(above, -_LARGEST, _LARGEST, xtol=1e-10))
@@ -237,5 +259,7 @@ def _wrong_rating(page: Page, C: float, lowest: float, highest: float) -> InputE
         hint = f": {C:g} kN are {1e3 * C:g}"
     elif page.maker_factor is not None:
         hint = " with this maker_factor"
+    else:
+        hint = "; give n_rollers, roller_diameter or roller_length if this bearing is different"
     limit = f"must be from {lowest:.3g} to {highest:.3g} for rollers that fit these dimensions (N){hint}"
     return InputError.of("C", C, limit)
