@@ -117,7 +117,9 @@
   X(oil,        shear_modulus_floor,       "Pa",        1,      1e10,   "smallest limiting shear modulus Ginf") \
   X(oil,        oil_density,               "kg/m3",     1,      3000,   "density of the oil") \
   X(effects,    starvation_factor,         "1",         1e-4,   1,      "factor of every film thickness and of rolling resistance") \
-  X(effects,    replenishment,             "s/rad",     0,      1,      "decline of the film's supply with the speed of the rings: factor exp(-c speed) of films and rolling resistance on raceways") \
+  X(effects,    replenishment,             "s/rad",     0,      1,      "decline of the supply of raceways with the speed of the rings: factor exp(-c speed) of their rolling resistance") \
+  X(effects,    oil_height,                "m",         0,      1,      "height of the oil before the contacts on raceways; 0: they are flooded") \
+  X(effects,    hysteresis,                "1",         0,      0.5,    "share of a contact's elastic energy that the steel of rollers and raceways loses; 0: none") \
   /* friction */ \
   X(friction,   lambda_boundary,           "1",         0,      100,    "film parameter below which friction is boundary") \
   X(friction,   lambda_full,               "1",         1e-3,   100,    "film parameter above which friction is full film") \
@@ -126,6 +128,7 @@
   X(friction,   rib_asperity_factor,       "1",         0,      1000,   "B of exp(-B Lambda^C) at ribs") \
   X(friction,   rib_asperity_exponent,     "1",         0.01,   10,     "C of exp(-B Lambda^C) at ribs") \
   X(friction,   boundary_limit,            "1",         0,      10,     "boundary friction at large slip (0.1)") \
+  X(friction,   rib_boundary_limit,        "1",         0,      10,     "the same at ribs") \
   X(friction,   boundary_slope,            "1",         0,      1e4,    "slope term of boundary friction (22.28)") \
   X(friction,   boundary_decay,            "1",         1e-3,   1e5,    "decay of boundary friction (181.46)") \
   X(friction,   dry_friction,              "1",         0,      10,     "Coulomb friction coefficient of dry contacts and of traction 'coulomb'") \

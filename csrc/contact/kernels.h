@@ -22,7 +22,7 @@ enum { TRB_TILE_LANES = 256, TRB_TILE_FILL = 64, TRB_LANE_STRIDE = TRB_TILE_LANE
   X(slide_roll,     "1",   "slide-roll ratio") \
   X(film_elastic,   "m",   "piezoviscous-elastic film") \
   X(film_rigid,     "m",   "isoviscous-rigid film") \
-  X(thermal_factor, "1",   "thermal film factor, times that of replenishment") \
+  X(thermal_factor, "1",   "thermal film factor") \
   X(film,           "m",   "central film thickness") \
   X(film_parameter, "1",   "film parameter Lambda") \
   X(traction_coefficient, "1", "friction coefficient of the full film") \

@@ -37,7 +37,7 @@
 typedef struct trb_pass_kind {
   double mean_pressure; /* mean Hertz pressure over the largest */
   double roughness;     /* composite rms, m */
-  double replenishment; /* decline of the film's supply with the mean speed, s/m */
+  double boundary_limit;
   double asperity_factor, asperity_exponent;
 } trb_pass_kind;
 
@@ -68,15 +68,6 @@ static inline void pass_thermal(const trb_model *m, int n, trb_lanes *l)
   }
   TRB_LANES for (int i = 0; i < n; i++) l->thermal_factor[i] =
       trb_film_thermal(l->pressure[i] / modulus, base + 2.0 * l->log_u[i], log(l->slide_roll[i]), floor);
-}
-
-/* What fast rollers push aside does not flow back in time (SKF's factor of replenishment, which takes the inlet's supply): on films and
- * rolling resistance like the thermal factor. */
-static inline void pass_replenishment(const trb_pass_kind *kind, int n, trb_lanes *l)
-{
-  const double decline = kind->replenishment;
-  TRB_PADDED(n);
-  TRB_LANES for (int i = 0; i < n; i++) l->thermal_factor[i] *= exp(-decline * l->mean_speed[i]);
 }
 
 /* (3), and (11) at the rib, with a starvation factor. */
@@ -132,9 +123,9 @@ static inline void pass_coulomb(const trb_model *m, int n, trb_lanes *l, double 
 }
 
 /* (6) boundary friction. */
-static inline void pass_boundary(const trb_model *m, int n, trb_lanes *l)
+static inline void pass_boundary(const trb_model *m, const trb_pass_kind *kind, int n, trb_lanes *l)
 {
-  const double limit = m->params.boundary_limit, slope = m->params.boundary_slope, decay = m->params.boundary_decay;
+  const double limit = kind->boundary_limit, slope = m->params.boundary_slope, decay = m->params.boundary_decay;
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++) l->boundary_coefficient[i] = trb_friction_boundary(l->slide_roll[i], limit, slope, decay);
 }
@@ -182,7 +173,7 @@ static inline void pass_friction(const trb_model *m, const trb_pass_kind *kind, 
     return;
   }
   if (p->lubrication == TRB_LUBRICATION_BOUNDARY) {
-    pass_boundary(m, n, l);
+    pass_boundary(m, kind, n, l);
     counters->boundary_nodes += n;
     copy_lanes(n, l->boundary_coefficient, l->friction_coefficient);
     return;
@@ -198,7 +189,7 @@ static inline void pass_friction(const trb_model *m, const trb_pass_kind *kind, 
   }
   /* boundary friction only where some film is thin enough to share it */
   if (p->lubrication == TRB_LUBRICATION_MIXED && (p->mixed_law > 0.0 || thinnest(n, l) < p->lambda_full)) {
-    pass_boundary(m, n, l);
+    pass_boundary(m, kind, n, l);
     counters->boundary_nodes += n;
     pass_mix(m, kind, n, l);
   } else {

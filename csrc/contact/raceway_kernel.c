@@ -128,6 +128,36 @@ static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
+/* What fast rollers push aside does not flow back in time: SKF's factor of replenishment, on rolling resistance alone. */
+static void pass_replenishment(const trb_model *m, int n, trb_lanes *l)
+{
+  const double decline = m->replenishment;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++) l->rolling[i] *= exp(-decline * l->mean_speed[i]);
+}
+
+/* A meniscus before the contact takes more of the rolling resistance than of the film. */
+static void pass_meniscus(const trb_model *m, int n, trb_lanes *l)
+{
+  const double base_w = m->log_palmgren - m->log_modulus, base_u = m->log_viscosity - m->log_modulus, log_g = m->log_g;
+  const double height = m->params.oil_height;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++)
+  {
+    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->log_d[i] - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i];
+    const double smallest = trb_max(l->radius[i] * trb_film_line_smallest(log_w, log_u, log_g), l->film_rigid[i]);
+    l->rolling[i] *= trb_rolling_meniscus(height / smallest);
+  }
+}
+
+/* Where the speed is small it goes smoothly to zero with the mean velocity, as the film's force does with its direction. */
+static void pass_hysteresis(const trb_model *m, int n, trb_lanes *l)
+{
+  const double factor = m->params.hysteresis;
+  TRB_PADDED(n);
+  TRB_LANES for (int i = 0; i < n; i++) l->rolling[i] += l->load[i] * trb_rolling_hysteresis(factor, l->half_width[i], l->radius[i]);
+}
+
 /* F = q (1 + c d_dot), never pulling, with c of Hunt & Crossley or of a film. */
 static double pass_damping(const trb_model *m, int first, int n, trb_lanes *l)
 {
@@ -274,7 +304,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   const int           all = n_loaded * n;
   const trb_pass_kind kind = {.mean_pressure = TRB_LINE_MEAN_PRESSURE,
                               .roughness = m->params.roughness_raceway,
-                              .replenishment = m->replenishment,
+                              .boundary_limit = m->params.boundary_limit,
                               .asperity_factor = m->params.asperity_factor,
                               .asperity_exponent = m->params.asperity_exponent};
   if (all == 0) return;
@@ -296,12 +326,20 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
       pass_thermal(m, all, l);
       counters->thermal_nodes += all;
     }
-    if (kind.replenishment > 0.0) pass_replenishment(&kind, all, l);
     pass_film_parameter(m, &kind, all, l);
   }
   if (m->friction) pass_friction(m, &kind, all, l, counters);
   if (rolling) {
     pass_rolling(m, all, l);
+    if (m->replenishment > 0.0) pass_replenishment(m, all, l);
+    if (m->params.oil_height > 0.0) {
+      pass_meniscus(m, all, l);
+      counters->meniscus_nodes += all;
+    }
+    if (m->params.hysteresis > 0.0) {
+      pass_hysteresis(m, all, l);
+      counters->hysteresis_nodes += all;
+    }
     counters->rolling_nodes += all;
   }
   sum_outputs(m, inputs, loaded, n_loaded, rolling, l, counters, outputs);

@@ -12,6 +12,12 @@ static inline double trb_film_line_elastic(double log_w, double log_u, double lo
   return exp(1.0722683133285078 - 0.166 * log_w + 0.692 * log_u + 0.470 * log_g);
 }
 
+/* The smallest film of the same: h/Re = 1.714 W^-0.128 U^0.694 G^0.568 (Pan & Hamrock 1989). */
+static inline double trb_film_line_smallest(double log_w, double log_u, double log_g)
+{
+  return exp(0.5388299 - 0.128 * log_w + 0.694 * log_u + 0.568 * log_g);
+}
+
 /* (5) line, isoviscous-rigid: h/Re = 4.9 U/W (Martin). */
 static inline double trb_film_line_rigid(double u_over_w) { return 4.9 * u_over_w; }
 

@@ -62,6 +62,17 @@ static inline double trb_rolling_line(int law, double log_w, double log_u, doubl
   return power.factor * exp(power.material * log_g) * trb_rolling_power_at(power, log_w, log_u, log_g);
 }
 
+/* Share of rolling resistance that a meniscus at a height of oil leaves, S: that height over the smallest film of a flooded contact (Biboulet &
+ * Houpert 2010, part 1, eq. 44; fitted down to S = 2). */
+static inline double trb_rolling_meniscus(double s) { return (s * s + 162.8 * s) / (s * s + 193.1 * s + 1257.0); }
+
+/* Elastic hysteresis of a line contact, whose moment is a_v 2 b/(3 pi) times the load (Johnson 1985, 9.1): as the force F on each surface that
+ * loses as much, over the load. */
+static inline double trb_rolling_hysteresis(double loss_factor, double half_width, double radius)
+{
+  return loss_factor * half_width / (3.0 * TRB_PI * radius);
+}
+
 static inline double trb_rolling_share(double elastic_over_rigid, double half_width)
 {
   return trb_smooth_step(elastic_over_rigid, 1.0 - half_width, 1.0 + half_width);

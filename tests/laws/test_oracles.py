@@ -204,3 +204,43 @@ def test_logarithmic_profile_where_it_begins() -> None:
         square = share * x**2
         drop = laws.profile_logarithmic(0.5 + 0.5 * x, length, k1, k2, 2.0 * amplitude, load, MODULUS)
         assert drop == pytest.approx(amplitude * square * (1.0 + 0.5 * square), rel=1e-11, abs=0.0)
+
+
+@pytest.mark.parametrize(("half_widths", "share"), [(5.0, 0.61), (3.0, 0.38), (2.0, 0.21), (1.5, 0.12)])
+def test_a_meniscus_takes_rolling_resistance(half_widths: float, share: float) -> None:
+    """Its place in half widths of a Hertz contact at W 5e-5, U 1.2e-10, G 4460; shares as an independent code has them from the
+    same law, and a solver of the contact 0.72, 0.50, 0.27, 0.11."""
+    w, u, g = 5e-5, 1.2e-10, 4460.0
+    root = math.sqrt(half_widths**2 - 1.0)
+    gap = 4.0 * w / math.pi * (half_widths * root - math.log(half_widths + root))
+    smallest = laws.film_line_smallest(w, u, g)
+    assert laws.rolling_meniscus((smallest + gap) / smallest) == pytest.approx(share, abs=0.045)
+
+
+def test_a_meniscus_far_away_takes_nothing() -> None:
+    assert laws.rolling_meniscus(1e9) == pytest.approx(1.0, abs=1e-6)
+    heights = np.geomspace(0.1, 1e4, 200)
+    assert np.all(np.diff(laws.rolling_meniscus(heights)) > 0.0)
+
+
+def test_hysteresis_loses_its_share_of_the_moment() -> None:
+    """The moment a_v 2 b/(3 pi) Q turns by u/Re a second; two surfaces with F each lose 2 F u."""
+    loss, b, radius, load, u = 0.01, 1e-4, 6e-3, 500.0, 7.0
+    lost = loss * 2.0 * b / (3.0 * math.pi) * load * u / radius
+    assert 2.0 * laws.rolling_hysteresis(loss, b, radius) * load * u == pytest.approx(lost, rel=1e-12)
+
+
+@pytest.mark.parametrize("changes", [{"oil_height": 2e-5}, {"hysteresis": 0.02}, {"replenishment": 6e-8}], ids=str)
+def test_supply_and_hysteresis_are_booked(changes: dict[str, float]) -> None:
+    """The energy adds up with each of them; films keep their thickness."""
+    plain = cases.scene_30310(effects=Effects(n_slices=8))
+    runs = {}
+    for name, effects in {"off": plain.effects, "on": plain.effects.replace(changes)}.items():
+        sim = Simulation(plain.replace(effects=effects), accuracy="reference")
+        runs[name] = (sim.contacts(), sim.run(duration=2e-3).summary())
+        assert runs[name][1]["energy_closure"] < 1e-5
+    ratio = runs["on"][1]["torque"] / runs["off"][1]["torque"]
+    assert ratio > 1.002 if "hysteresis" in changes else ratio < 0.95
+    loaded = runs["off"][0]["raceway_load"] > 0.0
+    films = [runs[name][0]["raceway_film"][loaded] for name in ("on", "off")]
+    assert films[0] == pytest.approx(films[1], rel=1e-3)

@@ -54,6 +54,8 @@ SWITCHES: dict[str, tuple[dict[str, Any], dict[str, Any], tuple[str, ...]]] = {
         {"guidance": "outer_land", "pocket_bars": False, "gravity": False},
         ("land_contacts",),
     ),
+    "oil_height": ({"oil_height": 2e-5}, {"oil_height": 0.0}, ("meniscus_nodes",)),
+    "hysteresis": ({"hysteresis": 0.02}, {"hysteresis": 0.0}, ("hysteresis_nodes",)),
     "damping": ({"damping": "hunt_crossley"}, {"damping": "off"}, ("damping_nodes",)),
 }
 

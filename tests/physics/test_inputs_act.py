@@ -386,8 +386,18 @@ def test_nothing_is_forgotten() -> None:
     here |= {"damping", "conductivity", "temperature_coefficient", "damping_race", "damping_cage", "cage_inertia_axial"}
     here |= {"cage_inertia_transverse", "front_rib_clearance", "film_damping", "film_damping_depth"}
     # of laws: tests/laws/test_in_contacts.py, tests/physics/test_drag.py, test_contacts.py and test_film_damping.py there
+    here |= {"profile_a", "profile_c", "profile_d", "profile_k"}  # tests/geometry/test_profiles.py
     here |= {"asperity_factor", "asperity_exponent", "rib_asperity_factor", "rib_asperity_exponent"}
-    here |= {"replenishment", "cage_face_inner", "cage_face_outer", "pocket_film", "roughness_pocket"}
+    here |= {
+        "replenishment",
+        "oil_height",
+        "hysteresis",
+        "rib_boundary_limit",
+        "cage_face_inner",
+        "cage_face_outer",
+        "pocket_film",
+        "roughness_pocket",
+    }
     switches = {"quadrature", "with_cage", "planar", "lubrication", "traction", "thermal", "rolling_resistance"}
     switches |= {
         "rolling_pressure_force",

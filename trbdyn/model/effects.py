@@ -7,10 +7,10 @@ from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import model_validator
 
-from trbdyn.base.validation import Flag, Model, Number, Whole, split_paths
+from trbdyn.base.validation import Flag, Model, Number, Whole, split_paths, unit
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.core_table import parameter
-from trbdyn.model.lubricants.supply import OIL_SUPPLIES
+from trbdyn.model.lubricants.supply import OIL_SUPPLIES, REPLENISHMENT
 
 FILMED: Final = ("mixed", "full_film")
 """Kinds of lubrication with films."""
@@ -30,6 +30,8 @@ class Friction(Model):
         The same at the back-face rib (1).
     boundary_limit, boundary_slope, boundary_decay : float
         mu_bd = (-limit + slope s) exp(-decay s) + limit of the slide-roll ratio s (1).
+    rib_boundary_limit : float
+        The limit at ribs (1). Aihara 1987 and Zhou and Hoeprich 1991 have 0.2 there; the default is the paper's.
     dry_friction : float
         Coulomb coefficient of dry contacts and of traction 'coulomb' (1); assumed.
     coulomb_speed : float
@@ -56,6 +58,7 @@ class Friction(Model):
     rib_asperity_factor: Annotated[Number, parameter("rib_asperity_factor")] = 1.90
     rib_asperity_exponent: Annotated[Number, parameter("rib_asperity_exponent")] = 0.99
     boundary_limit: Annotated[Number, parameter("boundary_limit")] = 0.1
+    rib_boundary_limit: Annotated[Number, parameter("rib_boundary_limit")] = 0.1
     boundary_slope: Annotated[Number, parameter("boundary_slope")] = 22.28
     boundary_decay: Annotated[Number, parameter("boundary_decay")] = 181.46
     dry_friction: Annotated[Number, parameter("dry_friction")] = 0.1
@@ -115,10 +118,17 @@ class Effects(Model):
     mixed_law : {'power', 'exponential'}
         Share of boundary friction in mixed lubrication: the sixth power of the paper (eq. 2), which ends at a film parameter of
         1.5, or the share exp(-B Lambda^C) of the load that asperities carry, with the constants of `friction`.
-    replenishment : float
-        Decline of the films and the rolling resistance on raceways with speed, exp(-c abs(speed)), as fast rollers do not leave
-        enough oil to those that follow; c in seconds, of the speed of the rings against each other in rad/s. 0: none;
-        `trbdyn.lubricants.replenishment_decline` gives SKF's.
+    replenishment : float or {'flooded', 'bath', 'jet', 'oil_air', 'grease'}
+        SKF's constant K_rs (for mm2/s, rpm and mm; 0: none), or a state of lubrication by its name in
+        `trbdyn.lubricants.REPLENISHMENT`: rolling resistance on raceways falls by exp[-K_rs nu n (d + D) sqrt(6/(2 (D - d)))], as
+        fast rollers do not leave enough oil to those that follow. d + D is twice the pitch diameter here, and D - d four roller
+        diameters. Films keep their thickness.
+    oil_height : float
+        Height of the oil before each contact on a raceway (m), 0: as much as it takes. Rolling resistance is that of a contact
+        whose meniscus lies where the gap is as high (Biboulet and Houpert 2010); films keep their thickness.
+    hysteresis : float
+        Share of a contact's elastic energy that the steel loses as rollers pass (1), 0: none. Johnson has about 0.01; it acts
+        with `rolling_resistance`.
     rolling_resistance : bool
         EHL rolling resistance; acts where there are films.
     rolling_law : {'zhou_hoeprich', 'goksem_hargreaves', 'aihara', 'matsuyama', 'biboulet_houpert'}
@@ -184,7 +194,9 @@ class Effects(Model):
     thermal: Flag = True
     thermal_law: Literal["gupta", "aihara"] = "gupta"
     mixed_law: Literal["power", "exponential"] = "power"
-    replenishment: Annotated[Number, parameter("replenishment")] = 0.0
+    replenishment: Annotated[Number, unit("1", ge=0, le=1e-6)] = 0.0
+    oil_height: Annotated[Number, parameter("oil_height")] = 0.0
+    hysteresis: Annotated[Number, parameter("hysteresis")] = 0.0
     rolling_resistance: Flag = True
     rolling_law: Literal["zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert"] = (
         "biboulet_houpert"
@@ -230,6 +242,12 @@ class Effects(Model):
                     "oil_fill", fill, f"must be from 0 to 1, or a name: {unknown_name(fill, OIL_SUPPLIES)}"
                 )
             values = {**values, "oil_fill": OIL_SUPPLIES[fill].fill}
+        state = values.get("replenishment")
+        if isinstance(state, str):
+            if state not in REPLENISHMENT:
+                allowed = f"must be from 0 to 1e-6, or a name: {unknown_name(state, REPLENISHMENT)}"
+                raise InputError.of("replenishment", state, allowed)
+            values = {**values, "replenishment": REPLENISHMENT[state].value}
         return values
 
     @model_validator(mode="after")

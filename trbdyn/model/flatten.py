@@ -22,7 +22,7 @@ from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
 from trbdyn.model.growth import running_clearance, running_pockets
-from trbdyn.model.lubricants import Dicke, Lubricant
+from trbdyn.model.lubricants import Dicke, Lubricant, replenishment_decline
 from trbdyn.model.motion import History, common_period, joint_times, knot_table, settled_time, value_at
 from trbdyn.model.ring_body import Housing
 
@@ -216,6 +216,7 @@ def scene_entries(scene: Scene) -> Entries:
     return {
         **prefixed("bearing", bearing_entries(scene.bearing)),
         "land_clearance": land,
+        "replenishment": Entry(("effects", "replenishment"), _decline(scene)),
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
         **prefixed("effects", rib_entries(scene.bearing, scene.effects)),
@@ -224,6 +225,12 @@ def scene_entries(scene: Scene) -> Entries:
         **housing_entries(scene),
         **elastic_entries(scene),
     }
+
+
+def _decline(scene: Scene) -> float:
+    bearing = scene.bearing
+    size = {"pitch_diameter": bearing.pitch_diameter, "roller_diameter": bearing.roller.diameter}
+    return replenishment_decline(scene.lubricant, scene.effects.replenishment, **size)
 
 
 def rib_entries(bearing: Bearing, effects: Effects) -> Entries:

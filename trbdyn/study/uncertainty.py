@@ -20,7 +20,7 @@ from trbdyn.base.validation import Model, Number
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.lubricants import supply_of
+from trbdyn.model.lubricants import REPLENISHMENT, supply_of
 from trbdyn.model.scene import Scene
 from trbdyn.results.quantities import QUANTITIES as SUMMARY
 from trbdyn.run.options import RunOptions
@@ -216,6 +216,11 @@ def _open_inputs(prefix: str, part: Scene | ShaftBearing) -> list[Band]:
                 source="0.07 to 0.2, published",
             )
         )
+    for state in REPLENISHMENT.values():
+        if effects.films and effects.rolling_resistance and effects.replenishment == state.value > 0.0:
+            source = f"{state.words}: assumed"
+            found.append(Band(path="effects.replenishment", low=state.low, high=state.high, source=source))
+            break
     if effects.oil_fill > 0.0:
         supply = supply_of(effects.oil_fill)
         low, high = (0.0, min(2.0 * effects.oil_fill, 1.0)) if supply is None else (supply.low, supply.high)

@@ -37,9 +37,10 @@ from trbdyn.model.lubricants.shipped import (
 )
 from trbdyn.model.lubricants.supply import (
     OIL_SUPPLIES,
+    REPLENISHMENT,
     OilSupply,
+    Replenishment,
     bath_fill,
-    replenishment,
     replenishment_decline,
     supply_of,
 )
@@ -56,11 +57,13 @@ __all__ = [
     "MINERAL",
     "OILS",
     "OIL_SUPPLIES",
+    "REPLENISHMENT",
     "Dicke",
     "Lubricant",
     "Oil",
     "OilSupply",
     "PressureLaw",
+    "Replenishment",
     "Vogel",
     "astm_d341",
     "atf",
@@ -69,7 +72,6 @@ __all__ = [
     "gear_75w90",
     "gear_80w90",
     "iso_vg",
-    "replenishment",
     "replenishment_decline",
     "supply_of",
     "vg32",

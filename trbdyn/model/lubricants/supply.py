@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from trbdyn.base.validation import number_of
-from trbdyn.errors import InputError, unknown_name
+from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -42,8 +42,36 @@ OIL_SUPPLIES: Final = {
 same for all bearings and speeds."""
 
 
-REPLENISHMENT: Final = {"low_bath": 3e-8, "oil_air": 6e-8}
-"""SKF's constant K_rs by the supply of oil."""
+class Replenishment(NamedTuple):
+    """SKF's constant of a state of lubrication.
+
+    Attributes
+    ----------
+    value : float
+        K_rs.
+    low, high : float
+        Band in which it may lie: assumed.
+    words : str
+        What the state is.
+    """
+
+    value: float
+    low: float
+    high: float
+    words: str
+
+
+REPLENISHMENT: Final = {
+    "flooded": Replenishment(0.0, 0.0, 3e-8, "the bearing lies below the oil"),
+    "bath": Replenishment(3e-8, 0.0, 6e-8, "bath to the middle of the lowest roller"),
+    "jet": Replenishment(3e-8, 0.0, 6e-8, "jet of oil"),
+    "oil_air": Replenishment(6e-8, 3e-8, 9e-8, "oil and air"),
+    "grease": Replenishment(6e-8, 3e-8, 9e-8, "grease, with the viscosity of its base oil"),
+}
+"""States by the names that `Effects.replenishment` takes, with SKF's constants: 3e-8 for a low bath or a jet, 6e-8 for oil and
+air or grease. The bands are assumed."""
+SECTION_ROLLERS: Final = 4.0
+"""D - d over the roller's diameter: assumed, as rollers take about half of the section's height."""
 
 
 def supply_of(fill: float) -> OilSupply | None:
@@ -89,32 +117,25 @@ def bath_fill(bearing: Bearing, level: float) -> float:
     return below / (math.pi * (outer**2 - inner**2))
 
 
-def replenishment_decline(lubricant: Lubricant, *, bore: float, outside: float, supply: str = "low_bath") -> float:
-    """How fast the supply of the contacts declines with speed, by SKF's kinematic replenishment of a tapered roller bearing: for
-    `Effects.replenishment`.
-
-    Oil that rollers push aside is not all back when the next one comes. SKF multiplies rolling resistance by a factor for that;
-    the simulation thins the films of the raceways by it as well.
+def replenishment_decline(
+    lubricant: Lubricant, constant: float, *, pitch_diameter: float, roller_diameter: float
+) -> float:
+    """How fast rolling resistance declines with speed, by SKF's kinematic replenishment of a tapered roller bearing.
 
     Parameters
     ----------
     lubricant : Lubricant
         The oil at its temperature.
-    bore, outside : float
-        Bore d and outside diameter D of the bearing (m).
-    supply : {'low_bath', 'oil_air'}
-        A low bath or a jet (K_rs 3e-8), or oil and air or grease (6e-8).
+    constant : float
+        K_rs.
+    pitch_diameter, roller_diameter : float
+        Dpw and Dwe (m): (d + D)/2 is the former, D - d four times the latter.
 
     Returns
     -------
     float
         c of the factor exp(-c speed) (s): K_rs nu n (d + D) sqrt(K_Z/(2 (D - d))) over the speed in rad/s, with K_Z = 6, nu in
         mm2/s, n in rpm, d and D in mm.
-
-    Raises
-    ------
-    InputError
-        If the supply is unknown, or the diameters are no bearing's.
 
     Notes
     -----
@@ -124,50 +145,12 @@ def replenishment_decline(lubricant: Lubricant, *, bore: float, outside: float, 
     --------
     >>> import trbdyn as trb
     >>> oil = trb.lubricants.vg100(50.0)
-    >>> decline = trb.lubricants.replenishment_decline(oil, bore=0.080, outside=0.140)
-    >>> effects = trb.Effects.standard().replace(replenishment=decline)
-    >>> round(decline, 6)
-    0.000855
+    >>> round(trb.lubricants.replenishment_decline(oil, 3e-8, pitch_diameter=0.1085, roller_diameter=0.017), 6)
+    0.000792
     """
-    if supply not in REPLENISHMENT:
-        raise InputError.of("supply", supply, unknown_name(supply, REPLENISHMENT))
-    if not 0.0 < number_of("bore", bore) < number_of("outside", outside) < 10.0:
-        raise InputError.of("bore", bore, f"must be above 0 and below outside, {outside:g}, below 10 (m)")
-    d, outer = 1e3 * bore, 1e3 * outside
+    across, section = 2e3 * pitch_diameter, 1e3 * SECTION_ROLLERS * roller_diameter
     viscosity, turns = 1e6 * lubricant.viscosity / lubricant.density, 30.0 / math.pi
-    return REPLENISHMENT[supply] * viscosity * turns * (d + outer) * math.sqrt(6.0 / (2.0 * (outer - d)))
-
-
-def replenishment(
-    lubricant: Lubricant, speed_rpm: float, *, bore: float, outside: float, supply: str = "low_bath"
-) -> float:
-    """The factor of `replenishment_decline` at one speed: for `Effects.starvation_factor`, which thins every film.
-
-    Parameters
-    ----------
-    lubricant, bore, outside, supply
-        As of `replenishment_decline`.
-    speed_rpm : float
-        Speed of the shaft (rpm).
-
-    Returns
-    -------
-    float
-        exp(-c speed) (1).
-
-    Raises
-    ------
-    InputError
-        If the supply is unknown, or the diameters are no bearing's.
-
-    Examples
-    --------
-    >>> import trbdyn as trb
-    >>> round(trb.lubricants.replenishment(trb.lubricants.vg100(50.0), 4000.0, bore=0.080, outside=0.140), 3)
-    0.699
-    """
-    speed = abs(number_of("speed_rpm", speed_rpm)) * math.pi / 30.0
-    return math.exp(-replenishment_decline(lubricant, bore=bore, outside=outside, supply=supply) * speed)
+    return constant * viscosity * turns * across * math.sqrt(6.0 / (2.0 * section))
 
 
 def _segment(radius: float, height: float) -> float:
