@@ -6,6 +6,7 @@ one of them stands in `NOT_ENOUGH` with the reason.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -41,19 +42,20 @@ class Measurement:
     source : str
         Key of its source.
     bearing : str
-        Name in `trbdyn.cases.BEARINGS`.
+        Name in `validation.assumptions.BEARINGS`.
     quantity : str
-        'torque' (N m) or 'loaded_rollers' (1).
+        'torque' (N m), 'rolling_torque' (N m; without the ribs), 'loaded_rollers' (1) or 'torque_change' (%; where the radius of the
+        rollers' end sphere goes from 0.95 to 0.85 of the apex distance).
     value : float
         What was measured.
     reading_error : float
         How far the reading of a figure may be off, in the unit of the value.
     speed_rpm, axial_load, radial_load : float
         Speed (rpm) and loads (N); the radial load points down, into the oil.
-    ring_c : float
-        Temperature of the outer ring (C).
+    temperature_c : float
+        Temperature that the source gives (C), of what says `validation.assumptions`; not a number where it gives none.
     supply : str
-        State of lubrication.
+        State of lubrication, a name in `trbdyn.lubricants.REPLENISHMENT`.
     """
 
     source: str
@@ -64,9 +66,11 @@ class Measurement:
     speed_rpm: float
     axial_load: float
     radial_load: float
-    ring_c: float
+    temperature_c: float
     supply: str
 
+
+_FIGURES = "read from figures by others, good to 10 %"
 
 SOURCES: Final = (
     Source(
@@ -75,41 +79,75 @@ SOURCES: Final = (
         authors="P. Wingertszahn, O. Koch, L. Maccioni, F. Concli, B. Sauer",
         where="Lubricants 11 (2023) 369",
         doi="10.3390/lubricants11090369",
-        reading="read from figures by the maintainers of trbdyn, to about 0.05 N m",
+        reading=_FIGURES,
+    ),
+    Source(
+        key="Zhou 1991",
+        title="Torque of Tapered Roller Bearings",
+        authors="R. S. Zhou, M. R. Hoeprich",
+        where="ASME J. Tribology 113 (1991) 590-597",
+        doi="10.1115/1.2920664",
+        reading=f"{_FIGURES}; the load follows from the load group W that the source gives, 2.8 to 3.8 kN",
+    ),
+    Source(
+        key="Manjunath 2023",
+        title="Experimental Analysis of Rolling Torque and Thermal Inlet Shear Heating in Tapered Roller Bearings",
+        authors="M. Manjunath, D. Fauconnier, W. Ost, P. De Baets",
+        where="Machines 11 (2023) 801",
+        doi="10.3390/machines11080801",
+        reading=f"{_FIGURES}; the measured torque less that of the rib by SKF's formula",
+    ),
+    Source(
+        key="Zhang 2025",
+        title="Torque of a 32208 with other radii of the rollers' end sphere",
+        authors="Zhang, Li",
+        where="Machines 13 (2025) 910",
+        doi="10.3390/machines13100910",
+        reading="means of the text: 0.61 and 0.56 N m",
     ),
 )
 
-_TORQUE = {
-    (500.0, 0.0): 1.30,
-    (2000.0, 0.0): 2.95,
-    (4000.0, 0.0): 3.75,
-    (500.0, 6500.0): 1.50,
-    (1000.0, 6500.0): 1.95,
-    (2000.0, 6500.0): 2.50,
-    (4000.0, 6500.0): 3.25,
-}
+_AXIAL = {500.0: 1.30, 2000.0: 2.95, 4000.0: 3.75}
+_COMBINED = {500.0: 1.50, 1000.0: 1.95, 2000.0: 2.50, 4000.0: 3.25}
+_LM = {200.0: 0.45, 400.0: 0.2, 800.0: 0.115, 1600.0: 0.085, 2400.0: 0.09, 3200.0: 0.1, 4000.0: 0.11, 4800.0: 0.12}
+
+
+def _torques(
+    source: str,
+    bearing: str,
+    torques: dict[float, float],
+    error: float,
+    axial: float,
+    radial: float,
+    t: float,
+    supply: str,
+) -> list[Measurement]:
+    return [
+        Measurement(source, bearing, "torque", torque, max(error, 0.1 * torque), speed, axial, radial, t, supply)
+        for speed, torque in torques.items()
+    ]
+
 
 MEASUREMENTS: Final = (
-    *(
-        Measurement(
-            "Wingertszahn 2023", "32216", "torque", torque, 0.05, speed, 6000.0, radial, 50.0, "bath to half a roller"
-        )
-        for (speed, radial), torque in _TORQUE.items()
-    ),
-    Measurement(
-        "Wingertszahn 2023", "32216", "loaded_rollers", 16.0, 0.5, 500.0, 6000.0, 0.0, 50.0, "bath to half a roller"
-    ),
-    Measurement(
-        "Wingertszahn 2023", "32216", "loaded_rollers", 11.0, 0.5, 500.0, 6000.0, 16000.0, 50.0, "bath to half a roller"
-    ),
+    *_torques("Wingertszahn 2023", "32216", _AXIAL, 0.15, 6000.0, 0.0, 50.0, "bath"),
+    *_torques("Wingertszahn 2023", "32216", _COMBINED, 0.15, 6000.0, 6500.0, 50.0, "bath"),
+    *_torques("Zhou 1991", "LM12700", _LM, 0.01, 3600.0, 0.0, 80.0, "bath"),
+    Measurement("Manjunath 2023", "32008", "rolling_torque", 1.07, 0.107, 2200.0, 12850.0, 0.0, 55.0, "flooded"),
+    Measurement("Manjunath 2023", "32008", "rolling_torque", 0.95, 0.095, 2200.0, 12850.0, 0.0, 65.0, "flooded"),
+    Measurement("Wingertszahn 2023", "32216", "loaded_rollers", 16.0, 0.5, 500.0, 6000.0, 0.0, 50.0, "bath"),
+    Measurement("Wingertszahn 2023", "32216", "loaded_rollers", 11.0, 0.5, 500.0, 6000.0, 16000.0, 50.0, "bath"),
+    Measurement("Zhang 2025", "32208", "torque_change", -8.2, 8.0, 1800.0, 2160.0, 0.0, math.nan, "jet"),
 )
 
-_UNREAD = "measured torques are published in figures of which no reading is at hand"
-
 NOT_ENOUGH: Final = {
-    "32216 at 42 C (Wingertszahn 2023)": _UNREAD,
-    "LM12700, LM12749 (Zhou and Hoeprich 1991), HM801349": _UNREAD,
-    "LM501300, skew of 2.6 to 10.5 mrad under two greases": "the greases' viscosity, loads and temperature are not at hand",
+    "32216 at 42 C (Wingertszahn 2023)": "no reading of the figure is at hand",
+    "HM801349": "no reading is at hand",
+    "two HH926749, breakaway (Hu 2025)": "torque of a bearing that does not turn, in a grease that is not named: 25 N m at 5 kN and 42 N m at "
+    "25 kN, most of it without a load",
+    "30306 (SKF's tool)": "computed, not measured",
+    "LM501300, skew of 2.6 to 10.5 mrad under two greases": "loads, speeds and temperature are not at hand",
+    "FAG 807811.09, skew and tilt (Zhao 2026)": "powers are computed from measured motions; no torque",
     "30310 (Sakaguchi and Harada 2006)": "paths of the cage, no torque: benchmarks/paper",
+    "Timken's formula": "its factors G1 of these bearings are not at hand",
 }
 """What was published and could not be used, and why."""
