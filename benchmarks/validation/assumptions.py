@@ -1,18 +1,21 @@
 """One set of assumptions for every measurement, written down before the runs. Nothing in it is fitted to a measured number.
 
-- Bearings as the sources give them (`BEARINGS`). Where a source gives no profile, the rollers have that of ISO/TS 16281; where it gives
-  no roller diameter, rollers take 0.85 of the pitch circle; where no pitch diameter, it is the mean of bore and outside diameter.
+- Bearings as the sources give them (`BEARINGS`). Where a source gives no profile, the rollers have that of ISO/TS 16281; where
+  it gives no roller diameter, rollers take 0.85 of the pitch circle; where no pitch diameter, it is the mean of bore and outside
+  diameter.
 - The scene's temperature is that of films. Sources give that of the ring: films are as warm or warmer, from 3 K below (the
-  thermocouple) to 10 K above. Of the 32008 the source gives the temperature of the supplied oil: films are 10 K warmer, 0 to 25 K.
-- Supply of oil: SKF's replenishment of the state of lubrication, with the band of that state. Drag by the oil fill of that state.
+  thermocouple) to 10 K above. Of the 32008 the source gives the temperature of the supplied oil: films are 10 K warmer, 0 to
+  25 K.
+- Supply of oil: SKF's replenishment of the state of lubrication, with the band of that state. Drag by the oil fill of that
+  state.
 - Roughness 0.7 to 1.5 times the default, boundary friction 0.07 to 0.2 (raceways), 0.1 to 0.2 (ribs).
-- An assumed profile's a_p from 0 (straight) to 0.0005; load of the LM12700 2.8 to 3.8 kN; cup angle of the 32216 13.7 deg (the load
-  zone of the source) to 15.7 deg (catalogues); oil of the 32208 FVA3 at 40 to 80 C.
-- The laws of rolling resistance that can be defended are those of `DEFENDED`: the band of a torque goes from the lowest band to the
-  highest one of both.
+- An assumed profile's a_p from 0 (straight) to 0.0005; load of the LM12700 2.8 to 3.8 kN; cup angle of the 32216 13.7 deg (the
+  load zone of the source) to 15.7 deg (catalogues); oil of the 32208 FVA3 at 40 to 80 C.
+- The laws of rolling resistance that can be defended are those of `DEFENDED`: the band of a torque goes from the lowest band to
+  the highest one of both.
 
-The rule by which the default is chosen, written down before the runs: of all `OPTIONS`, in which the torques of both rings agree, the one
-with the smallest mean absolute error over all measured torques at 1000 rpm and above. The runner-up is named.
+The rule by which the default is chosen, written down before the runs: of all `OPTIONS`, in which the torques of both rings
+agree, the one with the smallest mean absolute error over all measured torques at 1000 rpm and above. The runner-up is named.
 """
 
 from __future__ import annotations
@@ -138,5 +141,5 @@ def bands_of(point: Measurement, scene: trb.Scene) -> tuple[Band, ...]:
     else:
         found.append(band("bearing.roller.profile.a_p", 0.0, 0.0005, "straight to ISO/TS 16281"))
     if point.bearing == "LM12700":
-        found.append(band("axial_load", 2800.0, 3800.0, "back-calculated"))
+        found.append(band("scene.axial_load", 2800.0, 3800.0, "back-calculated"))
     return tuple(found)

@@ -199,7 +199,7 @@ def count(scene: trb.Scene) -> float:
 
 
 def torque_change(point: Measurement, chosen: list[str], own: str, samples: int) -> dict[str, Any]:
-    """Change of the torque with the radius of the rollers' end sphere (%); its band is that of the oil's temperature and the ribs."""
+    """Change of the torque with the radius of the end sphere (%); its band is that of the oil's temperature and the ribs."""
 
     def change(scene: trb.Scene) -> float:
         ends = [torque_of(scene.replace({"bearing.roller.sphere_ratio": ratio}), "torque") for ratio in (0.85, 0.95)]

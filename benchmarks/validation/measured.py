@@ -44,8 +44,8 @@ class Measurement:
     bearing : str
         Name in `validation.assumptions.BEARINGS`.
     quantity : str
-        'torque' (N m), 'rolling_torque' (N m; without the ribs), 'loaded_rollers' (1) or 'torque_change' (%; where the radius of the
-        rollers' end sphere goes from 0.95 to 0.85 of the apex distance).
+        'torque' (N m), 'rolling_torque' (N m; without the ribs), 'loaded_rollers' (1) or 'torque_change' (%; where the radius of
+        the rollers' end sphere goes from 0.95 to 0.85 of the apex distance).
     value : float
         What was measured.
     reading_error : float
@@ -142,7 +142,7 @@ MEASUREMENTS: Final = (
 NOT_ENOUGH: Final = {
     "32216 at 42 C (Wingertszahn 2023)": "no reading of the figure is at hand",
     "HM801349": "no reading is at hand",
-    "two HH926749, breakaway (Hu 2025)": "torque of a bearing that does not turn, in a grease that is not named: 25 N m at 5 kN and 42 N m at "
+    "two HH926749, breakaway (Hu 2025)": "torque at rest, in a grease that is not named: 25 N m at 5 kN and 42 N m at "
     "25 kN, most of it without a load",
     "30306 (SKF's tool)": "computed, not measured",
     "LM501300, skew of 2.6 to 10.5 mrad under two greases": "loads, speeds and temperature are not at hand",

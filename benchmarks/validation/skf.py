@@ -68,8 +68,8 @@ def torque(
 def palmgren(
     *, bore: float, outside: float, Y: float, speed_rpm: float, axial_load: float, radial_load: float, viscosity: float
 ) -> float:
-    """Palmgren's friction moment (N m): f0 1e-7 (nu n)^(2/3) dm^3 + f1 P1 dm in mm, f0 3 (bath), f1 0.0004, P1 the larger of 2 Y Fa and
-    Fr (N); arguments as of `torque`.
+    """Palmgren's friction moment (N m): f0 1e-7 (nu n)^(2/3) dm^3 + f1 P1 dm in mm, f0 3 (bath), f1 0.0004, P1 the larger of
+    2 Y Fa and Fr (N); arguments as of `torque`.
     """
     mean, flow = 500.0 * (bore + outside), viscosity * abs(speed_rpm)
     viscous = 3e-7 * flow ** (2.0 / 3.0) if flow >= 2000.0 else 3.0 * 160e-7
