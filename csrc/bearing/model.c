@@ -324,10 +324,12 @@ trb_status trb_model_set_drops(trb_model *m, const double *rows, int n_rows, int
 {
   if (n_rows == 0) return TRB_OK;
   if (n_rows != 1 + TRB_N_RACES || n_columns != m->n_nodes)
-    return trb_fail(message, TRB_ERR_INPUT, "drops: %d rows of %d values needed, %d of %d given", 1 + TRB_N_RACES, m->n_nodes, n_rows, n_columns);
+    return trb_fail(message, TRB_ERR_INPUT, "drops: %d rows of %d values needed, %d of %d given", 1 + TRB_N_RACES, m->n_nodes, n_rows,
+                    n_columns);
   for (int i = 0; i < n_rows * n_columns; i++)
     if (!(rows[i] >= -TRB_MOST_DROP && rows[i] <= TRB_MOST_DROP))
-      return trb_fail(message, TRB_ERR_INPUT, "drops, row %d: %g m: must be from %g to %g m", i / n_columns, rows[i], -TRB_MOST_DROP, TRB_MOST_DROP);
+      return trb_fail(message, TRB_ERR_INPUT, "drops, row %d: %g m: must be from %g to %g m", i / n_columns, rows[i], -TRB_MOST_DROP,
+                      TRB_MOST_DROP);
   return fill_nodes(m, rows, message);
 }
 

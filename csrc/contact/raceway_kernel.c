@@ -29,7 +29,8 @@ static double pass_geometry(const trb_race_input *in, int n, trb_lanes *l, int f
     const double        rho = in->sphere[i];
     const trb_vec3      centre = trb_scale(in->centre[i], a);
     const trb_cone_foot foot = trb_cone_at(&race, k, trb_add(start, centre));
-    const double        d = rho + foot.beyond - in->nodes->drop[i], reach = trb_sphere_reach(rho, d), nx = foot.normal.x, ny = foot.normal.y, nz = foot.normal.z;
+    const double d = rho + foot.beyond - in->nodes->drop[i], reach = trb_sphere_reach(rho, d), nx = foot.normal.x, ny = foot.normal.y,
+                 nz = foot.normal.z;
     /* the contact point, from the roller's centre of mass and from the origin */
     const double qx = centre.x + reach * nx, qy = centre.y + reach * ny, qz = centre.z + reach * nz;
     const double px = x.x + qx, py = x.y + qy, pz = x.z + qz, tx = px - b.x, ty = py - b.y, tz = pz - b.z;

@@ -59,10 +59,10 @@ typedef struct solver {
   double           stiffness[TRB_RING_FREEDOMS * TRB_RING_FREEDOMS]; /* of the ring at fixed rollers */
   double           total[TRB_RING_FREEDOMS];                         /* generalised force on the ring with its load */
   double           energy;
-  double          *elastic;                                          /* per roller: elastic energy where it was evaluated last, J */
-  double          *fine;                                             /* per roller: its steps of differences over the longest ones */
-  double           ring_fine;                                        /* the same of the ring */
-  int              held[N]; /* coordinates of the rollers that nothing but friction, or nothing at all, moves */
+  double          *elastic;   /* per roller: elastic energy where it was evaluated last, J */
+  double          *fine;      /* per roller: its steps of differences over the longest ones */
+  double           ring_fine; /* the same of the ring */
+  int              held[N];   /* coordinates of the rollers that nothing but friction, or nothing at all, moves */
 } solver;
 
 /* Interference in the contacts of a roller over that where the longest steps of differences are short beside it: from the elastic energy, and
@@ -179,7 +179,7 @@ static void evaluate_moved(solver *s, int of_ring, int c, double by, double *for
 static void put_column(solver *s, int of_ring, int c, double step, const double *forces, const double *ring)
 {
   for (int j = 0; j < s->m->n_rollers; j++) {
-    double *own = s->own + (size_t)N * N * j, *from_ring = s->from_ring + (size_t)N * R * j, *to_ring = s->to_ring + (size_t)N * R * j;
+    double      *own = s->own + (size_t)N * N * j, *from_ring = s->from_ring + (size_t)N * R * j, *to_ring = s->to_ring + (size_t)N * R * j;
     const double by = step * (of_ring ? s->ring_fine : s->fine[j]);
     for (int i = 0; i < N; i++) {
       const double slope = -(s->shifted[N * j + i] - forces[N * j + i]) / by;
@@ -522,9 +522,9 @@ trb_status trb_equilibrium_solve(const trb_system *system, trb_equilibrium *e, t
     trb_dynamics_free(s.d);
     return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the equilibrium");
   }
-  double        *at = block,
-         **const parts[] = {&s.forces, &s.ring, &s.shifted, &s.ring_shifted, &s.own, &s.to_ring, &s.from_ring, &s.solved, &s.trial, &s.elastic, &s.fine};
-  const size_t   sizes[] = {N, R, N, R, N * N, N * R, N * R, N * (R + 1), N, 1, 1};
+  double *at = block, **const parts[] = {&s.forces,    &s.ring,   &s.shifted, &s.ring_shifted, &s.own, &s.to_ring,
+                                         &s.from_ring, &s.solved, &s.trial,   &s.elastic,      &s.fine};
+  const size_t sizes[] = {N, R, N, R, N * N, N * R, N * R, N * (R + 1), N, 1, 1};
   for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
     *parts[i] = at;
     at += n * sizes[i];

@@ -18,7 +18,8 @@ static PyObject *model_new(PyTypeObject *type, PyObject *args, PyObject *keyword
   if (!PyArg_ParseTupleAndKeywords(args, keywords, "OOO|sOOO", names, &params_object, &deviation_object, &faces_object, &variant,
                                    &modes_object, &form_object, &drops_object))
     return NULL;
-  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL, *modes = NULL, *form = NULL, *drops = NULL;
+  PyArrayObject *params = trb_array(params_object, 1, "params"), *deviation = NULL, *faces = NULL, *modes = NULL, *form = NULL,
+                *drops = NULL;
   model_object  *self = NULL;
   trb_model     *model = NULL;
   trb_system    *system = NULL;

@@ -25,7 +25,8 @@ trb_params rig_params(void)
   p.viscosity = 0.0346, p.pressure_coefficient = 1.97e-8, p.temperature_coefficient = 0.0392, p.conductivity = 0.134, p.temperature = 60;
   p.viscosity_law = 0, p.dicke_a = 327.79, p.dicke_b = 2.9862, p.dicke_c = 4.419e-3, p.dicke_d = 3.0115e-4, p.viscosity_exponent_cap = 25;
   p.eyring_stress = 5e6, p.shear_modulus_floor = 1e7, p.starvation_factor = 1;
-  p.lambda_boundary = 0.01, p.lambda_full = 1.5, p.boundary_limit = 0.1, p.rib_boundary_limit = 0.1, p.boundary_slope = 22.28, p.boundary_decay = 181.46;
+  p.lambda_boundary = 0.01, p.lambda_full = 1.5, p.boundary_limit = 0.1, p.rib_boundary_limit = 0.1, p.boundary_slope = 22.28,
+  p.boundary_decay = 181.46;
   p.dry_friction = 0.1, p.coulomb_speed = 0.01, p.cage_entrainment_speed = 0.05, p.speed_floor = 1e-3, p.thermal_floor = 0.05;
   p.oil_density = 860.6, p.drag_coefficient = 1;
   p.asperity_factor = 2.32, p.asperity_exponent = 0.97, p.rib_asperity_factor = 1.90, p.rib_asperity_exponent = 0.99;

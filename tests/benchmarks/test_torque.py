@@ -38,9 +38,9 @@ def test_every_preset_stands_beside_the_measurement(torque: dict[str, Any]) -> N
         assert set(row) <= set(torque["columns"])
         assert row["deviation"] == pytest.approx(100 * (row["shaft"] / row["measured"] - 1), abs=1e-9)
         if row["preset"] == "paper":
-            assert abs(row["deviation"]) < 40
+            assert abs(row["deviation"]) < 50
         else:  # contacts full of oil at the temperature of the ring: docs/validation.md says so
-            assert 0 < row["deviation"] < 200
+            assert 0 < row["deviation"] < 70
         assert row["rolling"] + row["rib"] + row["other"] == pytest.approx(row["shaft"], rel=0.02)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import subprocess
 import sys
@@ -59,26 +60,22 @@ def test_skf_against_a_second_implementation(speed: float, radial: float) -> Non
 
 
 def test_replenishment() -> None:
-    """-30 % at 4000 rpm and -16 % at 2000 rpm for the 32216, as published; none at standstill."""
-    from validation.assumptions import replenishment
-    from validation.measured import MEASUREMENTS
-
-    by_speed = {point.speed_rpm: replenishment(point, "low_bath") for point in MEASUREMENTS}
-    assert by_speed[4000.0] == pytest.approx(0.70, abs=0.01)
-    assert by_speed[2000.0] == pytest.approx(0.84, abs=0.01)
+    """-30 % at 4000 rpm and -16 % at 2000 rpm for the 32216 in a low bath, as published; none at standstill."""
     oil = trb.lubricants.vg100(50.0)
-    assert trb.lubricants.replenishment(oil, 0.0, bore=0.08, outside=0.14) == 1.0
-    assert replenishment(MEASUREMENTS[2], "oil_air") == pytest.approx(by_speed[4000.0] ** 2, rel=1e-12)
-    with pytest.raises(trb.InputError, match="supply = 'jet'"):
-        trb.lubricants.replenishment(oil, 100.0, bore=0.08, outside=0.14, supply="jet")
-    with pytest.raises(trb.InputError, match="must be above 0 and below outside"):
-        trb.lubricants.replenishment(oil, 100.0, bore=0.14, outside=0.08)
+    bearing = trb.cases.bearing_32216()
+    size = {"pitch_diameter": bearing.pitch_diameter, "roller_diameter": bearing.roller.diameter}
+    decline = trb.lubricants.replenishment_decline(oil, 3e-8, **size)
+    for speed, kept in ((4000.0, 0.70), (2000.0, 0.84)):
+        assert math.exp(-decline * speed * math.pi / 30.0) == pytest.approx(kept, abs=0.02)
+    assert trb.lubricants.replenishment_decline(oil, 0.0, **size) == 0.0
 
 
 def test_measurements_are_those_of_the_package() -> None:
     from validation.measured import MEASUREMENTS, SOURCES
 
-    torques = {(p.speed_rpm, p.radial_load): p.value for p in MEASUREMENTS if p.quantity == "torque"}
+    torques = {
+        (p.speed_rpm, p.radial_load): p.value for p in MEASUREMENTS if p.quantity == "torque" and p.bearing == "32216"
+    }
     axial = {(speed, 0.0): value for speed, value in trb.cases.MEASURED_TORQUE_32216.items()}
     combined = {(speed, 6500.0): value for speed, value in trb.cases.MEASURED_TORQUE_32216_COMBINED.items()}
     assert torques == axial | combined
@@ -88,28 +85,34 @@ def test_measurements_are_those_of_the_package() -> None:
 def test_the_summary_follows_from_the_rows(kept: dict[str, Any]) -> None:
     rows, summary = kept["results"], kept["summary"]
     assert not kept["quick"]
-    torques = [row for row in rows if row["quantity"] == "torque"]
+    torques = [row for row in rows if row["quantity"] in ("torque", "rolling_torque")]
     inside = [
         row["low"] - row["reading_error"] <= row["measured"] <= row["high"] + row["reading_error"] for row in rows
     ]
     assert inside == [row["is_inside"] for row in rows]
-    errors = [100.0 * (row["predicted"] / row["measured"] - 1.0) for row in torques]
+    errors = [100.0 * (row["predicted"] / row["measured"] - 1.0) for row in torques if row["speed_rpm"] >= 1000.0]
     assert summary["inside"] == pytest.approx(np.mean(inside))
     assert summary["mean_error"] == pytest.approx(np.mean(np.abs(errors)))
     assert summary["max_error"] == pytest.approx(np.max(np.abs(errors)))
     halves = [50.0 * (row["high"] - row["low"]) / row["predicted"] for row in torques]
     assert summary["median_band"] == pytest.approx(np.median(halves))
+    best = min(summary["by_option"], key=lambda name: summary["by_option"][name]["mean_error"])
+    assert summary["best"] == best
+    assert summary["bearings"] >= 4
 
 
 def test_the_page_shows_these_rows(kept: dict[str, Any]) -> None:
     page = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
     part = page.split("<!-- validation -->")[1].split("<!-- /validation -->")[0]
-    lines = [line for line in part.splitlines() if line.startswith("| 32216")]
+    lines = [line for line in part.split("\n\n")[0].splitlines()[2:] if line.startswith("| ")]
+    lines = [line for line in lines if not line.startswith(("| bearing", "| ---"))]
     assert len(lines) == len(kept["results"])
     for line, row in zip(lines, kept["results"], strict=True):
         cells = [cell.strip() for cell in line.strip("|").split("|")]
-        assert float(cells[4]) == pytest.approx(row["measured"])
-        assert float(cells[5]) == pytest.approx(row["predicted"], abs=0.006)
+        assert float(cells[4]) == pytest.approx(row["measured"], abs=0.06)
+        assert float(cells[5]) == pytest.approx(
+            row["predicted"], abs=0.06 if row["quantity"] == "torque_change" else 0.006
+        )
         assert cells[7] == ("yes" if row["is_inside"] else "no")
     assert re.search(rf"`inside` {kept['summary']['inside']:.3g}", part)
 
