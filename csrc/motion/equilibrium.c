@@ -496,9 +496,11 @@ static void place_light_rollers(solver *s, double *step_rollers, double *step_ri
   if (!(force > 0.0 && force < TRB_PLACING_FORCE)) return;
   memcpy(fixed, e->fixed, sizeof fixed);
   for (int i = 0; i < R; i++) e->fixed[i] = 1;
-  for (double at = TRB_PLACING_FORCE; at > force; at *= TRB_PLACING_STEP) {
+  double at = TRB_PLACING_FORCE;
+  while (at > force) {
     e->shaft_speed = shaft * sqrt(at / force), e->carried_speed = carried * sqrt(at / force);
     (void)iterate(s, step_rollers, step_ring, &ignored);
+    at *= TRB_PLACING_STEP;
   }
   e->shaft_speed = shaft, e->carried_speed = carried;
   memcpy(e->fixed, fixed, sizeof fixed);
