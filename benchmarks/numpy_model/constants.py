@@ -116,6 +116,9 @@ class Constants:
             return np.zeros_like(station)
         if p["profile"] == 1:
             return _core.law("profile_crowned", np.stack([station, np.full_like(station, p["crown_radius"])]))
+        if p["profile"] == 3:
+            of_iso = (p["profile_a"] * p["roller_diameter"], p["profile_c"], p["profile_d"], p["profile_k"])
+            return _core.law("profile_iso", np.stack([station, *(np.full_like(station, x) for x in of_iso)]))
         names = ("effective_length", "profile_k1", "profile_k2", "profile_zm", "profile_load")
         numbers = [*(p[name] for name in names), self.g.effective_modulus]
         return _core.law("profile_logarithmic", np.stack([station, *(np.full_like(station, x) for x in numbers)]))

@@ -318,7 +318,7 @@ COMMANDS: dict[str, tuple[list[str], list[str]]] = {
 }
 """Words of each command, and the files that it would write."""
 WRITE_A_STUDY = {"sweep", "ensemble"}
-ONLY_PRINT = {"info", "cases"}
+ONLY_PRINT = {"info", "cases", "rating"}
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:

@@ -74,6 +74,8 @@ def full_scene() -> trb.Scene:
     bearing = RIG.replace(
         roller=RIG.roller.replace(diameter_deviation=tuple(1e-6 * (j % 3) for j in range(RIG.n_rollers))),
         cage=RIG.cage.replace(pocket=pocket, other_pockets=(trb.OtherPocket(index=3, pocket=pocket),)),
+        cup_profile=trb.Profile.crowned(100.0),
+        cone_profile=trb.Profile.iso(),
         estimates=trb.Bearing.from_catalogue(bore=0.05, outside=0.11, width=0.02925, C=125e3, e=0.35).estimates[:1],
     )
     shift = trb.History(times=(0.0, 1e-3), values=(-40e-6, -42e-6))

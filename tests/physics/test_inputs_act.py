@@ -453,6 +453,7 @@ TRACTION = {
 RIBS = ("front_rib_low", "front_rib_high")
 """Edges of the front rib: tests/geometry."""
 PROFILES = {"profile_k1": 1.8, "profile_k2": 0.6, "profile_zm": 1e-6, "profile_load": 4000.0}
+PROFILES |= {"profile_a": 0.0006, "profile_c": 0.018, "profile_d": 1e-3, "profile_k": 2.2}
 
 
 @pytest.mark.parametrize(
@@ -462,6 +463,8 @@ def test_constants_of_traction_and_profile_show(kit: SimpleNamespace, name: str)
     """At the same state, coefficients or loads are other ones."""
     value = {**TRACTION, **PROFILES}[name]
     rig = trb.cases.rig_30310()
+    if name in ("profile_a", "profile_c", "profile_d", "profile_k"):
+        rig = rig.replace(roller=rig.roller.replace(profile=Profile.iso(a_p=0.0005, c_p=0.0198, d_p=0.0, k_p=2.0)))
     # the shipped rig's logarithmic profile; at full slip for the floors and caps of traction
     scene = kit.simulate(BASE, scenery={"bearing": rig, "displacement": (0.0, 0.0, -6e-5)}).scene
     vector = kit.perturbed(Simulation(scene), 12)

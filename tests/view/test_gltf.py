@@ -94,9 +94,9 @@ def test_bodies_are_where_they_were_recorded(document: tuple[dict[str, Any], lis
         tracks[names[channel["target"]["node"]], channel["target"]["path"]] = values[sampler["output"]]
     plane = np.array([0.0, 0.0, whirling.scene.bearing.geometry.centre_plane])
     for number in (0, 7):
-        place = tracks[f"roller {number + 1}", "translation"]
+        place = tracks[f"roller {number}", "translation"]
         assert np.allclose(place[[0, -1]], shown.roller_position[[0, -1], number] - plane, atol=2e-8)
-        axis = Rotation.from_quat(tracks[f"roller {number + 1}", "rotation"]).apply([0.0, 0.0, 1.0])
+        axis = Rotation.from_quat(tracks[f"roller {number}", "rotation"]).apply([0.0, 0.0, 1.0])
         w, *v = shown.roller_orientation[-1, number]
         assert np.allclose(axis[-1], Rotation.from_quat([*v, w]).apply([0.0, 0.0, 1.0]), atol=1e-6)
     assert np.allclose(tracks["cage", "translation"][-1], shown.cage_position[-1], atol=1e-9)

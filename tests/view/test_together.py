@@ -53,7 +53,7 @@ def test_a_roller_of_either_bearing_is_picked_and_the_shaft_hidden(
     browser.open(path, "window.trbView && trbView.drawn() > 0")
     for k, name in enumerate(pair):
         browser.js(f"trbView.pick({{ bearing: {k}, kind: 'roller', index: 3 }}); trbView.draw()")
-        assert browser.js("document.querySelector('#picked h3').textContent") == f"Roller 4 of {name}"
+        assert browser.js("document.querySelector('#picked h3').textContent") == f"Roller 3 of {name}"
         shown = float(browser.js("document.querySelector('#picked td:last-child').textContent").removesuffix(" N"))
         assert shown == pytest.approx(pair[name].outer_load[0, 3], rel=2e-3, abs=0.1)
     browser.frame()

@@ -110,7 +110,7 @@ def test_a_click_shows_a_roller_with_its_numbers(browser: Any, page: Path, whirl
     places = np.array(browser.js("[...Array(12).keys()].map(trbView.whereIsRoller)"))
     nearest = int(np.argmax(whirling.roller_position[0, :, 0]))  # the camera looks from +x
     browser.click(*places[nearest])
-    assert browser.js("document.querySelector('#picked h3').textContent") == f"Roller {nearest + 1}"
+    assert browser.js("document.querySelector('#picked h3').textContent") == f"Roller {nearest}"
     rows = dict(
         browser.js(
             "[...document.querySelectorAll('#picked tr')].map((r) => [r.cells[0].textContent, r.cells[1].textContent])"
