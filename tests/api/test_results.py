@@ -731,7 +731,6 @@ def test_the_package_gives_its_names_lazily() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "Scene" in done.stdout
     import trbdyn
-
     from trbdyn.results.assembly import load as load_any
 
     assert trbdyn.load is load_any
