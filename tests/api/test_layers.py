@@ -116,8 +116,9 @@ def test_every_parameter_of_the_core_has_an_input() -> None:
         "cage_face_outer",
         "ring_unbalance_angle",
         "ring_shift",
-    }  # in degrees; of a seat
-    assert set(given) | {"outer_turns"} == set(PARAMETERS)  # follows from the scene's outer_speed_rpm
+        "replenishment",
+    }  # in degrees; of a seat; by a constant of SKF and the bearing's size
+    assert set(given) | {"outer_turns", "replenishment"} == set(PARAMETERS)  # follow from the scene
 
 
 def test_the_numbers_of_a_model_belong_to_one_part() -> None:

@@ -241,3 +241,10 @@ def test_a_coefficient_that_would_act_nowhere_is_refused(given: dict[str, Any]) 
     assert Effects.from_dict(whole.to_dict()) == whole
     with pytest.raises(InputError, match=r"effects\.damping_race = 5"):
         effects_from_table({"damping_race": 5.0, **given})
+
+
+def test_a_table_of_an_earlier_version_is_taken() -> None:
+    """It has the coefficients of every law of damping, and lacks the newest fields."""
+    table = Effects().to_dict()
+    del table["hysteresis"], table["oil_height"]
+    assert Effects.from_dict(table) == Effects()
