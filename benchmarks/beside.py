@@ -66,7 +66,9 @@ def path_of(simulation: Simulation) -> Any:
 
 
 def error_of(scene: Scene, simulation: Simulation) -> float:
-    """Largest error of the cage's centre over Cpr within the window from the simulation's state on."""
+    """Largest error of the cage's centre over Cpr within the window from the simulation's state on; of one bearing alone."""
+    if len(simulation.bearings) > 1:
+        return float("nan")
     usual, tight = (path_of(finer(scene, simulation, factor)) for factor in (1.0, 1.0 / TIGHTER))
     return float(np.max(np.abs(tight - usual)) / scene.bearing.cage.play_radial)
 
