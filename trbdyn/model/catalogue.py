@@ -28,6 +28,8 @@ from trbdyn.model.roller import Profile, Roller
 
 OTHER_MAKER: Final = 0.6
 """Angle (deg) by which a contact angle that is known may differ from the one that e or Y of another maker tell."""
+ROUNDED_TWICE: Final = 0.2
+"""Angle (deg) by which e and Y of one page may differ beyond their last digits: a 32303 is listed with e = 0.29, Y = 1.97."""
 _ANGLE_SOURCE: Final = "tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue"
 NAMES_OF_CATALOGUES: Final = {
     "d": "bore",
@@ -235,7 +237,9 @@ def _check_known(page: Page) -> None:
 
 
 def _angle(e: float | None, Y: float | None, angle: float | None) -> tuple[float, tuple[float, float]]:
-    """Half angle of the cup (deg) and its band by the rounding of e to 0.01 and Y to 0.1; what contradicts is refused."""
+    """Half angle of the cup (deg) and its band by the rounding of e to 0.01 and Y to 0.1; what contradicts is refused. Where both
+    miss each other by little, the angle is that of e, and the band holds both.
+    """
     bands: dict[str, tuple[float, float]] = {}
     if e is not None:
         bands["e"] = (math.degrees(math.atan(max(e - 0.005, 1e-3) / 1.5)), math.degrees(math.atan((e + 0.005) / 1.5)))
@@ -252,7 +256,7 @@ def _angle(e: float | None, Y: float | None, angle: float | None) -> tuple[float
     key, value = ("contact_angle_deg", angle) if angle is not None else ("e", e) if e is not None else ("Y", Y)
     if not 7.0 <= chosen <= 35.0:
         raise InputError.of(key, value, f"must give a contact angle from 7 to 35 deg, not {chosen:.3g} deg")
-    slack = 1e-6 if angle is None else OTHER_MAKER
+    slack = ROUNDED_TWICE if angle is None else OTHER_MAKER
     for other, (low, high) in bands.items():
         if band[1] + slack < low or high + slack < band[0]:
             right = 0.4 / math.tan(math.radians(chosen)) if other == "Y" else 1.5 * math.tan(math.radians(chosen))
@@ -261,7 +265,9 @@ def _angle(e: float | None, Y: float | None, angle: float | None) -> tuple[float
                 "e times Y is 0.6; give the right ones, or one of them (1)"
             )
             raise InputError.of(other, e if other == "e" else Y, limit)
-        band = (max(band[0], low), min(band[1], high)) if angle is None else band
+        if angle is None:
+            common = max(band[0], low), min(band[1], high)
+            band = common if common[0] <= common[1] else (min(band[0], low), max(band[1], high))
     return min(max(chosen, band[0]), band[1]), band
 
 
