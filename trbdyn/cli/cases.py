@@ -50,7 +50,7 @@ def add_case_parsers(commands: Any, common: Sequence[argparse.ArgumentParser]) -
         nargs="+",
         metavar="NAME=VALUE",
         help="begin with a bearing from the numbers of a catalogue page, in m and N: "
-        "bore=0.04 outside=0.08 width=0.02475 C=74800 e=0.37 name=32208",
+        "bore=0.04 outside=0.08 width=0.02475 C=74800 e=0.37 name=32208; of a cylindrical bearing with flanges=NU in place of e",
     )
     new.set_defaults(command=_new)
 
@@ -82,19 +82,22 @@ def _first_case(options: argparse.Namespace) -> tuple[Scene, RunOptions]:
         if name not in allowed:
             called = NAMES_OF_CATALOGUES.get(name)
             hint = f"is called {called} here; " if called else ""
-            raise InputError.of("--catalogue", f"{name}={value:g}", f"{hint}must be one of {', '.join(allowed)}")
+            raise InputError.of("--catalogue", f"{name}={value}", f"{hint}must be one of {', '.join(allowed)}")
     missing = [name for name in ("bore", "outside", "width", "C") if name not in numbers]
     if missing:
         raise InputError.of("--catalogue", " ".join(options.catalogue), f"must hold {', '.join(missing)} as well")
     bearing = Bearing.from_dict(rounded(Bearing.from_catalogue(**numbers).inputs()))
     load = float(f"{LOAD_OVER_RATING * numbers['C']:.2g}")
     speed = float(f"{PITCH_SPEED / (math.pi * bearing.pitch_diameter) * 60.0:.1g}")
-    return Scene(bearing, speed_rpm=speed, axial_load=load), RunOptions(revolutions=10.0)
+    loads = {"axial_load": load}
+    if bearing.is_cylindrical:
+        loads = {"radial_load": load, "axial_load": 0.1 * load if bearing.ribs.flanges in ("NJ", "NUP") else 0.0}
+    return Scene(bearing, speed_rpm=speed, **loads), RunOptions(revolutions=10.0)
 
 
 def _number(text: str) -> tuple[str, Any]:
     name, _, value = text.partition("=")
-    if name == "name":
+    if name in ("name", "flanges"):
         return name, value
     try:
         number = float(value)

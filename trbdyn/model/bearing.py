@@ -290,6 +290,10 @@ class Bearing(Model):
         maker_factor: float | None = None,
         reference_speed_rpm: float | None = None,
         limiting_speed_rpm: float | None = None,
+        flanges: str | None = None,
+        F: float | None = None,
+        E: float | None = None,
+        radial_clearance: float | None = None,
         name: str = "",
         **others: Any,
     ) -> Bearing:
@@ -302,7 +306,7 @@ class Bearing(Model):
         Parameters
         ----------
         bore, outside, width : float
-            Boundary dimensions d, D and T (m).
+            Boundary dimensions d, D and T, of a cylindrical bearing B (m).
         C, C0, Cu : float
             Ratings and fatigue load limit, also called Pu (N); C alone is needed, the others are for `trbdyn.rating`.
         e, Y, Y0 : float, optional
@@ -317,6 +321,12 @@ class Bearing(Model):
             C over the rating of ISO 281 with b_m = 1.1, where it is known; 0.8 to 1.5 (1).
         reference_speed_rpm, limiting_speed_rpm : float, optional
             Speeds that the catalogue permits (rpm): kept for `trbdyn.rating`.
+        flanges : {'NU', 'NJ', 'NUP', 'N'}, optional
+            Type of a cylindrical bearing; without it the bearing is tapered. With it C0 tells the rollers' number times length.
+        F, E : float, optional
+            Diameters of the raceways of the inner and the outer ring of a cylindrical bearing (m).
+        radial_clearance : float, optional
+            Clearance of a cylindrical bearing in operation (m); by default half of group N of ISO 5753-1.
         name : str
             Name; by default the boundary dimensions.
 
@@ -336,6 +346,10 @@ class Bearing(Model):
         >>> bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43)
         >>> print(bearing.estimated[0])
         cup_half_angle_deg = 16 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
+        >>> page = {"bore": 0.050, "outside": 0.090, "width": 0.020, "C": 69e3, "C0": 76.5e3, "F": 0.0595}
+        >>> cylindrical = trb.Bearing.from_catalogue(flanges="NU", **page)
+        >>> print(cylindrical.n_rollers, round(1e3 * cylindrical.roller.diameter, 2))
+        16 11.2
         """
         fields = fields_from_catalogue(
             bore=bore,
@@ -357,6 +371,10 @@ class Bearing(Model):
             maker_factor=maker_factor,
             reference_speed_rpm=reference_speed_rpm,
             limiting_speed_rpm=limiting_speed_rpm,
+            flanges=flanges,
+            F=F,
+            E=E,
+            radial_clearance=radial_clearance,
             name=name,
             others=others,
         )

@@ -1,4 +1,5 @@
-"""A bearing from the numbers of a catalogue page: boundary dimensions, dynamic rating C, factor e (or Y).
+"""A bearing from the numbers of a catalogue page: boundary dimensions, dynamic rating C, factor e (or Y); of a cylindrical
+bearing its type, C0, and the diameter of a raceway.
 
 Catalogues do not tell what is inside. The cup's angle follows from e. Diameter, length and number of the rollers and the
 maker's factor on C are, among all that give this C, those that depart least from what is usual, each in units of the
@@ -18,9 +19,9 @@ from typing import Any, Final
 
 from trbdyn.base.validation import as_number, as_whole_number
 from trbdyn.errors import MISSING, InputError, Problem
-from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, RIG, cage_inertias
-from trbdyn.model.assumed import cage_mass as steel_cage
-from trbdyn.model.catalogue_rollers import FILL, LENGTH, MAKER, PITCH, SECTION, Page, Rollers, solve
+from trbdyn.model.assumed import ISO_LENGTH, ISO_LONG, ISO_SHORT, scaled
+from trbdyn.model.catalogue_cylinders import TYPES, check_cylindrical, usual_clearance, with_raceways
+from trbdyn.model.catalogue_rollers import MAKER, Page, Rollers, solve
 from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.ratings import Ratings
@@ -54,7 +55,8 @@ NAMES_OF_CATALOGUES: Final = {
 
 
 NOT_USED: Final = {
-    "B": "is the width of the cone, which is not used: width is T, over cone and cup; cup_width is that of the cup, often C",
+    "B": "is the width of the cone, which is not used: width is T, over cone and cup; cup_width is that of the cup, often C; "
+    "of a cylindrical bearing width is B",
     "a": "is the distance of the pressure centre, which follows from the angle of the cup: leave it out",
 }
 """Numbers of a catalogue page that are not taken, and why."""
@@ -85,6 +87,10 @@ def fields_from_catalogue(
     maker_factor: float | None = None,
     reference_speed_rpm: float | None = None,
     limiting_speed_rpm: float | None = None,
+    flanges: str | None = None,
+    F: float | None = None,
+    E: float | None = None,
+    radial_clearance: float | None = None,
     name: str = "",
     others: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
@@ -106,6 +112,8 @@ def fields_from_catalogue(
         "maker_factor": maker_factor,
         "reference_speed_rpm": reference_speed_rpm,
         "limiting_speed_rpm": limiting_speed_rpm,
+        "F": F,
+        "E": E,
     }
     for key, value in (given | {key: value for key, value in optional.items() if value is not None}).items():
         _positive(key, value)
@@ -117,15 +125,35 @@ def fields_from_catalogue(
         _count(n_rollers)
     if maker_factor is not None and not MAKER.low <= maker_factor <= MAKER.high:
         raise InputError.of("maker_factor", maker_factor, f"must be from {MAKER.low:g} to {MAKER.high:g} (1)")
-    angle, angle_band = _angle(e, Y, contact_angle_deg)
-    page = Page(
-        bore, outside, width, angle, cup_width, n_rollers, roller_diameter, roller_length, pitch_diameter, maker_factor
-    )
+    estimates: list[Estimated] = []
+    if flanges is None:
+        _check_tapered({"F": F, "E": E, "radial_clearance": radial_clearance})
+        angle, angle_band = _angle(e, Y, contact_angle_deg)
+        if contact_angle_deg is None:
+            estimates.append(Estimated.of("cup_half_angle_deg", angle, *angle_band, "deg", _ANGLE_SOURCE))
+        page = Page(
+            bore,
+            outside,
+            width,
+            angle,
+            cup_width,
+            n_rollers,
+            roller_diameter,
+            roller_length,
+            pitch_diameter,
+            maker_factor,
+        )
+    else:
+        check_cylindrical(
+            flanges, {"e": e, "Y": Y, "Y0": Y0, "contact_angle_deg": contact_angle_deg, "cup_width": cup_width}
+        )
+        page = Page(
+            bore, outside, width, 0.0, None, n_rollers, roller_diameter, roller_length, pitch_diameter, maker_factor, C0
+        )
+        page, more = with_raceways(page, F, E)
+        estimates += more
     _check_known(page)
     found, factor = solve(page, C)
-    estimates = []
-    if contact_angle_deg is None:
-        estimates.append(_entry("cup_half_angle_deg", angle, *angle_band, "deg", _ANGLE_SOURCE))
     estimates += _roller_estimates(page, found, factor)
     ratings = Ratings(
         dynamic=C,
@@ -138,7 +166,22 @@ def fields_from_catalogue(
         limiting_speed_rpm=limiting_speed_rpm,
     )
     name = name or f"{1e3 * bore:g}x{1e3 * outside:g}x{1e3 * width:g}"
-    return _fields(found, angle, cage_mass, estimates, name) | {"ratings": ratings}
+    cylinder = None
+    if flanges is not None:
+        if radial_clearance is None:
+            estimates.append(usual_clearance(bore))
+            radial_clearance = estimates[-1].value
+        cylinder = {"flanges": flanges, "radial_clearance": radial_clearance}
+    made = _fields(found, cage_mass, estimates, cylinder)
+    return made | {"name": name, "ratings": ratings}
+
+
+def _check_tapered(others: Mapping[str, float | None]) -> None:
+    for key, value in others.items():
+        if value is not None:
+            raise InputError.of(
+                key, value, f"must not be given without flanges: {', '.join(TYPES)} (docs/howto/cylindrical.md)"
+            )
 
 
 def _known_names(others: Mapping[str, Any]) -> None:
@@ -271,13 +314,10 @@ def _angle(e: float | None, Y: float | None, angle: float | None) -> tuple[float
     return min(max(chosen, band[0]), band[1]), band
 
 
-def _entry(path: str, value: float, low: float, high: float, unit: str, source: str) -> Estimated:
-    return Estimated(path=path, value=value, low=min(low, value), high=max(high, value), unit=unit, source=source)
-
-
 def _roller_estimates(page: Page, found: Rollers, factor: float) -> list[Estimated]:
     out = []
     usual, _ = page.diameters
+    kind = page.usual
     diameters = (
         (usual.low * page.height, usual.high * page.height) if page.diameter is None else (page.diameter, page.diameter)
     )
@@ -289,82 +329,103 @@ def _roller_estimates(page: Page, found: Rollers, factor: float) -> list[Estimat
             f"C of the catalogue is {factor:.3f} times that of ISO 281, maker_factor = {page.maker_factor:g} was given"
         )
     if page.pitch is None:
-        low, high = PITCH.low * page.mean, PITCH.high * page.mean
-        out.append(_entry("pitch_diameter", found.pitch, low, high, "m", "mean of bore and outside diameter"))
+        low, high = kind.pitch.low * page.mean, kind.pitch.high * page.mean
+        times = "" if kind.pitch.value == 1.0 else f"{kind.pitch.value:g} of the "
+        out.append(
+            Estimated.of("pitch_diameter", found.pitch, low, high, "m", f"{times}mean of bore and outside diameter")
+        )
     if page.diameter is None:
-        share = f"usual share of the section's height, {SECTION.value:g}, thicker or thinner by C; {rating}"
+        share = f"usual share of the section's height, {kind.section.value:g}, thicker or thinner by C; {rating}"
         if page.n_rollers is not None:
-            share = f"{page.n_rollers} rollers that take {FILL.value:g} of the pitch circle, thicker or thinner by C; {rating}"
-        out.append(_entry("roller.diameter", found.diameter, *diameters, "m", share))
+            counted = f"{page.n_rollers} rollers that take {kind.fill.value:g} of the pitch circle"
+            share = f"{counted}, thicker or thinner by C; {rating}"
+        out.append(Estimated.of("roller.diameter", found.diameter, *diameters, "m", share))
     if page.length is None:
-        low, high = LENGTH.low * page.along(page.cup_share.low), LENGTH.high * page.along(page.cup_share.high)
-        source = f"usual share of the cup's width along the raceway, {LENGTH.value:g}, longer or shorter by C; {rating}"
-        out.append(_entry("roller.effective_length", found.length, low, high, "m", source))
+        low, high = kind.length.low * page.along(page.cup_share.low), kind.length.high * page.along(page.cup_share.high)
+        whose = "bearing's width" if page.angle == 0.0 else "cup's width along the raceway"
+        source = f"usual share of the {whose}, {kind.length.value:g}, longer or shorter by C; {rating}"
+        if page.static is not None:
+            source = f"C0 by ISO 76 with {found.count} rollers; {rating}"
+            few, many = (page.count(one, found.diameter) for one in (kind.fill.low, kind.fill.high))
+            counts = (few, many) if page.n_rollers is None else (page.n_rollers, page.n_rollers)
+            ends = [share * found.length * found.count / one for one, share in zip(counts, (1.05, 0.95), strict=True)]
+            low, high = max(low, ends[1]), min(high, ends[0])
+        out.append(Estimated.of("roller.effective_length", found.length, low, high, "m", source))
     if page.n_rollers is None:
-        few = math.floor(page.count(FILL.low, diameters[1]))
-        many = math.floor(page.count(FILL.high, diameters[0]))
-        source = f"rollers take {FILL.low:g} to {FILL.high:g} of the pitch circle in real bearings"
-        out.append(_entry("n_rollers", found.count, max(3, few), many, "1", source))
+        few = math.floor(page.count(kind.fill.low, diameters[1]))
+        many = math.floor(page.count(kind.fill.high, diameters[0]))
+        source = f"rollers take {kind.fill.low:g} to {kind.fill.high:g} of the pitch circle in real bearings"
+        out.append(Estimated.of("n_rollers", found.count, max(3, few), many, "1", source))
     return out
 
 
 def _fields(
-    found: Rollers, angle: float, cage_mass: float | None, estimates: list[Estimated], name: str
+    found: Rollers, cage_mass: float | None, estimates: list[Estimated], cylinder: dict[str, Any] | None
 ) -> dict[str, Any]:
-    """Fields of the bearing: what is left is scaled from the 30310 test bearing, whose inner geometry is published."""
-    scale, longer = found.diameter / RIG["diameter"], found.length / RIG["effective_length"]
-    wide = found.pitch / RIG["pitch_diameter"]
-    mass = steel_cage(wide, scale, longer) if cage_mass is None else cage_mass
-    inertia = cage_inertias(mass, wide, scale, longer)
-    heights = ("contact_height", "edge_low", "edge_high", "front_clearance", "front_low", "front_high")
-    ribs = {key: scale * RIG[key] for key in heights}
-    lengths = (
-        "play_radial",
-        "play_circumferential",
-        "play_axial",
-        "bar_width",
-        "wall_inner",
-        "wall_outer",
-        "wall_half_width",
-    )
-    cage = {key: scale * RIG[key] for key in lengths}
-    cage["rail_offset"] = longer * RIG["rail_offset"]
+    """Fields of the bearing: what is left is scaled from the 30310 test bearing, whose inner geometry is published. `cylinder`:
+    type and clearance of a cylindrical bearing.
+    """
+    size = {
+        "diameter": found.diameter,
+        "effective_length": found.length,
+        "pitch_diameter": found.pitch,
+        "cup_half_angle_deg": found.angle,
+    }
+    made = scaled(size if cage_mass is None else size | {"mass": cage_mass})
+    heights = ["contact_height", "edge_low", "edge_high"]
+    heights += ["front_clearance", "front_low", "front_high"] if cylinder is None else ["clearance"]
+    ribs: dict[str, Any] = {key: made["ribs"][key] for key in heights}
+    inner = made["cage"]
+    plays = ("play_radial", "play_circumferential", "play_axial")
+    lengths = (*plays, "bar_width", "wall_inner", "wall_outer", "wall_half_width", "rail_offset")
+    cage = {key: inner[key] for key in lengths}
     if cage_mass is not None:
         cage["mass"] = cage_mass  # an estimated mass follows the cage's material, inertias follow the mass
+    total = made["roller"]["total_length"]
+    ends = {} if cylinder is None else {"end_radius": made["roller"]["end_radius"]}
     roller = Roller(
-        diameter=found.diameter,
-        effective_length=found.length,
-        total_length=found.length + scale * (RIG["total_length"] - RIG["effective_length"]),
-        profile=Profile.iso(),
+        diameter=found.diameter, effective_length=found.length, total_length=total, profile=Profile.iso(), **ends
     )
-    scaled = "30310 test bearing (Sakaguchi and Harada 2006), scaled with"
-    inertias = f"{scaled} mass and radius squared, the part along the axis with length squared"
+    origin = "30310 test bearing (Sakaguchi and Harada 2006), scaled with"
+    across = f"{origin} the roller's diameter"
+    inertias = f"{origin} mass and radius squared, the part along the axis with length squared"
     rows: list[tuple[str, float, float, float, str, str]] = [
-        ("roller.total_length", roller.total_length, 1.0, 1.05, "m", f"{scaled} the roller's diameter"),
-        ("ribs.contact_height", ribs["contact_height"], 0.7, 1.3, "m", f"{scaled} the roller's diameter"),
-        ("cage.play_radial", cage["play_radial"], 0.5, 2.0, "m", f"{scaled} the roller's diameter"),
-        ("cage.play_circumferential", cage["play_circumferential"], 0.5, 2.0, "m", f"{scaled} the roller's diameter"),
-        ("cage.play_axial", cage["play_axial"], 0.5, 2.0, "m", f"{scaled} the roller's diameter"),
-        ("cage.inertia_axial", inertia["inertia_axial"], 0.75, 1.07, "kg m2", inertias),
-        ("cage.inertia_transverse", inertia["inertia_transverse"], 0.95, 1.35, "kg m2", inertias),
-    ]  # fmt: skip
+        ("roller.total_length", total, 1.0, 1.05, "m", across),
+        ("ribs.contact_height", ribs["contact_height"], 0.7, 1.3, "m", across),
+        *((f"cage.{name}", cage[name], 0.5, 2.0, "m", across) for name in plays),
+        ("cage.inertia_axial", inner["inertia_axial"], 0.75, 1.07, "kg m2", inertias),
+        ("cage.inertia_transverse", inner["inertia_transverse"], 0.95, 1.35, "kg m2", inertias),
+    ]
+    if cylinder is not None:
+        rows.append(("ribs.clearance", ribs["clearance"], 0.3, 3.0, "m", "1.5e-3 of the roller's diameter, assumed"))
     if cage_mass is None:
         rows.append(
-            ("cage.mass", mass, 0.4, 1.6, "kg", f"{scaled} pitch diameter, roller diameter and roller length; of steel")
+            (
+                "cage.mass",
+                inner["mass"],
+                0.4,
+                1.6,
+                "kg",
+                f"{origin} pitch diameter, roller diameter and roller length; of steel",
+            )
         )
     listed = [
-        _entry(path, value, low * value, high * value, unit, source) for path, value, low, high, unit, source in rows
+        Estimated.of(path, value, low * value, high * value, unit, source)
+        for path, value, low, high, unit, source in rows
     ]
     amplitude = ISO_SHORT if found.length <= ISO_LENGTH * found.diameter else ISO_LONG
     source = "profile of ISO/TS 16281; band from straight (0) to the larger of its constants, which a 32216 was measured with"
-    listed.append(_entry("roller.profile.a_p", amplitude, 0.0, ISO_LONG, "1", source))
-    return {
-        "name": name,
+    listed.append(Estimated.of("roller.profile.a_p", amplitude, 0.0, ISO_LONG, "1", source))
+    fields = {
         "n_rollers": found.count,
-        "cup_half_angle_deg": angle,
+        "cup_half_angle_deg": found.angle,
         "pitch_diameter": found.pitch,
         "roller": roller,
         "ribs": ribs,
         "cage": cage,
         "estimates": tuple(estimates + listed),
     }
+    if cylinder is not None:
+        ribs["flanges"] = cylinder["flanges"]
+        fields["radial_clearance"] = cylinder["radial_clearance"]
+    return fields

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from trbdyn.errors import InputError
-from trbdyn.model.ratings import rating_iso281
+from trbdyn.model.ratings import rating_iso76, rating_iso281
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,29 @@ STEEP_CUP_WIDTH: Final = Usual(0.66, 0.02, 0.60, 0.72)
 """The same of bearings with a steep cup (e from 0.7, as the series 313), whose cone stands out further."""
 STEEP_DEG: Final = (22.0, 25.0)
 """Half angles of the cup up to which it is as wide as usual, and from which it is as wide as that of steep bearings (deg)."""
+
+
+@dataclass(frozen=True)
+class Ratios:
+    """What is usual of a kind of bearing: pitch diameter over (d + D)/2, roller diameter over (D - d)/2, effective length over
+    the width along the raceway, share of the pitch circle that rollers take.
+    """
+
+    pitch: Usual
+    section: Usual
+    length: Usual
+    fill: Usual
+
+
+TAPERED: Final = Ratios(PITCH, SECTION, LENGTH, FILL)
+CYLINDRICAL: Final = Ratios(
+    pitch=Usual(1.010, 0.004, 0.995, 1.020),
+    section=Usual(0.54, 0.06, 0.42, 0.62),
+    length=Usual(0.60, 0.08, 0.42, 0.80),
+    fill=Usual(0.81, 0.025, 0.74, 0.88),
+)
+"""The same of cylindrical bearings, whose length is over the width B: raceways F and E and ratings C and C0 of 28 of them, see
+docs/theory/estimates.md#cylindrical-bearings."""
 NEAR: Final = 0.9
 """C of a catalogue over the smallest one that was found possible, down to which the smallest rollers are taken."""
 MAKER: Final = Usual(1.0, 0.20, 0.80, 1.50)
@@ -74,7 +97,9 @@ _LARGEST: Final = 400.0
 
 @dataclass(frozen=True)
 class Page:
-    """The numbers of a catalogue page, checked (m, N, deg), and what is known of the rollers."""
+    """The numbers of a catalogue page, checked (m, N, deg), and what is known of the rollers. An angle of zero: cylinders, whose
+    static rating, where it is given, tells number times length of the rollers.
+    """
 
     bore: float
     outside: float
@@ -86,6 +111,12 @@ class Page:
     length: float | None
     pitch: float | None
     maker_factor: float | None
+    static: float | None = None
+
+    @property
+    def usual(self) -> Ratios:
+        """What is usual of this kind of bearing."""
+        return CYLINDRICAL if self.angle == 0.0 else TAPERED
 
     @property
     def height(self) -> float:
@@ -98,11 +129,13 @@ class Page:
 
     @property
     def pitch_diameter(self) -> float:
-        return PITCH.value * self.mean if self.pitch is None else self.pitch
+        return self.usual.pitch.value * self.mean if self.pitch is None else self.pitch
 
     @property
     def cup_share(self) -> Usual:
         """Width of the cup over that of the bearing, by the angle."""
+        if self.angle == 0.0:
+            return Usual(1.0, 0.0, 1.0, 1.0)
         low, high = STEEP_DEG
         part = min(max((self.angle - low) / (high - low), 0.0), 1.0)
         ends = (
@@ -123,18 +156,20 @@ class Page:
     @property
     def diameters(self) -> tuple[Usual, float]:
         """Roller diameter over the section's height, and its exponent in C; from the fill as well where rollers are counted."""
+        section, fill = self.usual.section, self.usual.fill
         if self.n_rollers is None:
-            return SECTION, _IN_C["diameter"]
+            return section, _IN_C["diameter"]
         one = math.pi * self.pitch_diameter / (self.n_rollers * self.height)
-        first, second = SECTION.spread**-2, FILL.spread**-2
+        first, second = section.spread**-2, fill.spread**-2
         total = first + second
-        value = math.exp((first * math.log(SECTION.value) + second * math.log(FILL.value * one)) / total)
-        low, high = max(SECTION.low, FILL.low * one), min(SECTION.high, FILL.high * one)
+        value = math.exp((first * math.log(section.value) + second * math.log(fill.value * one)) / total)
+        low, high = max(section.low, fill.low * one), min(section.high, fill.high * one)
         if low > high:
-            few = math.ceil(FILL.low * one * self.n_rollers / SECTION.high)
-            many = math.floor(FILL.high * one * self.n_rollers / SECTION.low)
+            few = math.ceil(fill.low * one * self.n_rollers / section.high)
+            many = math.floor(fill.high * one * self.n_rollers / section.low)
+            circle, across = (f"{100 * one.low:g} to {100 * one.high:g} %" for one in (fill, section))
             limit = (
-                f"must be from {few} to {many}: then rollers take 80 to 90 % of the pitch circle and 40 to 60 % of the section's "
+                f"must be from {few} to {many}: then rollers take {circle} of the pitch circle and {across} of the section's "
                 "height; give roller_diameter as well if this bearing is different (1)"
             )
             raise InputError.of("n_rollers", self.n_rollers, limit)
@@ -161,12 +196,25 @@ class Rollers:
             contact_angle_deg=self.angle,
         )
 
+    def with_static_rating(self, static: float) -> Rollers:
+        """The same with the length that has this rating of ISO 76 (N)."""
+        now = rating_iso76(
+            n_rollers=self.count,
+            roller_diameter=self.diameter,
+            roller_length=self.length,
+            pitch_diameter=self.pitch,
+            contact_angle_deg=self.angle,
+        )
+        return replace(self, length=self.length * static / now)
+
     def walls(self, page: Page) -> float:
         """Thickness of the thinner ring where it is thinnest (m): the cup at the large ends, the cone at the small ones.
 
         With Rc = Dwe/(2 tan nu) from the apex to the rollers' middle, a raceway of half angle a has at the station x the
         radius (Rc + x) sin(a)/cos(nu), a = alpha for the cup and alpha - 2 nu for the cone.
         """
+        if self.angle == 0.0:
+            return 0.5 * min(page.outside - self.pitch - self.diameter, self.pitch - self.diameter - page.bore)
         cup, nu = math.radians(self.angle), 0.0
         for _ in range(50):
             nu = math.atan2(self.diameter * math.sin(cup - nu), self.pitch)
@@ -190,9 +238,14 @@ def solve(page: Page, C: float) -> tuple[Rollers, float]:
     def sizes(multiplier: float) -> Rollers:
         shift = min(multiplier, most)
         diameter = page.height * usual.at(shift, weight) if page.diameter is None else page.diameter
-        length = page.along() * LENGTH.at(shift, _IN_C["length"]) if page.length is None else page.length
-        count = page.count(FILL.at(shift, _IN_C["fill"]), diameter) if page.n_rollers is None else page.n_rollers
-        return Rollers(count, diameter, length, page.pitch_diameter, page.angle)
+        length = page.along() * page.usual.length.at(shift, _IN_C["length"]) if page.length is None else page.length
+        count = (
+            page.count(page.usual.fill.at(shift, _IN_C["fill"]), diameter) if page.n_rollers is None else page.n_rollers
+        )
+        return told(Rollers(count, diameter, length, page.pitch_diameter, page.angle))
+
+    def told(rollers: Rollers) -> Rollers:
+        return rollers if page.static is None or page.length is not None else rollers.with_static_rating(page.static)
 
     def factor(multiplier: float) -> float:
         return MAKER.at(multiplier, 1.0) if page.maker_factor is None else page.maker_factor
@@ -210,15 +263,30 @@ def solve(page: Page, C: float) -> tuple[Rollers, float]:
     if NEAR * lowest <= C < lowest and page.maker_factor is None:
         smallest = sizes(-_LARGEST)
         count = smallest.count if page.n_rollers is not None else max(3, math.floor(smallest.count + 0.5))
-        smallest = replace(smallest, count=count)
+        smallest = told(replace(smallest, count=count))
         return smallest, C / smallest.rating
     if not lowest <= C <= highest:
         raise _wrong_rating(page, C, lowest, highest)
     found = sizes(brentq(above, -_LARGEST, _LARGEST, xtol=1e-10))
     if page.n_rollers is None:
-        ceiling = page.count(FILL.high, found.diameter)
-        found = replace(found, count=max(3, math.floor(min(found.count + 0.5, ceiling + 1e-9))))
+        ceiling = page.count(page.usual.fill.high, found.diameter)
+        found = told(replace(found, count=max(3, math.floor(min(found.count + 0.5, ceiling + 1e-9)))))
+    if page.static is not None and page.length is None:
+        _check_static(page, found)
     return found, C / found.rating
+
+
+def _check_static(page: Page, found: Rollers) -> None:
+    """The length that C0 tells lies within the width of the bearing."""
+    low, high = (page.along(share) for share in (page.usual.length.low, page.usual.length.high))
+    if low <= found.length <= high:
+        return
+    least, most = (float(page.static or 0.0) * length / found.length for length in (low, high))
+    limit = (
+        f"must be from {least:.3g} to {most:.3g} for rollers that fit these dimensions (N); give n_rollers, roller_diameter or "
+        "roller_length if this bearing is different"
+    )
+    raise InputError.of("C0", page.static, limit)
 
 
 def _largest_that_fits(page: Page, sizes: Callable[[float], Rollers]) -> float:

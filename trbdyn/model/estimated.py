@@ -33,6 +33,11 @@ class Estimated(Model):
     unit: str
     source: Annotated[str, Field(min_length=1)]
 
+    @classmethod
+    def of(cls, path: str, value: float, low: float, high: float, unit: str, source: str) -> Estimated:
+        """An estimate whose band holds its value."""
+        return cls(path=path, value=value, low=min(low, value), high=max(high, value), unit=unit, source=source)
+
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"{self.path} = {self.value:.4g}{unit} ({self.low:.4g} to {self.high:.4g}): {self.source}"

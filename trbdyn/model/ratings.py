@@ -84,7 +84,7 @@ def rating_iso281(
 
 
 def rating_iso76(
-    *, n_rollers: int, roller_diameter: float, roller_length: float, pitch_diameter: float, contact_angle_deg: float
+    *, n_rollers: float, roller_diameter: float, roller_length: float, pitch_diameter: float, contact_angle_deg: float
 ) -> float:
     """Basic static radial load rating of a single-row radial roller bearing.
 
@@ -92,7 +92,7 @@ def rating_iso76(
 
     Parameters
     ----------
-    n_rollers : int
+    n_rollers : float
         Z.
     roller_diameter, roller_length, pitch_diameter : float
         Dwe, Lwe, Dpw (m).

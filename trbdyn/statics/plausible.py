@@ -10,7 +10,7 @@ import numpy as np
 
 from trbdyn.model.cage_body import Wall, cage_mass
 from trbdyn.model.cage_space import CageSpace
-from trbdyn.model.catalogue_rollers import FILL
+from trbdyn.model.catalogue_rollers import CYLINDRICAL, TAPERED
 from trbdyn.model.defects import DepthMap, Pit
 from trbdyn.model.motion import value_at, values_of
 from trbdyn.statics.equilibrium import Equilibrium
@@ -156,12 +156,13 @@ def _fill(scene: Scene) -> str:
     if not sizes & kept or not sizes & (listed - kept):
         return ""
     fill = bearing.n_rollers * bearing.roller.diameter / (math.pi * bearing.pitch_diameter)
-    if FILL.low - 0.02 <= fill <= FILL.high + 0.02:
+    usual = (CYLINDRICAL if bearing.is_cylindrical else TAPERED).fill
+    if usual.low - 0.02 <= fill <= usual.high + 0.02:
         return ""
     changed = ", ".join(f"bearing.{path}" for path in sorted(sizes & (listed - kept)))
     return (
         f"{changed} was changed, and the other sizes are still those that were estimated with the former value: rollers take "
-        f"{100 * fill:.3g} % of the pitch circle, usual are {100 * FILL.low:g} to {100 * FILL.high:g} %; give it to "
+        f"{100 * fill:.3g} % of the pitch circle, usual are {100 * usual.low:g} to {100 * usual.high:g} %; give it to "
         "Bearing.from_catalogue, which derives the others again"
     )
 

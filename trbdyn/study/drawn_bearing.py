@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from typing import Any, Final, TypeVar
 
 from trbdyn.model.bearing import Bearing
-from trbdyn.model.catalogue_rollers import FILL
+from trbdyn.model.catalogue_rollers import CYLINDRICAL, TAPERED, Usual
 
 V = TypeVar("V")
 
@@ -57,11 +57,12 @@ def belongs_together(
     whole = bearing.inputs()["roller"].get("total_length")
     if LINE in drawn and whole is not None and (LENGTH not in drawn or LENGTH in free):
         found[LENGTH] = drawn.get(LENGTH, whole) + drawn[LINE] - bearing.roller.effective_length
+    usual = (CYLINDRICAL if bearing.is_cylindrical else TAPERED).fill
     if COUNT in free:
-        share = FILL.low + bands[COUNT][2] * (FILL.high - FILL.low)
-        found[COUNT] = _whole(_around(bearing, drawn), share)
+        share = usual.low + bands[COUNT][2] * (usual.high - usual.low)
+        found[COUNT] = _whole(_around(bearing, drawn), share, usual)
     elif COUNT in estimates and COUNT not in drawn and not drawn.keys().isdisjoint((DIAMETER, PITCH)):
-        found[COUNT] = _whole(_around(bearing, drawn), bearing.n_rollers / _around(bearing, {}))
+        found[COUNT] = _whole(_around(bearing, drawn), bearing.n_rollers / _around(bearing, {}), usual)
     if not free.isdisjoint((AXIAL, TRANSVERSE)):
         heavier = drawn[MASS] / cage.mass if MASS in free else 1.0
         if AXIAL in estimates:
@@ -92,8 +93,8 @@ def _width(bearing: Bearing, drawn: Mapping[str, Any]) -> float:
     return float(0.5 * length + diameter)
 
 
-def _whole(around: float, share: float) -> int:
+def _whole(around: float, share: float, usual: Usual) -> int:
     """The whole number next to a share of the rollers that would fill the pitch circle, within the usual shares if one is."""
-    least = math.ceil(around * min(FILL.low, share) - WHOLE)
-    most = math.floor(around * max(FILL.high, share) + WHOLE)
+    least = math.ceil(around * min(usual.low, share) - WHOLE)
+    most = math.floor(around * max(usual.high, share) + WHOLE)
     return max(3, min(max(round(around * share), least), most))

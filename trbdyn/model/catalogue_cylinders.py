@@ -1,0 +1,106 @@
+"""What a catalogue page of a cylindrical bearing tells besides: its type, the diameters of its raceways, and the usual clearance
+(docs/theory/estimates.md#cylindrical-bearings).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Final
+
+from trbdyn.errors import InputError
+from trbdyn.model.catalogue_rollers import Page
+from trbdyn.model.estimated import Estimated
+
+TYPES: Final = ("NU", "NJ", "NUP", "N")
+"""Types of cylindrical bearings (ISO 15)."""
+CLEARANCES: Final = (
+    (0.030, 20, 45),
+    (0.040, 25, 50),
+    (0.050, 30, 60),
+    (0.065, 40, 70),
+    (0.080, 40, 75),
+    (0.100, 50, 85),
+    (0.120, 50, 90),
+    (0.140, 60, 105),
+    (0.160, 70, 120),
+    (0.180, 75, 125),
+    (0.200, 90, 145),
+    (0.225, 105, 165),
+    (0.250, 110, 175),
+    (0.280, 125, 195),
+    (0.315, 130, 205),
+    (0.355, 145, 225),
+    (0.400, 190, 280),
+    (0.450, 210, 310),
+    (0.500, 220, 330),
+)
+"""Radial clearance of cylindrical bearings before mounting, group N of ISO 5753-1: bore up to (m), least, largest (um)."""
+AFTER_FIT: Final = 0.5
+"""Share of that clearance that fits and warm shafts leave; assumed, between none and all of it."""
+
+
+def check_cylindrical(flanges: str, others: Mapping[str, float | None]) -> None:
+    if flanges not in TYPES:
+        raise InputError.of(
+            "flanges", flanges, f"must be one of {', '.join(TYPES)}, the type in ISO 15 (docs/howto/cylindrical.md)"
+        )
+    for key, value in others.items():
+        if value is not None:
+            limit = f"must not be given with flanges = {flanges!r}: a cylindrical bearing has none (docs/howto/cylindrical.md)"
+            raise InputError.of(key, value, limit)
+
+
+def with_raceways(page: Page, F: float | None, E: float | None) -> tuple[Page, list[Estimated]]:
+    """What the raceways of a cylindrical bearing tell: both together give roller and pitch diameter, one with a usual pitch
+    diameter an estimate.
+    """
+    for key, value, low, high in (("F", F, page.bore, page.mean), ("E", E, page.mean, page.outside)):
+        if value is not None and not low < value < high:
+            whose = "inner" if key == "F" else "outer"
+            limit = f"must be from {low:.4g} to {high:.4g}: diameter of the raceway of the {whose} ring (m)"
+            raise InputError.of(key, value, limit)
+    if F is not None and E is not None:
+        told = {"roller_diameter": (page.diameter, 0.5 * (E - F)), "pitch_diameter": (page.pitch, 0.5 * (E + F))}
+        for key, (given, found) in told.items():
+            if given is not None and not math.isclose(given, found, rel_tol=0.01):
+                raise InputError.of(key, given, f"must be {found:.4g}, as E and F say, or be left out (m)")
+        diameter, pitch = (found if given is None else given for given, found in told.values())
+        return replace(page, diameter=diameter, pitch=pitch), []
+    if F is None and E is None:
+        return page, []
+    race, side = (F, 1.0) if F is not None else (float(E or 0.0), -1.0)
+    name = f"{'F' if side > 0 else 'E'} = {1e3 * race:g} mm"
+    if page.diameter is not None:
+        return (page if page.pitch else replace(page, pitch=race + side * page.diameter)), []
+    if page.pitch is not None:
+        return replace(page, diameter=side * (page.pitch - race)), []
+    usual = page.usual.pitch
+    pitch = usual.value * page.mean
+    source = f"{usual.value:g} of the mean of bore and outside diameter, as usual"
+    low, high = usual.low * page.mean, usual.high * page.mean
+    least, most = sorted(side * (one - race) for one in (low, high))
+    if not least > 0.0:
+        raise InputError.of(
+            "F" if side > 0 else "E", race, f"must leave room for rollers around the circle of {pitch:.4g} m (m)"
+        )
+    diameter = side * (pitch - race)
+    return replace(page, diameter=diameter, pitch=pitch), [
+        Estimated.of("pitch_diameter", pitch, low, high, "m", source),
+        Estimated.of(
+            "roller.diameter", diameter, least, most, "m", f"between the raceway {name} and the pitch circle, {source}"
+        ),
+    ]
+
+
+def usual_clearance(bore: float) -> Estimated:
+    """Operating clearance of a cylindrical bearing: what fits leave of group N."""
+    up_to = next((row for row in CLEARANCES if bore <= row[0]), CLEARANCES[-1])
+    larger = max(bore / up_to[0], 1.0)
+    least, most = (1e-6 * larger * end for end in up_to[1:])
+    source = (
+        f"{AFTER_FIT:g} of group N of ISO 5753-1, {1e6 * least:.3g} to {1e6 * most:.3g} um before mounting, assumed; band from "
+        "none to all of it"
+    )
+    return Estimated.of("radial_clearance", AFTER_FIT * 0.5 * (least + most), 0.0, most, "m", source)
