@@ -68,9 +68,8 @@ def belongs_together(
         if AXIAL in estimates:
             found[AXIAL] = heavier * drawn.get(AXIAL, cage.inertia_axial)
         if TRANSVERSE in estimates:
-            along = (
-                drawn.get(TRANSVERSE, cage.inertia_transverse) - 0.5 * cage.inertia_axial
-            )  # by distances along the axis
+            # by distances along the axis, which are small in narrow cages and never below none
+            along = max(drawn.get(TRANSVERSE, cage.inertia_transverse) - 0.5 * cage.inertia_axial, 0.0)
             wider = _width(bearing, found) / _width(bearing, {})
             found[TRANSVERSE] = 0.5 * found.get(AXIAL, cage.inertia_axial) + heavier * along * wider**2
     return {f"{prefix}{path}": value for path, value in found.items()}
