@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from trbdyn.cli import main
 from trbdyn.errors import InputError, StepError
 from trbdyn.run import memory, running
 from trbdyn.run.checkpoint import checkpoint_path
-from trbdyn.study import whirl
+from trbdyn.study import thermal, whirl
 from trbdyn.study.definition import Base
 
 SCENE = trb.cases.scene_30310(3000.0, 4930.0)
@@ -36,7 +37,7 @@ def simulation(name: str, **options: Any) -> Any:
 
 def each(given: Any) -> list[Any]:
     """What is given for each bearing, by its name where there are several."""
-    return list(given.values()) if set(given) == {"left", "right"} else [given]
+    return list(given.values()) if isinstance(given, Mapping) and set(given) == {"left", "right"} else [given]
 
 
 def test_contacts_records_systems_and_states(name: str) -> None:
@@ -231,6 +232,30 @@ def test_whirl_onset(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     found = trb.whirl_onset(SUBJECTS[name], [3000.0], starts=["equal"], longest=1.0, workers=2)
     assert str(found.data["message"].values[0, 0]) == ""
     assert float(found.data["orbit"].values[0, 0]) >= 0.0
+
+
+def test_thermal(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each bearing gives off the heat that it makes, at temperatures that a run of its own confirms. Runs are short."""
+    for setting, value in {"CURVE": 3, "TURNS": (1.0,), "SETTLED": 1.0, "CLOSE": 0.1}.items():
+        monkeypatch.setattr(thermal, setting, value)
+    paths = trb.HeatPaths.reference(bore=0.050, outside=0.110, width=0.02925, oil_flow=15.0, oil_inlet_c=40.0)
+    given: Any = paths if name == "scene" else {"left": paths, "right": paths.replace(oil_flow=30.0)}
+    found: Any = trb.thermal(SUBJECTS[name], given, workers=2)
+    balances = each(found)
+    assert all(abs(one.balance) < 0.01 for one in balances)
+    subject = SUBJECTS[name]
+    for prefix, one in zip(subject.parts, balances, strict=True):
+        assert one.bands["film"][0] < one.temperatures["film"] < one.bands["film"][1]
+        subject = subject.with_part(prefix, lubricant=one.scene.lubricant)
+    result = trb.Simulation(subject, accuracy="fast").run(revolutions=1.0)
+    for one, alone in zip(balances, result.parts, strict=True):
+        assert alone.summary()["power_loss"] == pytest.approx(one.power, rel=0.05)
+    if name == "pair":
+        assert found["right"].temperatures["film"] < found["left"].temperatures["film"] - 1.0
+    assert str(found).count("Thermal balance") == len(balances)
+    assert len(found.picture().axes) == 2 * len(balances)
+    with pytest.raises(InputError, match="paths"):
+        trb.thermal(SUBJECTS[name], {"nothing": paths})  # type: ignore[arg-type]
 
 
 def test_a_study_over_workers(name: str, tmp_path: Path) -> None:

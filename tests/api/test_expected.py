@@ -22,12 +22,14 @@ ASSEMBLY = trb.Assembly.pair(
 )
 OF_SCENE: dict[str, Callable[[Any], Any]] = {
     "plan": lambda given: trb.plan(given, {"torque": 0.02}),
-    "thermal": lambda given: trb.thermal(given, trb.HeatPaths(oil_flow=30.0)),
     "cage_map": lambda given: trb.cage_map(given, [1000.0, 2000.0], [1000.0]),
 }
 OF_ANY: dict[str, Callable[[Any], Any]] = {
     name: getattr(trb, name) for name in ("Simulation", "stiffness", "uncertainty", "sensitivity")
-} | {"whirl_onset": lambda given: trb.whirl_onset(given, [1000.0, 2000.0])}
+} | {
+    "whirl_onset": lambda given: trb.whirl_onset(given, [1000.0, 2000.0]),
+    "thermal": lambda given: trb.thermal(given, trb.HeatPaths(oil_flow=30.0)),
+}
 OF_RESULT: dict[str, Callable[[Any], Any]] = {
     "wear": lambda given: trb.wear(given, coefficient=1e-17),
     "report": lambda given: trb.report(given, "never.html"),

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.case import add_set, subject_with_changes
 from trbdyn.cli.outcome import DONE, say
 from trbdyn.errors import InputError
 
@@ -51,10 +51,10 @@ def _thermal(options: argparse.Namespace) -> int:
         if not equals:
             raise InputError.of("--heat", text, "must be NAME=VALUE, for instance outer_ring_to_surroundings=3.2")
     paths = HeatPaths(**given)
-    scene, run = case_with_changes(options.case, options.changes)
+    subject, run = subject_with_changes(options.case, options.changes)
     picture = options.output or f"{Path(options.case).stem}_thermal.png"
     output_path(picture, overwrite=options.overwrite, reads=[options.case])
-    found = thermal(scene, paths, options=run)
+    found = thermal(subject, paths, options=run)
     found.picture(picture, overwrite=options.overwrite)
     say(found)
     say(f"\n{picture}")

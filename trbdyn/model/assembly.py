@@ -578,6 +578,14 @@ class Assembly(Model):
             limit = "must be < 0 in sum (preload): without a load on the shaft nothing is pressed together (m)"
             raise InputError.of(("bearings", 0, "end_play"), self.bearings[0].end_play, limit)
 
+    def quantities(self) -> dict[str, float | History]:
+        """Everything that may change in time, by the field's name."""
+        found: dict[str, float | History] = {"speed_rpm": self.speed_rpm}
+        for index, load in enumerate(self.loads):
+            for name, parts in (("force", load.force), ("moment", load.moment)):
+                found |= {f"loads[{index}].{name}[{axis}]": part for axis, part in enumerate(parts)}
+        return found | {f"gravity[{axis}]": part for axis, part in enumerate(self.gravity)}
+
     @property
     def parts(self) -> dict[str, ShaftBearing]:
         """The bearings by the beginnings of their paths in a study: ``bearings[0].`` and so on."""

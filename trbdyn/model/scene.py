@@ -173,11 +173,13 @@ class Scene(Model):
         return tuple(None if isinstance(entry, str) and entry == "free" else entry for entry in given)
 
     def __repr__(self) -> str:
-        return f"<Scene: {self._title()}>"
+        return f"<Scene: {self.title}>"
 
     __str__ = __repr__
 
-    def _title(self) -> str:
+    @property
+    def title(self) -> str:
+        """Bearing, speed, loads and oil in words."""
         given = (
             ("speed", self.speed_rpm, "rpm"),
             ("outer ring", self.outer_speed_rpm, "rpm"),
@@ -196,7 +198,7 @@ class Scene(Model):
         own = tuple(row for row in field_rows(self) if row[0].partition(".")[0] not in parts)
         shown = {name: getattr(self, name)._shown() for name in parts}
         folded = (replace(shown[name], title=f"{name}: {self._part(name)}") for name in parts)
-        return Shown(f"Scene: {self._title()}", own, parts=tuple(folded))
+        return Shown(f"Scene: {self.title}", own, parts=tuple(folded))
 
     def _part(self, name: str) -> str:
         """A part in a few words."""
@@ -264,6 +266,11 @@ class Scene(Model):
     def parts(self) -> dict[str, Self]:
         """The bearing as `Assembly.parts` gives several: by the beginning of its paths in a study, which is empty."""
         return {"": self}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The name of the bearing as `Assembly.names` gives those of several: it is empty."""
+        return ("",)
 
     @property
     def part(self) -> Self:

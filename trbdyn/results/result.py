@@ -224,7 +224,7 @@ class Result(Derived, Displayed):
         ]
         rows += [("warning", text) for text in self.warnings]
         try:
-            parts = [replace(self.scene._shown(), title=f"scene: {self.scene._title()}")]
+            parts = [replace(self.scene._shown(), title=f"scene: {self.scene.title}")]
         except FileError as error:
             parts = [Shown("scene", notes=(str(error),))]
         if len(self) <= SHOWN_RECORDS:

@@ -131,13 +131,13 @@ class Simulation(Displayed, Generic[R]):
         rows: list[tuple[str, ...]] = [("time", f"{self.time:g}", "s", "bearing time that it has reached")]
         rows += [row for row in field_rows(self.options) if row[0] in self.options.settings() or row[0] == "accuracy"]
         scenes = tuple(
-            replace(one.scene._shown(), title=f"{one.name or 'scene'}: {one.scene._title()}") for one in self.bearings
+            replace(one.scene._shown(), title=f"{one.name or 'scene'}: {one.scene.title}") for one in self.bearings
         )
         return Shown(f"Simulation: {self._title}", tuple(rows), notes=self.warnings, parts=scenes)
 
     @property
     def _title(self) -> str:
-        return ", ".join(f"{one.said}{one.scene._title()}" for one in self.bearings)
+        return ", ".join(f"{one.said}{one.scene.title}" for one in self.bearings)
 
     @property
     def scene(self) -> Scene:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from trbdyn.study.definition import Axis, Case, Study, fingerprint
     from trbdyn.study.design import cases, grid, of_scenes, random
     from trbdyn.study.gather import load, save
-    from trbdyn.study.runner import collect, run
+    from trbdyn.study.runner import Running, collect, run
     from trbdyn.study.study_file import STUDIES, load_study, shipped_studies
     from trbdyn.study.uncertainty import Band, open_inputs
 
@@ -32,6 +32,7 @@ _NAMES = {
     "Band": "trbdyn.study.uncertainty",
     "Case": "trbdyn.study.definition",
     "RunOptions": "trbdyn.run.options",
+    "Running": "trbdyn.study.runner",
     "STUDIES": "trbdyn.study.study_file",
     "Study": "trbdyn.study.definition",
     "cases": "trbdyn.study.design",
@@ -54,6 +55,7 @@ __all__ = [
     "Band",
     "Case",
     "RunOptions",
+    "Running",
     "Study",
     "cases",
     "collect",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
+from trbdyn.study.runner import Running
 from trbdyn.study.whirl import TURNS, CageRuns, speeds_of, variables_of
 
 if TYPE_CHECKING:
@@ -100,10 +101,7 @@ def cage_map(
     starts: Sequence[Literal["equal", "whirl"]] = ("equal", "whirl"),
     longest: float = TURNS[-1],
     options: RunOptions | None = None,
-    folder: str | os.PathLike[str] | None = None,
-    executor: Any = "threads",
-    workers: int | None = None,
-    progress: bool = False,
+    **how: Unpack[Running],
 ) -> CageMap:
     """What the cage of a scene does at each of some speeds and axial loads, from rest and from a large whirl.
 
@@ -124,12 +122,8 @@ def cage_map(
         Turns of the cage of the longest runs (1).
     options : RunOptions, optional
         Accuracy and settings of each run, not its length; 'fast' by default.
-    folder : path-like, optional
-        Keep runs in files there, and take what is there already.
-    executor, workers
-        As in `trbdyn.study.run`.
-    progress : bool
-        Show a progress bar.
+    **how
+        Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`.
 
     Returns
     -------
@@ -150,13 +144,7 @@ def cage_map(
     """
     expect("scene", scene, Scene)
     turning, loads = speeds_of(speeds), _loads(axial_loads)
-    runs = CageRuns(
-        scene,
-        starts,
-        options,
-        longest,
-        {"folder": folder, "executor": executor, "workers": workers, "progress": progress},
-    )
+    runs = CageRuns(scene, starts, options, longest, how)
     runs.add([(start, speed, load) for start in runs.starts for load in loads for speed in turning])
     rows = [[[runs.rows[start, speed, load] for speed in turning] for load in loads] for start in runs.starts]
     import xarray

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from trbdyn.base.own_files import folder_path
 from trbdyn.base.validation import Model
@@ -28,6 +28,19 @@ if TYPE_CHECKING:
     import xarray
 
 DATASET = "observables.nc"
+
+
+class Running(TypedDict, total=False):
+    """Arguments of `run` that every function has which makes runs: ``folder``, ``executor``, ``workers`` and ``progress``.
+
+    In a folder the runs are kept, and a second call with the same folder makes only those that are missing. Without an executor
+    runs go side by side in threads.
+    """
+
+    folder: str | os.PathLike[str] | None
+    executor: Any
+    workers: int | None
+    progress: bool
 
 
 def run(

@@ -1,21 +1,81 @@
-"""Whether torque and losses of a short run have settled."""
+"""Runs that are made again, longer, until what is wanted of them has settled; and whether torque and losses of a run have."""
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import numpy as np
 
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.results.summary import mean_loss, shaft_torque
 from trbdyn.run.options import RunOptions
+from trbdyn.study.definition import Case, Study
+from trbdyn.study.runner import Running
+from trbdyn.study.runner import run as run_study
+from trbdyn.study.work import Observable
+
+if TYPE_CHECKING:
+    import xarray
+
+Point = TypeVar("Point")
 
 TURNS: Final = (2.0, 8.0, 32.0)
-"""Turns of the shaft after which a torque is judged; the next number where it does not stand yet."""
+"""Turns of the shaft after which a torque is judged; the next number where it has not settled yet."""
 RECORDS: Final = 64
 """Records of a run."""
 STEADY: Final = 0.9
 """Largest factor from quarter to quarter by which a change is taken to shrink."""
 GROUPS: Final = ("contacts", "torque", "power", "energy")
+
+
+def run_until_settled(
+    points: Sequence[Point],
+    turns: Sequence[float],
+    case: Callable[[Point, float], Case],
+    judged: Callable[[xarray.Dataset, float], dict[str, Any]],
+    observables: Mapping[str, Observable],
+    how: Running,
+) -> dict[Point, dict[str, Any]]:
+    """Run points, each again with the next number of turns until it has settled or cannot be run.
+
+    Parameters
+    ----------
+    points : sequence
+        What is run.
+    turns : sequence of float
+        Lengths of the runs, ascending.
+    case : callable
+        The case of a point with a number of turns.
+    judged : callable
+        What is kept of a case's entry in the dataset and its number of turns: ``settled``, ``message`` (why it could not be
+        run, else empty), and what else is wanted.
+    observables : mapping of str to callable
+        What is computed of each result.
+    how : Running
+        Where and how the runs are made; in threads by default.
+
+    Returns
+    -------
+    dict
+        What was kept of each point's longest run.
+    """
+    rows: dict[Point, dict[str, Any]] = {}
+    waiting = list(points)
+    for length in turns:
+        if not waiting:
+            break
+        study = Study(tuple(case(point, length) for point in waiting), (), "settled")
+        data = run_study(study, observables=observables, **(Running(executor="threads") | how))
+        rows |= {point: judged(data.isel(case=k), length) for k, point in enumerate(waiting)}
+        waiting = [point for point in waiting if not rows[point]["settled"] and not rows[point]["message"]]
+    return rows
+
+
+def failure(found: xarray.Dataset) -> str:
+    """Why a case could not be run, in a line; empty if it could."""
+    return "" if str(found["status"].values) == "done" else str(found["message"].values).splitlines()[0]
 
 
 def short_run(options: RunOptions, speed_rpm: float, turns: float) -> RunOptions:
@@ -28,16 +88,19 @@ def drift(result: Result | AssemblyResult) -> float:
     """How far the torque at the end of a run may still be from where it settles, over that torque (1).
 
     From the means over the last three quarters of the run: a change that shrinks from quarter to quarter by a steady factor
-    goes on so. A factor above 0.9 counts as 0.9, as a mean that only scatters has any. Of several bearings the largest.
+    goes on so. A factor above 0.9 counts as 0.9, as a mean that only scatters has any. Of several bearings the largest, by the
+    power that each loses: the shaft's work is known of all together only, and the mean of few records of a torque scatters.
     """
-    return max(map(_drift, result.parts))
+    if len(result.parts) == 1:
+        return _drift(result.parts[0], shaft_torque)
+    return max(_drift(part, mean_loss) for part in result.parts)
 
 
-def _drift(result: Result) -> float:
+def _drift(result: Result, mean: Callable[[Result], float]) -> float:
     start, end = result["time"][0], result["time"][-1]
     cuts = [start + share * (end - start) for share in (0.25, 0.5, 0.75)]
     # means from each cut to the end, and from them those of the quarters
-    third, half, quarter = (shaft_torque(result.window(cut)) for cut in cuts)
+    third, half, quarter = (mean(result.window(cut)) for cut in cuts)
     quarters = (3.0 * third - 2.0 * half, 2.0 * half - quarter, quarter)
     before, last = abs(quarters[1] - quarters[0]), abs(quarters[2] - quarters[1])
     shrinking = min(last / before, STEADY) if before > 0.0 else 0.0
@@ -45,13 +108,14 @@ def _drift(result: Result) -> float:
 
 
 def stored(result: Result | AssemblyResult) -> float:
-    """How much of the shaft's power over the second half of a run was not lost but went into motion or springs (1); of several
-    bearings the largest.
-    """
-    return max(map(_stored, result.parts))
+    """How much of the shaft's power over the second half of a run was not lost but went into motion or springs (1)."""
+    halves = [part.window(0.5 * (part["time"][0] + part["time"][-1])) for part in result.parts]
+    if len(halves) == 1:
+        power = abs(shaft_torque(halves[0]) * halves[0].rolling_speed.mean())
+    else:
+        power = abs(sum(np.ptp(half["work_shaft"][[0, -1]]) / np.ptp(half["time"]) for half in halves))
+    return float(abs(power - sum(map(mean_loss, halves))) / max(power, 1e-300))
 
 
-def _stored(result: Result) -> float:
-    half = result.window(0.5 * (result["time"][0] + result["time"][-1]))
-    power = abs(shaft_torque(half) * half.rolling_speed.mean())
-    return abs(power - mean_loss(half)) / max(power, 1e-300)
+JUDGED: Final = {"drift": drift, "stored": stored}
+"""What tells whether a torque has settled."""

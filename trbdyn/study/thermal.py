@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, Unpack, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,21 +15,26 @@ from scipy.stats import qmc
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError, TrbError
+from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
 from trbdyn.model.growth import Growth
 from trbdyn.model.heat import CONDUCTANCES, FACTOR, PARTS, HeatPaths
 from trbdyn.model.lubricants import LOWEST_MEASURED_C, LOWEST_TEMPERATURE_C
 from trbdyn.model.motion import is_constant, value_at
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
-from trbdyn.study.definition import Base
+from trbdyn.study.definition import Base, Case
 from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
-from trbdyn.study.runner import run as run_study
-from trbdyn.study.settled import TURNS, drift, short_run, stored
+from trbdyn.study.runner import Running
+from trbdyn.study.settled import JUDGED, TURNS, failure, run_until_settled, short_run
 
 if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
+Films = tuple[float, ...]
+"""Temperature of the films of each bearing (C)."""
+Losses = dict[str, float]
+"""Power by mechanism (W)."""
 
 CLOSE: Final = 2e-3
 """How near the film's temperature of network and run are in the end (K)."""
@@ -61,12 +66,14 @@ class Thermal(Displayed):
         Heat that leaves each node to the outside (W).
     balance : float
         Heat that leaves over the power that is lost, less 1.
-    scene : Scene
-        The scene at these temperatures.
+    scene : Scene or ShaftBearing
+        The scene, or the bearing on its shaft, at these temperatures.
     known : dict of float to dict
         Power by mechanism (W), by the temperatures of films that were run (C).
     paths : HeatPaths
         The network.
+    title : str
+        What it is the balance of, in words.
     """
 
     temperatures: dict[str, float]
@@ -74,9 +81,10 @@ class Thermal(Displayed):
     losses: dict[str, float]
     flows: dict[str, float]
     balance: float
-    scene: Scene
+    scene: Scene | ShaftBearing
     known: dict[float, dict[str, float]]
     paths: HeatPaths
+    title: str
 
     @property
     def power(self) -> float:
@@ -135,7 +143,7 @@ class Thermal(Displayed):
         from trbdyn.plot.heat import draw_balance
         from trbdyn.plot.style import kept
 
-        return kept(draw_balance(self), path, overwrite=overwrite)
+        return kept(draw_balance([self]), path, overwrite=overwrite)
 
     def __str__(self) -> str:
         return self._shown().text(names=True)
@@ -156,7 +164,7 @@ class Thermal(Displayed):
             "were run."
         )
         return Shown(
-            f"Thermal balance: {self.scene._title()}",
+            f"Thermal balance: {self.title}",
             tuple(rows),
             ("part", "value", "95 % of the draws", "gives off"),
             (
@@ -166,46 +174,105 @@ class Thermal(Displayed):
         )
 
 
+class AssemblyThermal(Mapping[str, Thermal], Displayed):
+    """Bearings on a shaft in thermal balance: a `Thermal` of each by its name; print it for a table.
+
+    Parameters
+    ----------
+    bearings : mapping of str to Thermal
+        The balances.
+    """
+
+    def __init__(self, bearings: Mapping[str, Thermal]) -> None:
+        self._bearings = dict(bearings)
+
+    def __getitem__(self, name: str) -> Thermal:
+        return self._bearings[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._bearings)
+
+    def __len__(self) -> int:
+        return len(self._bearings)
+
+    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
+        """Draw the balance of each bearing, one below the other; see `Thermal.picture`."""
+        from trbdyn.plot.heat import draw_balance
+        from trbdyn.plot.style import kept
+
+        return kept(draw_balance(list(self.values())), path, overwrite=overwrite)
+
+    def __str__(self) -> str:
+        return "\n\n".join(map(str, self.values()))
+
+    __repr__ = __str__
+
+    def _shown(self) -> Shown:
+        return Shown("Thermal balance", parts=tuple(one._shown() for one in self.values()))
+
+
+@overload
 def thermal(
-    scene: Scene,
+    subject: Scene,
     paths: HeatPaths,
     *,
     options: RunOptions | None = None,
     seed: int = 0,
-    folder: str | os.PathLike[str] | None = None,
-    executor: Any = "threads",
-    workers: int | None = None,
-) -> Thermal:
-    """The temperatures at which a bearing gives off as much heat as it makes.
+    **how: Unpack[Running],
+) -> Thermal: ...
 
-    Losses come from runs, each until they stand as in `trbdyn.torque_map`; heat goes through a network of four nodes. The
+
+@overload
+def thermal(
+    subject: Assembly,
+    paths: HeatPaths | Mapping[str, HeatPaths],
+    *,
+    options: RunOptions | None = None,
+    seed: int = 0,
+    **how: Unpack[Running],
+) -> AssemblyThermal: ...
+
+
+def thermal(
+    subject: Subject,
+    paths: HeatPaths | Mapping[str, HeatPaths],
+    *,
+    options: RunOptions | None = None,
+    seed: int = 0,
+    **how: Unpack[Running],
+) -> Thermal | AssemblyThermal:
+    """The temperatures at which a bearing, or each bearing on a shaft, gives off as much heat as it makes.
+
+    Losses come from runs, each until they have settled as in `trbdyn.torque_map`; heat goes through a network of four nodes. The
     temperature of films, the mean of rings and rollers, is the oil's in the run; where the scene has a `Growth`, its parts
-    get the temperatures of the nodes, which change the plays of the pockets. The film's temperature is found by bracketing, as
-    plain iteration of run and network can swing.
+    get the temperatures of the nodes, which change the plays of the pockets. The films' temperature is found by bracketing, as
+    plain iteration of run and network can swing. Bearings on a shaft run together, each at the temperature of its own films.
 
     Parameters
     ----------
-    scene : Scene
-        What is simulated; speed and loads must be constant, and its lubricant an oil that is known at other temperatures.
-    paths : HeatPaths
-        Conductances and temperatures outside.
+    subject : Scene or Assembly
+        What is simulated; speed and loads must be constant, and the lubricant an oil that is known at other temperatures.
+    paths : HeatPaths, or mapping of str to HeatPaths
+        Conductances and temperatures outside; those of each bearing on a shaft by its name, or one for all. No heat goes from
+        one bearing to another but through the temperatures outside that you give.
     options : RunOptions, optional
         Accuracy and settings of each run, not its length; 'fast' by default.
     seed : int
         Seed of the draws of conductances.
-    folder, executor, workers : optional
-        As in `trbdyn.study.run`; the runs of the bands go side by side.
+    **how
+        Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`. Those of the bands go side by side.
 
     Returns
     -------
-    Thermal
+    Thermal or AssemblyThermal
+        Of several bearings one each, by name.
 
     Raises
     ------
     InputError
         If an argument cannot be used, or films would be hotter than 180 C.
     TrbError
-        If a run fails, or its losses do not stand after 32 turns.
+        If a run fails, or its losses have not settled after 32 turns.
 
     Notes
     -----
@@ -220,65 +287,210 @@ def thermal(
     >>> abs(found.balance) < 1e-3
     True
     """
-    expect("scene", scene, Scene)
-    expect("paths", paths, HeatPaths)
-    if scene.lubricant.oil is None:
-        raise InputError.of("lubricant.oil", None, "must be given: heat changes the temperature of the lubricant")
-    if not all(is_constant(quantity) for quantity in scene.ring_quantities().values()):
+    expect("scene", subject, Scene, Assembly)
+    own = _own_paths(subject, paths)
+    for prefix, part in subject.parts.items():
+        if part.lubricant.oil is None:
+            limit = "must be given: heat changes the temperature of the lubricant"
+            raise InputError.of(f"{prefix}lubricant.oil", None, limit)
+    if not all(is_constant(quantity) for quantity in subject.quantities().values()):
         raise InputError.of("scene", "speed or loads", "must be constant in time")
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise InputError.of("seed", seed, "must be a whole number, at least 0")
-    runs = _Runs(scene, RunOptions(accuracy="fast") if options is None else options, folder, executor, workers)
-    nodes = _balanced(runs, paths)
-    film = film_temperature(nodes)
-    losses, flows = runs.losses(film, nodes), {}
-    for name, (conductance, outside) in paths.outer_links.items():
-        flows[name] = conductance * (nodes[name] - outside)
-    bands = _bands(runs, paths, film, int(seed))
-    balance = sum(flows.values()) / sum(losses.values()) - 1.0
-    return Thermal(
-        {**nodes, "film": film}, bands, losses, flows, balance, runs.scene_at(film, nodes), dict(runs.known), paths
-    )
+    balance = _Balance(subject, own, RunOptions(accuracy="fast") if options is None else options, how)
+    films = balance.found()
+    losses, nodes = balance.losses(films), balance.nodes
+    bands, at = balance.bands(films, int(seed)), balance.subject_at(films)
+    found = {}
+    for k, (name, part) in enumerate(zip(subject.names, _parts(at), strict=True)):
+        flows = {end: g * (nodes[k][end] - outside) for end, (g, outside) in own[k].outer_links.items()}
+        residual = sum(flows.values()) / sum(losses[k].values()) - 1.0
+        title = f"{name}, {part.bearing.name}" if name else at.title
+        found[name] = Thermal(
+            {**nodes[k], "film": film_temperature(nodes[k])},
+            bands[k],
+            losses[k],
+            flows,
+            residual,
+            part,
+            balance.curve(k),
+            own[k],
+            title,
+        )
+    return found[""] if "" in found else AssemblyThermal(found)
 
 
-def _balanced(runs: _Runs, paths: HeatPaths) -> dict[str, float]:
-    """Temperatures of the nodes whose films make as much heat as the network gives off."""
-    nodes: dict[str, float] = {}
-
-    def excess(film: float, losses: Callable[[float, Mapping[str, float]], dict[str, float]] = runs.losses) -> float:
-        nonlocal nodes
-        nodes = network(paths, heat_of(losses(film, nodes), paths.oil_share, runs.scene.bearing.ribs))
-        return film_temperature(nodes) - film
-
-    low = max(film_temperature(network(paths, dict.fromkeys(PARTS, 0.0))), runs.coldest)
-    if excess(low) <= 0.0:
-        raise InputError.of("paths", low, "temperatures outside lie below what the oil is known at (C)")
-    high = min(low + 30.0, HOTTEST)
-    while excess(high, runs.roughly) > 0.0:
-        if high >= HOTTEST:
-            limit = f"would make films hotter than {HOTTEST:g} C: the conductances are too small for these losses (W/K)"
-            raise InputError.of("paths", "conductances", limit)
-        low, high = high, min(high + 30.0, HOTTEST)
-    excess(float(brentq(lambda film: excess(film, runs.roughly), low, high, xtol=CLOSE, rtol=1e-6)))
-    return nodes
+def _parts(subject: Subject) -> list[Scene | ShaftBearing]:
+    return [*subject.parts.values()]
 
 
-def _bands(runs: _Runs, paths: HeatPaths, film: float, seed: int) -> dict[str, tuple[float, float]]:
-    """Bands of temperatures and power from draws of all conductances; losses between the runs are interpolated."""
+def _own_paths(subject: Subject, paths: HeatPaths | Mapping[str, HeatPaths]) -> list[HeatPaths]:
+    """The paths of each bearing."""
+    if not isinstance(paths, Mapping):
+        expect("paths", paths, HeatPaths)
+        return [paths] * len(subject.names)
+    if set(paths) != set(subject.names):
+        limit = f"must be those of {', '.join(subject.names)}" if any(subject.names) else "must be a HeatPaths"
+        raise InputError.of("paths", sorted(paths), limit)
+    for name, own in paths.items():
+        expect(f"paths.{name}", own, HeatPaths)
+    return [paths[name] for name in subject.names]
+
+
+@dataclass
+class _Balance:
+    """Losses of bearings at temperatures of their films, and the temperatures at which they balance.
+
+    Attributes
+    ----------
+    subject, paths, options, how
+        What is run, the network of each bearing, and how it is run.
+    known, rough : dict
+        Losses of each bearing by the films' temperatures: settled ones, and those that are good enough to tell on which side of
+        the balance they lie.
+    nodes : list of dict
+        Temperatures of the nodes of each bearing that follow from the losses that were computed last (C).
+    """
+
+    subject: Subject
+    paths: list[HeatPaths]
+    options: RunOptions
+    how: Running
+    known: dict[Films, list[Losses]] = field(default_factory=dict)
+    rough: dict[Films, list[Losses]] = field(default_factory=dict)
+    nodes: list[dict[str, float]] = field(default_factory=list)
+
+    def found(self) -> Films:
+        """Temperatures of the films at which each network gives off what its bearing makes. Each is bracketed, all at the same
+        time, as one run gives the losses of all bearings; by false position, with the older end's residual halved (Illinois:
+        Dowell and Jarratt 1971, BIT 11, 168).
+        """
+        coldest = [self.coldest(k) for k in range(len(self.paths))]
+        low, high = np.array(coldest), np.minimum(np.array(coldest) + 30.0, HOTTEST)
+        at_low = self._excess(low, self.losses)
+        for k in np.flatnonzero(at_low <= 0.0):
+            raise InputError.of("paths", low[k], "temperatures outside lie below what the oil is known at (C)")
+        at_high = self._excess(high, self.roughly)
+        while (hotter := at_high > 0.0).any():
+            if (high[hotter] >= HOTTEST).any():
+                limit = (
+                    f"would make films hotter than {HOTTEST:g} C: the conductances are too small for these losses (W/K)"
+                )
+                raise InputError.of("paths", "conductances", limit)
+            low, at_low = np.where(hotter, high, low), np.where(hotter, at_high, at_low)
+            high = np.where(hotter, np.minimum(high + 30.0, HOTTEST), high)
+            at_high = np.where(hotter, self._excess(high, self.roughly), at_high)
+        film, off, before = high, at_high, np.zeros(len(high))
+        while (goes_on := (np.abs(off) > CLOSE) & (high - low > CLOSE)).any():
+            film = np.where(goes_on, (low * at_high - high * at_low) / (at_high - at_low), film)
+            off = self._excess(film, self.roughly)
+            above, side = off > 0.0, np.sign(off)
+            at_high = np.where(above & (side == before), 0.5 * at_high, np.where(above, at_high, off))
+            at_low = np.where(~above & (side == before), 0.5 * at_low, np.where(above, off, at_low))
+            low, high, before = np.where(above, film, low), np.where(above, high, film), side
+        self._excess(film, self.losses)
+        return tuple(map(film_temperature, self.nodes))
+
+    def coldest(self, k: int) -> float:
+        """Films of a bearing that makes no heat, or the lowest temperature at which its oil is known (C)."""
+        oil = _parts(self.subject)[k].lubricant.oil
+        known = LOWEST_TEMPERATURE_C if oil is not None and oil.vogel is None else LOWEST_MEASURED_C
+        return max(film_temperature(network(self.paths[k], dict.fromkeys(PARTS, 0.0))), known)
+
+    def _excess(self, films: Array, losses: Callable[[Films], list[Losses]]) -> Array:
+        """How much hotter the films of each bearing become than they are (K)."""
+        found = losses(tuple(films.tolist()))
+        parts = _parts(self.subject)
+        self.nodes = [
+            network(paths, heat_of(lost, paths.oil_share, part.bearing.ribs))
+            for paths, lost, part in zip(self.paths, found, parts, strict=True)
+        ]
+        return np.array([film_temperature(nodes) for nodes in self.nodes]) - films
+
+    def subject_at(self, films: Films, nodes: Sequence[Mapping[str, float]] | None = None) -> Subject:
+        """What is run with its films, and the parts that grow, at their temperatures."""
+        given = self.nodes if nodes is None else nodes
+        oils = {f"{prefix}lubricant.temperature_c": t for prefix, t in zip(self.subject.parts, films, strict=True)}
+        warm, _ = Base.of(self.subject).build(oils)
+        for prefix, part, own in zip(warm.parts, _parts(warm), given, strict=False):
+            if part.growth is None:
+                continue
+            growth = Growth(
+                cage_c=own["rollers"],
+                rollers_c=own["rollers"],
+                inner_ring_c=own["inner_ring"],
+                outer_ring_c=own["outer_ring"],
+                reference_c=part.growth.reference_c,
+                centrifugal=part.growth.centrifugal,
+            )
+            warm = warm.with_part(prefix, growth=growth)
+        return warm
+
+    def losses(self, films: Films) -> list[Losses]:
+        """Settled losses of each bearing."""
+        if films not in self.known:
+            self._run([films], self.nodes)
+        return self.known[films]
+
+    def roughly(self, films: Films) -> list[Losses]:
+        """The same, good enough to tell on which side of the balance it lies: also where the losses scatter by `ROUGH`."""
+        if films not in self.known and films not in self.rough:
+            self._run([films], self.nodes, ROUGH)
+        return self.known[films] if films in self.known else self.rough[films]
+
+    def curve(self, k: int) -> dict[float, Losses]:
+        """Settled losses of a bearing by its films' temperature."""
+        return {films[k]: losses[k] for films, losses in self.known.items()}
+
+    def _run(self, points: Sequence[Films], nodes: Sequence[Mapping[str, float]], within: float = SETTLED) -> None:
+        speed = value_at(self.subject.speed_rpm, 0.0)
+
+        def case(films: Films, turns: float) -> Case:
+            parameters = {f"{prefix}film_c": t for prefix, t in zip(self.subject.parts, films, strict=True)}
+            return Case(parameters, self.subject_at(films, nodes), short_run(self.options, speed, turns))
+
+        def judged(found: xarray.Dataset, _: float) -> dict[str, Any]:
+            if message := failure(found):
+                return {"settled": False, "message": message}
+            moves = max(float(found["drift"]), float(found["stored"]))
+            losses = [_losses(found, f"{name}_" if name else "") for name in self.subject.names]
+            return {"settled": moves <= SETTLED, "message": "", "moves": moves, "losses": losses}
+
+        for films, row in run_until_settled(points, TURNS, case, judged, JUDGED, self.how).items():
+            said = " and ".join(f"{t:.4g}" for t in films)
+            if row["message"]:
+                raise TrbError(f"the run at {said} C failed: {row['message']}")
+            if not row["settled"] and row["moves"] > within:
+                limit = f"have not settled within {100.0 * SETTLED:g} % after {TURNS[-1]:g} turns"
+                raise TrbError(f"the losses at {said} C {limit}")
+            (self.known if row["settled"] else self.rough)[films] = row["losses"]
+
+    def bands(self, films: Films, seed: int) -> list[dict[str, tuple[float, float]]]:
+        """Bands of temperatures and power of each bearing, with losses between the runs by interpolation."""
+        grids = []
+        for k, paths in enumerate(self.paths):
+            cold = film_temperature(network(paths, dict.fromkeys(PARTS, 0.0)))
+            hot = min(films[k] + 1.2 * (films[k] - cold), HOTTEST)
+            grids.append(np.linspace(self.coldest(k), hot, CURVE).tolist())
+        self._run([point for point in zip(*grids, strict=True) if point not in self.known], [])
+        parts = _parts(self.subject)
+        return [
+            _drawn(paths, LossCurves(self.curve(k)), part.bearing.ribs, seed)
+            for k, (paths, part) in enumerate(zip(self.paths, parts, strict=True))
+        ]
+
+
+def _drawn(paths: HeatPaths, curves: LossCurves, ribs: Any, seed: int) -> dict[str, tuple[float, float]]:
+    """Bands of temperatures and power from draws of all conductances."""
     names = [name for name in CONDUCTANCES if getattr(paths, name) > 0.0]
-    coldest = film_temperature(network(paths, dict.fromkeys(PARTS, 0.0)))
-    grid = np.linspace(max(coldest, runs.coldest), min(film + 1.2 * (film - coldest), HOTTEST), CURVE)
-    runs.side_by_side(grid.tolist())
-    curves = LossCurves(runs.known)
     known = curves.temperatures
-    unit = qmc.Sobol(len(names) + 1, seed=seed).random(DRAWS)
     found: dict[str, list[float]] = {name: [] for name in (*PARTS, "film", "power")}
-    for row in unit:
+    for row in qmc.Sobol(len(names) + 1, seed=seed).random(DRAWS):
         changes = {name: getattr(paths, name) * FACTOR ** (2.0 * u - 1.0) for name, u in zip(names, row, strict=False)}
         drawn = paths.replace(**changes, oil_share=float(row[-1]))
 
         def nodes_at(t: float, drawn: HeatPaths = drawn) -> dict[str, float]:
-            return network(drawn, heat_of(curves(t), drawn.oil_share, runs.scene.bearing.ribs))
+            return network(drawn, heat_of(curves(t), drawn.oil_share, ribs))
 
         def excess(t: float) -> float:
             return film_temperature(nodes_at(t)) - t
@@ -293,89 +505,11 @@ def _bands(runs: _Runs, paths: HeatPaths, film: float, seed: int) -> dict[str, t
     return {name: tuple(np.quantile(values, [0.025, 0.975]).tolist()) for name, values in found.items()}
 
 
-@dataclass
-class _Runs:
-    """Losses of a scene at temperatures of its films."""
-
-    scene: Scene
-    options: RunOptions
-    folder: str | os.PathLike[str] | None
-    executor: Any
-    workers: int | None
-    known: dict[float, dict[str, float]] = field(default_factory=dict)
-    rough: dict[float, dict[str, float]] = field(default_factory=dict)
-
-    @property
-    def coldest(self) -> float:
-        """Below this the oil is not known (C)."""
-        oil = self.scene.lubricant.oil
-        return LOWEST_TEMPERATURE_C if oil is not None and oil.vogel is None else LOWEST_MEASURED_C
-
-    def scene_at(self, film: float, nodes: Mapping[str, float]) -> Scene:
-        """The scene with its films, and the parts that grow, at their temperatures."""
-        growth, changes = self.scene.growth, {}
-        if growth is not None and nodes:
-            changes["growth"] = Growth(
-                cage_c=nodes["rollers"],
-                rollers_c=nodes["rollers"],
-                inner_ring_c=nodes["inner_ring"],
-                outer_ring_c=nodes["outer_ring"],
-                reference_c=growth.reference_c,
-                centrifugal=growth.centrifugal,
-            )
-        warm = cast(Scene, Base.of(self.scene).build({"lubricant.temperature_c": film})[0])
-        return warm.replace(**changes) if changes else warm
-
-    def losses(self, film: float, nodes: Mapping[str, float]) -> dict[str, float]:
-        """Power by mechanism (W)."""
-        if film not in self.known:
-            self._run({film: self.scene_at(film, nodes)})
-        return self.known[film]
-
-    def roughly(self, film: float, nodes: Mapping[str, float]) -> dict[str, float]:
-        """The same, good enough to tell on which side of the balance it lies: also where the losses scatter by `ROUGH`."""
-        if film not in self.known and film not in self.rough:
-            self._run({film: self.scene_at(film, nodes)}, ROUGH)
-        return self.known[film] if film in self.known else self.rough[film]
-
-    def side_by_side(self, films: list[float]) -> None:
-        self._run({film: self.scene_at(film, {}) for film in films if film not in self.known})
-
-    def _run(self, waiting: dict[float, Scene], within: float = SETTLED) -> None:
-        speed = value_at(self.scene.speed_rpm, 0.0)
-        for turns in TURNS:
-            run = short_run(self.options, speed, turns)
-            data = run_study(
-                [(scene, run) for scene in waiting.values()],
-                self.folder,
-                executor=self.executor,
-                workers=self.workers,
-                observables={"drift": drift, "stored": stored},
-            )
-            left, last = {}, turns == TURNS[-1]
-            for k, (film, scene) in enumerate(waiting.items()):
-                one = data.isel(case=k)
-                if str(one["status"].values) != "done":
-                    raise TrbError(f"the run at {film:.4g} C failed: {one['message'].values}")
-                moves = max(float(one["drift"]), float(one["stored"]))
-                if moves <= SETTLED:
-                    self.known[film] = _losses(one)
-                elif last and moves <= within:
-                    self.rough[film] = _losses(one)
-                else:
-                    left[film] = scene
-            waiting = left
-            if not waiting:
-                return
-        film = next(iter(waiting))
-        raise TrbError(
-            f"the losses at {film:.4g} C do not stand after {TURNS[-1]:g} turns, within {100.0 * SETTLED:g} %"
-        )
-
-
-def _losses(run: Any) -> dict[str, float]:
-    """Power by mechanism (W) of a run in a dataset; without that of a free ring's damping, which heats the surroundings."""
-    prefix = "power_split_"
-    found = {str(name)[len(prefix) :]: float(run[name]) for name in run.data_vars if str(name).startswith(prefix)}
+def _losses(run: Any, name: str) -> Losses:
+    """Power by mechanism (W) of a run in a dataset, of a bearing with the beginning of its quantities' names; without that of a
+    free ring's damping, which heats the surroundings.
+    """
+    prefix = f"{name}power_split_"
+    found = {str(key)[len(prefix) :]: float(run[key]) for key in run.data_vars if str(key).startswith(prefix)}
     found.pop("support", None)
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,9 @@ from trbdyn.model.bearing import Bearing
 from trbdyn.model.scene import Scene
 from trbdyn.results.fields import table
 from trbdyn.run.options import RunOptions
-from trbdyn.study.definition import Base, Case, Study
-from trbdyn.study.runner import run as run_study
-from trbdyn.study.settled import TURNS, drift, short_run, stored
+from trbdyn.study.definition import Base, Case
+from trbdyn.study.runner import Running
+from trbdyn.study.settled import JUDGED, TURNS, failure, run_until_settled, short_run
 from trbdyn.study.uncertainty import FEWEST, LEVEL, Band, checked_bands, drawn_case, open_inputs, unit_draws
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ class TorqueMap(Displayed):
 
     @property
     def settled(self) -> bool:
-        """Whether every torque stands."""
+        """Whether every torque has settled."""
         return bool(self.data["settled"].all())
 
     def lowest(self, *, load: int = 0, temperature: int = 0) -> tuple[float, float]:
@@ -173,10 +173,7 @@ def torque_map(
     samples: int = 16,
     seed: int = 0,
     options: RunOptions | None = None,
-    folder: str | os.PathLike[str] | None = None,
-    executor: Any = "threads",
-    workers: int | None = None,
-    progress: bool = False,
+    **how: Unpack[Running],
 ) -> TorqueMap:
     """Friction torque of the shaft over speed, load and temperature of the oil, split by what loses it.
 
@@ -207,14 +204,8 @@ def torque_map(
         Seed of the draws.
     options : RunOptions, optional
         Accuracy and settings of each run, not its length; 'fast' by default.
-    folder : path-like, optional
-        Where the runs are kept; a second call with the same folder runs only those that are missing.
-    executor : {'threads', 'processes', 'serial'} or object
-        As in `trbdyn.study.run`.
-    workers : int, optional
-        As in `trbdyn.study.run`.
-    progress : bool
-        Show a progress bar.
+    **how
+        Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`.
 
     Returns
     -------
@@ -248,23 +239,14 @@ def torque_map(
     bases = [_at_place(scene, place) for place in places]
     if not any(base for base, _ in bases):
         raise InputError.of("loads", loads, f"no point can be built; the first: {bases[0][1]}")
-    rows = {}
-    waiting = [(p, d) for p in range(len(places)) for d in range(1 + len(unit))]
-    for turns in TURNS:
-        cases = [_case(bases[p], drawn, unit, p, d, places[p][1], run, turns) for p, d in waiting]
-        data = run_study(
-            Study(tuple(cases), (), "torque_map"),
-            folder,
-            executor=executor,
-            workers=workers,
-            observables={"drift": drift, "stored": stored},
-            progress=progress,
-        )
-        for k, key in enumerate(waiting):
-            rows[key] = _row(data.isel(case=k), turns, tolerance)
-        waiting = [key for key in waiting if not rows[key]["settled"] and not rows[key]["message"]]
-        if not waiting:
-            break
+    rows = run_until_settled(
+        [(p, d) for p in range(len(places)) for d in range(1 + len(unit))],
+        TURNS,
+        lambda point, turns: _case(bases[point[0]], drawn, unit, *point, places[point[0]][1], run, turns),
+        lambda found, turns: _row(found, turns, tolerance),
+        JUDGED,
+        how,
+    )
     return TorqueMap(_gathered(scene, places, rows, len(unit), (speeds, loads, temperatures)), float(tolerance))
 
 
@@ -341,12 +323,12 @@ def _case(
 
 def _row(found: xarray.Dataset, turns: float, tolerance: float) -> dict[str, Any]:
     """What is kept of a run."""
-    done = str(found["status"].values) == "done"
-    row: dict[str, Any] = {"turns": turns, "message": "" if done else str(found["message"].values).splitlines()[0]}
+    message = failure(found)
+    row: dict[str, Any] = {"turns": turns, "message": message}
     for name in ("torque", "drift", "stored", *FILMS):
-        row[name] = float(found[name]) if done and name in found else np.nan
-    row["share"] = _shares(found) if done else np.full(len(SOURCES), np.nan)
-    row["settled"] = done and max(row["drift"], row["stored"]) <= tolerance
+        row[name] = float(found[name]) if not message and name in found else np.nan
+    row["share"] = np.full(len(SOURCES), np.nan) if message else _shares(found)
+    row["settled"] = not message and max(row["drift"], row["stored"]) <= tolerance
     return row
 
 

@@ -4,11 +4,10 @@ spread of the results is told, with the share of it that each input makes.
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +25,7 @@ from trbdyn.results.quantities import QUANTITIES as SUMMARY
 from trbdyn.run.options import RunOptions
 from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
+from trbdyn.study.runner import Running
 from trbdyn.study.runner import run as run_study
 
 if TYPE_CHECKING:
@@ -237,10 +237,7 @@ def uncertainty(
     seed: int = 0,
     options: RunOptions | None = None,
     quantities: Sequence[str] = QUANTITIES,
-    folder: str | os.PathLike[str] | None = None,
-    executor: Any = "threads",
-    workers: int | None = None,
-    progress: bool = False,
+    **how: Unpack[Running],
 ) -> Uncertainty:
     """The band of every observable that follows from the bands of the inputs.
 
@@ -263,14 +260,8 @@ def uncertainty(
         How each draw is run; 5 turns of the shaft with 'fast' by default.
     quantities : sequence of str
         Observables that are printed.
-    folder : path-like, optional
-        Where the draws are kept; a second call with the same folder runs only those that are missing.
-    executor : {'threads', 'processes', 'serial'} or object
-        As in `trbdyn.study.run`.
-    workers : int, optional
-        As in `trbdyn.study.run`.
-    progress : bool
-        Show a progress bar.
+    **how
+        Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`.
 
     Returns
     -------
@@ -307,9 +298,7 @@ def uncertainty(
     ]
     if all(case.scene is None for case in made[1:]):
         raise InputError.of("bands", drawn[0].path, f"no draw can be built; the first: {made[1].error}")
-    data = run_study(
-        Study(tuple(made), (), "uncertainty"), folder, executor=executor, workers=workers, progress=progress
-    )
+    data = run_study(Study(tuple(made), (), "uncertainty"), **(Running(executor="threads") | how))
     return _gathered(data, drawn, unit, quantities)
 
 

@@ -8,10 +8,9 @@ of a cage that creeps towards a whirl over thousands of turns is that of its las
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
 import numpy as np
 
@@ -25,8 +24,9 @@ from trbdyn.model.start import Start
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
-from trbdyn.study.definition import Case, Study
-from trbdyn.study.runner import run as run_study
+from trbdyn.study.definition import Case
+from trbdyn.study.runner import Running
+from trbdyn.study.settled import failure, run_until_settled
 
 if TYPE_CHECKING:
     import xarray
@@ -169,10 +169,7 @@ def whirl_onset(
     resolution: float | None = None,
     longest: float = TURNS[-1],
     options: RunOptions | None = None,
-    folder: str | os.PathLike[str] | None = None,
-    executor: Any = "threads",
-    workers: int | None = None,
-    progress: bool = False,
+    **how: Unpack[Running],
 ) -> WhirlOnset:
     """What the cage of a bearing does at some speeds, and between which of them it begins to whirl. Of bearings on a shaft: what
     the cage does that moves most.
@@ -194,12 +191,8 @@ def whirl_onset(
         Turns of the cage of the longest runs (1).
     options : RunOptions, optional
         Accuracy and settings of each run, not its length; 'fast' by default.
-    folder : path-like, optional
-        Keep runs in files there, and take what is there already.
-    executor, workers
-        As in `trbdyn.study.run`.
-    progress : bool
-        Show a progress bar.
+    **how
+        Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`.
 
     Returns
     -------
@@ -227,7 +220,6 @@ def whirl_onset(
     wanted = speeds_of(speeds)
     if resolution is not None and not 0.0 < number_of("resolution", resolution) < np.inf:
         raise InputError.of("resolution", resolution, "must be > 0 (rpm)")
-    how = {"folder": folder, "executor": executor, "workers": workers, "progress": progress}
     search = CageRuns(subject, starts, options, longest, how)
     names = search.starts
     search.add([(name, speed, None) for name in names for speed in wanted])
@@ -249,7 +241,7 @@ class CageRuns:
     """Runs that were made, by start, speed (rpm) and axial load (N; None: that of the scene)."""
 
     def __init__(
-        self, subject: Subject, starts: Sequence[str], options: RunOptions | None, longest: float, how: dict[str, Any]
+        self, subject: Subject, starts: Sequence[str], options: RunOptions | None, longest: float, how: Running
     ) -> None:
         for name in starts:
             if name not in STARTS:
@@ -265,17 +257,9 @@ class CageRuns:
 
     def add(self, points: Sequence[Point]) -> None:
         """Run points until they are decided."""
-        waiting = [point for point in points if point not in self.rows]
-        for turns in (*(turns for turns in TURNS if turns < self.longest), self.longest):
-            if not waiting:
-                return
-            cases = [self._case(*point, turns) for point in waiting]
-            data = run_study(Study(tuple(cases), (), "cage_runs"), observables=OBSERVED, **self.how)
-            for k, point in enumerate(waiting):
-                self.rows[point] = _row(data.isel(case=k), turns)
-            waiting = [
-                point for point in waiting if not self.rows[point]["decided"] and not self.rows[point]["message"]
-            ]
+        turns = (*(turns for turns in TURNS if turns < self.longest), self.longest)
+        new = [point for point in points if point not in self.rows]
+        self.rows |= run_until_settled(new, turns, lambda point, n: self._case(*point, n), _row, OBSERVED, self.how)
 
     def _case(self, start: str, speed: float, load: float | None, turns: float) -> Case:
         changes = {"speed_rpm": speed} | ({} if load is None else {"axial_load": load})
@@ -324,7 +308,7 @@ def variables_of(rows: Sequence[Any], dims: tuple[str, ...]) -> dict[str, Any]:
     return {
         "kind": (dims, column("kind", object), {"long_name": "class of the cage's motion"}),
         "orbit": (dims, column("orbit"), {"long_name": "orbit of the cage over the radial play", "units": "1"}),
-        "decided": (dims, column("decided", bool)),
+        "decided": (dims, column("settled", bool)),
         "turns": (dims, column("turns"), {"long_name": "turns of the cage", "units": "1"}),
         "message": (dims, column("message", object)),
     }
@@ -332,11 +316,9 @@ def variables_of(rows: Sequence[Any], dims: tuple[str, ...]) -> dict[str, Any]:
 
 def _row(found: xarray.Dataset, turns: float) -> dict[str, Any]:
     """What is kept of a run."""
-    done = str(found["status"].values) == "done"
-    if not done:
-        text = str(found["message"].values).splitlines()[0]
-        return {"kind": "unknown", "orbit": np.nan, "decided": False, "turns": turns, "message": text}
+    if message := failure(found):
+        return {"kind": "unknown", "orbit": np.nan, "settled": False, "turns": turns, "message": message}
     before, last = (KINDS[int(found[name])] for name in ("kind_before", "kind_at_end"))
     orbits = [float(found[name]) for name in ("orbit_before", "orbit_at_end")]
-    decided = before == last != "unknown" and abs(orbits[1] - orbits[0]) <= STEADY
-    return {"kind": last, "orbit": orbits[1], "decided": decided, "turns": turns, "message": ""}
+    settled = before == last != "unknown" and abs(orbits[1] - orbits[0]) <= STEADY
+    return {"kind": last, "orbit": orbits[1], "settled": settled, "turns": turns, "message": ""}
