@@ -258,7 +258,7 @@ def wall_time(
 
 def timed_run(sim: Simulation, revolutions: float, save_every: float) -> dict[str, float]:
     """Wall and processor time of the core alone (s), the bearing time (s), and what the integrator did."""
-    end = RunOptions(revolutions=revolutions).end_time(sim.scene.speed_rpm, sim.time)
+    end = RunOptions(revolutions=revolutions).end_time(sim.scene, sim.time)
     bearing = end - sim.time
     times = np.append(np.arange(sim.time + save_every, end - 1e-9, save_every), end)
     records = np.empty((times.size, sim.bearings[0].model.record_length))
@@ -316,7 +316,7 @@ def batches_of(case: Case, settings: Settings, revolutions: float, scene: Scene 
     rows = []
     for state in case.states:
         sim = Simulation(at_state(case.scene if scene is None else scene, state), **settings)
-        every = (RunOptions(revolutions=revolutions).end_time(sim.scene.speed_rpm, sim.time) - sim.time) / BATCH_RECORDS
+        every = (RunOptions(revolutions=revolutions).end_time(sim.scene, sim.time) - sim.time) / BATCH_RECORDS
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RunWarning)
             result = sim.run(revolutions=revolutions, save_every=every, save_groups=_GROUPS_OF_BATCHES)

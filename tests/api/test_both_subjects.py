@@ -98,6 +98,21 @@ def test_until(name: str) -> None:
     assert result.success
 
 
+def test_turns_are_not_counted_where_a_torque_drives_the_shaft(name: str) -> None:
+    """Its speed follows from the run: a number of turns at the speed of the start would be another number of turns."""
+    driven = {
+        "scene": SCENE.replace(
+            ring="free", ring_body=trb.RingBody.hollow_cylinder(mass=2.0, outer_diameter=0.06, length=0.09), torque=9.0
+        ),
+        "pair": PAIR.replace(torque=9.0),
+    }[name]
+    sim = trb.Simulation(driven, accuracy="fast")
+    for call in (sim.run, sim.estimate):
+        with pytest.raises(InputError, match=r"run\.revolutions = 0\.01 : .*torque.*give duration"):
+            call(revolutions=0.01)
+    assert np.isnan(sim.run(duration=2e-4).stats["revolutions"])
+
+
 def test_a_step_that_fails_names_the_body(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     from trbdyn import _core
 

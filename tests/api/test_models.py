@@ -338,17 +338,21 @@ class TestEffects:
             Friction(lambda_boundary=2.0)
 
 
+def turning(speed_rpm: float | History) -> Scene:
+    return cases.paper_30310().replace(speed_rpm=speed_rpm)
+
+
 class TestRunOptions:
     def test_end_time(self) -> None:
         run = RunOptions(revolutions=50)
-        assert run.end_time(3000.0) == pytest.approx(1.0)
-        assert run.end_time(-3000.0, start=0.5) == pytest.approx(1.5)
-        assert RunOptions(duration=0.3).end_time(0.0, start=0.1) == pytest.approx(0.4)
+        assert run.end_time(turning(3000.0)) == pytest.approx(1.0)
+        assert run.end_time(turning(-3000.0), start=0.5) == pytest.approx(1.5)
+        assert RunOptions(duration=0.3).end_time(turning(0.0), start=0.1) == pytest.approx(0.4)
 
     @pytest.mark.parametrize("revolutions", [0.5, 10.0, 100.0])
     def test_end_time_of_a_changing_speed(self, revolutions: float) -> None:
         speed = History.table((0.0, 0.3, 0.7, 1.0), (0.0, 3000.0, 1200.0, 1200.0))
-        end = RunOptions(revolutions=revolutions).end_time(speed)
+        end = RunOptions(revolutions=revolutions).end_time(turning(speed))
         assert speed.integral(0.0, end) / 60.0 == pytest.approx(revolutions, rel=1e-9)
 
     @pytest.mark.parametrize("start", [0.0, -0.37, 12.21])
@@ -361,20 +365,20 @@ class TestRunOptions:
     ) -> None:
         """For the first time: a shaft that turns to and fro was nowhere as far before."""
         speed = History.harmonic(mean, amplitude, frequency_hz=frequency)
-        end = RunOptions(revolutions=revolutions).end_time(speed, start)
+        end = RunOptions(revolutions=revolutions).end_time(turning(speed), start)
         assert abs(speed.integral(start, end)) / 60.0 == pytest.approx(revolutions, rel=1e-9)
         before = [abs(speed.integral(start, time)) / 60.0 for time in np.linspace(start, end, 500)[:-1]]
         assert max(before) < revolutions
         with pytest.raises(InputError, match="does not turn that often"):
-            RunOptions(revolutions=1e3).end_time(History.harmonic(0.0, 3000.0, frequency_hz=5.0), start)
+            RunOptions(revolutions=1e3).end_time(turning(History.harmonic(0.0, 3000.0, frequency_hz=5.0)), start)
 
     def test_refuses(self) -> None:
         with pytest.raises(InputError, match=r"run\.duration"):
             RunOptions(revolutions=1, duration=1)
         with pytest.raises(InputError, match="stands still"):
-            RunOptions(revolutions=1).end_time(0.0)
+            RunOptions(revolutions=1).end_time(turning(0.0))
         with pytest.raises(InputError, match=r"run\.revolutions = None"):
-            RunOptions().end_time(60.0)
+            RunOptions().end_time(turning(60.0))
         with pytest.raises(InputError, match=r"run\.save_groups"):
             RunOptions(save_groups=["cages"])
 

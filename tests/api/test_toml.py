@@ -39,7 +39,7 @@ class TestShipped:
         scene, run = load_case("rig_30310")
         assert scene == cases.scene_30310(start=Start.whirl(0.9))
         assert scene.bearing == cases.rig_30310()
-        assert (run.revolutions, run.end_time(scene.speed_rpm)) == (50.0, pytest.approx(1.0))
+        assert (run.revolutions, run.end_time(scene)) == (50.0, pytest.approx(1.0))
 
     def test_bearing_32216(self) -> None:
         scene, _ = load_case(find_case("bearing_32216"))

@@ -99,7 +99,7 @@ def simulate(
     """Run a case, which gives a result; what is not given of what to keep is chosen by the length of the run."""
     from trbdyn.run.simulation import Simulation
 
-    run.end_time(subject.speed_rpm)
+    run.end_time(subject)
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)
         simulation = Simulation(subject, **run.of_simulation())

@@ -58,7 +58,7 @@ def _demo(options: argparse.Namespace) -> int:
     revolutions = TURNS if options.revolutions is None else options.revolutions
     run = RunOptions(revolutions=revolutions, accuracy=options.accuracy or "standard")
     scene = scene_30310(3000.0, 4930.0, start=Start.whirl(0.9))
-    run.end_time(scene.speed_rpm)
+    run.end_time(scene)
     folder = plot.make_folder(options.output)
     again = {"overwrite": options.overwrite}
     pictures = [f"{name}.png" for name in DEMO_PICTURES]

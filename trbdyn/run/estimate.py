@@ -220,7 +220,7 @@ def estimate(
     changes = {"revolutions": revolutions, "duration": duration}
     options = sim.options.replace(**changes if save_every is None else {**changes, "save_every": save_every})
     start = sim.time
-    length = options.end_time(sim.scene.turning_rpm, start) - start
+    length = options.end_time(sim.subject, start) - start
     save_every = interval(length, sim.scene.turning_rpm) if save_every is None else save_every
     rates = _probe(sim, length, save_every, probe)
     records = max(math.ceil(length / save_every - 1e-9), 1) + 1

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Final, Literal, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import InputError
 from trbdyn.model.core_table import SETTINGS, setting
-from trbdyn.model.motion import MAX_TIME, History
+from trbdyn.model.motion import MAX_TIME
 from trbdyn.model.shaft import time_to_turn
+
+if TYPE_CHECKING:
+    from trbdyn.model.assembly import Assembly
+    from trbdyn.model.scene import Scene
+    from trbdyn.statics.seat import Seating
 
 Group = Literal[
     "time",
@@ -76,7 +81,8 @@ class RunOptions(Model):
     Parameters
     ----------
     revolutions : float, optional
-        Length of the run in turns of the shaft; not together with `duration`.
+        Length of the run in turns of the shaft; not together with `duration`, and not where a torque drives the shaft: its
+        speed then follows from the run.
     duration : float, optional
         Length of the run (s).
     until : dict of str to float
@@ -170,26 +176,30 @@ class RunOptions(Model):
         names = [name for name in type(self).model_fields if name not in OF_ONE_RUN]
         return {name: getattr(self, name) for name in names if getattr(self, name) != getattr(default, name)}
 
-    def end_time(self, speed_rpm: float | History, start: float = 0.0) -> float:
+    def end_time(self, subject: Scene | Assembly | Seating, start: float = 0.0) -> float:
         """When the run ends (s).
 
         Parameters
         ----------
-        speed_rpm : float or History
-            Speed of the shaft.
+        subject : Scene, Assembly or Seating
+            What is run: turns are counted by its speed.
         start : float
             When it starts (s).
 
         Raises
         ------
         InputError
-            If neither revolutions nor duration is given, the shaft never turns that often, or the run would end too late.
+            If neither revolutions nor duration is given, the shaft never turns that often or is driven by a torque, or the run
+            would end too late.
         """
         if self.duration is not None:
             field, value, unit, length = "duration", self.duration, " (s)", self.duration
         elif self.revolutions is not None:
+            if subject.torque is not None:
+                allowed = "must not be given where a torque drives the shaft: its speed follows from the run; give duration (s)"
+                raise InputError.of(("run", "revolutions"), self.revolutions, allowed)
             field, value, unit = "revolutions", self.revolutions, ""
-            length = time_to_turn(self.revolutions, speed_rpm, start)
+            length = time_to_turn(self.revolutions, subject.turning_rpm, start)
         else:
             raise InputError.of(("run", "revolutions"), None, "must be given, or duration (s)")
         if not start < start + length <= MAX_TIME:

@@ -36,9 +36,10 @@ from trbdyn.run.process import has_a_spare_core, interrupts
 from trbdyn.run.until import Until, check_wanted
 from trbdyn.run.watch import Watch
 from trbdyn.statics.plausible import dented
-from trbdyn.statics.seat import Layout, SeatedBearing
+from trbdyn.statics.seat import Layout, SeatedBearing, Seating
 
 if TYPE_CHECKING:
+    from trbdyn.model.assembly import Assembly
     from trbdyn.model.scene import Scene
     from trbdyn.run.simulation import Simulation
 
@@ -427,7 +428,7 @@ class Run:
             "message": message,
             "stats": statistics_of(
                 sim.statistics,
-                sim.scene,
+                sim.subject,
                 start=float(self.times[0]),
                 end=sim._reached,
                 began=self.began,
@@ -494,7 +495,7 @@ def _hand_over(result: Result | AssemblyResult, error: BaseException) -> None:
 
 def statistics_of(
     counted: Mapping[str, float],
-    scene: Scene,
+    subject: Scene | Assembly | Seating,
     *,
     start: float,
     end: float,
@@ -509,8 +510,8 @@ def statistics_of(
     ----------
     counted : mapping of str to float
         What the integrator did.
-    scene : Scene
-        The scene, by whose speed turns are counted.
+    subject : Scene, Assembly or Seating
+        What is run, by whose speed turns are counted; they are NaN where a torque drives the shaft.
     start, end : float
         Bearing time of the run (s).
     began, spent : float
@@ -518,7 +519,8 @@ def statistics_of(
     integrator, instruction_set : str
         What it was computed with.
     """
-    turned, length = abs(turns(scene.turning_rpm, start, end)), end - start
+    turned = abs(turns(subject.turning_rpm, start, end)) if subject.torque is None else math.nan
+    length = end - start
     stats: dict[str, Any] = {
         name: int(value) if float(value).is_integer() and abs(value) < 2**53 else value
         for name, value in counted.items()

@@ -399,7 +399,7 @@ class Simulation(Displayed, Generic[R]):
         Parameters
         ----------
         revolutions : float, optional
-            How far to go, in turns of the shaft.
+            How far to go, in turns of the shaft; refused where a torque drives it, as its speed follows from the run.
         duration : float, optional
             How far to go (s); one of both must be given.
         until : mapping of str to float, optional
@@ -449,7 +449,7 @@ class Simulation(Displayed, Generic[R]):
         changes |= {} if until is None else {"until": dict(until)}
         changes |= {} if checkpoint_every is None else {"checkpoint_every": checkpoint_every}
         options = self.options.replace(**changes)
-        end = options.end_time(self.scene.turning_rpm, self._reached)
+        end = options.end_time(self.subject, self._reached)
         kept = kept_by_default(
             end - self._reached,
             self.scene.turning_rpm,

@@ -134,6 +134,16 @@ class Seating:
     shaft: Array
     loads: Mapping[str, Load] = field(default_factory=dict)
 
+    @property
+    def torque(self) -> Load | None:
+        """Torque that drives the shaft (N m), in place of the prescribed speed."""
+        return self.loads.get("torque")
+
+    @property
+    def turning_rpm(self) -> float | History:
+        """The speed by which turns are counted (rpm)."""
+        return next(iter(self.seats.values())).scene.turning_rpm
+
 
 @dataclass(frozen=True)
 class SeatedBearing:
