@@ -11,8 +11,8 @@
 - Roughness 0.7 to 1.5 times the default, boundary friction 0.07 to 0.2 (raceways), 0.1 to 0.2 (ribs).
 - An assumed profile's a_p from 0 (straight) to 0.0005; load of the LM12700 2.8 to 3.8 kN; cup angle of the 32216 13.7 deg (the
   load zone of the source) to 15.7 deg (catalogues); oil of the 32208 FVA3 at 40 to 80 C.
-- The laws of rolling resistance that can be defended are those of `DEFENDED`: the band of a torque goes from the lowest band to
-  the highest one of both.
+- The band of a torque goes from the lowest to the highest of the laws of rolling resistance that can be defended
+  (`trbdyn.run.torque_laws`).
 
 The rule by which the default is chosen, written down before the runs: of all `OPTIONS`, in which the torques of both rings
 agree, the one with the smallest mean absolute error over all measured torques at 1000 rpm and above. The runner-up is named.
@@ -31,7 +31,7 @@ from trbdyn.study import Band
 from validation.measured import Measurement
 
 SAMPLES, SEED = 32, 0
-TURNS, NODES = 4.0, 32
+TURNS = 4.0
 SLOWEST = 1000.0
 """Smallest speed of the points by which the default is chosen (rpm)."""
 FILL: Final = 0.85
@@ -74,8 +74,6 @@ RIBS: Final[dict[str, dict[str, Any]]] = {
 """Mixed friction at ribs: power of the film parameter and 0.1; or asperities' share, the film of a needle contact and 0.2."""
 
 LAWS: Final = ("zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert")
-DEFENDED: Final = ("zhou_hoeprich", "biboulet_houpert")
-"""The law of the data of an LM12700, and the law that agrees with the contact's own equations."""
 OPTIONS: Final = {
     f"{law}, heat by {heat}, {supply}, {ribs}": {
         "rolling_law": law,
@@ -104,9 +102,7 @@ def scene_of(point: Measurement, option: dict[str, Any]) -> trb.Scene:
     changes = dict(option)
     supply = REPLENISHMENT[point.supply].value if changes.pop("supplied") else 0.0
     fill = "oil_air" if point.supply == "jet" else point.supply
-    common = trb.Effects(
-        n_slices=NODES, oil_fill=fill, replenishment=supply, thermal_law="gupta", mixed_law="power", rib_film="pe"
-    )
+    common = trb.Effects(oil_fill=fill, replenishment=supply, thermal_law="gupta", mixed_law="power", rib_film="pe")
     return trb.Scene(
         BEARINGS[point.bearing](),
         speed_rpm=point.speed_rpm,

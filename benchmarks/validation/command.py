@@ -3,12 +3,13 @@
     .venv/bin/python benchmarks/validation [--quick] [--json FILE] [--write-readme]
 
 Assumptions and the rule by which the default is chosen are those of `validation.assumptions`, measurements those of
-`validation.measured`. ``--write-readme`` puts the tables into docs/validation.md, and the numbers into
-benchmarks/validation/validation.json.
+`validation.measured`. ``--write-readme`` puts the tables into docs/validation.md, the numbers into
+benchmarks/validation/validation.json, and their summary into the package, whose torques name it.
 """
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,6 @@ from trbdyn.model.lubricants import REPLENISHMENT
 from validation import skf
 from validation.assumptions import (
     CATALOGUE,
-    DEFENDED,
     OPTIONS,
     SAMPLES,
     SEED,
@@ -34,6 +34,7 @@ from validation.measured import MEASUREMENTS, NOT_ENOUGH, Measurement
 
 HERE = Path(__file__).resolve().parent
 PAGE = HERE.parents[1] / "docs" / "validation.md"
+RECORD = HERE.parents[1] / "trbdyn" / "data" / "torque_record.json"
 TORQUES = ("torque", "rolling_torque")
 CLOSE = 30.0
 """Error below which a prediction counts as close (%)."""
@@ -69,6 +70,7 @@ COLUMNS = {
     "skf_mean_error": "%: mean size of SKF's error, torques from 1000 rpm on",
     "palmgren_mean_error": "%: mean size of Palmgren's error, torques from 1000 rpm on",
     "bearings": "1: number of bearings",
+    "torques": "1: number of torques from 1000 rpm on",
 }
 
 
@@ -107,6 +109,8 @@ def main() -> int:
     if options.write_readme:
         options.json = options.json or HERE / "validation.json"
         common.write_readme("validation", f"{first}\n\n{second}\n\n{words} (errors and bands in %).", PAGE)
+        kept = {name: report.summary[name] for name in ("bearings", "torques", "mean_error", "max_error")}
+        RECORD.write_text(json.dumps({**kept, "from_rpm": SLOWEST}, indent=1) + "\n", encoding="utf-8")
     report.finish()
     return 0
 
@@ -143,15 +147,13 @@ def torque(point: Measurement, chosen: list[str], own: str, samples: int) -> dic
     """Predictions and band of a torque (N m)."""
     values = {name: torque_of(scene_of(point, OPTIONS[name]), point.quantity) for name in chosen}
     run = trb.RunOptions(revolutions=TURNS, accuracy="fast")
-    ends, shares = [], {}
-    for law in DEFENDED:
-        scene = scene_of(point, {**OPTIONS[own], "rolling_law": law})
-        found = trb.uncertainty(scene, bands_of(point, scene), samples=samples, seed=SEED, options=run)["torque"]
-        # ribs are a small part of a rolling torque: its band is in proportion
-        scale = torque_of(scene, point.quantity) / found.value
-        ends += [scale * found.low, scale * found.high]
-        if law == OPTIONS[own]["rolling_law"]:
-            shares = dict(sorted(found.shares.items(), key=lambda entry: -entry[1])[:2])
+    scene = scene_of(point, OPTIONS[own])
+    found = trb.uncertainty(scene, bands_of(point, scene), samples=samples, seed=SEED, options=run)
+    spread = found["torque"]
+    low, high = found.laws.band(spread.low, spread.high) if found.laws is not None else (spread.low, spread.high)
+    # ribs are a small part of a rolling torque: its band is in proportion
+    scale = values[own] / spread.value
+    shares = dict(sorted(spread.shares.items(), key=lambda entry: -entry[1])[:2])
     oil, page = scene.lubricant, CATALOGUE[point.bearing]
     common_inputs = {
         "bore": page["bore"],
@@ -164,8 +166,8 @@ def torque(point: Measurement, chosen: list[str], own: str, samples: int) -> dic
     }
     return {
         "predicted": values[own],
-        "low": min(ends),
-        "high": max(ends),
+        "low": scale * low,
+        "high": scale * high,
         "shares": shares,
         "options": values,
         "skf": skf.torque(
@@ -246,6 +248,7 @@ def summary(rows: list[dict[str, Any]], chosen: list[str], own: str) -> dict[str
         "skf_mean_error": float(np.mean(sizes(fast, lambda one: one["skf"]))),
         "palmgren_mean_error": float(np.mean(sizes(fast, lambda one: one["palmgren"]))),
         "bearings": len({one["bearing"] for one in rows}),
+        "torques": len(fast),
         "default": own,
         "best": ranked[0],
         "runner_up": ranked[1] if len(ranked) > 1 else None,

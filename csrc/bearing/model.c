@@ -64,6 +64,12 @@ static double profile_drop(const trb_model *m, double station)
   return 0.0;
 }
 
+/* Length of the contact line: the ISO profile drops without bound at c_p + d_p, which may lie within the effective length. */
+static double line_length(const trb_params *p)
+{
+  return p->profile == TRB_PROFILE_ISO ? fmin(p->effective_length, p->profile_c + p->profile_d) : p->effective_length;
+}
+
 /* Upper bound of n_slices in params.h. */
 #define TRB_MAX_NODES 200
 
@@ -73,11 +79,13 @@ static trb_status fill_nodes(trb_model *m, const double *drops, trb_message *mes
   const trb_params   *p = &m->params;
   const trb_geometry *g = &m->geometry;
   const trb_cone     *flank = &m->surfaces.flank;
-  const double        nu = g->roller_half_angle, half = 0.5 * p->effective_length;
+  const double        nu = g->roller_half_angle, half = 0.5 * line_length(p);
   double              node[TRB_MAX_NODES], weight[TRB_MAX_NODES];
   if (m->n_nodes < 1 || m->n_nodes > TRB_MAX_NODES)
     return trb_fail(message, TRB_ERR_INPUT, "n_slices = %d: must be 1 to %d", m->n_nodes, TRB_MAX_NODES);
   trb_quadrature((int)p->quadrature, m->n_nodes, node, weight);
+  m->cell[0] = -half;
+  for (int k = 0; k < m->n_nodes; k++) m->cell[k + 1] = m->cell[k] + half * weight[k];
   for (int k = 0; k < m->n_lanes; k++) {
     const int    used = k < m->n_nodes ? k : m->n_nodes - 1;
     const double station = half * node[used], nominal = trb_cone_radius(flank, station);
@@ -191,6 +199,7 @@ static int allocate(trb_model *m)
   int          ok = 1;
   ok &= (m->diameter_deviation = doubles((size_t)m->n_rollers)) != NULL;
   ok &= (m->station = doubles(lanes)) != NULL;
+  ok &= (m->cell = doubles(lanes + 1)) != NULL;
   ok &= (m->centre = doubles(all)) != NULL;
   ok &= (m->sphere = doubles(all)) != NULL;
   ok &= (m->end_spheres = calloc(2 * (size_t)m->n_rollers, sizeof *m->end_spheres)) != NULL;
@@ -345,6 +354,7 @@ void trb_model_free(trb_model *model)
   }
   free(model->diameter_deviation);
   free(model->station);
+  free(model->cell);
   free(model->centre);
   free(model->sphere);
   free(model->end_spheres);

@@ -97,6 +97,7 @@ typedef struct trb_model {
   int              n_slots;            /* most faces in a pocket, at least 1 */
   double          *diameter_deviation; /* per roller, m */
   double          *station;            /* per lane: node's station from mid length, m */
+  double          *cell;               /* ends of the nodes' cells, as long as their weights: n_nodes + 1 stations, m */
   double          *centre;             /* per roller and lane: sphere's centre from the centre of mass, along the axis, m */
   double          *sphere;             /* per roller and lane: sphere's radius, m */
   trb_sphere      *end_spheres;        /* per roller: of a flank without profile at both ends of the effective length */

@@ -69,7 +69,8 @@ static trb_contact sum_of(const trb_model *m, const trb_lanes *l, int first)
 {
   trb_contact out = {0};
   for (int k = first; k < first + m->n_nodes; k++) {
-    const double q = l->load[k];
+    const double q = l->load[k], mean = l->mean_speed[k];
+    if (l->rolled[k] > 0.0) out.traction -= l->rolling[k] / mean * l->my[k];
     if (!(q > 0.0)) continue;
     out.load += q;
     out.pressure = trb_max(out.pressure, l->pressure[k]);
@@ -78,9 +79,9 @@ static trb_contact sum_of(const trb_model *m, const trb_lanes *l, int first)
       out.film_parameter += q * l->film_parameter[k];
     }
     /* sliding along rolling: the mean velocity's direction */
-    const double along = l->sx[k] * l->mx[k] + l->sy[k] * l->my[k] + l->sz[k] * l->mz[k], mean = l->mean_speed[k];
+    const double along = l->sx[k] * l->mx[k] + l->sy[k] * l->my[k] + l->sz[k] * l->mz[k];
     out.slide_roll += q * along / (mean * mean);
-    out.traction -= q * l->friction_coefficient[k] / l->sliding_speed[k] * l->sy[k] + l->rolling[k] / mean * l->my[k];
+    out.traction -= q * l->friction_coefficient[k] / l->sliding_speed[k] * l->sy[k];
   }
   if (out.load > 0.0) {
     out.film /= out.load;

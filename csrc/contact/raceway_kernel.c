@@ -6,8 +6,10 @@
 #include <float.h>
 #include <math.h>
 
+#include "contact/loaded_part.h"
 #include "contact/passes.h"
 #include "contact/uneven.h"
+#include "laws/profile.h"
 #include "laws/rolling_resistance.h"
 #include "surface/sphere.h"
 
@@ -101,14 +103,47 @@ static void pass_film(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
-/* The loop of rolling resistance once per form of law, so that the choice is made outside; share and law may use log_w and log_u. */
+/* h_PE/h_IR goes with this power of the interference. */
+#define TRB_FILM_RATIO_EXPONENT ((1.0 - TRB_FILM_LINE_LOAD) * TRB_PALMGREN_EXPONENT)
+
+/* Interference from which on a contact has rolling resistance, m. The powers set in with h_PE/h_IR, the other law with the load. */
+static double rolling_level(const trb_model *m, int first, const trb_lanes *l)
+{
+  if (m->params.rolling_resistance == TRB_ROLLING_BIBOULET_HOUPERT) return 0.0;
+  int deepest = first;
+  for (int i = first; i < first + m->n_nodes; i++)
+    if (l->interference[i] > l->interference[deepest]) deepest = i;
+  const double ratio = l->film_elastic[deepest] / l->film_rigid[deepest];
+  return l->interference[deepest] * pow((1.0 - m->params.rolling_blend) / ratio, 1.0 / TRB_FILM_RATIO_EXPONENT);
+}
+
+/* Lengths with rolling resistance, and their interference. */
+static void pass_rolled(const trb_model *m, int first, trb_lanes *l)
+{
+  const int              is_gauss = (int)m->params.quadrature == TRB_QUADRATURE_GAUSS; /* slices are those of the paper */
+  const double           level = is_gauss ? rolling_level(m, first, l) : 0.0;
+  const trb_contact_line line = {
+      .n = m->n_nodes, .station = m->station, .cell = m->cell, .interference = l->interference + first, .level = level};
+  trb_loaded_end ends[TRB_MOST_ENDS];
+  for (int i = first; i < first + m->n_lanes; i++) {
+    l->rolled[i] = l->interference[i] > level ? l->weight[i] : 0.0;
+    l->rolled_log_d[i] = l->log_d[i];
+  }
+  const int n = is_gauss ? trb_loaded_part(&line, l->rolled + first, ends) : 0;
+  for (int k = 0; k < n; k++) l->rolled_log_d[first + ends[k].lane] = log(trb_max(ends[k].interference, TRB_SMALLEST_INTERFERENCE));
+}
+
+/* The loop of rolling resistance once per form of law, so that the choice is made outside; share and law may use log_w, log_u and
+ * `deeper`, the logarithm of the interference over that of the node. */
 #define TRB_ROLLING_LOOP(share, law) \
   TRB_PADDED(n); \
   TRB_LANES for (int i = 0; i < n; i++) \
   { \
-    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->log_d[i] - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i]; \
-    const double force = (share) * l->radius[i] * l->weight[i] * l->thermal_factor[i] * scale * (law); \
-    l->rolling[i] = l->interference[i] > 0.0 ? force : 0.0; \
+    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->rolled_log_d[i] - l->log_radius[i]; \
+    const double log_u = base_u + l->log_u[i] - l->log_radius[i], deeper = l->rolled_log_d[i] - l->log_d[i]; \
+    (void)deeper; \
+    const double force = (share) * l->radius[i] * l->rolled[i] * l->thermal_factor[i] * scale * (law); \
+    l->rolling[i] = l->rolled[i] > 0.0 ? force : 0.0; \
   }
 
 /* Rolling resistance (docs/theory/lubrication.md#rolling-resistance). A starved inlet makes less of it, as it makes less film (Zhou &
@@ -124,7 +159,7 @@ static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
     const trb_rolling_power power = trb_rolling_power_of((int)m->params.rolling_resistance);
     const double            scale = starvation / m->params.pressure_coefficient, factor = power.factor * exp(power.material * log_g);
     const double            band = m->params.rolling_blend;
-    TRB_ROLLING_LOOP(trb_rolling_share(l->film_elastic[i] / l->film_rigid[i], band),
+    TRB_ROLLING_LOOP(trb_rolling_share(l->film_elastic[i] / l->film_rigid[i] * exp(TRB_FILM_RATIO_EXPONENT * deeper), band),
                      (factor * trb_rolling_power_at(power, log_w, log_u, log_g)))
   }
 }
@@ -145,8 +180,9 @@ static void pass_meniscus(const trb_model *m, int n, trb_lanes *l)
   TRB_PADDED(n);
   TRB_LANES for (int i = 0; i < n; i++)
   {
-    const double log_w = base_w + TRB_PALMGREN_EXPONENT * l->log_d[i] - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i];
-    const double smallest = trb_max(l->radius[i] * trb_film_line_smallest(log_w, log_u, log_g), l->film_rigid[i]);
+    const double log_d = l->rolled_log_d[i], rigid = l->film_rigid[i] * exp(TRB_PALMGREN_EXPONENT * (l->log_d[i] - log_d));
+    const double log_w = base_w + TRB_PALMGREN_EXPONENT * log_d - l->log_radius[i], log_u = base_u + l->log_u[i] - l->log_radius[i];
+    const double smallest = trb_max(l->radius[i] * trb_film_line_smallest(log_w, log_u, log_g), rigid);
     l->rolling[i] *= trb_rolling_meniscus(height / smallest);
   }
 }
@@ -331,6 +367,7 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   }
   if (m->friction) pass_friction(m, &kind, all, l, counters);
   if (rolling) {
+    for (int c = 0; c < n_loaded; c++) pass_rolled(m, c * n, l);
     pass_rolling(m, all, l);
     if (m->replenishment > 0.0) pass_replenishment(m, all, l);
     if (m->params.oil_height > 0.0) {

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, InputError, Path, Problem
+from trbdyn.model.contact_line import nodes
 from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.effects import Effects
 from trbdyn.model.geometry import Geometry
@@ -220,6 +221,7 @@ def scene_entries(scene: Scene) -> Entries:
         **prefixed("lubricant", lubricant_entries(scene.lubricant)),
         **prefixed("effects", effects_entries(scene.effects)),
         **prefixed("effects", rib_entries(scene.bearing, scene.effects)),
+        "n_slices": Entry(("effects", "n_slices"), float(nodes(scene))),
         "outer_turns": Entry(("outer_speed_rpm",), float(scene.outer_turns)),
         **ring_entries(scene),
         **housing_entries(scene),

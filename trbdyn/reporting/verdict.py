@@ -16,6 +16,7 @@ from trbdyn.model.motion import value_at
 from trbdyn.results.fields import contacts
 from trbdyn.run import estimate
 from trbdyn.run.bias import biases, preset_of
+from trbdyn.run.torque_laws import straight_rollers, torque_laws
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -272,10 +273,14 @@ def _torque(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     heat = "" if power is None else f" The bearing turns {power:.3g} W into heat."
     outer, note = numbers.get("torque_outer"), numbers.get("torque_note")
     other = f" The outer ring carries {outer:.3g} N m: {note}." if outer is not None and note else ""
+    laws = torque_laws(result.scene)
+    open_law = (
+        f" It depends on the law of rolling resistance: {laws.words(torque, torque)}." if laws is not None else ""
+    )
     return (
         "plain",
         "Torque",
-        f"The shaft has to overcome {torque:.3g} N m of friction{_within(numbers, 'torque')}{part}.{other}{heat}",
+        f"The shaft has to overcome {torque:.3g} N m of friction{_within(numbers, 'torque')}{part}.{other}{open_law}{heat}",
     )
 
 
@@ -420,6 +425,11 @@ def warnings(result: Result, numbers: dict[str, Any], estimated: int, assumed: i
     if assumed:
         out.append(
             f"{assumed} inputs are assumed by the package because no source gives them, see the table of inputs."
+        )
+    if (straight := straight_rollers(result.scene)) is not None:
+        out.append(
+            f"Nobody gave the profile of the rollers; it is that of ISO/TS 16281. With straight rollers the torque would be "
+            f"{straight[0]:.2g} and the largest pressure {straight[1]:.2g} times as large."
         )
     interval = float(np.median(np.diff(result["time"]))) if len(result) > 2 else math.nan
     if numbers.get("pocket_force_peak") and "peaks" not in result.groups:

@@ -62,7 +62,7 @@ def stress_concentration(count: int) -> Array:
         return np.asarray(1.0 - 0.01 / np.log(1.985 * place))
 
 
-def in_laminas(per_length: Array, stations: Array, load: Array, length: float) -> Array:
+def in_laminas(per_length: Array, stations: Array, load: Array, length: float, line: float) -> Array:
     """Loads of the laminas (N) from loads per length (N/m) at stations along the line.
 
     Parameters
@@ -75,6 +75,8 @@ def in_laminas(per_length: Array, stations: Array, load: Array, length: float) -
         Load of the whole contact (N), which the laminas together keep.
     length : float
         Effective length (m).
+    line : float
+        Length that may touch (m).
 
     Returns
     -------
@@ -82,6 +84,7 @@ def in_laminas(per_length: Array, stations: Array, load: Array, length: float) -
     """
     places = length * ((np.arange(LAMINAS) + 0.5) / LAMINAS - 0.5)
     flat = np.array([np.interp(places, stations, row) for row in per_length.reshape(-1, stations.size)])
+    flat[:, np.abs(places) > 0.5 * line] = 0.0
     found = flat.reshape(*per_length.shape[:-1], LAMINAS)
     total = found.sum(axis=-1)
     return np.asarray(found * np.divide(load, total, out=np.zeros_like(total), where=total > 0.0)[..., None])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError
-from trbdyn.model.contact_line import stations
+from trbdyn.model.contact_line import line_length, stations
 from trbdyn.model.motion import value_at
 from trbdyn.model.ratings import rating_iso76, rating_iso281
 from trbdyn.standards import iso281, lamina
@@ -261,7 +261,8 @@ def lamina_loads(scene: Scene, contacts: dict[str, Array]) -> Array:
     """Loads of the laminas (N), shape (2, Z, n_s), of the contacts of a scene, as `Simulation.contacts` gives them."""
     per_length, weight = contacts["raceway_load_per_length"], contacts["raceway_weight"]
     load = np.sum(per_length * weight, axis=-1)
-    return lamina.in_laminas(per_length, stations(scene), load, scene.bearing.roller.effective_length)
+    length = scene.bearing.roller.effective_length
+    return lamina.in_laminas(per_length, stations(scene), load, length, line_length(scene))
 
 
 def ring_loads(scene: Scene, loads: Array, angles: Array) -> tuple[float, float]:

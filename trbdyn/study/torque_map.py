@@ -19,6 +19,7 @@ from trbdyn.model.bearing import Bearing
 from trbdyn.model.scene import Scene
 from trbdyn.results.fields import table
 from trbdyn.run.options import RunOptions
+from trbdyn.run.torque_laws import torque_laws
 from trbdyn.study.definition import Base, Case
 from trbdyn.study.runner import Running
 from trbdyn.study.settled import JUDGED, TURNS, failure, run_until_settled, short_run
@@ -57,7 +58,9 @@ class TorqueMap(Displayed):
     data : xarray.Dataset
         Dimensions temperature_c, speed_rpm and load, the latter with the coordinates axial_load and radial_load, and source.
         Variables: torque, share (torque of each source), film_parameter_inner and film_parameter_rib, settled, drift,
-        stored, turns, message; with bands torque_low and torque_high.
+        stored, turns, message; with bands torque_low and torque_high. Where there is rolling resistance torque_laws_low and
+        torque_laws_high: the torque, or its band, with the other laws that can be defended
+        (`trbdyn.run.torque_laws.torque_laws`); how far measured torques were off is in the attribute torque_record.
     tolerance : float
         Change of the torque that was allowed (1).
     """
@@ -123,7 +126,7 @@ class TorqueMap(Displayed):
     def _shown(self) -> Shown:
         data = self.data
         rows = []
-        banded = "torque_low" in data
+        banded, by_law = "torque_low" in data, "torque_laws_low" in data
         for t, temperature in enumerate(data["temperature_c"].values):
             for k in range(data.sizes["load"]):
                 for s, speed in enumerate(data["speed_rpm"].values):
@@ -140,12 +143,16 @@ class TorqueMap(Displayed):
                     row = [f"{temperature:g}", _load_words(at), f"{speed:g}", f"{value:.4g}"]
                     if banded:
                         row.append(f"{float(at['torque_low']):.4g} to {float(at['torque_high']):.4g}")
+                    if by_law:
+                        row.append(f"{float(at['torque_laws_low']):.3g} to {float(at['torque_laws_high']):.3g}")
                     rows.append((*row, causes, _state(at)))
         head = ["oil (C)", "load (N)", "speed (rpm)", "torque (N m)"]
         head += [f"{100.0 * LEVEL:.0f} % of the draws"] if banded else []
+        head += ["with other laws"] if by_law else []
         open_points = int((~data["settled"]).sum())
-        notes = () if not open_points else (f"{open_points} points without a settled torque: see the last column",)
-        return Shown("Friction torque of the shaft", tuple(rows), (*head, "sources", "settled"), notes)
+        notes = [f"{open_points} points without a settled torque: see the last column"] if open_points else []
+        notes += [data.attrs["torque_record"]] if data.attrs.get("torque_record") else []
+        return Shown("Friction torque of the shaft", tuple(rows), (*head, "sources", "settled"), tuple(notes))
 
 
 def _load_words(at: xarray.Dataset) -> str:
@@ -247,7 +254,7 @@ def torque_map(
         JUDGED,
         how,
     )
-    return TorqueMap(_gathered(scene, places, rows, len(unit), (speeds, loads, temperatures)), float(tolerance))
+    return TorqueMap(_gathered(scene, places, bases, rows, len(unit)), float(tolerance))
 
 
 def _subject(subject: Bearing | Subject) -> Subject:
@@ -344,7 +351,11 @@ def _shares(found: xarray.Dataset) -> Array:
 
 
 def _gathered(
-    scene: Subject, places: Sequence[Place], rows: Mapping[tuple[int, int], Mapping[str, Any]], draws: int, given: Any
+    scene: Subject,
+    places: Sequence[Place],
+    bases: Sequence[tuple[Base | None, str]],
+    rows: Mapping[tuple[int, int], Mapping[str, Any]],
+    draws: int,
 ) -> xarray.Dataset:
     import xarray
 
@@ -379,6 +390,17 @@ def _gathered(
                 low[p], high[p] = np.quantile(torques, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
         variables["torque_low"] = (dims, low.reshape(shape), {"units": "N m"})
         variables["torque_high"] = (dims, high.reshape(shape), {"units": "N m"})
+    found = [torque_laws(base.build({})[0]) if base is not None else None for base, _ in bases]
+    if any(one is not None for one in found):
+        plain = variables["torque"][1].ravel()
+        ends = [variables[name][1].ravel() if draws else plain for name in ("torque_low", "torque_high")]
+        wide = [
+            (np.nan, np.nan) if one is None else one.band(low, high)
+            for one, low, high in zip(found, *ends, strict=True)
+        ]
+        for k, name in enumerate(("torque_laws_low", "torque_laws_high")):
+            variables[name] = (dims, np.array([pair[k] for pair in wide]).reshape(shape), {"units": "N m"})
+    record = next((one.record for one in found if one is not None and one.record), "")
     coordinates = {
         "temperature_c": ("temperature_c", warm, {"units": "C"}),
         "speed_rpm": ("speed_rpm", speeds, {"units": "rpm"}),
@@ -387,5 +409,10 @@ def _gathered(
         "source": ("source", list(SOURCES)),
     }
     return xarray.Dataset(
-        variables, coords=coordinates, attrs={"bearing": ", ".join(part.bearing.name for part in scene.parts.values())}
+        variables,
+        coords=coordinates,
+        attrs={
+            "bearing": ", ".join(part.bearing.name for part in scene.parts.values()),
+            "torque_record": record,
+        },
     )

@@ -23,6 +23,7 @@ from trbdyn.model.lubricants import REPLENISHMENT, supply_of
 from trbdyn.model.scene import Scene
 from trbdyn.results.quantities import QUANTITIES as SUMMARY
 from trbdyn.run.options import RunOptions
+from trbdyn.run.torque_laws import TorqueLaws, torque_laws
 from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
 from trbdyn.study.runner import Running
@@ -115,6 +116,8 @@ class Uncertainty(Displayed):
         All draws: inputs as coordinates, observables as variables.
     shown : tuple of str
         Observables that are printed.
+    laws : TorqueLaws or None
+        What the law of rolling resistance leaves open of the torque beside the inputs.
     """
 
     spreads: dict[str, Spread]
@@ -123,6 +126,7 @@ class Uncertainty(Displayed):
     refused: tuple[str, ...]
     data: xarray.Dataset
     shown: tuple[str, ...]
+    laws: TorqueLaws | None = None
 
     def __getitem__(self, name: str) -> Spread:
         return self.spreads[name]
@@ -139,6 +143,8 @@ class Uncertainty(Displayed):
             lines += [f"  {100.0 * share:5.1f} %  {path}" for path, share in largest if share >= 0.01]
             if spread.shares:
                 lines.append(f"  {100.0 * spread.rest:5.1f} %  inputs together, and chance")
+            if name == "torque" and self.laws is not None:
+                lines.append(f"  {self.laws.words(spread.low, spread.high)}")
         return "\n".join(lines)
 
     def __repr__(self) -> str:
@@ -152,7 +158,10 @@ class Uncertainty(Displayed):
             causes = ", ".join(f"{path} {100.0 * share:.0f} %" for path, share in largest if share >= 0.01)
             rows.append((name, f"{spread.value:.4g}", spread.unit, f"{spread.low:.4g} to {spread.high:.4g}", causes))
         title = f"{self.draws} draws of {len(self.bands)} inputs{self._refusals()}"
-        return Shown(title, tuple(rows), ("name", "value", "unit", "95 % of the draws", "shares of the variance"))
+        torque = self.spreads["torque"] if "torque" in self.shown else None
+        notes = () if self.laws is None or torque is None else (f"torque: {self.laws.words(torque.low, torque.high)}",)
+        head = ("name", "value", "unit", "95 % of the draws", "shares of the variance")
+        return Shown(title, tuple(rows), head, notes)
 
     def _refusals(self) -> str:
         if not self.refused:
@@ -299,7 +308,7 @@ def uncertainty(
     if all(case.scene is None for case in made[1:]):
         raise InputError.of("bands", drawn[0].path, f"no draw can be built; the first: {made[1].error}")
     data = run_study(Study(tuple(made), (), "uncertainty"), **(Running(executor="threads") | how))
-    return _gathered(data, drawn, unit, quantities)
+    return _gathered(data, drawn, unit, quantities, torque_laws(subject))
 
 
 def checked_bands(bands: Mapping[str, tuple[float, float]] | Sequence[Band]) -> tuple[Band, ...]:
@@ -360,7 +369,9 @@ def drawn_case(base: Base, options: RunOptions, bands: Sequence[Band], row: Arra
     return Case(parameters, scene, options)
 
 
-def _gathered(data: xarray.Dataset, bands: tuple[Band, ...], unit: Array, quantities: Sequence[str]) -> Uncertainty:
+def _gathered(
+    data: xarray.Dataset, bands: tuple[Band, ...], unit: Array, quantities: Sequence[str], laws: TorqueLaws | None
+) -> Uncertainty:
     status = [str(text) for text in data["status"].values]
     ran = np.array([text == "done" for text in status])
     if not ran[0]:
@@ -381,7 +392,7 @@ def _gathered(data: xarray.Dataset, bands: tuple[Band, ...], unit: Array, quanti
     if tuple(quantities) != QUANTITIES and (strange := [name for name in quantities if name not in spreads]):
         raise InputError.of("quantities", strange[0], unknown_name(strange[0], spreads))
     shown = tuple(name for name in quantities if name in spreads)
-    return Uncertainty(spreads, bands, int(good.sum()), refused, data, shown)
+    return Uncertainty(spreads, bands, int(good.sum()), refused, data, shown, laws)
 
 
 def _spread(name: str, value: float, values: Array, bands: Sequence[Band], unit: Array) -> Spread:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from trbdyn.errors import InputError
+from trbdyn.model import contact_line
 
 if TYPE_CHECKING:
     from trbdyn.model.effects import Effects
@@ -116,7 +117,7 @@ def candidates(scene: Scene, *, wants_cage: bool) -> list[Candidate]:
     chosen = [one for one in found if one is not None]
     chosen += [Candidate(f"{nodes} nodes", "nodes", numerics(nodes)) for nodes in NODES]
     chosen.append(Candidate("tolerances 'fast'", "tolerances", accuracy="fast"))
-    given = {name: getattr(scene.effects, name) for name in ("quadrature", "n_slices")}
+    given = {"quadrature": scene.effects.quadrature, "n_slices": contact_line.nodes(scene)}
     if given != numerics(USUAL_NODES):
         chosen.append(Candidate(f"{given['n_slices']} {given['quadrature']} nodes, as given", "as given", given))
     return chosen

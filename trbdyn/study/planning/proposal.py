@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.shown import Displayed, Shown
+from trbdyn.model import contact_line
 from trbdyn.results.summary import averages
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
@@ -218,7 +219,7 @@ class Plan(Displayed):
 
 
 def _run_lines(plan: Plan) -> list[str]:
-    nodes, kind = plan.scene.effects.n_slices, plan.scene.effects.quadrature
+    nodes, kind = contact_line.nodes(plan.scene), plan.scene.effects.quadrature
     said = ", ".join(plan.left_out) or "nothing"
     return [
         f"run: {plan.duration:.3g} s of bearing time from the state that the first run reached at {plan.scene.start.time:.3g} s, "

@@ -1,0 +1,157 @@
+"""How much the law of rolling resistance leaves open of a friction torque, and how far predicted torques were off where they were
+measured.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any, Final
+
+import numpy as np
+
+from trbdyn.base.expected import expect
+from trbdyn.model.assembly import Assembly, Subject
+from trbdyn.model.effects import Effects
+from trbdyn.model.roller import Profile
+from trbdyn.model.scene import Scene
+from trbdyn.run.simulation import Simulation
+
+DEFENDED: Final = ("zhou_hoeprich", "biboulet_houpert")
+"""Laws of rolling resistance that can be defended beside the default: the one that was fitted to measurements of a tapered roller
+bearing, and the one that agrees with a numerical solution of a contact that is full of oil."""
+RECORD: Final = "torque_record.json"
+DECIDE: Final = ("rolling_law", "thermal_law", "replenishment", "mixed_law", "rib_film", "rolling_pressure_force")
+"""Effects for which the record of measured torques holds: those of `Effects.standard`."""
+
+
+@dataclass(frozen=True)
+class TorqueLaws:
+    """What other laws make of a torque.
+
+    Attributes
+    ----------
+    factors : dict of str to float
+        Torque by another law over that of the subject, by the law's name.
+    record : str
+        How far the subject's effects were off measured torques; empty where they were not compared.
+    """
+
+    factors: dict[str, float]
+    record: str
+
+    @property
+    def low(self) -> float:
+        """Smallest factor, the subject's own law among them (1)."""
+        return min(1.0, *self.factors.values())
+
+    @property
+    def high(self) -> float:
+        """Largest factor (1)."""
+        return max(1.0, *self.factors.values())
+
+    def band(self, low: float, high: float) -> tuple[float, float]:
+        """A band of a torque, or its value twice, with what the laws leave open (N m)."""
+        ends = [factor * end for factor in (self.low, self.high) for end in (low, high)]
+        return min(ends), max(ends)
+
+    def words(self, low: float, high: float) -> str:
+        """The band in words, with the laws and the record."""
+        wide = self.band(low, high)
+        names = " and ".join(self.factors)
+        return f"{wide[0]:.3g} to {wide[1]:.3g} N m with the laws {names}" + (f"; {self.record}" if self.record else "")
+
+
+def torque_laws(subject: Subject) -> TorqueLaws | None:
+    """What the laws of rolling resistance that can be defended make of the torque of a scene or an assembly.
+
+    The power that all contacts lose at the equilibrium, in ideal rolling, is taken with each law.
+
+    Parameters
+    ----------
+    subject : Scene or Assembly
+        What is simulated.
+
+    Returns
+    -------
+    TorqueLaws or None
+        None without rolling resistance.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> from trbdyn.run.torque_laws import torque_laws
+    >>> found = torque_laws(trb.cases.scene_32216(2000.0))
+    >>> found.low < 1.0 < found.high
+    True
+    """
+    expect("subject", subject, Scene, Assembly)
+    parts = [part for part in subject.parts.values() if part.effects.films and part.effects.rolling_resistance]
+    if not parts:
+        return None
+    own = _power(subject)
+    if not own > 0.0:
+        return None
+    used = {part.effects.rolling_law for part in parts}
+    factors = {}
+    for law in DEFENDED:
+        if used != {law}:
+            changed = subject.replace({f"{prefix}effects.rolling_law": law for prefix in subject.parts})
+            factors[law] = _power(changed) / own
+    standard = Effects.standard()
+    is_known = all(getattr(part.effects, name) == getattr(standard, name) for part in parts for name in DECIDE)
+    return TorqueLaws(factors, record_words() if is_known else "")
+
+
+def straight_rollers(scene: Scene) -> tuple[float, float] | None:
+    """Torque and largest pressure with straight rollers over those with a profile that nobody gave, at the equilibrium.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated.
+
+    Returns
+    -------
+    tuple of float, or None
+        Both factors (1); None where the profile is given, or straight.
+    """
+    bearing = scene.bearing
+    if bearing.roller.profile.kind == "straight" or not any(
+        path.startswith("roller.profile") for path in bearing.assumed
+    ):
+        return None
+    profiled, straight = (
+        Simulation(one).contacts() for one in (scene, scene.replace({"bearing.roller.profile": Profile.straight()}))
+    )
+    power, pressure = (
+        float(operation(straight[name]) / operation(profiled[name]))
+        for name, operation in (("power", np.sum), ("raceway_pressure", np.max))
+    )
+    return power, pressure
+
+
+def _power(subject: Subject) -> float:
+    """Power that the contacts lose at the start (W)."""
+    found = Simulation(subject).contacts()
+    parts = [found] if "power" in found else list(found.values())
+    return float(sum(np.sum(part["power"]) for part in parts))
+
+
+@cache
+def record() -> Mapping[str, Any]:
+    """Summary of ``benchmarks/validation``: number of bearings and of torques, mean and largest error (%)."""
+    found: dict[str, Any] = json.loads((resources.files("trbdyn") / "data" / RECORD).read_text("utf-8"))
+    return found
+
+
+def record_words() -> str:
+    """The record of the default effects in a sentence."""
+    one = record()
+    return (
+        f"on {one['bearings']} bearings these effects were {one['mean_error']:.0f} % off {one['torques']} measured torques in "
+        f"the mean, {one['max_error']:.0f} % at most (from {one['from_rpm']:g} rpm on)"
+    )
