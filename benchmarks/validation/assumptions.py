@@ -86,6 +86,20 @@ OPTIONS: Final = {
     )
 }
 """Laws and supply of oil beside each other."""
+PAPER: Final = "Effects.paper()"
+OPTIONS[PAPER] = {
+    name: getattr(trb.Effects.paper(), name)
+    for name in (
+        "rolling_law",
+        "thermal_law",
+        "rolling_pressure_force",
+        "rib_film",
+        "damping",
+        "quadrature",
+        "n_slices",
+    )
+} | {"supplied": False}
+"""The rule leaves it out: the torques of its rings do not agree."""
 
 
 def oil_of(point: Measurement) -> trb.Lubricant:

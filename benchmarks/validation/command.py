@@ -23,6 +23,7 @@ from validation import skf
 from validation.assumptions import (
     CATALOGUE,
     OPTIONS,
+    PAPER,
     SAMPLES,
     SEED,
     SLOWEST,
@@ -80,7 +81,11 @@ def default_option() -> str:
     for name, option in OPTIONS.items():
         fields = {key: value for key, value in option.items() if key != "supplied"}
         whole = {"mixed_law": "power", "rib_film": "pe", "friction.rib_boundary_limit": 0.1, **fields}
-        if standard.replace(whole) == standard and option["supplied"] == (standard.replenishment > 0.0):
+        if (
+            name != PAPER
+            and standard.replace(whole) == standard
+            and option["supplied"] == (standard.replenishment > 0.0)
+        ):
             return name
     raise SystemExit("Effects.standard() is none of the options: add it to validation.assumptions")
 
@@ -233,7 +238,7 @@ def summary(rows: list[dict[str, Any]], chosen: list[str], own: str) -> dict[str
             "mean_error_all": float(np.mean(everywhere)),
             "within_30": float(np.mean(np.array(errors) < CLOSE)),
         }
-    ranked = sorted(chosen, key=lambda name: by_option[name]["mean_error"])
+    ranked = sorted((name for name in chosen if name != PAPER), key=lambda name: by_option[name]["mean_error"])
     by_law: dict[str, float] = {}
     for name in ranked:
         by_law.setdefault(OPTIONS[name]["rolling_law"], by_option[name]["mean_error"])
@@ -274,7 +279,7 @@ def ranking(found: dict[str, Any]) -> list[dict[str, str]]:
             "within 30 %": f"{100.0 * errors['within_30']:.0f} %",
         }
         for place, (name, errors) in enumerate(ranked, 1)
-        if place <= 10 or name in laws.values() or name == found["default"]
+        if place <= 10 or name in laws.values() or name in (found["default"], PAPER)
     ]
 
 

@@ -77,7 +77,6 @@ SLOWER = (
     "python -m trbdyn torque ",
     "python -m trbdyn sweep cage_mass -o study",
     "python tests/adversary/adversary.py ",
-    "python benchmarks/torque.py",
     "python benchmarks/ordinary.py",
 )
 TIME_GIVEN = re.compile(
