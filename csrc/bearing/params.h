@@ -119,6 +119,7 @@
   X(effects,    starvation_factor,         "1",         1e-4,   1,      "factor of every film thickness and of rolling resistance") \
   X(effects,    replenishment,             "s/rad",     0,      1,      "decline of the supply of raceways with the speed of the rings: factor exp(-c speed) of their rolling resistance") \
   X(effects,    oil_height,                "m",         0,      1,      "height of the oil before the contacts on raceways; 0: they are flooded") \
+  X(effects,    flooded_gaps,              "choice",    0,      1,      "1: gaps beside the loaded part of a contact are full of oil") \
   X(effects,    hysteresis,                "1",         0,      0.5,    "share of a contact's elastic energy that the steel of rollers and raceways loses; 0: none") \
   /* friction */ \
   X(friction,   lambda_boundary,           "1",         0,      100,    "film parameter below which friction is boundary") \

@@ -23,6 +23,7 @@ enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6, TRB_MOST_MOVING_RINGS = 2 };
   X(raceway_culled,       "raceway contacts without interference, left out") \
   X(film_nodes,           "nodes whose film was evaluated") \
   X(meniscus_nodes,       "nodes whose supply by a meniscus was evaluated") \
+  X(gap_nodes,            "nodes whose gap beside the loaded part was evaluated") \
   X(hysteresis_nodes,     "nodes whose elastic hysteresis was evaluated") \
   X(thermal_nodes,        "nodes whose thermal film factor was evaluated") \
   X(traction_nodes,       "nodes whose film traction was evaluated") \

@@ -70,7 +70,7 @@ static trb_contact sum_of(const trb_model *m, const trb_lanes *l, int first)
   trb_contact out = {0};
   for (int k = first; k < first + m->n_nodes; k++) {
     const double q = l->load[k], mean = l->mean_speed[k];
-    if (l->rolled[k] > 0.0) out.traction -= l->rolling[k] / mean * l->my[k];
+    if (l->rolling[k] > 0.0) out.traction -= l->rolling[k] / mean * l->my[k];
     if (!(q > 0.0)) continue;
     out.load += q;
     out.pressure = trb_max(out.pressure, l->pressure[k]);

@@ -164,6 +164,20 @@ static void pass_rolling(const trb_model *m, int n, trb_lanes *l)
   }
 }
 
+/* Beside the part that carries, the gap is that of the undeformed surfaces and the film of the deepest node. A contact that begins to
+ * carry gets this resistance with its interference over this film: an assumption that keeps forces continuous. */
+static void pass_gaps(const trb_model *m, int first, trb_lanes *l)
+{
+  int deepest = first;
+  for (int i = first; i < first + m->n_nodes; i++)
+    if (l->interference[i] > l->interference[deepest]) deepest = i;
+  const double film = l->film[deepest], depth = l->interference[deepest], scale = m->params.viscosity * depth / (depth + film);
+  for (int i = first; i < first + m->n_nodes; i++) {
+    const double idle = trb_max(l->weight[i] - l->rolled[i], 0.0), gap = film + trb_max(-l->interference[i], 0.0);
+    l->rolling[i] += scale * l->mean_speed[i] * idle * trb_rolling_gap(l->radius[i] / gap);
+  }
+}
+
 /* What fast rollers push aside does not flow back in time: SKF's factor of replenishment, on rolling resistance alone. */
 static void pass_replenishment(const trb_model *m, int n, trb_lanes *l)
 {
@@ -369,6 +383,10 @@ void TRB_KERNEL_NAME(const trb_model *m, const trb_race_input *inputs, int n_inp
   if (rolling) {
     for (int c = 0; c < n_loaded; c++) pass_rolled(m, c * n, l);
     pass_rolling(m, all, l);
+    if (m->params.flooded_gaps > 0.0) {
+      for (int c = 0; c < n_loaded; c++) pass_gaps(m, c * n, l);
+      counters->gap_nodes += all;
+    }
     if (m->replenishment > 0.0) pass_replenishment(m, all, l);
     if (m->params.oil_height > 0.0) {
       pass_meniscus(m, all, l);

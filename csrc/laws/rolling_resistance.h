@@ -14,6 +14,8 @@
 #ifndef TRB_LAWS_ROLLING_RESISTANCE_H
 #define TRB_LAWS_ROLLING_RESISTANCE_H
 
+#include <math.h>
+
 #include "laws/smooth.h"
 
 enum {
@@ -65,6 +67,10 @@ static inline double trb_rolling_line(int law, double log_w, double log_u, doubl
 /* Share of rolling resistance that a meniscus at a height of oil leaves, S: that height over the smallest film of a flooded contact (Biboulet &
  * Houpert 2010, part 1, eq. 44; fitted down to S = 2). */
 static inline double trb_rolling_meniscus(double s) { return (s * s + 162.8 * s) / (s * s + 193.1 * s + 1257.0); }
+
+/* Rolling resistance of a rigid cylinder at a gap that is full of oil, over eta0 u l (Biboulet & Houpert 2010; Reynolds' equation, solved
+ * apart in a test). */
+static inline double trb_rolling_gap(double radius_over_gap) { return 4.596 * sqrt(radius_over_gap); }
 
 /* Elastic hysteresis of a line contact, whose moment is a_v 2 b/(3 pi) times the load (Johnson 1985, 9.1): as the force F on each surface that
  * loses as much, over the load. */

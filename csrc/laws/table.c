@@ -64,6 +64,7 @@
   X(profile_logarithmic, 7, "station length k1 k2 zm load effective_modulus", "logarithmic drop, m", \
     trb_profile_logarithmic(x[0], x[1], x[2], x[3], x[4], x[5], x[6])) \
   X(rolling_meniscus, 1, "height_over_film", "Biboulet & Houpert 2010, part 1 (44): share of rolling resistance that a meniscus leaves", trb_rolling_meniscus(x[0])) \
+  X(rolling_gap, 1, "radius_over_gap", "Biboulet & Houpert 2010: F/(eta0 u l) of a rigid cylinder at a gap", trb_rolling_gap(x[0])) \
   X(rolling_hysteresis, 3, "loss_factor width radius", "Johnson: elastic hysteresis of a line contact, as a force over the load", \
     trb_rolling_hysteresis(x[0], x[1], x[2])) \
   X(film_line_smallest, 3, "W U G", "Pan & Hamrock 1989: smallest film of a line contact over Re", trb_film_line_smallest(log(x[0]), log(x[1]), log(x[2]))) \

@@ -55,6 +55,7 @@ SWITCHES: dict[str, tuple[dict[str, Any], dict[str, Any], tuple[str, ...]]] = {
         ("land_contacts",),
     ),
     "oil_height": ({"oil_height": 2e-5}, {"oil_height": 0.0}, ("meniscus_nodes",)),
+    "flooded_gaps": ({"flooded_gaps": True}, {"flooded_gaps": False}, ("gap_nodes",)),
     "hysteresis": ({"hysteresis": 0.02}, {"hysteresis": 0.0}, ("hysteresis_nodes",)),
     "damping": ({"damping": "hunt_crossley"}, {"damping": "off"}, ("damping_nodes",)),
 }
@@ -246,5 +247,5 @@ def test_a_coefficient_that_would_act_nowhere_is_refused(given: dict[str, Any]) 
 def test_a_table_of_an_earlier_version_is_taken() -> None:
     """It has the coefficients of every law of damping, and lacks the newest fields."""
     table = Effects().to_dict()
-    del table["hysteresis"], table["oil_height"]
+    del table["hysteresis"], table["oil_height"], table["flooded_gaps"]
     assert Effects.from_dict(table) == Effects()

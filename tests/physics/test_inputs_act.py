@@ -19,7 +19,7 @@ from trbdyn.model.flatten import scene_entries
 from trbdyn.model.pocket import Pocket
 
 Array = NDArray[np.float64]
-BASE = Effects.standard().replace(damping="off")
+BASE = Effects.standard().replace(damping="off", thermal_law="gupta", n_slices=16)
 DRY, BOUNDARY = BASE.replace(lubrication="dry"), BASE.replace(lubrication="boundary")
 WET = BASE.replace(oil_fill=0.3)
 INNER, OUTER = BASE.replace(guidance="inner_land"), BASE.replace(guidance="outer_land")
@@ -391,6 +391,7 @@ def test_nothing_is_forgotten() -> None:
     here |= {
         "replenishment",
         "oil_height",
+        "flooded_gaps",
         "hysteresis",
         "rib_boundary_limit",
         "cage_face_inner",

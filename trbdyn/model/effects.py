@@ -127,6 +127,9 @@ class Effects(Model):
     oil_height : float
         Height of the oil before each contact on a raceway (m), 0: as much as it takes. Rolling resistance is that of a contact
         whose meniscus lies where the gap is as high (Biboulet and Houpert 2010); films keep their thickness.
+    flooded_gaps : bool
+        Gaps beside the loaded part of a contact, of a crowned or a misaligned roller, are full of oil and resist rolling, too
+        (Biboulet and Houpert 2010); acts with `rolling_resistance`.
     hysteresis : float
         Share of a contact's elastic energy that the steel loses as rollers pass (1), 0: none. Johnson has about 0.01; it acts
         with `rolling_resistance`.
@@ -197,6 +200,7 @@ class Effects(Model):
     mixed_law: Literal["power", "exponential"] = "power"
     replenishment: Annotated[Number, unit("1", ge=0, le=1e-6)] = 0.0
     oil_height: Annotated[Number, parameter("oil_height")] = 0.0
+    flooded_gaps: Flag = False
     hysteresis: Annotated[Number, parameter("hysteresis")] = 0.0
     rolling_resistance: Flag = True
     rolling_law: Literal["zhou_hoeprich", "goksem_hargreaves", "aihara", "matsuyama", "biboulet_houpert"] = (

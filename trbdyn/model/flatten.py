@@ -141,6 +141,7 @@ def effects_entries(effects: Effects) -> Entries:
         "thermal": Entry(("thermal",), float(effects.films and effects.thermal and THERMAL_LAWS[effects.thermal_law])),
         "mixed_law": Entry(("mixed_law",), MIXED_LAWS[effects.mixed_law]),
         "rib_turning": Entry(("rib_turning",), float(effects.rib_turning)),
+        "flooded_gaps": Entry(("flooded_gaps",), float(effects.flooded_gaps)),
         "rolling_resistance": Entry(("rolling_resistance",), float(rolling and ROLLING_LAWS[effects.rolling_law])),
         "rolling_pressure_force": Entry(("rolling_pressure_force",), float(rolling and effects.rolling_pressure_force)),
         "rib_film": Entry(("rib_film",), RIB_FILMS[effects.rib_film]),
