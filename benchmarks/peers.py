@@ -71,9 +71,7 @@ COLUMNS = {
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     """Run the benchmark."""
     parser = common.parser(__doc__)
-    nodes = parser.add_mutually_exclusive_group()
-    nodes.add_argument("--gauss", type=int, metavar="N", default=8, help="N Gauss nodes along a contact, for all")
-    nodes.add_argument("--slices", type=int, metavar="N", help="N uniform slices along a contact instead, for all")
+    parser.add_argument("--slices", type=int, metavar="N", default=8, help="N slices along a contact, for all")
     options = parser.parse_args(arguments)
     report = common.Report("peers", options, COLUMNS)
     bench = Bench(options)

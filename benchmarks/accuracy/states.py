@@ -214,7 +214,7 @@ STORED_LAW = "zhou_hoeprich"
 
 def scene_of(definition: CaseDefinition) -> Scene:
     """The scene of a case, with 8 Gauss nodes along each contact."""
-    standard = Effects.standard().replace(rolling_law=STORED_LAW)
+    standard = Effects.standard().replace(rolling_law=STORED_LAW, thermal_law="gupta")
     effects = {"paper": Effects.paper(), "standard": standard}[definition.effects]
     bearing = cases.rig_30310()
     if definition.diameter_range > 0.0:
@@ -293,6 +293,7 @@ def load_case(name: str, path: Path = FILE) -> Case:
     with np.load(path) as data:
         scene = json.loads(str(data[f"{name}_scene"]))
         scene["effects"].setdefault("rolling_law", STORED_LAW)
+        scene["effects"].setdefault("thermal_law", "gupta")
         states = tuple(
             State(float(time), vector)
             for time, vector in zip(data[f"{name}_time"], data[f"{name}_vector"], strict=True)

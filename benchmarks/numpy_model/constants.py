@@ -82,11 +82,13 @@ class Constants:
 
     def _nodes(self, deviation: Array) -> None:
         p, g, n = self.p, self.g, self.n_nodes
-        nu, half = g.roller_half_angle, 0.5 * p["effective_length"]
         if p["quadrature"] == 1:
-            node, weight = np.polynomial.legendre.leggauss(n)
-        else:
-            node, weight = (2.0 * np.arange(n) + 1.0) / n - 1.0, np.full(n, 2.0 / n)
+            raise ValueError("quadrature = 'gauss': this model has uniform slices alone")
+        length = (
+            min(p["effective_length"], p["profile_c"] + p["profile_d"]) if p["profile"] == 3 else p["effective_length"]
+        )
+        nu, half = g.roller_half_angle, 0.5 * length
+        node, weight = (2.0 * np.arange(n) + 1.0) / n - 1.0, np.full(n, 2.0 / n)
         station = half * node
         nominal, along = (g.apex_to_mid + station) * tan(nu), (g.apex_to_mid + station) / cos(nu)
         radius = nominal + 0.5 * deviation[:, None] - self._drop(station)

@@ -97,9 +97,7 @@ class Bench:
     """Scene, windows, and the two models."""
 
     def __init__(self, options: argparse.Namespace) -> None:
-        effects = Effects.paper().replace(quadrature="gauss", n_slices=options.gauss)
-        if options.slices is not None:
-            effects = effects.replace(quadrature="uniform", n_slices=options.slices)
+        effects = Effects.paper().replace(n_slices=options.slices)
         self.scene: Scene = paper_30310(SPEED_RPM, AXIAL_LOAD, start=Start.whirl(0.9), effects=effects)
         self.play = self.scene.bearing.cage.play_radial
         self.repeats = 1 if options.quick else 3

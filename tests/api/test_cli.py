@@ -81,7 +81,7 @@ def test_demo_writes_everything(
     for name in (*promised, "steps", "rhs_evaluations"):
         assert isinstance(values[name], float | int), name
     call = fake.calls[0]
-    assert call["run"]["revolutions"] == 720.0
+    assert call["run"]["revolutions"] == 960.0
     assert call["scene"].start.kind == "whirl"
     assert call["scene"].start.eccentricity == 0.9
     assert call["scene"].speed_rpm == 3000.0

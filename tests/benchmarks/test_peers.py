@@ -33,7 +33,6 @@ SCENES = {
     "colliding": lambda: paper_30310(start=Start.whirl(0.9)),
     "combined": lambda: paper_30310(2000.0, 4930.0, 5530.0),
     "misaligned": lambda: paper_30310(3000.0, 1230.0, misalignment_x=2e-4, start=Start.unequal(3)),
-    "gauss": lambda: paper_30310(effects=Effects.paper().replace(quadrature="gauss", n_slices=9)),
     "other bearing": lambda: scene_32216(effects=Effects.paper()),
 }
 

@@ -126,14 +126,14 @@ def contacts(
     load, friction = found["raceway_load"], found["raceway_friction_coefficient"]
     slide_roll = np.sum(sliding * mean, axis=-1) / np.sum(mean * mean, axis=-1)
     along = sliding[..., 1] / np.linalg.norm(sliding, axis=-1), mean[..., 1] / np.linalg.norm(mean, axis=-1)
-    traction = -(load * friction * along[0] + np.where(load > 0.0, found["raceway_rolling"], 0.0) * along[1])
+    traction = -(load * friction * along[0] + found["raceway_rolling"] * along[1])
     for race, side in enumerate(("outer", "inner")):
         out[f"{side}_load"] = load[race].sum(axis=-1)
         out[f"{side}_pressure"] = np.where(load[race] > 0.0, found["raceway_pressure"][race], 0.0).max(axis=-1)
         out[f"{side}_film"] = weighted(found["raceway_film"][race], load[race])
         out[f"{side}_film_parameter"] = weighted(found["raceway_film_parameter"][race], load[race])
         out[f"{side}_slide_roll"] = weighted(slide_roll[race], load[race])
-        out[f"{side}_traction"] = np.where(load[race] > 0.0, traction[race], 0.0).sum(axis=-1)
+        out[f"{side}_traction"] = traction[race].sum(axis=-1)
         lost = load[race] * friction[race] * np.linalg.norm(sliding[race], axis=-1)
         out[f"power_traction_{side}"] = lost.sum()
     for name in ("load", "pressure", "film", "film_parameter", "height", "overhang"):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.model.contact_line import line_length
 from trbdyn.run.replay import Replay
 
 NOT_IN_A_STATE = ("energy", "peaks")
@@ -28,7 +29,7 @@ def test_stations_are_those_of_the_contacts(whirling: trb.Result, loaded_on_one_
     for result in (whirling, loaded_on_one_side):
         replay = Replay(result)
         weights = replay.contacts(0)["raceway_weight"][0, 0]
-        length = result.scene.bearing.roller.effective_length
+        length = line_length(result.scene)
         assert replay.stations.shape == weights.shape
         # a rule's nodes and weights integrate x^2 over the length
         assert np.sum(weights * replay.stations**2) / np.sum(weights) == pytest.approx(length**2 / 12, rel=2e-3)

@@ -97,7 +97,8 @@ class Effects(Model):
     about 40 %. The film at the rib is that of the piezoviscous-elastic regime (`rib_film` 'pe'): the other formula gives tens of
     micrometres there, so that no rib would ever run in mixed friction. Rolling resistance and heat of the inlet follow the laws
     that were nearest to the measured torques of four bearings, by a rule that was written down before
-    (docs/validation.md#friction-torque-beside-measured-values). Contacts damp a little (assumed). `paper` has none of these: it repeats the paper.
+    (docs/validation.md#friction-torque-beside-measured-values). Contacts damp a little (assumed). `paper` has none of these: it
+    repeats the paper.
 
     Parameters
     ----------
