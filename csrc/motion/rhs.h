@@ -18,4 +18,13 @@ typedef struct trb_approximation {
 /* instead: NULL for exact forces of all pairs. */
 void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, const double *y, double *rates);
 
+/* The same in two parts, for n chosen rollers and the hub as if there were no others: flows of these rollers, kept in d->flows, with the loads that they
+ * put on the hub; then the rates of the hub, with the quadratures of what belongs to no roller, or to those that were put in between
+ * (trb_dynamics_put). */
+void trb_rhs_rollers(trb_dynamics *d, const trb_approximation *instead, double time, const double *y, const int *chosen, int n,
+                     double *rates);
+void trb_rhs_hub(trb_dynamics *d, const double *y, double *rates);
+/* Flow of one roller that touches nothing which has coordinates: nothing but its own part of a state is read. It is kept in d->flows. */
+void trb_rhs_alone(trb_dynamics *d, const trb_approximation *instead, double time, int roller, const double *y_roller);
+
 #endif

@@ -112,8 +112,19 @@ static double factor_of_hub(trb_impacts *impacts, const trb_dynamics *d, const t
   return least;
 }
 
+/* No roller is near anything; of those that are not chosen (ascending) nothing is kept. */
+static void begin(const trb_model *m, trb_impacts *impacts, const int *chosen, int n)
+{
+  int next = 0;
+  for (int j = 0; j < m->n_rollers; j++) {
+    impacts->factor[j] = 1.0;
+    if (next < n && chosen[next] == j) next++;
+    else impacts->speed[j] = INFINITY;
+  }
+}
+
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
-                      const trb_impact_measure *measure)
+                      const trb_impact_measure *measure, const int *chosen, int n)
 {
   const trb_model *m = d->model;
   trb_drive        drive;
@@ -123,9 +134,10 @@ void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_mot
     place(impacts, d, &drive, y);
   }
   for (int f = 0; f < d->n_fast; f++) rise[f] = rise_of(d, d->fast[f].pair);
-  for (int j = 0; j < m->n_rollers; j++) {
+  begin(m, impacts, chosen, n);
+  for (int k = 0; k < n; k++) {
+    const int     j = chosen[k];
     const double *y_roller = y + trb_state_roller(d->system, j);
-    impacts->factor[j] = 1.0;
     for (int f = 0; f < d->n_fast; f++) {
       const trb_fast_pair  *fast = &d->fast[f];
       const trb_rigid_pose *body = &impacts->bodies[fast->pair->b].pose;

@@ -23,8 +23,9 @@ typedef struct trb_impact_measure {
   double velocity, position; /* absolute tolerances, m/s and m */
 } trb_impact_measure;
 
-/* Computes the factors for a step of a given length that starts at a state. */
+/* Computes the factors for a step of a given length that starts at a state. chosen: the n rollers that may hit something, ascending; others have a factor of 1,
+ * and their speeds are forgotten. */
 void trb_impacts_look(trb_impacts *impacts, const trb_dynamics *d, const trb_motion *motion, double time, const double *y, double step,
-                      const trb_impact_measure *measure);
+                      const trb_impact_measure *measure, const int *chosen, int n);
 
 #endif

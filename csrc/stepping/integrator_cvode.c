@@ -34,9 +34,11 @@ static int rates(sunrealtype time, N_Vector y, N_Vector out, void *data)
     return trb_integrator_rates(it, time, N_VGetArrayPointer(y), to);
   for (int k = 0; k < it->assembly->n; k++) {
     const int                 first = trb_state_roller(&it->assembly->members[k], 0);
+    const trb_arrow_factors  *factors = self->solver->content;
     const trb_tangent_measure measure = {.relative = it->relative + first,
                                          .scale = it->scale + first,
-                                         .factors = self->solver->content,
+                                         .kernels = factors->kernels,
+                                         .gamma = factors->gamma,
                                          .share = it->settings.rings_share,
                                          .margin_share = it->settings.margin_share,
                                          .slip_share = it->settings.slip_share};
@@ -217,8 +219,9 @@ static trb_status bdf_step(trb_integrator *it, trb_message *message)
                                       .velocity = it->settings.atol_velocity,
                                       .position = it->settings.atol_position};
   for (int k = 0; k < it->assembly->n; k++) {
-    trb_member *member = &it->members[k];
-    trb_impacts_look(&member->impacts, member->dynamics, member->motion, it->time, it->y, step, &measure);
+    trb_member         *member = &it->members[k];
+    const trb_dynamics *d = member->dynamics;
+    trb_impacts_look(&member->impacts, d, member->motion, it->time, it->y, step, &measure, d->everyone, d->model->n_rollers);
   }
   const int flag = CVode(self->memory, it->time + 1.0, self->y, &reached, CV_ONE_STEP);
   if (flag < 0) return trb_fail(message, TRB_ERR_STEP, "CVODE stopped (%d): %s", flag, self->sundials.text);

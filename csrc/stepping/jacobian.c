@@ -268,12 +268,31 @@ static void fill_fast(trb_jacobian *jac, int j, const double *y, const double *s
 
 void trb_jacobian_renew(trb_jacobian *jacobian, int roller) { jacobian->renewed[jacobian->n_renewed++] = roller; }
 
-/* Takes slopes of raceways and ribs again: of all rollers, or of those that were asked for. */
-static void take_slopes(trb_jacobian *jac, const double *y, int fresh)
+/* Poses of the hub and of the chosen rollers. */
+static void place(trb_jacobian *jac, double time, const double *y, const int *chosen, int n)
+{
+  trb_dynamics *d = jac->d;
+  memcpy(jac->moved, y, (size_t)trb_state_size(d->system) * sizeof *y);
+  trb_dynamics_drive(d, time);
+  trb_dynamics_pose_hub(d, y);
+  for (int k = 0; k < n; k++) {
+    trb_dynamics_pose_roller(d, chosen[k], y + trb_state_roller(d->system, chosen[k]));
+    (void)trb_dynamics_spin_roller(d, chosen[k], y);
+  }
+}
+
+void trb_jacobian_slopes(trb_jacobian *jac, double time, const double *y, const int *chosen, int n)
+{
+  place(jac, time, y, chosen, n);
+  trb_tangents_differentiate(jac->tangents, jac->d, chosen, n, y, jac->moved);
+}
+
+/* Takes slopes of raceways and ribs again: of all chosen rollers, or of those that were asked for. */
+static void take_slopes(trb_jacobian *jac, const double *y, int fresh, const int *chosen, int n)
 {
   trb_dynamics *d = jac->d;
   if (fresh || !jac->tangents->has_slopes) {
-    trb_tangents_differentiate(jac->tangents, d, d->everyone, d->model->n_rollers, y, jac->moved);
+    trb_tangents_differentiate(jac->tangents, d, chosen, n, y, jac->moved);
     jac->rings_evaluations++;
   } else if (jac->n_renewed > 0) {
     trb_tangents_differentiate(jac->tangents, d, jac->renewed, jac->n_renewed, y, jac->moved);
@@ -283,16 +302,19 @@ static void take_slopes(trb_jacobian *jac, const double *y, int fresh)
 
 void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fresh, trb_arrow *arrow)
 {
+  trb_jacobian_fill_of(jac, time, y, fresh, jac->d->everyone, jac->d->model->n_rollers, arrow);
+}
+
+void trb_jacobian_fill_of(trb_jacobian *jac, double time, const double *y, int fresh, const int *chosen, int n, trb_arrow *arrow)
+{
   trb_dynamics    *d = jac->d;
-  const trb_model *m = d->model;
   double          *still = jac->rates + 2 * arrow->width;
   const trb_wrench none = {{0, 0, 0}, {0, 0, 0}};
-  memcpy(jac->moved, y, (size_t)trb_state_size(d->system) * sizeof *y);
-  trb_dynamics_pose(d, time, y);
-  take_slopes(jac, y, fresh);
-  for (int j = 0; j < m->n_rollers; j++)
+  place(jac, time, y, chosen, n);
+  take_slopes(jac, y, fresh, chosen, n);
+  for (int k = 0; k < n; k++)
     for (int c = 0; c < TRB_NR; c++)
-      memcpy(arrow->rollers[leaf_of(d, j)].own[c], trb_tangents_column(jac->tangents, j, c), TRB_NR * sizeof(double));
+      memcpy(arrow->rollers[leaf_of(d, chosen[k])].own[c], trb_tangents_column(jac->tangents, chosen[k], c), TRB_NR * sizeof(double));
   if (d->system->layout.leaf == 0) memset(arrow->hub, 0, (size_t)(arrow->width * arrow->room) * sizeof *arrow->hub);
   memset(jac->changes, 0, (size_t)arrow->width * sizeof *jac->changes);
   memset(d->on_body, 0, sizeof d->on_body);
@@ -301,9 +323,9 @@ void trb_jacobian_fill(trb_jacobian *jac, double time, const double *y, int fres
     if (jac->modal[b] != NULL) trb_modal_start(jac->modal[b]);
   }
   prepare_rings(jac, y, still);
-  for (int j = 0; j < m->n_rollers; j++) {
-    fill_fast(jac, j, y, still, arrow);
-    fill_rings(jac, j, arrow);
+  for (int k = 0; k < n; k++) {
+    fill_fast(jac, chosen[k], y, still, arrow);
+    fill_rings(jac, chosen[k], arrow);
   }
   hub_block(jac, y, still, arrow);
   for (int b = 0; b < d->system->n_bodies; b++)

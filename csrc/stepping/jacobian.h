@@ -33,8 +33,12 @@ trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motio
 void       trb_jacobian_free(trb_jacobian *jacobian);
 /* A roller's slopes are to be taken again at the next fill; in ascending order, each once. */
 void trb_jacobian_renew(trb_jacobian *jacobian, int roller);
+/* Slopes of raceways and ribs of n chosen rollers at a state, of which the other rollers are not read. */
+void trb_jacobian_slopes(trb_jacobian *jacobian, double time, const double *y, const int *chosen, int n);
 /* Fills the rollers' blocks and borders of its system and adds to the hub's block; the first system of an assembly comes first. fresh:
  * compute the part of the rings of all rollers again, too. */
 void trb_jacobian_fill(trb_jacobian *jacobian, double time, const double *y, int fresh, trb_arrow *arrow);
+/* The same as if the system had n chosen rollers only; those that are renewed must be among them. */
+void trb_jacobian_fill_of(trb_jacobian *jacobian, double time, const double *y, int fresh, const int *chosen, int n, trb_arrow *arrow);
 
 #endif

@@ -105,6 +105,17 @@ static int all_finite(const trb_tangents *t, const int *chosen, int n)
   return sum == 0.0;
 }
 
+/* Poses of the hub and of the chosen rollers. */
+static void pose(trb_dynamics *d, double time, const double *y, const int *chosen, int n)
+{
+  trb_dynamics_drive(d, time);
+  trb_dynamics_pose_hub(d, y);
+  for (int k = 0; k < n; k++) {
+    trb_dynamics_pose_roller(d, chosen[k], y + trb_state_roller(d->system, chosen[k]));
+    (void)trb_dynamics_spin_roller(d, chosen[k], y);
+  }
+}
+
 void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen, int n, const double *y, double *moved)
 {
   const trb_model *m = d->model;
@@ -137,11 +148,11 @@ void trb_tangents_differentiate(trb_tangents *t, trb_dynamics *d, const int *cho
     differentiate(t, d, &at, c, 1.0 / h);
   }
   if (frame_speed != 0.0) {
-    trb_dynamics_pose(d, time + turn_difference / fabs(frame_speed), y);
+    pose(d, time + turn_difference / fabs(frame_speed), y, chosen, n);
     trb_rings_see(t, d, 1);
     differentiate(t, d, &at, TRB_TANGENT_TURN, copysign(1.0 / turn_difference, frame_speed));
   }
-  trb_dynamics_pose(d, time, y);
+  pose(d, time, y, chosen, n);
   trb_rings_differentiate(t, d, chosen, n);
   /* these slopes are exact, so tangents are used at once, with a small reach */
   for (int k = 0; k < n && !t->has_slopes; k++) {
@@ -236,7 +247,7 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
   trb_tangents              *t = self;
   trb_tangent               *r = &t->rollers[roller];
   const trb_tangent_measure *measure = t->measure;
-  const trb_block_kernels   *kernels = measure->factors->kernels;
+  const trb_block_kernels   *kernels = measure->kernels;
   double                     step[TRB_TANGENT_IN] = {0}, of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN];
   if (t->under_way) return 0;
   const double distance2 = r->known
@@ -265,15 +276,20 @@ static int follow(void *self, const trb_dynamics *d, int roller, const double *y
 static void learn_exact(void *self, const trb_dynamics *d, int roller, const double *y, const double *flow, const trb_wrench *reactions)
 {
   trb_tangents *t = self;
-  if (t->under_way || !t->beyond[roller] || !t->has_slopes || !(t->measure->factors->gamma > 0.0)) return;
+  if (t->under_way || !t->beyond[roller] || !t->has_slopes || !(t->measure->gamma > 0.0)) return;
   trb_tangent_learn(t, d, roller, y, flow, reactions);
+}
+
+trb_approximation trb_tangents_open(trb_tangents *t, const trb_tangent_measure *measure)
+{
+  t->measure = measure;
+  return (trb_approximation){.self = t, .begin = begin, .follow = follow, .learn = learn_exact};
 }
 
 void trb_tangents_derivative(trb_tangents *t, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,
                              double *rates)
 {
-  const trb_approximation tangents = {.self = t, .begin = begin, .follow = follow, .learn = learn_exact};
-  t->measure = measure;
+  const trb_approximation tangents = trb_tangents_open(t, measure);
   trb_rhs(d, &tangents, time, y, rates);
   t->measure = NULL;
 }

@@ -73,10 +73,11 @@ typedef struct trb_tangents {
 /* Limits of a tangent, and what its error is measured with. */
 typedef struct trb_tangent_measure {
   const double            *relative, *scale; /* tolerance of each entry of the state */
-  const trb_arrow_factors *factors;          /* of the last linear system: its gamma turns an error of rates into one of a step */
-  double                   share;            /* of the step's tolerance that an error may be */
-  double                   margin_share;     /* of the margins that a roller may use up */
-  double                   slip_share;       /* of the mean rolling speed that a roller may slip away */
+  const trb_block_kernels *kernels;
+  double                   gamma;        /* of the step's linear system: it turns an error of rates into one of a step; 0: there is none */
+  double                   share;        /* of the step's tolerance that an error may be */
+  double                   margin_share; /* of the margins that a roller may use up */
+  double                   slip_share;   /* of the mean rolling speed that a roller may slip away */
 } trb_tangent_measure;
 
 /* Weight of a coordinate in a distance, one over its tolerance; like: a roller's coordinate of the same kind. */
@@ -93,7 +94,8 @@ trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents
 void       trb_tangents_free(trb_tangents *tangents);
 /* Forget origins, reaches and slopes. */
 void trb_tangents_forget(trb_tangents *tangents);
-/* Computes the slopes of n chosen rollers by differences about a state whose poses d holds; moved: scratch as long as a state. */
+/* Computes the slopes of n chosen rollers by differences about a state at which d holds their poses and those of the hub; moved: that state, as
+ * scratch. Other rollers are left as they are. */
 void trb_tangents_differentiate(trb_tangents *tangents, trb_dynamics *d, const int *chosen, int n, const double *y, double *moved);
 
 /* Whether a roller's slopes were corrected so often that they are to be computed again. */
@@ -105,6 +107,9 @@ const double *trb_tangents_column(const trb_tangents *tangents, int roller, int 
 const trb_ring_tangent *trb_tangents_ring(const trb_tangents *tangents, int roller, int ring);
 const trb_ring_slopes  *trb_tangents_ring_slopes(const trb_tangents *tangents, int roller, int ring);
 
+/* The tangents as what stands for the forces of raceways and ribs in a right-hand side (motion/rhs.h), by a measure that must stay while it
+ * is in use. */
+trb_approximation trb_tangents_open(trb_tangents *tangents, const trb_tangent_measure *measure);
 /* Right-hand side with tangents in place of the forces of raceways and ribs where their bounds allow it. All forces are exact while the
  * prescribed motion changes. */
 void trb_tangents_derivative(trb_tangents *tangents, trb_dynamics *d, const trb_tangent_measure *measure, double time, const double *y,

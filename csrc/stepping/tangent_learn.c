@@ -42,7 +42,7 @@ static void weigh(trb_tangent *r, const trb_tangent_measure *measure, const doub
  * (stepping/newton.c). */
 static double step_error(const trb_tangent *r, const trb_tangent_measure *measure, const double *error)
 {
-  const double gamma = measure->factors->gamma;
+  const double gamma = measure->gamma;
   double       sum = 0.0;
   for (int i = 0; i < TRB_NR; i++) sum += gamma * error[i] * r->per[i] * (gamma * error[i] * r->per[i]);
   return sqrt(sum);
@@ -101,7 +101,7 @@ static trb_found compare(const trb_tangents *t, int roller, const trb_tangent_me
                          double (*off)[TRB_RING_OUT])
 {
   const trb_tangent       *r = &t->rollers[roller];
-  const trb_block_kernels *kernels = measure->factors->kernels;
+  const trb_block_kernels *kernels = measure->kernels;
   const double             by = trb_tangent_bend(trb_tangent_share(t, roller, step, of_ring));
   double                   left[TRB_TANGENT_OUT], left_off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
   kernels->follow(r->value, (const double (*)[TRB_TANGENT_OUT])r->slope, step, r->curve, 0.0, t->anything, error);
@@ -133,7 +133,7 @@ void trb_tangent_learn(trb_tangents *t, const trb_dynamics *d, int roller, const
   const int                  n_moving = t->system->n_moving;
   double                     of_ring[TRB_MOST_MOVING_RINGS][TRB_RING_IN], off[TRB_MOST_MOVING_RINGS][TRB_RING_OUT];
   trb_tangent               *r = &t->rollers[roller];
-  const trb_block_kernels   *kernels = measure->factors->kernels;
+  const trb_block_kernels   *kernels = measure->kernels;
   double                     step[TRB_TANGENT_IN], error[TRB_TANGENT_OUT];
   if (!kernels->finite(flow, TRB_FLOW_SIZE)) return;
   const double by_rings = r->known ? trb_rings_step(t, roller, of_ring) : 0.0;

@@ -72,7 +72,7 @@ void trb_rings_differentiate(trb_tangents *t, trb_dynamics *d, const int *chosen
 
 double trb_rings_error(const trb_tangents *t, const trb_ring_tangent *ring, const trb_tangent_measure *measure, const double *error)
 {
-  const double gamma = measure->factors->gamma, arm = 0.5 * t->model->params.pitch_diameter;
+  const double gamma = measure->gamma, arm = 0.5 * t->model->params.pitch_diameter;
   /* gamma times an acceleration in the velocity, and gamma times that in the place */
   const double per = gamma / t->least_mass * hypot(ring->per[5], gamma * ring->per[0]);
   double       sum = 0.0;

@@ -108,7 +108,7 @@ static void test_order(void)
   CHECK(trb_arrow_factor(arrow, factors));
   trb_arrow_free(arrow);
   for (int i = 0; i < trb_state_size(system); i++) scale[i] = tolerance[trb_state_tolerance(system, i)];
-  const trb_tangent_measure measure = {relative, scale, factors, 1.0, 1e9, 1e9};
+  const trb_tangent_measure measure = {relative, scale, factors->kernels, factors->gamma, 1.0, 1e9, 1e9};
   for (int k = 0; k < 2; k++) {
     unsigned long long here = 17;
     const double       far = k == 0 ? 40.0 : 20.0, later = far * 2e-7;

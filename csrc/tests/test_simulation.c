@@ -256,7 +256,7 @@ static double rise_with(double cage_mass)
   if (!CHECK(trb_dynamics_create(system, turning, "scalar", &d, &unused) == TRB_OK)) return NAN;
   trb_dynamics_pose(d, 0.0, y);
   CHECK(trb_impacts_create(system->model, &impacts, &unused) == TRB_OK);
-  trb_impacts_look(&impacts, d, turning, 0.0, y, 1.0, &measure);
+  trb_impacts_look(&impacts, d, turning, 0.0, y, 1.0, &measure, d->everyone, system->model->n_rollers);
   speed = impacts.speed[0], factor = impacts.factor[0];
   CHECK(speed > 0.1 && factor > 0.0 && factor < 1.0);
   trb_impacts_free(&impacts);
@@ -309,9 +309,9 @@ static void test_far(void)
     for (int j = 0; j < system->model->n_rollers; j++) {
       const double left = trb_fast_gap_left(d, 0, j, y), closing = closing_at(d, j), until = left / (3.0 * closing);
       if (!(left > 0.0)) continue;
-      trb_impacts_look(&impacts, d, turning, 0.0, y, until * 0.999999, &measure);
+      trb_impacts_look(&impacts, d, turning, 0.0, y, until * 0.999999, &measure, d->everyone, system->model->n_rollers);
       CHECK(impacts.factor[j] == 1.0 && impacts.speed[j] == (double)INFINITY);
-      trb_impacts_look(&impacts, d, turning, 0.0, y, until * 1.000001, &measure);
+      trb_impacts_look(&impacts, d, turning, 0.0, y, until * 1.000001, &measure, d->everyone, system->model->n_rollers);
       CHECK(impacts.factor[j] < 1.0);
       CHECK_NEAR(impacts.speed[j], closing, 1e-9 * closing);
       seen++;

@@ -61,7 +61,7 @@ static int open_bench(bench *b, const trb_params *params, double share, double b
     b->scale[i] = tolerance[trb_state_tolerance(b->system, i)];
     b->relative[i] = 0.0;
   }
-  b->measure = (trb_tangent_measure){b->relative, b->scale, b->factors, share, 0.5 * bounds, 1e-3 * bounds};
+  b->measure = (trb_tangent_measure){b->relative, b->scale, b->factors->kernels, b->factors->gamma, share, 0.5 * bounds, 1e-3 * bounds};
   memcpy(b->moved, b->y, sizeof b->moved);
   trb_dynamics_pose(b->d, 0.0, b->y);
   trb_tangents_differentiate(b->tangents, b->d, b->d->everyone, b->d->model->n_rollers, b->y, b->moved);
