@@ -129,7 +129,7 @@ class Simulation:
         """Bearings that are simulated together, and for each of them a motion (K, C): knot time, then value and slope of each
         channel. It may come with four numbers: after the last knot the last period repeats (0: everything stays); a time, and
         the angles of shaft and outer ring then (without them they are zero at the first knot). settings: integrator ('bdf',
-        'erk') and those of setting_table()."""
+        'erk', 'multirate') and those of setting_table()."""
     time: float
     row_length: int
     def run(

@@ -37,6 +37,18 @@ int trb_bound_clear(const trb_bound *bound, const trb_arms *arms, const double *
   return ways[TRB_GAP_FLANK] < bound->length[TRB_GAP_FLANK] && ways[TRB_GAP_ENDS] < bound->length[TRB_GAP_ENDS];
 }
 
+int trb_bound_clear_within(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
+                           const double *of_roller, const double *of_body)
+{
+  double ways[TRB_N_GAPS] = {0};
+  add_ways(bound, arms, y_roller, y_body, ways);
+  for (int g = 0; g < TRB_N_GAPS; g++) {
+    for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) ways[g] += arms[g].roller[i] * of_roller[i];
+    for (int i = 0; i < TRB_PLACE_OF_BODY; i++) ways[g] += arms[g].body[i] * of_body[i];
+  }
+  return ways[TRB_GAP_FLANK] < bound->length[TRB_GAP_FLANK] && ways[TRB_GAP_ENDS] < bound->length[TRB_GAP_ENDS];
+}
+
 double trb_bound_left(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body)
 {
   double ways[TRB_N_GAPS] = {0};

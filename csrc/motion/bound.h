@@ -28,6 +28,9 @@ void trb_bound_set(const trb_model *m, trb_bound *bound, const trb_gaps *gaps, c
 /* Whether the roller is proven not to touch the body. deformed: ways by which the body's surfaces have moved by its deformation since then, of
  * each gap, m; NULL: it is rigid. */
 int trb_bound_clear(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body);
+/* Whether it is proven not to touch a rigid body as long as their coordinates are within these ways of the given ones. */
+int trb_bound_clear_within(const trb_bound *bound, const trb_arms *arms, const double *y_roller, const double *y_body,
+                           const double *of_roller, const double *of_body);
 /* Lower bound of the gap that is left, m; not above 0: the roller may touch. */
 double trb_bound_left(const trb_bound *bound, const trb_arms *arms, const double *deformed, const double *y_roller, const double *y_body);
 

@@ -94,6 +94,14 @@ double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const doub
   return trb_bound_left(&pair->bounds[roller], pair->arms, deformed, y + trb_state_roller(d->system, roller), of_body(d, pair, y));
 }
 
+int trb_fast_clear_within(const trb_dynamics *d, int fast, int roller, const double *y, const double *of_roller, const double *of_hub)
+{
+  const trb_fast_pair *pair = &d->fast[fast];
+  const double        *ways = of_hub + d->system->bodies[pair->pair->b].first - trb_state_hub(d->system);
+  return trb_bound_clear_within(&pair->bounds[roller], pair->arms, y + trb_state_roller(d->system, roller), of_body(d, pair, y), of_roller,
+                                ways);
+}
+
 void trb_fast_apart(const trb_dynamics *d, const double *y, unsigned *apart)
 {
   const trb_model *m = d->model;

@@ -32,6 +32,10 @@ unsigned trb_fast_near(const struct trb_dynamics *d, int roller, const double *y
 void trb_fast_apart(const struct trb_dynamics *d, const double *y, unsigned *apart);
 /* Lower bound of the gap of a roller that is left in a fast pair at a state, m; not above 0: it may touch. */
 double trb_fast_gap_left(const struct trb_dynamics *d, int fast, int roller, const double *y);
+/* Whether a roller is proven to touch no rigid body in a fast pair as long as coordinates are within ways of those of a state: of its place, and of the
+ * hub. */
+int trb_fast_clear_within(const struct trb_dynamics *d, int fast, int roller, const double *y, const double *of_roller,
+                          const double *of_hub);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
 trb_gaps trb_fast_touch(struct trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes,
                         trb_detail *detail);

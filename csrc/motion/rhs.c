@@ -71,7 +71,7 @@ void trb_rhs_hub(trb_dynamics *d, const double *y, double *rates)
 
 void trb_rhs_alone(trb_dynamics *d, const trb_approximation *instead, double time, int j, const double *y_roller)
 {
-  trb_dynamics_drive(d, time);
+  if (d->drive.time != time) trb_dynamics_drive(d, time);
   d->uneven[j] = 0;
   if (instead != NULL) instead->begin(instead->self, d, time);
   if (instead != NULL && instead->follow(instead->self, d, j, y_roller, d->flows[j], trb_dynamics_reactions(d, j))) {

@@ -10,7 +10,7 @@ const trb_setting_info trb_setting_table[TRB_N_SETTINGS] = {
 #undef TRB_SETTING_INFO
 };
 
-const trb_integrator_kind *const trb_integrator_kinds[] = {&trb_integrator_bdf, &trb_integrator_erk};
+const trb_integrator_kind *const trb_integrator_kinds[] = {&trb_integrator_bdf, &trb_integrator_erk, &trb_integrator_multirate};
 const int                        trb_n_integrator_kinds = (int)(sizeof trb_integrator_kinds / sizeof trb_integrator_kinds[0]);
 
 /* Share of a velocity's absolute tolerance that holds at a speed of the shaft relative to the outer ring: no more than a share of the rolling speed, so that slow
@@ -48,6 +48,11 @@ void trb_integrator_set_tolerances(trb_integrator *it)
       if (system->bodies[b].size > 0 && !system->bodies[b].carried)
         set_entries(it, system, system->bodies[b].first, system->bodies[b].size, share);
   }
+}
+
+double trb_integrator_n_bodies(const trb_integrator *it)
+{
+  return it->assembly->members[0].layout.n_rollers + (it->assembly->members[0].layout.hub_width > 0);
 }
 
 int trb_integrator_is_driven(const trb_integrator *it)

@@ -49,6 +49,7 @@ extern const trb_setting_info trb_setting_table[TRB_N_SETTINGS];
 /* What an integrator did. X(name, text) */
 #define TRB_STATISTICS(X) \
   X(steps,                 "steps taken") \
+  X(body_steps,            "the same of every body: of each roller, and of all others together") \
   X(rhs_evaluations,       "evaluations of the right-hand side by the integrator") \
   X(jacobian_evaluations,  "Jacobians") \
   X(linear_setups,         "factorisations") \
@@ -109,13 +110,15 @@ struct trb_integrator {
 /* A time later than the end of any run, s. */
 #define TRB_NEVER 1e30
 
-extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk;
+extern const trb_integrator_kind        trb_integrator_bdf, trb_integrator_erk, trb_integrator_multirate;
 extern const trb_integrator_kind *const trb_integrator_kinds[];
 extern const int                        trb_n_integrator_kinds;
 
 /* Tolerances of every entry at the present time. */
 void trb_integrator_set_tolerances(trb_integrator *it);
 
+/* Bodies whose steps are counted: rollers, and the hub as one. */
+double trb_integrator_n_bodies(const trb_integrator *it);
 /* Whether anything is prescribed that changes with time. */
 int trb_integrator_is_driven(const trb_integrator *it);
 /* Where the next step must end at the latest, and how long it may be, for what is prescribed of all bearings (motion/ring_motion.h). */

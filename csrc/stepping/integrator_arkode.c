@@ -84,6 +84,7 @@ static void read_totals(const trb_integrator *it, trb_statistics *s)
   s->error_failures = self->before.error_failures + (double)value;
   (void)TRB_ARK(GetLastStep)(self->memory, &s->last_step);
   s->last_order = it->settings.erk_order;
+  s->body_steps = s->steps * trb_integrator_n_bodies(it);
   s->restarts = self->before.restarts + 1;
   s->smallest_step = self->smallest;
 }

@@ -187,6 +187,7 @@ static void read_totals(const trb_integrator *it, trb_statistics *s)
   (void)CVodeGetLastStep(self->memory, &s->last_step);
   (void)CVodeGetLastOrder(self->memory, &order);
   s->last_order = order;
+  s->body_steps = s->steps * trb_integrator_n_bodies(it);
   s->restarts = self->before.restarts + 1;
   s->smallest_step = self->smallest;
 }

@@ -33,26 +33,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "stepping/newton_rules.h"
 #include "stepping/sundials_context.h"
 
-/* Largest share of the last correction that the next one may repeat before it is prolonged no further: by 1/(1 - most_kept) at most. */
-static const double most_kept = 0.95;
-/* What the equations lack is accepted below the first share of the tolerance; else it must also have fallen to the second share by a
- * correction. */
-static const double negligible = 0.04, contraction = 0.3;
-/* Slopes are taken again where a first correction leaves more than this share, of a body after so many solves at least. */
-static const double poor = 0.2;
-enum { between_renewals = 20 };
-/* A correction that grows beyond this multiple of the first one diverges. */
-static const double divergence = 1e3;
-/* Weight of the present solve in the share of solves that fail, and the share above which bodies are taken one by one: not in the course of
- * an impact, whose few failures are well answered by a shorter step. */
-static const double present = 0.03, often = 0.3;
+/* Share of solves that fail above which bodies are taken one by one: not in the course of an impact, whose few failures are well answered by a
+ * shorter step. */
+static const double often = 0.3;
 /* How often slopes are then taken again within a solve, at most. */
 enum { most_renewals = 8 };
-/* Share of solves that fail above which the equations must hold to a share of the tolerance in any case. Where friction is that steep, what
- * a step lacks within the tolerance is a force that makes as much energy as the bearing loses. */
-static const double sometimes = 0.1, tiny = 0.004;
 /* Where that was in vain it is left out for one failed solve, then for twice as many each time, at most for so many. */
 enum { longest_pause = 64 };
 
@@ -97,57 +85,24 @@ static int initialize(SUNNonlinearSolver solver)
   return 0;
 }
 
-/* Weighted product of two vectors. Eight sums side by side: one alone would wait for each of its additions. */
-static double product(int n, const double *a, const double *b, const double *weight)
-{
-  double sum[8] = {0};
-  int    i = 0;
-  for (; i + 8 <= n; i += 8)
-    for (int k = 0; k < 8; k++) sum[k] += a[i + k] * weight[i + k] * (b[i + k] * weight[i + k]);
-  for (int k = 0; i < n; i++, k++) sum[k] += a[i] * weight[i] * (b[i] * weight[i]);
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-}
-
 static part part_of(const newton *self, int body)
 {
   const int from = body * self->size;
   return (part){.from = from, .n = body < self->n_bodies ? self->size : self->n_main - from};
 }
 
-/* Turns a part of the plain correction into that of Broyden's method and stores it; m: number of corrections that were taken before.
- * Broyden's update of M^-1 is a matrix of rank one for each correction s_j, so it is applied without any matrix: with k_j = (s_j .
- * delta)/(s_j . s_j), delta is replaced by delta + k_j s_(j+1) for each earlier correction, and by delta/(1 - k_j) for the last one. The
- * products are those of the weighted entries. square: those of the corrections with themselves. */
-static void improve(newton *self, int m, part of, const double *all_weights, double *correction, double *square)
-{
-  const double *const weight = all_weights + of.from;
-  double *const delta = correction + of.from, *const taken = self->taken + of.from;
-  for (int j = 0; j < m; j++) {
-    if (!(square[j] > 0.0)) continue;
-    const double *s = taken + (size_t)j * (size_t)self->n, kept = product(of.n, s, delta, weight) / square[j];
-    if (j + 1 < m) {
-      const double *next = s + self->n;
-      for (int i = 0; i < of.n; i++) delta[i] += kept * next[i];
-    } else {
-      const double scale = 1.0 / (1.0 - fmin(kept, most_kept));
-      for (int i = 0; i < of.n; i++) delta[i] *= scale;
-    }
-  }
-  memcpy(taken + (size_t)m * (size_t)self->n, delta, (size_t)of.n * sizeof *delta);
-  square[m] = product(of.n, delta, delta, weight);
-}
-
 /* Improves the correction, of all bodies together or one by one; gives its weighted square. */
 static double improve_all(newton *self, int m, int one_by_one, const double *weight, double *delta)
 {
   if (!one_by_one) {
-    improve(self, m, (part){.from = 0, .n = self->n}, weight, delta, self->square);
+    trb_newton_improve(m, self->n, weight, delta, self->taken, (size_t)self->n, self->square);
     return self->square[m];
   }
   double sum = 0.0;
   for (int body = 0; body <= self->n_bodies; body++) {
     double *const square = self->square + (size_t)body * TRB_NEWTON_MOST;
-    improve(self, m, part_of(self, body), weight, delta, square);
+    const part    of = part_of(self, body);
+    trb_newton_improve(m, of.n, weight + of.from, delta + of.from, self->taken + of.from, (size_t)self->n, square);
     sum += square[m];
   }
   return sum;
@@ -159,18 +114,11 @@ static void remember(newton *self, const double *at, const double *lack, const d
   self->has_best = 1;
   for (int body = 0; body <= self->n_bodies; body++) {
     const part   of = part_of(self, body);
-    const double square = product(of.n, lack + of.from, lack + of.from, weight + of.from);
+    const double square = trb_weighted_product(of.n, lack + of.from, lack + of.from, weight + of.from);
     if (!(square < self->best_square[body])) continue;
     self->best_square[body] = square;
     memcpy(self->best + of.from, at + of.from, (size_t)of.n * sizeof *at);
   }
-}
-
-/* Whether the equations hold well enough: what they lack, and what they lacked before the last correction. */
-static int holds(const newton *self, double off, double before, double tolerance)
-{
-  if (self->failing > sometimes) return off <= tiny * tolerance;
-  return off <= negligible * tolerance || (off <= tolerance && off <= contraction * before);
 }
 
 /* What the equations of each body lack. */
@@ -178,7 +126,7 @@ static void measure(newton *self, const double *lack, const double *weight)
 {
   for (int body = 0; body <= self->n_bodies; body++) {
     const part of = part_of(self, body);
-    self->left[body] = product(of.n, lack + of.from, lack + of.from, weight + of.from);
+    self->left[body] = trb_weighted_product(of.n, lack + of.from, lack + of.from, weight + of.from);
   }
 }
 
@@ -220,9 +168,9 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     double *const       delta = N_VGetArrayPointer(self->delta);
     const double *const weight = N_VGetArrayPointer(weights);
     /* what the equations lack, in the mean over all entries */
-    const double off = sqrt(product(self->n, delta, delta, weight) / self->n);
-    if (m > 1 || (m == 1 && off > poor * before)) measure(self, delta, weight);
-    if (m == 1 && off > poor * before) choose_poor(self, poor * before, between_renewals);
+    const double off = sqrt(trb_weighted_product(self->n, delta, delta, weight) / self->n);
+    if (m > 1 || (m == 1 && off > trb_poor * before)) measure(self, delta, weight);
+    if (m == 1 && off > trb_poor * before) choose_poor(self, trb_poor * before, TRB_BETWEEN_RENEWALS);
     if (one_by_one && m > 0) remember(self, N_VGetArrayPointer(correction), delta, weight);
     for (int i = 0; i < self->n; i++) delta[i] = -delta[i];
     const int flag = self->solve(self->delta, memory);
@@ -230,10 +178,10 @@ static int iterate(newton *self, N_Vector correction, N_Vector weights, double t
     self->iterations++;
     const double square = improve_all(self, m, one_by_one, weight, delta), change = sqrt(square / self->n);
     N_VLinearSum(1.0, correction, 1.0, self->delta, correction);
-    if (change <= tolerance && holds(self, off, before, tolerance)) return 0;
+    if (change <= tolerance && trb_newton_holds(self->failing, off, before, tolerance)) return 0;
     self->off = before = off;
     if (m == 0) first = change;
-    if (!(change <= divergence * first) || !(square > 0.0)) return SUN_NLS_CONV_RECVR;
+    if (!(change <= trb_divergence * first) || !(square > 0.0)) return SUN_NLS_CONV_RECVR;
   }
   return SUN_NLS_CONV_RECVR;
 }
@@ -278,7 +226,7 @@ static int solve(SUNNonlinearSolver solver, N_Vector start, N_Vector correction,
       self->paused = 0;
       self->pause = flag == 0 ? 0 : self->pause == 0 ? 1 : 2 * self->pause < longest_pause ? 2 * self->pause : longest_pause;
     }
-    if (flag >= 0) self->failing += present * ((flag > 0) - self->failing);
+    if (flag >= 0) self->failing += trb_present * ((flag > 0) - self->failing);
     if (flag == 0) self->troubled = 0;
     if (flag <= 0) return flag;
     self->failures++;
@@ -358,7 +306,7 @@ static int get_failures(SUNNonlinearSolver solver, long *n)
 int trb_newton_troubled(SUNNonlinearSolver solver)
 {
   const newton *self = solver->content;
-  return self->troubled || self->failing > sometimes;
+  return self->troubled || self->failing > trb_sometimes;
 }
 
 int trb_newton_renewing(SUNNonlinearSolver solver)

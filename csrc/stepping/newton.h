@@ -6,8 +6,6 @@
 
 #include "stepping/sundials_shim.h"
 
-enum { TRB_NEWTON_MOST = 12 }; /* iterations at most */
-
 /* like: a vector of the state's length. Its first n_main entries are n_bodies bodies of the same size and one more, which has what is left
  * of them. The entries after those are integrals that no force reads. NULL if out of memory. */
 SUNNonlinearSolver trb_newton_solver(int max_iterations, N_Vector like, int n_main, int n_bodies, int size, SUNContext context);

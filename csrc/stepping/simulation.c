@@ -138,7 +138,7 @@ trb_status trb_simulation_create_all(const trb_system *const *systems, const trb
   const trb_status status = check_settings(settings, message);
   if (status != TRB_OK) return status;
   const trb_integrator_kind *found = find_kind(kind);
-  if (found == NULL) return trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'bdf' or 'erk'", kind);
+  if (found == NULL) return trb_fail(message, TRB_ERR_INPUT, "integrator = '%s': must be 'bdf', 'erk' or 'multirate'", kind);
   trb_simulation *s = calloc(1, sizeof *s);
   if (s == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for a simulation");
   s->previous = time;

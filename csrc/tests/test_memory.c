@@ -127,6 +127,7 @@ static trb_status make_simulation(const char *kind, trb_message *message)
 
 static trb_status make_bdf(trb_message *message) { return make_simulation("bdf", message); }
 static trb_status make_erk(trb_message *message) { return make_simulation("erk", message); }
+static trb_status make_multirate(trb_message *message) { return make_simulation("multirate", message); }
 
 static void fail_each(const char *name, attempt *make)
 {
@@ -201,6 +202,11 @@ int main(void)
   fail_each("erk", make_erk);
   fail_in_steps();
   free(modes);
+  rig_free(built);
+  params.cage_modes = 0;
+  built = rig_system(&params);
+  (void)rig_state(built, 4930.0, 314.0, state);
+  fail_each("multirate", make_multirate);
   rig_free(built);
   return check_report();
 }

@@ -44,7 +44,7 @@ static void test_bad_input(void)
     }
   }
   settings = rig_settings();
-  refused("euler", "", &settings, 0.0, start, TRB_ERR_INPUT, "integrator = 'euler': must be 'bdf' or 'erk'");
+  refused("euler", "", &settings, 0.0, start, TRB_ERR_INPUT, "integrator = 'euler': must be 'bdf', 'erk' or 'multirate'");
   refused("bdf", "sse", &settings, 0.0, start, TRB_ERR_INPUT, "instruction_set = 'sse'");
   refused("bdf", "", &settings, NAN, start, TRB_ERR_STATE, "time");
   for (int i = 0; i < trb_state_size(built); i += 13) {
@@ -328,13 +328,14 @@ int main(void)
 {
   const trb_params p = rig_params();
   const double     speed = 100 * TRB_PI;
-  double           bdf[512], erk[512];
+  double           bdf[512], erk[512], multirate[512];
   built = rig_system(&p);
   m = built->model;
   motion = rig_motion(rig_state(built, 4930.0, speed, start), speed);
   test_bad_input();
   test_outputs("bdf", bdf);
   test_outputs("erk", erk);
+  test_outputs("multirate", multirate);
   test_newton_share();
   test_weights();
   test_impacts();
@@ -343,6 +344,7 @@ int main(void)
   test_failed_step();
   for (int i = 0; i < 6; i++) test_set_state("bdf", pow(10.0, -i));
   test_set_state("erk", 1.0);
+  for (int i = 0; i < 3; i++) test_set_state("multirate", pow(10.0, -i));
   trb_motion_free(motion);
   rig_free(built);
   return check_report();

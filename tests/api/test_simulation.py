@@ -265,7 +265,7 @@ def failing(**options: Any) -> Simulation:
 
 
 @pytest.mark.usefixtures("any_gravity")
-@pytest.mark.parametrize("integrator", ["bdf", "erk"])
+@pytest.mark.parametrize("integrator", ["bdf", "erk", "multirate"])
 @pytest.mark.parametrize("in_file", [False, True])
 def test_failed_step_keeps_what_was_good(tmp_path: Path, integrator: str, in_file: bool) -> None:
     path = tmp_path / "run.h5"

@@ -16,7 +16,7 @@ import pytest
 import trbdyn as trb
 from trbdyn import Effects, Simulation, _core
 
-SPANS = {"bdf": 2e-3, "erk": 8e-4}
+SPANS = {"bdf": 2e-3, "erk": 8e-4, "multirate": 2e-3}
 """Time of a run (s), with some hundred or thousand steps; the cage collides within it."""
 
 

@@ -102,7 +102,7 @@ def test_a_run_costs_what_it_did(name: str) -> None:
     assert counters["force_evaluations"] == stats["rhs_evaluations"]
 
 
-@pytest.mark.parametrize("integrator", ["bdf", "erk"])
+@pytest.mark.parametrize("integrator", ["bdf", "erk", "multirate"])
 def test_the_smallest_step_is_the_smallest(integrator: str) -> None:
     scene = trb.cases.scene_30310(3000.0, 4930.0, effects=trb.Effects.paper().replace(n_slices=4))
     simulation = trb.Simulation(scene, integrator=integrator, first_step=1e-10)

@@ -44,9 +44,12 @@ def test_runs_are_what_they_are_called(truth: tuple[str, Result]) -> None:
     assert (result.pocket_force.max() > 100.0) == (case == "colliding")
 
 
-def test_implicit_method_converges_to_the_explicit_one(kit: SimpleNamespace, truth: tuple[str, Result]) -> None:
+@pytest.mark.parametrize("integrator", ["bdf", "multirate"])
+def test_implicit_method_converges_to_the_explicit_one(
+    kit: SimpleNamespace, truth: tuple[str, Result], integrator: str
+) -> None:
     case, exact = truth
-    found = {rtol: errors(trajectory(kit, case, rtol), exact) for rtol in (1e-4, 1e-5, 1e-7)}
+    found = {rtol: errors(trajectory(kit, case, rtol, integrator=integrator), exact) for rtol in (1e-4, 1e-5, 1e-7)}
     for name in found[1e-4]:
         assert found[1e-4][name] < 5e-2, name
         assert found[1e-5][name] < 1e-2, name
@@ -78,13 +81,13 @@ def test_largest_step_is_kept(kit: SimpleNamespace) -> None:
 
 
 def test_first_step_is_taken(kit: SimpleNamespace) -> None:
-    for integrator in ("bdf", "erk"):
+    for integrator in ("bdf", "erk", "multirate"):
         sim = kit.simulate(Effects.standard(), first_step=1e-9, integrator=integrator)
         assert sim.step() == pytest.approx(1e-9, rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-@pytest.mark.parametrize("integrator", ["bdf", "erk"])
+@pytest.mark.parametrize("integrator", ["bdf", "erk", "multirate"])
 def test_tight_tolerances_start(kit: SimpleNamespace, integrator: str, seed: int) -> None:
     """SUNDIALS bounds its guess of the first step by a tenth of tolerance over rate: 1e-16 s where a coordinate near zero moves
     at a metre a second. It is no failure, and the steps grow from there."""

@@ -55,7 +55,9 @@ def shaken(kit: SimpleNamespace, effects: Effects, **options: Any) -> Simulation
 
 
 @pytest.mark.parametrize(
-    "options", [{"integrator": "erk"}, {"max_order": 2}, {"max_order": 5}], ids=["erk", "bdf2", "bdf5"]
+    "options",
+    [{"integrator": "erk"}, {"max_order": 2}, {"max_order": 5}, {"integrator": "multirate"}],
+    ids=["erk", "bdf2", "bdf5", "multirate"],
 )
 def test_raceways_and_ribs_conserve_energy(kit: SimpleNamespace, options: dict[str, Any]) -> None:
     drift = {}

@@ -93,7 +93,7 @@ def test_knots_that_sample_a_smooth_curve_stop_no_step() -> None:
     assert np.count_nonzero(sim.bearings[0].motion.table[:, -1] == 0.0) < len(sim.bearings[0].motion.table) / 10
 
 
-@pytest.mark.parametrize("integrator", ["erk", "bdf"])
+@pytest.mark.parametrize("integrator", ["erk", "bdf", "multirate"])
 def test_a_step_ends_at_every_knot(integrator: str) -> None:
     """Where a load bends, whatever the method."""
     knots = (0.0, 2.1e-4, 2.5e-4, 7.3e-4)

@@ -84,7 +84,7 @@ def loose_cage(kit: SimpleNamespace, speed: float | History, integrator: str) ->
     return sim.run(duration=10e-3, save_every=5e-4)
 
 
-@pytest.mark.parametrize("integrator", ["erk", "bdf"])
+@pytest.mark.parametrize("integrator", ["erk", "bdf", "multirate"])
 @pytest.mark.parametrize("speed", SPEEDS.values(), ids=SPEEDS)
 def test_free_cage(kit: SimpleNamespace, speed: float | History, integrator: str) -> None:
     result = loose_cage(kit, speed, integrator)
@@ -139,7 +139,7 @@ def loose_rollers(kit: SimpleNamespace, speed: float | History, **options: Any) 
     return sim, sim.run(duration=4e-3, save_every=2e-4)
 
 
-@pytest.mark.parametrize("integrator", ["erk", "bdf"])
+@pytest.mark.parametrize("integrator", ["erk", "bdf", "multirate"])
 @pytest.mark.parametrize("speed", SPEEDS.values(), ids=SPEEDS)
 def test_free_rollers(kit: SimpleNamespace, speed: float | History, integrator: str) -> None:
     sim, result = loose_rollers(

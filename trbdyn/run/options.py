@@ -97,8 +97,10 @@ class RunOptions(Model):
         nothing.
     accuracy : {'fast', 'standard', 'reference'}
         Preset of the tolerances, `ACCURACY`.
-    integrator : {'bdf', 'erk'}
-        CVODE's BDF, or an explicit Runge-Kutta method of ARKODE for cross-checks.
+    integrator : {'bdf', 'erk', 'multirate'}
+        CVODE's BDF; an explicit Runge-Kutta method of ARKODE for cross-checks; or BDF of order 2 in which each roller that
+        touches nothing takes steps of its own, for one bearing with a rigid cage, true surfaces and rings that do not move
+        freely.
     rtol, atol_position, atol_angle, atol_velocity, atol_spin : float, optional
         Take the place of the preset's tolerances (1, m, rad, m/s, rad/s).
     max_order : int
@@ -127,7 +129,7 @@ class RunOptions(Model):
     save_every: Annotated[Number | None, unit("s", gt=0)] = None
     save_groups: Annotated[tuple[Group, ...], Field(min_length=1)] = GROUPS
     accuracy: Literal["fast", "standard", "reference"] = "standard"
-    integrator: Literal["bdf", "erk"] = "bdf"
+    integrator: Literal["bdf", "erk", "multirate"] = "bdf"
     rtol: Annotated[Number, setting("rtol", "1")] | None = None
     atol_position: Annotated[Number, setting("atol_position", "m")] | None = None
     atol_angle: Annotated[Number, setting("atol_angle", "rad")] | None = None

@@ -1,0 +1,56 @@
+"""The integrator with steps of its own for each roller: beside CVODE, what it counts, what it refuses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn import Effects, InputError, Simulation
+from trbdyn.model.cases import paper_30310, scene_30310
+
+PAPER = Effects.paper().replace(quadrature="gauss", n_slices=8)
+SCENES: dict[str, Any] = {
+    "colliding": lambda: scene_30310(3000.0, 4930.0, effects=PAPER, start=trb.Start.whirl(0.9)),
+    "combined": lambda: paper_30310(2000.0, 4930.0, effects=PAPER, start=trb.Start.whirl(0.9), radial_load=5530.0),
+    "light": lambda: scene_30310(3000.0, 1230.0, effects=PAPER, start=trb.Start.whirl(0.9)),
+    "slow": lambda: scene_30310(100.0, 4930.0, effects=PAPER, start=trb.Start.whirl(0.9)),
+    "as given": lambda: scene_30310(2000.0, 4930.0, 5530.0),
+    "follows": lambda: scene_30310(2000.0, 4930.0, 5530.0, ring="follows"),
+}
+
+
+def lost(result: trb.Result) -> float:
+    return sum(float(result[f.name][-1] - result[f.name][0]) for f in result.fields if f.name.startswith("loss_"))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_it_agrees_with_cvode(name: str) -> None:
+    """Losses, loads and the energy audit, of which the start makes the largest part here; single hits are chaotic."""
+    scene = SCENES[name]()
+    duration = (0.05 if name == "slow" else 0.6) * 60.0 / float(scene.speed_rpm)
+    bdf, own = (Simulation(scene, integrator=kind).run(duration=duration) for kind in ("bdf", "multirate"))
+    assert lost(own) == pytest.approx(lost(bdf), rel=2e-3)
+    assert own.energy_closure < max(4.0 * bdf.energy_closure, 2e-4)
+    # records, peaks and summary are those of any run
+    np.testing.assert_allclose(own.outer_load.mean(), bdf.outer_load.mean(), rtol=1e-3)
+    np.testing.assert_allclose(own.roller_orbit_angle[-1].mean(), bdf.roller_orbit_angle[-1].mean(), atol=1e-4)
+    if name != "slow":
+        outer, wanted = (float(np.max(result.peaks["outer_load_peak"])) for result in (own, bdf))
+        assert outer == pytest.approx(wanted, rel=0.02)
+    assert "energy" in str(own.summary()).lower()
+    bodies = scene.bearing.n_rollers + 1
+    assert bdf.stats["body_steps"] == bodies * bdf.stats["steps"]
+    assert own.stats["body_steps"] < 0.9 * bodies * own.stats["steps"]
+
+
+def test_what_it_cannot_do_is_refused() -> None:
+    scene = scene_30310(2000.0, 4930.0)
+    for settings, says in (({"max_order": 5}, "max_order is not 2"),):
+        with pytest.raises(InputError, match=f"{says}; choose integrator = 'bdf'"):
+            Simulation(scene, integrator="multirate", **settings)
+    free = scene.replace(ring="free", ring_body=trb.RingBody(mass=1.0, inertia_axial=1e-3, inertia_transverse=1e-3))
+    with pytest.raises(InputError, match="a ring moves freely; choose integrator = 'bdf'"):
+        Simulation(free, integrator="multirate")
