@@ -20,7 +20,20 @@ import grimp
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "trbdyn"
-HEAVY = ("dask", "distributed", "h5py", "matplotlib", "pydantic_core", "SALib", "scipy", "sklearn", "tqdm", "xarray")
+HEAVY = (
+    "dask",
+    "distributed",
+    "filelock",
+    "h5py",
+    "matplotlib",
+    "psutil",
+    "pydantic_core",
+    "SALib",
+    "scipy",
+    "sklearn",
+    "tqdm",
+    "xarray",
+)
 LOAD_HEAVY = ("trbdyn.plot", "trbdyn.reporting.page", "trbdyn.results.result", "trbdyn.study.planning.picture")
 COMMANDS = ("trbdyn/cli/",)
 MODELS = ("trbdyn/model/",)

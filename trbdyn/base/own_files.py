@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import os
 import re
+import shutil
 import stat
 import uuid
 from collections.abc import Collection, Iterable
@@ -17,7 +18,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from trbdyn.base.locks import lock, take_lock
+from trbdyn.base.locks import OPEN_FILES_MOVE, LockedFile, flags, take_lock
 from trbdyn.errors import FileError, InputError
 
 LONGEST_NAME = 200
@@ -168,12 +169,12 @@ def create(path: Path) -> BinaryIO:
     OSError
         If something has that name (errno EEXIST), or it cannot be made.
     """
-    flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | os.O_CLOEXEC
-    return os.fdopen(os.open(path, flags, 0o666), "r+b")
+    new = os.O_RDWR | os.O_CREAT | os.O_EXCL | flags("O_NOFOLLOW", "O_CLOEXEC")
+    return os.fdopen(os.open(path, new, 0o666), "r+b")
 
 
-def create_draft(path: Path, run_id: str) -> tuple[Path, BinaryIO]:
-    """The draft of a run's file, locked while it is open. Drafts of this file that killed processes have left are removed first.
+def create_draft(path: Path, run_id: str) -> tuple[Path, LockedFile]:
+    """The draft of a run's file, and its lock. Drafts of this file that killed processes have left are removed first.
 
     Raises
     ------
@@ -184,7 +185,7 @@ def create_draft(path: Path, run_id: str) -> tuple[Path, BinaryIO]:
     draft = draft_of(path, run_id)
     with suppress(FileNotFoundError):
         draft.unlink()
-    return draft, lock(create(draft))
+    return draft, LockedFile(create(draft))
 
 
 def remove_drafts(path: Path) -> None:
@@ -207,6 +208,9 @@ def put_in_place(draft: Path, path: Path, *, replace: bool) -> None:
     """
     if replace:
         os.replace(draft, path)
+        return
+    if not OPEN_FILES_MOVE:
+        os.rename(draft, path)  # Windows replaces nothing by this call
         return
     try:
         os.link(draft, path, follow_symlinks=False)
@@ -255,12 +259,10 @@ def write_whole(
     """
     target = output_path(path, overwrite=overwrite, field=field, endings=endings, reads=reads)
     try:
-        draft, stream = create_draft(target, uuid.uuid4().hex)
+        draft, locked = create_draft(target, uuid.uuid4().hex)
         try:
-            with stream:
-                stream.write(content.encode("utf-8", "replace") if isinstance(content, str) else content)
-                stream.flush()
-                os.fsync(stream.fileno())
+            with locked:
+                fill(draft, content.encode("utf-8", "replace") if isinstance(content, str) else content)
                 put_in_place(draft, target, replace=overwrite)
         except BaseException:
             draft.unlink(missing_ok=True)
@@ -270,6 +272,20 @@ def write_whole(
     except OSError as error:
         raise FileError(f"{target}: cannot be written: {error.strerror or error}") from error
     return file_path(path, field)
+
+
+def fill(draft: Path, content: bytes) -> None:
+    """Write the content of a draft, and have the system put it on the disk.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    with draft.open("r+b") as stream:
+        stream.write(content)
+        stream.flush()
+        os.fsync(stream.fileno())
 
 
 def read_whole(path: Path, largest: int) -> bytes:
@@ -282,8 +298,9 @@ def read_whole(path: Path, largest: int) -> bytes:
     ValueError
         If it is longer than `largest` bytes.
     """
-    with os.fdopen(os.open(path, os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NONBLOCK", 0)), "rb") as stream:
-        os.set_blocking(stream.fileno(), True)
+    with os.fdopen(os.open(path, os.O_RDONLY | flags("O_CLOEXEC", "O_NONBLOCK")), "rb") as stream:
+        if flags("O_NONBLOCK"):
+            os.set_blocking(stream.fileno(), True)
         data = stream.read(largest + 1)
     if len(data) > largest:
         raise ValueError(f"it is larger than {largest >> 20} MB")
@@ -330,11 +347,7 @@ def copy_content(stream: BinaryIO, path: Path) -> None:
         If something has that name, or it cannot be written.
     """
     with create(path) as target:
-        place, size = 0, os.fstat(stream.fileno()).st_size
-        while place < size:
-            block = os.pread(stream.fileno(), min(1 << 22, size - place), place)
-            if not block:
-                break
-            target.write(block)
-            place += len(block)
+        stream.seek(0)
+        shutil.copyfileobj(stream, target, 1 << 22)
+        target.flush()
         os.fsync(target.fileno())

@@ -161,7 +161,7 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
     Every number must be finite, every name known; anything else raises `InputError`.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True, defer_build=True)
 
     _root: ClassVar[str | None] = None
     _assumed: ClassVar[bool] = False

@@ -14,9 +14,9 @@ from functools import cached_property
 from typing import Annotated, Any, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
-from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from trbdyn.base.validation import Flag, Model, Number, as_number, unit
 from trbdyn.errors import InputError
@@ -231,20 +231,20 @@ class History(Model):
         return self.times[-1] - self.times[0] if self.repeats else None
 
     @cached_property
-    def _curve(self) -> CubicHermiteSpline:
+    def _curve(self) -> scipy.interpolate.CubicHermiteSpline:
         times, values = np.array(self.times), np.array(self.values)
         if self.slopes is not None:
-            return CubicHermiteSpline(times, values, np.array(self.slopes))
+            return scipy.interpolate.CubicHermiteSpline(times, values, np.array(self.slopes))
         if self.repeats:
             period = times[-1] - times[0]
             around = np.concatenate([times[:-1] - period, times, times[1:] + period])
             again = np.concatenate([values[:-1], values, values[1:]])
-            slopes = PchipInterpolator(around, again).derivative()(times)
+            slopes = scipy.interpolate.PchipInterpolator(around, again).derivative()(times)
             slopes[-1] = slopes[0]
         else:
-            slopes = PchipInterpolator(times, values).derivative()(times)
+            slopes = scipy.interpolate.PchipInterpolator(times, values).derivative()(times)
             slopes[0] = slopes[-1] = 0.0
-        return CubicHermiteSpline(times, values, slopes)
+        return scipy.interpolate.CubicHermiteSpline(times, values, slopes)
 
     @cached_property
     def extremes(self) -> tuple[float, float]:

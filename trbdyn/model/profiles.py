@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from trbdyn import laws
 from trbdyn.model.contact_line import stations
@@ -53,7 +53,7 @@ def drop_of(bearing: Bearing, profile: Profile, places: ArrayLike) -> Array:
                 station=place, scale=scale, length=profile.c_p, straight=profile.d_p, exponent=profile.k_p
             )
         case "table":
-            drop = PchipInterpolator(profile.stations, profile.drops)(place)
+            drop = scipy.interpolate.PchipInterpolator(profile.stations, profile.drops)(place)
         case _:
             drop = np.zeros_like(place)
     return np.asarray(drop)

@@ -10,9 +10,8 @@ import itertools
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import PPoly
-from scipy.optimize import brentq
 
 from trbdyn.errors import InputError
 from trbdyn.model.motion import History
@@ -113,7 +112,7 @@ def _monotone(speed_rpm: History, start: float, end: float) -> tuple[Array, Arra
     marks = [start]
     for low, high in itertools.pairwise(knots):
         middle = 0.5 * (low + high)
-        curve = PPoly(_cubic(speed_rpm, middle)[:, None], [low - middle, high - middle])
+        curve = scipy.interpolate.PPoly(_cubic(speed_rpm, middle)[:, None], [low - middle, high - middle])
         # a stretch at rest has no single time of rest: SciPy marks it with nan
         rests = np.unique(curve.roots(discontinuity=False, extrapolate=False))
         marks += [float(middle + rest) for rest in rests if np.isfinite(rest) and low < middle + rest < high]
@@ -132,7 +131,7 @@ def _reach(wanted: float, turned: Array, marks: Array, speed_rpm: History) -> fl
         if before < wanted <= after:
             way = math.copysign(1.0, turns(speed_rpm, low, high))
             left = min(wanted - before, way * turns(speed_rpm, low, high))  # they differ by rounding
-            return float(brentq(_left, low, high, args=(speed_rpm, low, way, left), xtol=1e-300))
+            return float(scipy.optimize.brentq(_left, low, high, args=(speed_rpm, low, way, left), xtol=1e-300))
     return None
 
 

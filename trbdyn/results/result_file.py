@@ -13,14 +13,14 @@ from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, Self
+from typing import Any, Self
 from weakref import WeakSet
 
 import h5py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from trbdyn.base.locks import is_same, take_lock
+from trbdyn.base.locks import LockedFile, take_lock
 from trbdyn.base.own_files import copy_content, create_draft, exists_already, output_path, put_in_place
 from trbdyn.base.second_thread import SecondThread
 from trbdyn.errors import FileError
@@ -184,7 +184,7 @@ class ResultWriter:
         self._patience = FLUSH_SECONDS
         self._failed = False
         self._second = SecondThread() if beside else None
-        self._lock: BinaryIO | None = None
+        self._lock: LockedFile | None = None
         run = {"run_id": self.run_id, "first_record": first_record}
         bearings = [
             (kept.name, run | part.head, kept.fields, kept.shapes)
@@ -308,12 +308,12 @@ class ResultWriter:
         """Add pieces of records, and at the end what is known of each bearing. After an error nothing more is written: it would
         lie behind a gap.
         """
-        stream, lost = self._lock, None
-        if stream is None:
+        locked, lost = self._lock, None
+        if locked is None:
             raise FileError(f"{self.path}: the result file is closed already")
         with self._guard("was removed or replaced while it was written, and cannot be put back"):
-            if not is_same(self.path, stream):
-                lost = self._rescue(stream)
+            if not locked.is_at(self.path):
+                lost = self._rescue(locked)
         with self._guard("cannot be written"):
             if pieces and self._failed:
                 raise OSError("records before these could not be written")
@@ -349,8 +349,13 @@ class ResultWriter:
                     raise
                 full, count = error, count // 2
 
-    def _rescue(self, stream: BinaryIO) -> str:
+    def _rescue(self, locked: LockedFile) -> str:
         """Put back a file that has lost its name, under another one if that is taken; says what has happened."""
+        stream = locked.stream
+        if stream is None:
+            raise FileError(
+                f"{self.path}: the result file was removed or replaced by another program; its records are lost"
+            )
         lost, what = self.path, "was removed by another program; it is put back with the records so far"
         try:
             copy_content(stream, self.path)
@@ -380,17 +385,16 @@ class ResultWriter:
             If the file cannot be written.
         """
         self.flush()
-        with self._guard("cannot be written"):
-            assert self._lock is not None
-            os.fsync(self._lock.fileno())
+        with self._guard("cannot be written"), self.path.open("r+b") as stream:
+            os.fsync(stream.fileno())
 
     def _reserve(self, size: int) -> None:
         """Make sure that the disk has room: HDF5 brings the process down when it runs out of it in the middle of a write. HDF5
         gives back what it does not need when it closes the file.
         """
-        assert self._lock is not None
-        if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(self._lock.fileno(), os.fstat(self._lock.fileno()).st_size, size)
+        stream = self._lock.stream if self._lock is not None else None
+        if stream is not None and hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(stream.fileno(), os.fstat(stream.fileno()).st_size, size)
         elif shutil.disk_usage(self.path.parent).free < size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn import _core
-from trbdyn.base.own_files import create_draft, set_aside
+from trbdyn.base.own_files import create_draft, fill, set_aside
 from trbdyn.errors import FileError, InputError
 
 Array = NDArray[np.float64]
@@ -209,12 +209,10 @@ def write(path: Path, checkpoint: Checkpoint) -> None:
     """
     older = previous_path(path)
     try:
-        draft, stream = create_draft(path, checkpoint.run_id)
+        draft, locked = create_draft(path, checkpoint.run_id)
         try:
-            with stream:
-                stream.write(checkpoint.to_bytes())
-                stream.flush()
-                os.fsync(stream.fileno())
+            with locked:
+                fill(draft, checkpoint.to_bytes())
                 whole = _belongs(path, checkpoint.run_id)
                 # the older one is kept where the newer one is damaged
                 if whole and (_belongs(older, checkpoint.run_id) or not older.exists()):
@@ -293,6 +291,8 @@ def run_id_of(path: Path) -> str | None:
 
 
 def _sync_folder(folder: Path) -> None:
+    if not hasattr(os, "O_DIRECTORY"):
+        return  # Windows puts names on the disk itself
     handle = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(handle)

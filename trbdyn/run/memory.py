@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
@@ -14,16 +13,12 @@ from numpy.typing import NDArray
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.records import RecordsSource
 
-if sys.platform != "win32":
-    import resource
-
 Array = NDArray[np.float64]
 
 LOOK_EVERY: Final = 64 << 20
 """Bytes of records between looks at the memory that is free."""
 RESERVE: Final = 512 << 20
 """Memory that a run leaves to everything else (byte)."""
-_MEMINFO: Final = Path("/proc/meminfo")
 _OWN_GROUPS: Final = Path("/proc/self/cgroup")
 _GROUPS: Final = (
     ("", Path("/sys/fs/cgroup"), "memory.max", "memory.current", "inactive_file"),
@@ -50,8 +45,12 @@ def available() -> int | None:
 
 
 def _of_machine() -> int | None:
-    kilobytes = _entries(_MEMINFO).get("MemAvailable:")
-    return None if kilobytes is None else 1024 * kilobytes
+    import psutil
+
+    try:
+        return int(psutil.virtual_memory().available)
+    except (OSError, psutil.Error):
+        return None
 
 
 def _own_groups(controller: str, folder: Path) -> list[Path]:
@@ -76,13 +75,14 @@ def _of_group(folder: Path, limit: str, taken: str, files: str) -> int | None:
 
 
 def _of_process() -> int | None:
-    if sys.platform == "win32":
+    import psutil
+
+    process = psutil.Process()
+    try:
+        most, _ = process.rlimit(psutil.RLIMIT_AS)
+        return None if most == psutil.RLIM_INFINITY else most - int(process.memory_info().vms)
+    except (AttributeError, OSError, psutil.Error):  # only Linux has it
         return None
-    most, _ = resource.getrlimit(resource.RLIMIT_AS)
-    size = next(iter(_entries(Path("/proc/self/statm"))), None)
-    if most == resource.RLIM_INFINITY or size is None:
-        return None
-    return most - int(size) * resource.getpagesize()
 
 
 def _entries(path: Path) -> dict[str, int]:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from trbdyn.errors import InputError
 from trbdyn.model.scene import Scene
@@ -110,7 +110,7 @@ class Pockets:
                 leading, trailing = self.interference(x, y, turn, places).max(axis=0)
                 return float(leading - trailing)
 
-            turn = brentq(uneven, -widest, widest, xtol=PRECISION / self.radius)
+            turn = scipy.optimize.brentq(uneven, -widest, widest, xtol=PRECISION / self.radius)
             return float(self.interference(x, y, turn, places).max())
 
         return _reach(lambda x, y: least(centre[0] + x, centre[1] + y), directions)
@@ -142,7 +142,7 @@ def _reach(least: Callable[[float, float], float], directions: ArrayLike) -> Mov
     reached = []
     for x, y in zip(np.cos(angles), np.sin(angles), strict=True):
         along = partial(_along, least, x, y)
-        reached.append(brentq(along, 0.0, MOST, xtol=PRECISION) if along(0.0) < 0.0 else 0.0)
+        reached.append(scipy.optimize.brentq(along, 0.0, MOST, xtol=PRECISION) if along(0.0) < 0.0 else 0.0)
     return Movable(angles, np.array(reached))
 
 

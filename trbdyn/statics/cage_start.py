@@ -153,8 +153,6 @@ def _make_room(depths: Callable[[], Array], state: StateView, play: float, ways:
     """Move a cage that is pressed into its rollers or its land along some of its coordinates to where the squares of all
     interferences are least.
     """
-    from scipy.optimize import least_squares
-
     begin = np.array([float(state[name]) for name in ways])
 
     def pressed(place: Array) -> Array:
@@ -166,6 +164,8 @@ def _make_room(depths: Callable[[], Array], state: StateView, play: float, ways:
     first = pressed(still)
     if float(first.max()) * play <= PRESSED:
         return
+    from scipy.optimize import least_squares  # takes a third of a second to import, and few cages are pressed
+
     found = least_squares(pressed, still, diff_step=1e-4, x_scale=0.1)
     if not float(pressed(found.x).max()) < float(first.max()):
         pressed(still)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from trbdyn import _core
 from trbdyn.errors import InputError, LoadError
@@ -82,7 +82,7 @@ class RingMotion:
             return places[0 if time <= first else -1].copy()
         place = int(np.searchsorted(times, time, side="right"))
         ends = slice(place - 1, place + 1)
-        curve = CubicHermiteSpline(times[ends], places[ends], self.table[ends, 2:12:2])
+        curve = scipy.interpolate.CubicHermiteSpline(times[ends], places[ends], self.table[ends, 2:12:2])
         return np.asarray(curve(time), dtype=np.float64)
 
     @property

@@ -10,8 +10,8 @@ from functools import singledispatch
 from typing import Any, Final
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import eig
 
 from trbdyn import _core
 from trbdyn.base.expected import expect
@@ -175,7 +175,7 @@ def vibrations(stiffness: Array, mass: Array, spin: float, radius: float) -> Mod
     # both of equal size, or the eigenvalues lose their digits
     size = np.sqrt(np.trace(stiffness[:3, :3]) / np.trace(mass[:3, :3]))
     whole = np.block([[zero, size * one], [-stiffness / size, -gyro]])
-    values, vectors = eig(whole, np.block([[one, zero], [zero, mass]]))
+    values, vectors = scipy.linalg.eig(whole, np.block([[one, zero], [zero, mass]]))
     up = np.flatnonzero(values.imag > 0.0)
     up = up[np.argsort(values[up].imag)][:5]
     shapes = vectors[:5, up].T
