@@ -44,7 +44,7 @@ BANDS = {
 }
 QUANTITIES = (
     "torque",
-    "orbit_radius_over_cpr",
+    "orbit_rms_over_cpr",
     "axis_distance_over_cpr",
     "pocket_force_peak",
 )

@@ -106,7 +106,7 @@ def scenes() -> dict[str, tuple[str, trb.Scene, dict[str, float]]]:
         "uneven": (
             "rollers of unequal diameter, 2 um",
             rig(3000.0, 4930.0, effects=usual).replace(bearing=uneven),
-            {"torque": 0.02, "orbit_radius_over_cpr": 0.2},
+            {"torque": 0.02, "orbit_rms_over_cpr": 0.2},
         ),
         "misaligned": (
             "inner ring misaligned by 0.5 mrad",
@@ -126,7 +126,7 @@ def scenes() -> dict[str, tuple[str, trb.Scene, dict[str, float]]]:
         "land": (
             "3000 rpm, 4930 N, a cage on a land of the outer ring",
             rig(3000.0, 4930.0, effects=usual.replace(guidance="outer_land")),
-            {"torque": 0.02, "orbit_radius_over_cpr": 0.1},
+            {"torque": 0.02, "orbit_rms_over_cpr": 0.1},
         ),
         "land_inner": (
             "1500 rpm, 3000 N axial, 2000 N radial, a cage on a land of the inner ring",
@@ -136,7 +136,7 @@ def scenes() -> dict[str, tuple[str, trb.Scene, dict[str, float]]]:
         "land_drag": (
             "6000 rpm, 4930 N, a cage on a land of the outer ring in a fifth of oil",
             rig(6000.0, 4930.0, effects=usual.replace(guidance="outer_land", oil_fill=0.2)),
-            {"torque": 0.02, "film_parameter_inner": 0.02, "orbit_radius_over_cpr": 0.2},
+            {"torque": 0.02, "film_parameter_inner": 0.02, "orbit_rms_over_cpr": 0.2},
         ),
         "cold": (
             "1500 rpm, oil at 20 C",

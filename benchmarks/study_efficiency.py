@@ -57,7 +57,7 @@ def main() -> None:
                         lambda: study.run(cases, Path(folder), executor=executor, workers=workers)  # noqa: B023
                     )
                 walls.append(wall)
-            compared = data[["steps", "torque", "orbit_radius_over_cpr"]]
+            compared = data[["steps", "torque", "orbit_rms_over_cpr"]]
             first = compared if first is None else first
             wall = float(np.median(walls))
             alone = wall if alone is None else alone

@@ -143,4 +143,4 @@ def test_the_run_of_the_readme_is_not_judged_too_early() -> None:
     assert values["settling_needed"] > 3.0 * values["creep_time"]
     values = sim.run(revolutions=10).summary()
     assert values["cage_motion"] == "rocking"
-    assert values["orbit_radius_over_cpr"] == pytest.approx(0.115, abs=0.01)
+    assert values["orbit_rms_over_cpr"] == pytest.approx(0.115, abs=0.01)

@@ -76,7 +76,7 @@ def test_demo_writes_everything(
     pictures = {"cage_locus.png", "spacing_angles.png", "tilt.png", "pocket_forces.png"}
     assert names == {"run.h5", "summary.json"} | pictures
     values = json.loads((folder / "summary.json").read_text())
-    promised = ("cage_speed_ratio", "orbit_radius_over_cpr", "outer_load_mean", "inner_load_mean", "rib_load_mean")
+    promised = ("cage_speed_ratio", "orbit_rms_over_cpr", "outer_load_mean", "inner_load_mean", "rib_load_mean")
     promised += ("film_parameter_outer", "film_parameter_inner", "torque", "energy_closure", "wall_s_per_revolution")
     for name in (*promised, "steps", "rhs_evaluations"):
         assert isinstance(values[name], float | int), name

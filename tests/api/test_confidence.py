@@ -169,7 +169,7 @@ def test_percentiles_of_the_orbit_follow_its_mean_place() -> None:
     intervals of the orbit's percentiles held the value of many cages in 16 of 100 cases.
     """
     cages = [Locus(place) for place in lingering_whirls(np.random.default_rng(3), 100, 80).transpose(1, 0, 2)]
-    for name, most in (("orbit_radius_over_cpr", 0.99), ("axis_distance_over_cpr", 1.0)):
+    for name, most in (("orbit_rms_over_cpr", 0.99), ("axis_distance_over_cpr", 1.0)):
         for share, end in ((0.05, "p05"), (0.95, "p95")):
             found = np.array([np.quantile(getattr(cage, name), share) for cage in cages])
             series = [_as_means(cage)[f"{name}_{end}"].reshape(40, -1) for cage in cages]  # type: ignore[arg-type]
@@ -217,7 +217,7 @@ def test_the_summary_of_a_run_has_error_bars_that_later_windows_keep() -> None:
     values = result.summary()
     widths = values["confidence"]
     assert set(widths) <= set(AVERAGES) <= set(QUANTITIES)
-    assert {"torque", "pocket_duty", "orbit_radius_over_cpr", "cage_speed_ratio"} <= set(widths)
+    assert {"torque", "pocket_duty", "orbit_rms_over_cpr", "cage_speed_ratio"} <= set(widths)
     assert "batches" in values["confidence_note"]
     assert f"± {widths['torque']:.2g}" in table(values)
     middle = 0.5 * (values["window_start"] + values["window_end"])
@@ -236,7 +236,7 @@ def test_a_short_run_has_none_and_says_why() -> None:
     assert "±" not in table(values).replace("behind ±", "")
 
 
-UNTIL = {"torque": 0.02, "orbit_radius_over_cpr": 0.25}
+UNTIL = {"torque": 0.02, "orbit_rms_over_cpr": 0.25}
 
 
 def rolling() -> trb.Simulation:
@@ -254,7 +254,7 @@ def test_a_run_ends_when_averages_are_known_as_well_as_was_asked_for(enough: trb
     assert enough.success
     assert enough.duration < 3.0
     assert "as far as was needed" in enough.message
-    assert "orbit_radius_over_cpr is known within" in enough.message
+    assert "orbit_rms_over_cpr is known within" in enough.message
     for name, share in UNTIL.items():
         assert values["confidence"][name] <= share * abs(values[name])
     # two looks in a row were narrow, for the first time: the one before them was not
@@ -323,14 +323,14 @@ class Looked:
         return self
 
     def summary(self) -> dict[str, Any]:
-        widths = {"torque": 1e-3} | ({"orbit_radius_over_cpr": 1e-3} if self.settling == "settled" else {})
-        return {"torque": 1.0, "orbit_radius_over_cpr": 1.0, "confidence": widths, "confidence_note": "half widths"}
+        widths = {"torque": 1e-3} | ({"orbit_rms_over_cpr": 1e-3} if self.settling == "settled" else {})
+        return {"torque": 1.0, "orbit_rms_over_cpr": 1.0, "confidence": widths, "confidence_note": "half widths"}
 
 
 @pytest.mark.parametrize("settling", ["settled", "unknown", "drifting"])
 def test_each_average_is_judged_by_itself(settling: str) -> None:
     """A torque does not wait for a cage that creeps; an orbit does."""
-    for name, known in (("torque", True), ("orbit_radius_over_cpr", settling == "settled")):
+    for name, known in (("torque", True), ("orbit_rms_over_cpr", settling == "settled")):
         looks = Until({name: 0.01}, 1000)
         ended = [looks.reached(done, lambda: Looked(settling)) for done in looks._looks]  # type: ignore[arg-type, return-value]
         assert any(ended) == known, name
@@ -341,11 +341,11 @@ def test_creep_that_a_run_is_short_against_leaves_the_cage_no_interval() -> None
     scene = paper_30310(3000.0, 4930.0, 5530.0, effects=trb.Effects.standard(), start=trb.Start.unequal(1))
     with pytest.warns(trb.RunWarning, match="not known to have settled"):
         result = trb.Simulation(scene, accuracy="fast").run(
-            duration=0.5, save_every=1e-3, until={"orbit_radius_over_cpr": 0.1}
+            duration=0.5, save_every=1e-3, until={"orbit_rms_over_cpr": 0.1}
         )
     assert result.duration == pytest.approx(0.5)
     widths = result.summary()["confidence"]
-    assert "orbit_radius_over_cpr" not in widths
+    assert "orbit_rms_over_cpr" not in widths
     assert 0.0 < widths["torque"] < 0.02 * result.summary()["torque"]
 
 

@@ -124,13 +124,26 @@ def test_observables_of_a_known_whirl(synthetic: Any, whirling: Result) -> None:
         whirling.cage_locus("side")  # type: ignore[arg-type]
 
 
+def test_a_name_that_summary_and_result_share_means_one_thing(whirling: Result) -> None:
+    """A series of the result whose name the summary has, too, has the summary's number as its mean over the summary's window."""
+    values, compared = whirling.summary(), []
+    window = whirling.window(values["window_start"])
+    for name, value in values.items():
+        series = getattr(window, name, None)
+        if isinstance(value, float) and isinstance(series, np.ndarray):
+            compared.append(name)
+            assert series.mean() == pytest.approx(value, rel=1e-9), name
+    assert "axis_distance_over_cpr" in compared
+    assert "orbit_radius_over_cpr" not in values
+
+
 def test_the_orbit_is_not_the_distance_from_the_axis(build: Callable[..., tuple[Any, Result]]) -> None:
     """A cage that hangs at 0.9 Cpr and hardly moves has next to no orbit, though it is as far from the axis as a whirling one."""
     _, hanging = build(radius=0.01e-3, centre=(0.0, -0.225e-3), duration=1.0)
     _, whirling = build(radius=0.225e-3, duration=1.0)
     for result, orbit, distance in ((hanging, 0.04, 0.9), (whirling, 0.9, 0.9)):
         values = result.summary()
-        assert values["orbit_radius_over_cpr"] == pytest.approx(orbit, rel=2e-2)
+        assert values["orbit_rms_over_cpr"] == pytest.approx(orbit, rel=2e-2)
         assert values["axis_distance_over_cpr"] == pytest.approx(distance, rel=2e-2)
         assert result.orbit_radius_over_cpr.mean() == pytest.approx(orbit, rel=5e-2)
     words = [line.strip() for line in _summary_text(hanging).splitlines()]
@@ -162,7 +175,7 @@ def test_nothing_is_said_of_a_cage_that_is_not_there(whirling: Result) -> None:
         with pytest.raises(InputError, match="has no cage"):
             read()
     values = whirling.summary()
-    assert values["orbit_radius_over_cpr"] is None
+    assert values["orbit_rms_over_cpr"] is None
     assert values["torque"] == pytest.approx(1.25, rel=1e-2)
 
 
@@ -695,7 +708,7 @@ def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
 
     values = whirling.summary()
     assert values["axis_distance_over_cpr"] == pytest.approx(0.9)
-    assert values["orbit_radius_over_cpr"] == pytest.approx(0.9, rel=1e-2)
+    assert values["orbit_rms_over_cpr"] == pytest.approx(0.9, rel=1e-2)
     assert values["outer_load_mean"] == pytest.approx(1833.0, rel=1e-3)
     assert values["rib_load_mean"] == pytest.approx(122.0, rel=1e-3)
     assert values["film_parameter_outer"] == pytest.approx(4.0, rel=1e-2)
@@ -720,7 +733,7 @@ def test_summary_of_a_known_run(tmp_path: Path, whirling: Result) -> None:
 def test_summary_leaves_out_what_was_not_recorded(whirling: Result) -> None:
     values = whirling.select(["torque"]).summary()
     assert values["torque"] == pytest.approx(1.25, rel=1e-2)
-    assert values["orbit_radius_over_cpr"] is None
+    assert values["orbit_rms_over_cpr"] is None
     assert (values["settling"], values["settled"]) == ("unknown", False)
     assert values["energy_closure"] is None
     assert json.dumps(values, allow_nan=False)

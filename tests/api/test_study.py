@@ -512,7 +512,7 @@ class TestCommand:
         assert main(["sweep", str(file), "-o", str(tmp_path / "out"), "--workers", "2"]) == 1
         said = capsys.readouterr()
         assert "axial_load" in said.err
-        assert "orbit_radius_over_cpr" in said.out
+        assert "orbit_rms_over_cpr" in said.out
         data = study.load(tmp_path / "out" / "observables.nc")
         assert data.sizes == {"speed_rpm": 2, "axial_load": 2}
         assert (data.status == "done").sum() == 2

@@ -61,7 +61,7 @@ def test_bands_of_a_billionth(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Bearing, "estimated", property(lambda self: tuple(tiny)))
     effects = trb.Effects.standard().replace(n_slices=6)
     scene = trb.Scene(bearing, speed_rpm=3000.0, axial_load=1000.0, effects=effects)
-    found = trb.sensitivity(scene, "orbit_radius_over_cpr", revolutions=0.5)
+    found = trb.sensitivity(scene, "orbit_rms_over_cpr", revolutions=0.5)
     assert len(found.influences) == len(tiny)
     assert not any(entry.told_apart for entry in found.influences)
     assert "No influence can be told from chance" in str(found)

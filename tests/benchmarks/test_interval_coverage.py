@@ -17,7 +17,7 @@ BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 ASKED_FOR = (
     "torque",
     "power_loss",
-    "orbit_radius_over_cpr",
+    "orbit_rms_over_cpr",
     "orbit_radius_over_cpr_p95",
     "axis_distance_over_cpr",
     "spacing_std_deg",

@@ -138,7 +138,7 @@ def test_the_promise_holds(proposal: Plan) -> None:
 def test_the_promise_holds_where_the_simplified_model_would_go_elsewhere_from_the_start() -> None:
     """The cage begins in the middle, which is not stable: gravity alone moves it away. Without gravity it stays there."""
     scene = rolling(guidance="outer_land", oil_fill=0.2).replace(speed_rpm=6000.0)
-    want = {"torque": 0.02, "orbit_radius_over_cpr": 0.2}
+    want = {"torque": 0.02, "orbit_rms_over_cpr": 0.2}
     found = trb.plan(scene, want, effort=8.0)
     assert found.reached
     values = found.averages(found.run())
@@ -148,7 +148,7 @@ def test_the_promise_holds_where_the_simplified_model_would_go_elsewhere_from_th
         assert abs(values[name] / window[name] - 1.0) <= promised + 0.002, name
     simplified = found.scene.replace(effects=found.scene.effects.replace(gravity=False, planar=True), start=scene.start)
     still = averages(trb.Simulation(simplified).run(duration=0.5, save_every=5e-4))
-    assert still["orbit_radius_over_cpr"] < 1e-3 < 0.1 < window["orbit_radius_over_cpr"]
+    assert still["orbit_rms_over_cpr"] < 1e-3 < 0.1 < window["orbit_rms_over_cpr"]
 
 
 def test_effects_that_matter_are_kept(proposal: Plan) -> None:
@@ -304,8 +304,8 @@ class TestPromise:
 
     def test_sizes(self) -> None:
         assert size_of("torque", -1.5) == 1.5
-        assert size_of("orbit_radius_over_cpr", 0.3) == 0.3
-        assert size_of("orbit_radius_over_cpr", 1e-5) == 0.01
+        assert size_of("orbit_rms_over_cpr", 0.3) == 0.3
+        assert size_of("orbit_rms_over_cpr", 1e-5) == 0.01
         assert least_size("power_loss") == 0.0
         for start in LEAST:
             assert any(name.startswith(start) for name in AVERAGES), start
@@ -319,18 +319,18 @@ class TestPromise:
         """A share of an orbit of nearly nothing is no promise."""
         scene = rolling(guidance="outer_land", gravity=False).replace(speed_rpm=500.0)
         length = Length(0.2, 1e-3, ("cage", "rollers"), 1.0)
-        found = ground.run_ground(scene, {"orbit_radius_over_cpr": 0.1}, 0.02, length, 60.0)
-        assert found.value["orbit_radius_over_cpr"] < 0.01
-        assert found.size["orbit_radius_over_cpr"] == 0.01
+        found = ground.run_ground(scene, {"orbit_rms_over_cpr": 0.1}, 0.02, length, 60.0)
+        assert found.value["orbit_rms_over_cpr"] < 0.01
+        assert found.size["orbit_rms_over_cpr"] == 0.01
         assert max(found.scatter[0], found.drift[0]) < 1.0
 
     def test_an_orbit_that_grows_may_become_as_large_as_the_play(self) -> None:
         """Without gravity an orbit of 1e-4 grows within seconds: its mean may still change by all of the play, not by more."""
         scene = rolling(guidance="outer_land", gravity=False)
         length = Length(0.2, 1e-3, ("cage", "rollers"), 1.0)
-        found = ground.run_ground(scene, {"orbit_radius_over_cpr": 0.1}, 0.02, length, 60.0)
+        found = ground.run_ground(scene, {"orbit_rms_over_cpr": 0.1}, 0.02, length, 60.0)
         assert any("grows" in note for note in found.notes)
-        assert 0.5 < found.drift[0] * found.size["orbit_radius_over_cpr"] < 1.5
+        assert 0.5 < found.drift[0] * found.size["orbit_rms_over_cpr"] < 1.5
 
     def test_a_bound_that_is_absolute_says_so(self, proposal: Plan) -> None:
         assert "means nothing" not in str(proposal)

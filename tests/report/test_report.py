@@ -181,7 +181,7 @@ def test_the_bias_of_the_accuracy_is_said_where_it_was_measured(usual: trb.Resul
     assert str(Bias(0.38, 0.08, "fast", "")) == "With accuracy 'fast' it is 30 to 46 % too high."
     assert str(Bias(-0.02, 0.1, "fast", "")) == "No bias was seen with accuracy 'fast', within 12 %."
     assert "of Cpr" in str(Bias(0.0045, 0.003, "standard", "", "Cpr"))
-    orbit = listed.get("orbit_radius_over_cpr")
+    orbit = listed.get("orbit_rms_over_cpr")
     assert orbit is None or "of Cpr" in str(orbit)  # the table has it in Cpr
     own = trb.Simulation(usual.scene, rtol=1e-3).run(revolutions=0.1)
     assert biases(own) == {}  # tolerances of one's own: nothing was measured for them

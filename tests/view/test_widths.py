@@ -90,7 +90,7 @@ def test_values_stand_in_the_pdf(long_run: trb.Result, pages: tuple[Path, Path],
     text = " ".join(found)
     values = long_run.summary()
     widths = values["confidence"] or {}
-    for name in ("torque", "orbit_radius_over_cpr", "pocket_force_peak", "power_loss", "cage_speed_ratio"):
+    for name in ("torque", "orbit_rms_over_cpr", "pocket_force_peak", "power_loss", "cage_speed_ratio"):
         shown = f"{values[name]:.4g}" + (f" ± {widths[name]:.2g}" if name in widths else "")
         assert shown in text, (name, shown)
         assert QUANTITIES[name].words.split()[0] in text

@@ -38,9 +38,9 @@ def add_ensemble_parser(commands: Any, parents: Sequence[argparse.ArgumentParser
     ensemble.add_argument(
         "--predict",
         nargs="+",
-        default=["torque", "orbit_radius_over_cpr"],
+        default=["torque", "orbit_rms_over_cpr"],
         metavar="NAME",
-        help="observables of the summary (default: torque orbit_radius_over_cpr)",
+        help="observables of the summary (default: torque orbit_rms_over_cpr)",
     )
     ensemble.add_argument("--workers", type=int, metavar="N", help="runs at a time (default, and at most: the cores)")
     ensemble.add_argument(

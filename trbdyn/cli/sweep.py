@@ -19,7 +19,7 @@ COLUMNS: Final = (
     "status",
     "settling",
     "cage_motion",
-    "orbit_radius_over_cpr",
+    "orbit_rms_over_cpr",
     "whirl_ratio",
     "pocket_force_p95",
     "torque",

@@ -174,7 +174,7 @@ def _whirl(result: Result, numbers: dict[str, Any]) -> Sentence | None:
 def _motion(kind: str, result: Result, numbers: dict[str, Any]) -> Sentence:
     """The motion of the cage as if it had settled."""
     radius, ratio = numbers["axis_distance_over_cpr"], numbers.get("whirl_ratio")
-    orbit = numbers["orbit_radius_over_cpr"]
+    orbit = numbers["orbit_rms_over_cpr"]
     where = f"on average {radius:.2f} of its radial play Cpr away from the bearing axis"
     if kind == "stable":
         text = f"Its centre stays near one place (it moves by {orbit:.2g} of its radial play Cpr about it), {where}."
@@ -193,7 +193,7 @@ def _motion(kind: str, result: Result, numbers: dict[str, Any]) -> Sentence:
         )
         text = (
             f"Its centre goes round in one sense{rate}, on an orbit of {orbit:.2f} Cpr (rms)"
-            f"{_within(numbers, 'orbit_radius_over_cpr')}, {where}."
+            f"{_within(numbers, 'orbit_rms_over_cpr')}, {where}."
         )
         return "care", "The cage whirls", text
     if kind == "unstable":

@@ -27,7 +27,7 @@ TABLE: Final = {
     "radial_load": "radial load, mean, N",
     "torque": "friction torque, N m",
     "power_loss": "power loss, W",
-    "orbit_radius_over_cpr": "orbit radius of the cage / Cpr",
+    "orbit_rms_over_cpr": "orbit radius of the cage / Cpr",
     "axis_distance_over_cpr": "distance of the cage from the axis / Cpr",
     "pocket_force_peak": "pocket force, largest, N",
     "inner_pressure_max": "largest pressure, inner raceway, Pa",

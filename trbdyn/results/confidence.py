@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 AVERAGES: Final = (
     "cage_speed_ratio",
     "cage_slip",
-    "orbit_radius_over_cpr",
+    "orbit_rms_over_cpr",
     "orbit_radius_over_cpr_p05",
     "orbit_radius_over_cpr_p95",
     "axis_distance_over_cpr",
@@ -176,7 +176,7 @@ def _as_means(window: Result) -> dict[str, Array]:
         return found
     orbit, distance = window.orbit_radius_over_cpr, window.axis_distance_over_cpr
     size = math.sqrt(float(np.mean(orbit**2)))
-    found["orbit_radius_over_cpr"] = 0.5 * (orbit**2 / size + size) if size > 0.0 else orbit
+    found["orbit_rms_over_cpr"] = 0.5 * (orbit**2 / size + size) if size > 0.0 else orbit
     place = window["cage_position"][:, :2] / window.clearances.radial
     for name, values, away in (
         ("orbit_radius_over_cpr", orbit, place - place.mean(axis=0)),

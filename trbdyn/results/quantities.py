@@ -78,7 +78,7 @@ QUANTITIES: Final[dict[str, Quantity]] = {
         "Stable: the centre stays at a place. Rocking: it hangs beside the bearing axis and moves about that place. "
         "Circling: it goes round the axis in one sense. Unstable: none of these. Unknown: the run is too short.",
     ),
-    "orbit_radius_over_cpr": Quantity(
+    "orbit_rms_over_cpr": Quantity(
         "orbit radius of the cage about its mean place, rms / Cpr",
         "",
         "How far the cage's centre moves about its mean place, over the radial play: the whirl's size.",

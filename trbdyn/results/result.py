@@ -35,7 +35,7 @@ SHOWN_NUMBERS: Final = (
     "settling",
     "speed_rpm",
     "cage_motion",
-    "orbit_radius_over_cpr",
+    "orbit_rms_over_cpr",
     "pocket_force_peak",
     "torque",
     "power_loss",

@@ -180,7 +180,7 @@ def _cage(window: Result) -> dict[str, Any]:
     return {
         "cage_speed_ratio": window.cage_speed_ratio,
         "cage_motion": motion.kind,
-        "orbit_radius_over_cpr": motion.orbit_over_play,
+        "orbit_rms_over_cpr": motion.orbit_over_play,
         "orbit_radius_over_cpr_p05": orbit_low,
         "orbit_radius_over_cpr_p95": orbit_high,
         "axis_distance_over_cpr": distance.mean(),

@@ -54,7 +54,7 @@ BIASES: Final[Mapping[str, tuple[str, ...]]] = {
     "bias_land_peak": ("land_force_peak",),
     "bias_pressure_peak": ("outer_pressure_max", "inner_pressure_max"),
     "bias_skew": ("skew_rms",),
-    "bias_orbit": ("orbit_radius_over_cpr",),
+    "bias_orbit": ("orbit_rms_over_cpr",),
     "bias_loss": ("torque", "power_loss"),
 }
 """Entries of the summary that a bias of the table of accuracy belongs to; others are named ``bias_`` and the entry itself."""

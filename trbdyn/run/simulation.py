@@ -404,7 +404,7 @@ class Simulation(Displayed, Generic[R]):
             How far to go (s); one of both must be given.
         until : mapping of str to float, optional
             End earlier, when the averages named here are known well enough: largest half width of the 95 % confidence interval
-            over the average, for instance ``{"torque": 0.01, "orbit_radius_over_cpr": 0.05}``, and the motion is known to
+            over the average, for instance ``{"torque": 0.01, "orbit_rms_over_cpr": 0.05}``, and the motion is known to
             have settled. `revolutions` or `duration` is then the longest run; one that ends there without it warns.
         save_every : float, optional
             Time between records (s). By default a 32nd of a turn of the shaft, but at most 1e-2 s; in a run that would have

@@ -8,7 +8,7 @@
         trb.study.RunOptions(revolutions=50),
     )
     data = trb.study.run(study, "cage_mass", progress=True)
-    data.orbit_radius_over_cpr.plot()
+    data.orbit_rms_over_cpr.plot()
 
 Names are imported when they are first used.
 """

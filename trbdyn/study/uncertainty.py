@@ -39,7 +39,7 @@ QUANTITIES: Final = (
     "outer_pressure_max",
     "film_parameter_inner",
     "film_parameter_rib",
-    "orbit_radius_over_cpr",
+    "orbit_rms_over_cpr",
 )
 """Observables whose shares are printed unless others are asked for."""
 LEVEL: Final = 0.95

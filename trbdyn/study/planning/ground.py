@@ -35,7 +35,7 @@ MOST_TURNS: Final = 1000.0
 """Turns of the shaft after which the run ends, however fast it is."""
 UNKNOWN_SCATTER: Final = 2.0 * 2.1
 """Half width over the standard error of twenty batches (Student's t: 2.1), twice as large as they may not be independent."""
-SIZES_OF_WHIRL: Final = ("orbit_radius_over_cpr", "axis_distance_over_cpr")
+SIZES_OF_WHIRL: Final = ("orbit_rms_over_cpr", "axis_distance_over_cpr")
 """Averages that are the size of the whirl; what it does to others is taken to go with the square of its size."""
 TOLD_FROM_SCATTER: Final = 2.8
 """Difference of two means of five batches each over its standard error (Student's t: 2.78) from which it is a drift."""
@@ -117,7 +117,7 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     window = result.window(settled_from)
     found = averages(window)
     value = {name: _value(found, name) for name in names}
-    if found.get("orbit_radius_over_cpr", 1.0) < least_size("orbit_radius_over_cpr"):
+    if found.get("orbit_rms_over_cpr", 1.0) < least_size("orbit_rms_over_cpr"):
         value |= {name: math.nan for name in names if name.startswith("whirl_")}
     size = {name: size_of(name, value[name]) for name in names}
     scatter, notes = _scatter(window, names, size)
@@ -199,5 +199,5 @@ def _left_to_grow(last: Result, grown: float, power: float) -> float:
     power : float
         Power of the whirl's size with which the average changes.
     """
-    size = max(float(averages(last)["orbit_radius_over_cpr"]), 1e-6)
+    size = max(float(averages(last)["orbit_rms_over_cpr"]), 1e-6)
     return max(size**-power - 1.0, 0.0) / -math.expm1(-power * grown)

@@ -144,7 +144,7 @@ class Looker:
         zero = [name for name in wishes.names if not abs(self.ground.value[name]) > 0.0]
         if zero:
             allowed = "is zero in this scene, or does not exist, as the whirl of a cage whose orbit is below "
-            allowed += f"{least_size('orbit_radius_over_cpr'):g} Cpr does not; a relative error of it cannot be planned"
+            allowed += f"{least_size('orbit_rms_over_cpr'):g} Cpr does not; a relative error of it cannot be planned"
             raise InputError.of("want", zero[0], allowed)
         other = self._other_start()
         seen = self._probe_all(candidates(wishes.scene, wants_cage=wishes.of_cage))
