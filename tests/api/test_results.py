@@ -180,7 +180,7 @@ def test_nothing_is_said_of_a_cage_that_is_not_there(whirling: Result) -> None:
 
 
 def test_torques_that_differ_are_explained(whirling: Result) -> None:
-    assert "rolling_pressure_force" in whirling.summary()["torque_note"]
+    assert "without the film's pressure force" in whirling.summary()["torque_note"]
     assert "both rings agree" in " ".join(_summary_text(whirling).split())
     effects = vars(whirling.scene.effects)
     whirling.scene.effects = SimpleNamespace(**(effects | {"rolling_pressure_force": True}))

@@ -14,6 +14,7 @@ import trbdyn as trb
 from trbdyn import Effects, FileError, InputError, RingBody, RunWarning, Scene, Simulation, Start
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.run.replay import Replay
+from trbdyn.standards.sheet import life_text
 from trbdyn.statics.seat import Seat, Seating
 
 Array = NDArray[np.float64]
@@ -228,6 +229,22 @@ def test_files(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="exists already"):
         pair().run(duration=1e-3, output=path)
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_lives_of_a_pair_stand_in_its_report(tmp_path: Path) -> None:
+    """Each bearing's lives by the loads of its run, and the life of both, as `trb.rating` has them; pressures in MPa."""
+    result = pair({"force_x": 20e3}).run(duration=2e-3)
+    found = trb.rating(result)
+    own = [trb.rating(one).life_hours for one in result.values()]
+    assert [one.life_hours for one in found.bearings.values()] == own
+    assert found.life_hours == pytest.approx(sum(life ** (-9 / 8) for life in own) ** (-8 / 9), rel=1e-12)
+    text = trb.report(result, tmp_path / "pair.html", pictures=[]).read_text(encoding="utf-8")
+    lives = text.partition("<h2>Lives</h2>")[2].partition("</table>")[0]
+    for life in (*own, found.life_hours):
+        assert f">{life_text(life)}<".replace(">>", ">&gt;") in lives
+    pressure = result.summary()["left"]["inner_pressure_max"]
+    assert f"{1e-6 * pressure:.5g}" in str(result)
+    assert "inner raceway, MPa" in str(result)
 
 
 def test_records_are_evaluated_again() -> None:

@@ -56,7 +56,7 @@ def test_numbers_units_and_meanings(text: str, result: trb.Result) -> None:
     values = result.summary()
     for key in ("torque", "outer_load_mean", "film_parameter_inner", "pocket_force_peak", "power_loss"):
         words, unit, _ = QUANTITIES[key]
-        number, shown_unit, meaning = cells(text, words)
+        number, shown_unit, meaning = cells(text.partition("<summary>All numbers")[2], words)
         assert float(number.split(" ±")[0]) == pytest.approx(values[key], rel=1e-3)
         assert shown_unit == unit
         assert len(meaning) > 20
@@ -133,7 +133,8 @@ def test_what_has_not_settled_is_not_judged(result: trb.Result) -> None:
     assert told["Pressures: cannot be told yet"][0] == "plain"
     assert "turns of the shaft" in told["Too short to tell how the cage moves in the long run"][1]
     for kind in ("stable", "rocking", "circling", "unstable"):
-        grade, _, text = verdict(result, values | {"cage_motion": kind})[1]
+        told = {head: (grade, text) for grade, head, text in verdict(result, values | {"cage_motion": kind})}
+        grade, text = told["The cage's motion cannot be told yet"]
         assert grade == "plain"
         assert "So far: " in text
 
@@ -150,15 +151,15 @@ def test_sentences_on_the_cage_do_not_contradict_each_other(result: trb.Result) 
         assert (told["Hits on the cage"][0] == "good") == soft
         assert ("thrown from pocket to pocket" in text) == (not soft)
         assert grade == ("care" if soft else "bad")
-        rocking = verdict(result, values | {"pocket_force_peak": peak, "cage_motion": "rocking"})[1]
-        assert rocking[0] == ("good" if soft else "plain")
+        rocking = verdict(result, values | {"pocket_force_peak": peak, "cage_motion": "rocking"})
+        assert {head: grade for grade, head, _ in rocking}["The cage hangs and rocks"] == ("good" if soft else "plain")
 
 
 def test_films_have_one_limit_in_sentences_and_pictures(result: trb.Result) -> None:
     """Both take that of the scene's friction."""
     values = result.summary() | {"window_start": 0.0, "window_end": 1.0, "film_parameter_inner": 2.0}
     heads = {head: text for _, head, text in verdict(result, values)}
-    assert "= 1.5 on" in heads["Films keep the surfaces apart"]
+    assert "From 1.5 on" in heads["Films keep the surfaces apart"]
     axes = trb.plot.film_parameter(result)
     marked = [
         float(line.get_ydata()[0])
@@ -204,6 +205,52 @@ def test_the_bias_of_peaks_has_its_place(usual: trb.Result, monkeypatch: pytest.
     assert "3 to 12 % too low" in hits
 
 
+def test_the_verdict_judges_the_life_by_the_shortest(result: trb.Result) -> None:
+    """A basic life of 5628 h is not hidden behind good pressures and a long reference life."""
+    values = result.summary()
+
+    def said(**lives: float) -> tuple[str, str]:
+        return {head: (grade, text) for grade, head, text in verdict(result, values | lives)}["Life"]
+
+    for name in ("basic_life_hours", "modified_life_hours", "reference_life_hours", "modified_reference_life_hours"):
+        values[name] = 3e7
+    grade, text = said()
+    assert grade == "good"
+    assert "Lnmrh, which counts the most of what acts, is >1e6 h" in text
+    grade, text = said(basic_life_hours=5628.0)
+    assert grade == "care"
+    assert "shortest, L10h" in text
+    assert "5628 h" in text
+    assert said(modified_reference_life_hours=900.0)[0] == "bad"
+    told = {head: grade for grade, head, _ in verdict(result, values | {"static_safety": 0.8})}
+    assert told["Static safety"] == "bad"
+
+
+def test_a_verdict_has_words_and_no_names_of_fields(text: str) -> None:
+    """Sentences speak of films, loads and times of the run; a name with dots or underscores belongs into the tables."""
+    judged = re.search(r"<h2>Verdict.*?(?=<h2>Numbers)", text, re.DOTALL)
+    assert judged is not None
+    plain = html.unescape(re.sub(r"<[^>]*>", " ", judged[0]))
+    plain = re.sub(r"trb\.\w+|accuracy='\w+'", "", plain)  # functions to call are no fields
+    assert not re.findall(r"\b[a-z]+_[a-z_]+\b|\b[a-z]{3,}\.[a-z]{3,}", plain)
+    assert not re.search(r"avx|instruction set|e-0[5-9] s", plain)
+    assert not re.search(r"\d\d:\d\d:\d\d", text)
+
+
+def test_frequencies_and_ratings_are_those_of_the_package(text: str, result: trb.Result) -> None:
+    """Each number of the sections stands in the summary, the sheet or the frequencies, too."""
+    values = result.summary()
+    found = trb.frequencies(result.scene.bearing, speed_rpm=values["speed_rpm"])
+    for name in ("bpfo", "bpfi", "bsf", "ftf"):
+        row = re.search(rf"<td class='q'>{name.upper()}, [^<]*</td><td[^>]*>([^<]*)</td><td[^>]*>([^<]*)<", text)
+        assert row is not None
+        assert float(row[1]) == pytest.approx(getattr(found, name), rel=1e-4)
+        assert float(row[2]) == pytest.approx(found.orders[name], rel=1e-4)
+    sheet = trb.rating(result.scene)
+    assert cells(text, "basic rating life L10h")[0] == next(row for row in sheet.rows if row.name == "life_hours").shown
+    assert values["basic_life_hours"] == sheet.life_hours
+
+
 def test_a_failed_or_partial_run_still_gets_a_report(tmp_path: Path) -> None:
     scene = trb.cases.scene_30310(1000.0, 3000.0, effects=trb.Effects.paper().replace(bodies="rollers"))
     short = trb.Simulation(scene).run(revolutions=0.2, save_groups=("rollers", "torque"))
@@ -222,7 +269,12 @@ def test_two_runs_side_by_side(result: trb.Result, tmp_path: Path) -> None:
     assert "as &lt;built&gt;" in text
     assert "<built>" not in text
     assert text.count("<img ") == 2 * 2 + 2  # both bearings are equal: drawn once
+    assert text.count("<h2>Verdict</h2>") == 1
+    assert "lighter against as &lt;built&gt;: " in text
     numbers = cells(text, "friction torque of the shaft")
+    shown = [float(number.split(" ±")[0]) for number in numbers[:2]]
+    change = float(numbers[2].replace("\u2212", "-").removesuffix(" %"))
+    assert change == pytest.approx(100.0 * (shown[1] / shown[0] - 1.0), abs=0.1)
     one, other_torque = (float(text.split(" ±")[0]) for text in numbers[:2])
     assert one > other_torque
 

@@ -31,6 +31,22 @@ def pages(long_run: trb.Result, tmp_path_factory: pytest.TempPathFactory) -> tup
     return one, two
 
 
+UNFOLD = "document.querySelectorAll('details').forEach((one) => { one.open = true; })"
+TALLEST = 5500
+"""Height of a report with all pictures, its details folded (px); with all of them unfolded it was 16 700."""
+
+
+@pytest.mark.slow
+def test_a_report_is_short_until_its_details_are_unfolded(sized: Any, long_run: trb.Result, tmp_path: Path) -> None:
+    page = trb.report(long_run, tmp_path / "all.html")
+    set_width(sized, 1200)
+    sized.open(page)
+    folded = sized.js("document.documentElement.scrollHeight")
+    assert 1000 < folded < TALLEST
+    sized.js(UNFOLD)
+    assert sized.js("document.documentElement.scrollHeight") > 2 * folded
+
+
 def set_width(browser: Any, width: int, height: int = 800) -> None:
     browser.call(
         "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 500
@@ -48,6 +64,7 @@ def test_the_report_is_no_wider_than_the_page(sized: Any, pages: tuple[Path, Pat
     for page in pages:
         set_width(sized, width)
         sized.open(page)
+        sized.js(UNFOLD)
         assert sized.js("document.documentElement.scrollWidth") <= width
         assert sized.js("document.documentElement.clientWidth") == width  # not a wider page that is shown smaller
         # no cell sticks out of its table, and a name stands beside its value
@@ -67,7 +84,7 @@ def test_sentences_stand_below_the_table(long_run: trb.Result, pages: tuple[Path
     text = pages[0].read_text(encoding="utf-8")
     values = long_run.summary()
     assert values["confidence_note"]
-    table, _, below = text.partition("<h2>Numbers</h2>")[2].partition("</table>")
+    table, _, below = text.partition("<summary>All numbers")[2].partition("</table>")
     for name in ("confidence_note", "torque_note", "settling_reason"):
         assert values[name], name
         said = values[name][1:40].replace("'", "&#x27;")

@@ -35,7 +35,7 @@ def add_rating_parser(commands: Any, parents: Sequence[argparse.ArgumentParser])
 
 
 def _rating(options: argparse.Namespace) -> int:
-    from trbdyn.results.result import load
+    from trbdyn.results.assembly import load
     from trbdyn.results.summary import clean
     from trbdyn.run.rating import rating
 

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 from trbdyn.reporting import tables
 from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import Row, rows
-from trbdyn.reporting.ratings import ratings_section
+from trbdyn.reporting.ratings import frequencies_section, ratings_section, sheet_of, system_section
 from trbdyn.reporting.tables import safe
 from trbdyn.reporting.verdict import verdict, warnings
+from trbdyn.results.summary import ratings
 from trbdyn.run.bias import biases
+from trbdyn.standards.sheet import Rating
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 UNFOLD = "addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((one) => { one.open = true; }));"
 """What is folded on a screen is printed."""
+FIRST_PICTURES = ("cage_locus", "load_zone", "torque_split", "film_parameter")
+"""Pictures that are not folded away."""
 GRADES = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
 
 
@@ -41,19 +45,14 @@ def page_of_assembly(result: AssemblyResult, title: str, pictures: Sequence[str]
 
     own = of_result(result)
     shown = result._shown()
-    heads = "".join(f"<th>{safe(word)}</th>" for word in ("quantity", *result))
-    rows = "".join(
-        f"<tr><td class='q'>{safe(row[0])}</td>"
-        + "".join(f"<td class='n number'>{safe(cell)}</td>" for cell in row[1:])
-        + "</tr>"
-        for row in shown.rows[1:]
-    )
+    table = tables.table_of(("quantity", *result), shown.rows[1:])
     notes = "".join(f"<li>{safe(note)}</li>" for note in shown.notes)
     wanted = [name for name in own if pictures is None or name in pictures]
     figures = "".join(_figure(own[name], CAPTIONS[name]) for name in wanted if len(result.time) > 1)
     parts = [
         f"<h1>{safe(title)}</h1>\n<p class='sub'>{safe(result.assembly.title if result.assembly else '')}</p>",
-        f"<h2>The bearings side by side</h2><table><tr class='heads'>{heads}</tr>{rows}</table><ul class='warnings'>{notes}</ul>",
+        f"<h2>The bearings side by side</h2>{table}<ul class='warnings'>{notes}</ul>",
+        system_section(result),
         f"<h2>The shaft</h2><div class='pictures'>{figures}</div>",
     ]
     of_bearings = None if pictures is None else [name for name in pictures if name not in own]
@@ -63,18 +62,39 @@ def page_of_assembly(result: AssemblyResult, title: str, pictures: Sequence[str]
 
 def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures: Sequence[str] | None) -> str:
     numbers = [result.summary() for result in results]
+    sheets = [sheet_of(result) for result in results]
     inputs = [rows(result.scene) for result in results]
+    judged = [
+        _verdict(result, _with_lives(values, sheet), listed, name if len(results) > 1 else "")
+        for result, values, sheet, listed, name in zip(results, numbers, sheets, inputs, names, strict=True)
+    ]
     parts = [_head(results, names, title)]
-    for result, values, listed, name in zip(results, numbers, inputs, names, strict=True):
-        parts.append(_verdict(result, values, listed, name if len(results) > 1 else ""))
     if len(results) > 1:
-        parts.append(tables.differences(inputs, names))
+        parts += [
+            tables.comparison(numbers, names),
+            tables.key_numbers(numbers, names),
+            tables.differences(inputs, names),
+        ]
+        parts += [
+            f"<details><summary>{safe(name)} by itself</summary>{text}</details>"
+            for name, text in zip(names, judged, strict=True)
+        ]
+    else:
+        parts += [*judged, "<h2>Numbers</h2>", tables.key_numbers(numbers, names)]
     parts.append(_simulated(results, names))
     parts.append(_pictures(results, names, pictures))
+    parts.append("<h2>Details</h2>")
     parts.append(tables.numbers(numbers, names, [biases(result) for result in results]))
-    parts.append(ratings_section(results, names))
+    parts.append(ratings_section(sheets, names))
+    parts.append(frequencies_section(results, numbers, names))
     parts.append(tables.inputs(inputs, names))
     return "\n".join(parts)
+
+
+def _with_lives(numbers: dict[str, Any], sheet: Rating | str) -> dict[str, Any]:
+    """A summary with the ratings of the run's records where it has none of its own."""
+    known = {} if isinstance(sheet, str) else ratings(sheet)
+    return numbers | {name: value for name, value in known.items() if numbers.get(name) is None}
 
 
 def _whole(title: str, body: str) -> str:
@@ -94,7 +114,7 @@ def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
     for result, name in zip(results, names, strict=True):
         words = conditions(result).replace("$F_a$", "Fa").replace("$F_r$", "Fr").replace(r"\$", "$")
         made = ", ".join(
-            f"{word} {result.meta[key]}"
+            f"{word} {str(result.meta[key])[:16].replace('T', ' ')}"
             for key, word in (("created", "run"), ("trbdyn_version", "trbdyn"))
             if result.meta.get(key)
         )
@@ -163,18 +183,21 @@ def _pictures(results: Sequence[Result], names: Sequence[str], wanted: Sequence[
     chosen = [name for name in (PICTURES if wanted is None else wanted) if all(name in allowed for allowed in possible)]
     if any(len(result) < 2 for result in results):
         return "<h2>Pictures</h2><p>There are too few records to draw.</p>"
-    out = []
+    out: dict[bool, list[str]] = {True: [], False: []}
     for name in chosen:
+        first = wanted is not None or name in FIRST_PICTURES
         caption = CAPTIONS.get(name, name.replace("_", " "))
         if len(results) == 1:
-            out.append(_figure(partial(PICTURES[name][0], results[0]), caption))
+            out[first].append(_figure(partial(PICTURES[name][0], results[0]), caption))
             continue
         images = "".join(
             f"<img alt='{safe(label)}' src='{image(partial(PICTURES[name][0], result))}'>"
             for result, label in zip(results, names, strict=True)
         )
-        out.append(
+        out[first].append(
             f"<figure class='pair'>{images}<figcaption>{safe(caption)} Left: {safe(names[0])}; right: {safe(names[1])}."
             "</figcaption></figure>"
         )
-    return f"<h2>Pictures</h2><div class='pictures'>{''.join(out)}</div>"
+    shown, folded = (f"<div class='pictures'>{''.join(out[first])}</div>" for first in (True, False))
+    more = f"<details><summary>{len(out[False])} more pictures</summary>{folded}</details>" if out[False] else ""
+    return f"<h2>Pictures</h2>{shown}{more}"

@@ -1,38 +1,71 @@
-"""The engineer's sheet (`trbdyn.rating`) as a section of a report."""
+"""The engineer's sheet (`trbdyn.rating`) and the frequencies of defects as sections of a report."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-from trbdyn.errors import TrbError
-from trbdyn.reporting.tables import safe
+from trbdyn.errors import InputError, TrbError
+from trbdyn.reporting.tables import safe, table_of
+from trbdyn.results.summary import steady_sheet
 from trbdyn.run.rating import rating
+from trbdyn.standards.frequencies import frequencies
+from trbdyn.standards.sheet import WHICH_LIFE, Rating
 
 if TYPE_CHECKING:
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
 
-def ratings_section(results: Sequence[Result], names: Sequence[str]) -> str:
-    """A table of the sheet of each result; where there is none, the reason."""
+def sheet_of(result: Result) -> Rating | str:
+    """The sheet of a run: that of its summary where speed and loads are constant, else that of its records; or the reason."""
+    try:
+        return steady_sheet(result) or rating(result)
+    except TrbError as error:
+        return str(error).splitlines()[0]
+
+
+def ratings_section(sheets: Sequence[Rating | str], names: Sequence[str]) -> str:
+    """A table of each sheet; where there is none, the reason."""
     parts = []
-    for result, name in zip(results, names, strict=True):
-        of = f"<h3>{safe(name)}</h3>" if len(results) > 1 else ""
-        try:
-            found = rating(result)
-        except TrbError as error:
-            parts.append(f"{of}<p>No ratings: {safe(str(error).splitlines()[0])}.</p>")
+    for found, name in zip(sheets, names, strict=True):
+        of = f"<h3>{safe(name)}</h3>" if len(sheets) > 1 else ""
+        if isinstance(found, str):
+            parts.append(f"{of}<p>No ratings: {safe(found)}.</p>")
             continue
-        body = (
-            "<tr class='heads'><th>quantity</th><th>value</th><th>unit</th><th>where it comes from</th></tr>"
-            + "".join(
-                f"<tr><td class='q'>{safe(row.words)} {safe(row.symbol)}</td><td class='n number'>{row.shown}</td>"
-                f"<td class='u'>{safe(row.unit)}</td><td>{safe(row.note)}</td></tr>"
-                for row in found.rows
-                if row.value is not None or row.note
-            )
-        )
+        rows = [
+            (f"{row.words} {row.symbol}", row.shown, row.unit, row.note)
+            for row in found.rows
+            if row.value is not None or row.note
+        ]
         notes = "".join(f"<li>{safe(text)}</li>" for text in found.warnings)
         listed = f"<ul class='warnings'>{notes}</ul>" if notes else ""
-        parts.append(f"{of}{listed}<table>{body}</table>")
-    return f"<h2>Ratings and lives</h2>{''.join(parts)}"
+        parts.append(f"{of}{listed}{table_of(('quantity', 'value', 'unit', 'where it comes from'), rows)}")
+    return f"<details><summary>Ratings and lives</summary>{''.join(parts)}<p>{safe(WHICH_LIFE)}</p></details>"
+
+
+def system_section(result: AssemblyResult) -> str:
+    """Lives of each bearing of a shaft and of the whole."""
+    try:
+        shown = rating(result)._shown()
+    except TrbError as error:
+        return f"<h2>Lives</h2><p>No ratings: {safe(str(error).splitlines()[0])}.</p>"
+    notes = "".join(f"<li>{safe(text)}</li>" for text in shown.notes)
+    return f"<h2>Lives</h2>{table_of(shown.head, shown.rows[1:])}<ul class='warnings'>{notes}</ul>"
+
+
+def frequencies_section(results: Sequence[Result], numbers: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
+    """BPFO, BPFI, BSF and FTF at the mean speeds of the averages' window."""
+    rows: list[tuple[str, ...]] = []
+    for result, values, name in zip(results, numbers, names, strict=True):
+        speeds = {key: values.get(key) or 0.0 for key in ("speed_rpm", "outer_speed_rpm")}
+        try:
+            shown = frequencies(result.scene.bearing, **speeds)._shown()
+        except InputError:
+            continue
+        of = f"{name}: " if len(results) > 1 else ""
+        rows += [(f"{of}{row[0]}, {row[3]}", *row[1:3]) for row in shown.rows[1:]]
+    if not rows:
+        return ""
+    table = table_of(("frequency", "Hz", "order of the shaft"), rows)
+    return f"<details><summary>Frequencies of defects: BPFO, BPFI, BSF, FTF</summary>{table}</details>"

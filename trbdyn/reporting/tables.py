@@ -7,6 +7,7 @@ the table, so that no table is wider than its page.
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
@@ -18,6 +19,11 @@ from trbdyn.standards.sheet import life_text
 
 SENTENCES: Final = ("_note", "_reason")
 """Ends of the names of entries that are sentences."""
+LEAST_DIFFERENCE: Final = 0.01
+"""Share of a number by which two runs differ at least before it is said."""
+MOST_DIFFERENCES: Final = 12
+"""Inputs that differ between two runs which are not folded away."""
+MINUS: Final = "\u2212"
 LONGEST_NUMBER: Final = 24
 """Letters of a number with its interval, at most."""
 
@@ -32,14 +38,17 @@ def differences(inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
     tables = [{row.path: row for row in listed} for listed in inputs]
     paths = [path for path in {**tables[0], **tables[1]} if _value(tables[0], path) != _value(tables[1], path)]
     if not paths:
-        return "<h2>What differs</h2><p>All inputs of the two scenes are equal.</p>"
+        return "<h3>Inputs that differ</h3><p>All inputs of the two scenes are equal.</p>"
     body = "".join(
         f"<tr><td class='q'>{safe(path)}</td>"
         + "".join(f"<td class='n {_kind(_value(table, path))}'>{safe(_value(table, path))}</td>" for table in tables)
         + f"<td class='u'>{safe((tables[0].get(path) or tables[1][path]).unit)}</td></tr>"
         for path in paths
     )
-    return f"<h2>What differs</h2><table>{_heads('input', *names, 'unit')}{body}</table>"
+    shown = f"<table>{_heads('input', *names, 'unit')}{body}</table>"
+    if len(paths) <= MOST_DIFFERENCES:
+        return f"<h3>Inputs that differ</h3>{shown}"
+    return f"<details><summary>{len(paths)} inputs that differ</summary>{shown}</details>"
 
 
 def _value(table: Mapping[str, Row], path: str) -> str:
@@ -48,6 +57,93 @@ def _value(table: Mapping[str, Row], path: str) -> str:
 
 def _heads(*words: str) -> str:
     return "<tr class='heads'>" + "".join(f"<th>{safe(word)}</th>" for word in words) + "</tr>"
+
+
+def table_of(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table of texts: a name, numbers that are set in line, and the rest; a row may be shorter than its head."""
+    body = "".join(
+        f"<tr><td class='q'>{safe(row[0])}</td>"
+        + "".join(
+            f"<td class='{_column(name)}'>{safe(cell)}</td>" for name, cell in zip(head[1:], row[1:], strict=False)
+        )
+        + "</tr>"
+        for row in rows
+    )
+    return f"<table>{_heads(*head)}{body}</table>"
+
+
+def _column(name: str) -> str:
+    return {"unit": "u", "where it comes from": "m"}.get(name, "n number")
+
+
+KEY_NUMBERS: Final = (
+    "modified_reference_life_hours",
+    "basic_life_hours",
+    "static_safety",
+    "inner_pressure_max",
+    "film_parameter_inner",
+    "torque",
+    "power_loss",
+    "orbit_rms_over_cpr",
+    "pocket_force_peak",
+    "cage_speed_ratio",
+)
+"""The numbers that stand before those that are folded away, and that are compared."""
+
+
+def comparison(summaries: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
+    """What changes from the first run to the second, in one sentence."""
+    more, less, same = [], [], []
+    for key in KEY_NUMBERS:
+        first, second = (values.get(key) for values in summaries)
+        if not isinstance(first, float) or not isinstance(second, float) or first == 0.0:
+            continue
+        words = QUANTITIES[key].words.partition(" (")[0]
+        change = difference(first, second, *((values.get("confidence") or {}).get(key) for values in summaries))
+        if change.startswith("+"):
+            more.append(f"{words} {change}")
+        elif change[:1] == MINUS:
+            less.append(f"{words} {change}")
+        else:
+            same.append(words)
+    parts = []
+    for found, word in ((more, "larger"), (less, "smaller"), (same, "the same within its scatter or 1 %")):
+        if found:
+            parts.append(f"{word}: {', '.join(found)}")
+    said = f"{names[1]} against {names[0]}: {'; '.join(parts) or 'no number can be compared'}."
+    unsettled = [name for name, values in zip(names, summaries, strict=True) if not values.get("settled")]
+    if unsettled:
+        said += f" The cage's motion of {' and '.join(unsettled)} has not settled: its numbers are a first look."
+    return f"<h2>Verdict</h2><div class='cards'><div class='card'><b>What differs</b>{safe(said)}</div></div>"
+
+
+def difference(first: Any, second: Any, first_width: float | None, second_width: float | None) -> str:
+    """Change of a number from the first run to the second, in per cent of the first; "same" within the scatter or 1 %."""
+    if not isinstance(first, float) or not isinstance(second, float):
+        return "" if first == second else "differs"
+    scatter = math.hypot(first_width or 0.0, second_width or 0.0)
+    if abs(second - first) <= max(scatter, LEAST_DIFFERENCE * abs(first)):
+        return "same"
+    if first == 0.0 or first * second < 0.0 or abs(second) > 10.0 * abs(first):
+        return f"{second - first:+.3g}".replace("-", MINUS)
+    return f"{100.0 * (second / first - 1.0):+.3g} %".replace("-", MINUS)
+
+
+def key_numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
+    """The numbers that are asked for first."""
+    body = []
+    for key in KEY_NUMBERS:
+        values = [entry.get(key) for entry in summaries]
+        if any(value is not None for value in values):
+            words, unit, _ = QUANTITIES[key]
+            widths = [(entry.get("confidence") or {}).get(key) for entry in summaries]
+            body.append(_number(words, unit, values, widths, None, []))
+    heads = _heads("quantity", *_columns(names), "unit")
+    return f"<table>{heads}{''.join(body)}</table>" if body else ""
+
+
+def _columns(names: Sequence[str]) -> tuple[str, ...]:
+    return (*names, "difference") if len(names) > 1 else ("value",)
 
 
 def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases: Sequence[Mapping[str, Bias]]) -> str:
@@ -69,9 +165,9 @@ def numbers(summaries: Sequence[Mapping[str, Any]], names: Sequence[str], biases
             body.append(_number(words, unit, values, widths, meaning, _said(key, values, biases, names)))
     measured = dict.fromkeys(bias.measured for listed in biases for bias in listed.values())
     notes += [f"<dt>What the integration's accuracy does to numbers</dt><dd>{safe(text)}</dd>" for text in measured]
-    heads = _heads("quantity", *(names if len(summaries) > 1 else ("value",)), "unit", "what it means")
+    heads = _heads("quantity", *_columns(names), "unit", "what it means")
     listed = f"<dl class='notes'>{''.join(notes)}</dl>" if notes else ""
-    return f"<h2>Numbers</h2><table>{heads}{''.join(body)}</table>{listed}"
+    return f"<details><summary>All numbers and what they mean</summary><table>{heads}{''.join(body)}</table>{listed}</details>"
 
 
 def _notes(words: str, values: Sequence[Any], names: Sequence[str]) -> list[str]:
@@ -95,7 +191,7 @@ def _said(key: str, values: Sequence[Any], biases: Sequence[Mapping[str, Bias]],
 
 
 def _parts(words: str, unit: str, values: Sequence[Any]) -> list[str]:
-    rows = [f"<tr><th colspan='{3 + len(values)}'>{safe(words)}</th></tr>"]
+    rows = [f"<tr><th colspan='{3 + len(values) + (len(values) > 1)}'>{safe(words)}</th></tr>"]
     for part in dict.fromkeys(part for value in values if value for part in value):
         entries = [(value or {}).get(part) for value in values]
         if any(entries):
@@ -104,7 +200,12 @@ def _parts(words: str, unit: str, values: Sequence[Any]) -> list[str]:
 
 
 def _number(
-    words: str, unit: str, values: Sequence[Any], widths: Sequence[float | None], meaning: str, bias: Sequence[str]
+    words: str,
+    unit: str,
+    values: Sequence[Any],
+    widths: Sequence[float | None],
+    meaning: str | None,
+    bias: Sequence[str],
 ) -> str:
     factor, unit = _scale(unit, values)
     shown = [
@@ -116,11 +217,11 @@ def _number(
         shown = [life_text(value) if isinstance(value, float) else "-" for value in values]
     differs = " class='differs'" if len(set(shown)) > 1 else ""
     cells = "".join(f"<td class='n {_kind(text)}'>{safe(text)}</td>" for text in shown)
+    if len(values) > 1:
+        cells += f"<td class='n number'>{safe(difference(values[0], values[1], *widths))}</td>"
     said = "".join(f"<span class='bias'>{safe(text)}</span>" for text in bias)
-    return (
-        f"<tr{differs}><td class='q'>{safe(words.strip())}</td>{cells}<td class='u'>{safe(unit)}</td>"
-        f"<td class='m'>{safe(meaning)}{said}</td></tr>"
-    )
+    meant = "" if meaning is None else f"<td class='m'>{safe(meaning)}{said}</td>"
+    return f"<tr{differs}><td class='q'>{safe(words.strip())}</td>{cells}<td class='u'>{safe(unit)}</td>{meant}</tr>"
 
 
 SCALES: Final[Mapping[str, tuple[tuple[float, float, str], ...]]] = {
@@ -165,4 +266,4 @@ def inputs(listed_inputs: Sequence[list[Row]], names: Sequence[str]) -> str:
         "<p>Marked as <b>assumed</b>: no source gives the value, it is the package's default. "
         "Marked as <b>estimated</b>: derived from the catalogue's numbers.</p>"
     )
-    return f"<h2>Inputs</h2>{note}{''.join(tables)}"
+    return f"{''.join(tables)}{note}"

@@ -17,6 +17,7 @@ from trbdyn.results.fields import contacts
 from trbdyn.run import estimate
 from trbdyn.run.bias import biases, preset_of
 from trbdyn.run.torque_laws import straight_rollers, torque_laws
+from trbdyn.standards.sheet import life_text
 
 if TYPE_CHECKING:
     from trbdyn.results.result import Result
@@ -32,8 +33,22 @@ STRAIGHT: Final = 15.0
 """Angle from straight below up to which a cage hangs straight below the axis (deg)."""
 FATIGUE_LIMIT: Final = 1.5e9
 """Largest Hertz pressure that clean, well made bearing steel is held to carry for ever (Pa): ISO 281:2007, 9.3.4.2."""
+NORMAL_SAFETY: Final = 1.5
+"""Static safety C0/P0 that ISO 76:2006 asks of roller bearings in normal operation."""
 STATIC_LIMIT: Final = 4.0e9
 """Hertz pressure of the static rating of roller bearings (Pa): ISO 76:2006."""
+SHORT_LIFE: Final = 3000.0
+"""Life (h) below which even machines that run now and then are not designed."""
+USUAL_LIFE: Final = 20_000.0
+"""Life (h) from which on a bearing suits machines of eight hours a day; both as in makers' tables of specification lives: SKF,
+Rolling Bearings, 2018, selecting bearing size, table 1: 300 to 3000 h and 20 000 to 30 000 h.
+"""
+LIVES: Final = {
+    "basic_life_hours": "L10h",
+    "modified_life_hours": "Lnmh",
+    "reference_life_hours": "L10rh",
+    "modified_reference_life_hours": "Lnmrh",
+}
 CLOSURE_GOOD: Final = 1e-3
 """Residual of the energy audit over the dissipated work up to which the energy adds up well."""
 CLOSURE_LIMIT: Final = 1e-2
@@ -44,16 +59,16 @@ Sentence = tuple[str, str, str]
 
 
 def verdict(result: Result, numbers: dict[str, Any]) -> list[Sentence]:
-    """Sentences on cage, hits, torque, films, pressure, energy and exactness; those that the recorded groups allow.
+    """Sentences on life, cage, hits, torque, films, pressure, energy and exactness; those that the recorded groups allow.
 
     Parameters
     ----------
     result : Result
         The run.
     numbers : dict
-        Its summary.
+        Its summary; with the lives of the run's records where the summary has none, as speed or loads change.
     """
-    parts = (_end, _whirl, _hits, _torque, _films, _pressure, _energy, _exactness)
+    parts = (_end, _life, _static, _pressure, _films, _torque, _whirl, _hits, _energy, _exactness)
     return [sentence for part in parts if (sentence := part(result, numbers)) is not None]
 
 
@@ -110,6 +125,36 @@ def _end(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     )
 
 
+def _life(result: Result, numbers: dict[str, Any]) -> Sentence | None:
+    found = {name: numbers[name] for name in LIVES if numbers.get(name) is not None}
+    if not found:
+        return None
+    best = list(found)[-1]
+    shortest = min(found, key=lambda name: found[name])
+    hours = found[shortest]
+    rest = "; ".join(f"{LIVES[name]} {life_text(found[name])} h" for name in found if name != best)
+    said = f"{LIVES[best]}, which counts the most of what acts, is {life_text(found[best])} h{f' ({rest})' if rest else ''}."
+    judged = f"It is judged by the shortest, {LIVES[shortest]}: " if len(found) > 1 else ""
+    if hours >= USUAL_LIFE:
+        return "good", "Life", f"{said} {judged}machines of eight hours a day ask for {USUAL_LIFE:g} h or more."
+    if hours >= SHORT_LIFE:
+        return (
+            "care",
+            "Life",
+            f"{said} {judged}less than the {USUAL_LIFE:g} h that machines of eight hours a day ask for.",
+        )
+    return "bad", "Life", f"{said} {judged}less than the {SHORT_LIFE:g} h that even machines for rare use ask for."
+
+
+def _static(result: Result, numbers: dict[str, Any]) -> Sentence | None:
+    safety = numbers.get("static_safety")
+    if safety is None or safety >= NORMAL_SAFETY:
+        return None
+    if safety >= 1.0:
+        return "care", "Static safety", f"C0/P0 is {safety:.3g}: ISO 76 asks for {NORMAL_SAFETY:g} in normal operation."
+    return "bad", "Static safety", f"C0/P0 is {safety:.3g}: below 1 the raceways keep dents (ISO 76)."
+
+
 def _averages(numbers: dict[str, Any]) -> str:
     return f"Averages are taken from {numbers['window_start']:.4g} to {numbers['window_end']:.4g} s"
 
@@ -117,7 +162,10 @@ def _averages(numbers: dict[str, Any]) -> str:
 def _at(numbers: dict[str, Any], name: str) -> str:
     """When an extreme was, with a space before it."""
     time = numbers.get(f"{name}_time")
-    return "" if time is None else f" (at {time:.4g} s)"
+    if time is None:
+        return ""
+    early = time < 1e-3 * (numbers.get("duration") or 0.0)
+    return " (at the start)" if early else f" (at {time:.4g} s)"
 
 
 def _needed(numbers: dict[str, Any]) -> str:
@@ -311,14 +359,13 @@ def _films(result: Result, numbers: dict[str, Any]) -> Sentence | None:
     elif not _whole_turn(numbers):
         return _too_short("Films", number)
     full = result.scene.effects.friction.lambda_full
-    limit = f"effects.friction.lambda_full = {full:.3g}"
     if value >= full:
-        return "good", "Films keep the surfaces apart", f"{number} From {limit} on, the film carries all."
+        return "good", "Films keep the surfaces apart", f"{number} From {full:.3g} on, the film carries all."
     if value >= MIXED_FILM:
         return (
             "care",
             "Films carry, with some contact",
-            f"{number} Below {limit} the highest asperities touch and add boundary friction.",
+            f"{number} Below {full:.3g} the highest asperities touch and add boundary friction.",
         )
     if mean >= full:
         return (

@@ -14,6 +14,7 @@ from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
+from trbdyn.results.export import export
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
 from trbdyn.results.result import Result
 from trbdyn.results.result import load as load_bearing
@@ -30,10 +31,12 @@ TABLE: Final = {
     "orbit_rms_over_cpr": "orbit radius of the cage / Cpr",
     "axis_distance_over_cpr": "distance of the cage from the axis / Cpr",
     "pocket_force_peak": "pocket force, largest, N",
-    "inner_pressure_max": "largest pressure, inner raceway, Pa",
+    "inner_pressure_max": "largest pressure, inner raceway, MPa",
     "energy_closure": "energy audit: residual / dissipated",
 }
 """What the table of an assembly shows of each bearing: names in `AssemblyResult.summary`, and what they are called."""
+SCALES: Final = {"MPa": 1e-6}
+"""Factors of the units at the end of a line of that table."""
 
 
 OF_ALL: Final = ("success", "message", "revolutions", "duration")
@@ -92,7 +95,8 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         for name, text in TABLE.items():
             values = [one.get(name) for one in numbers.values()]
             if any(value is not None for value in values):
-                rows.append((text, *("-" if value is None else f"{value:.5g}" for value in values)))
+                factor = SCALES.get(text.rpartition(", ")[2], 1.0)
+                rows.append((text, *("-" if value is None else f"{factor * value:.5g}" for value in values)))
         shaft = 1e6 * self.shaft_position
         mean = shaft.mean(axis=0)
         notes = (
@@ -150,6 +154,19 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         for result in self.values():
             result.moved(path)
         return self
+
+    def export(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
+        """Write the records of all bearings for another program, as `Result.export` does for one.
+
+        Parameters
+        ----------
+        path : path-like
+            ``NAME.csv``: columns begin with the name of their bearing. ``NAME.mat``: a structure for each bearing.
+            ``NAME.vtkhdf``: all bearings in the axes of the shaft.
+        overwrite : bool
+            Replace a file that is there; never the file of this result.
+        """
+        return export(self, path, assembly=self.assembly, overwrite=overwrite)
 
     def loads(self, name: str) -> dict[str, Array]:
         """Loads of the shaft on a bearing at each record (N), shape (T,).

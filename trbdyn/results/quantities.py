@@ -206,7 +206,7 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "static_safety": Quantity(
         "static safety C0/P0 (ISO 76)",
         "",
-        "Static rating over static load: below 1 the raceways keep dents, quiet running asks for 1 to 2.",
+        "Static rating over static load: below 1 the raceways keep dents, normal operation asks for 1.5 (ISO 76).",
     ),
     "viscosity_ratio": Quantity(
         "viscosity ratio kappa (ISO 281)",

@@ -18,6 +18,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.derived import Derived
+from trbdyn.results.export import export
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
@@ -430,6 +431,39 @@ class Result(Derived, Displayed):
             coordinates["roller"] = np.arange(self.n_rollers)
         attributes = {"success": int(self.success), "message": self.message}
         return xarray.Dataset(variables, coords=coordinates, attrs=attributes)
+
+    def export(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
+        """Write the records for another program; the ending of the file's name says for which.
+
+        Parameters
+        ----------
+        path : path-like
+            ``NAME.csv``: a table with a row for each record. ``NAME.mat``: MATLAB. ``NAME.vtkhdf``: ParaView from 5.12 on;
+            centres of rollers and cage that move in time, with every number of a roller and the forces of the raceways on it.
+        overwrite : bool
+            Replace a file that is there; never the file of this result.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            If the ending is another one, or VTK lacks a recorded group.
+        FileError
+            If the file is there and shall not be replaced, or cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile, trbdyn as trb
+        >>> result = trb.Simulation(trb.cases.scene_30310(3000.0, 4930.0)).run(revolutions=0.1)
+        >>> path = result.export(tempfile.mkdtemp() + "/run.csv")
+        >>> path.read_text().startswith("time [s],")
+        True
+        """
+        return export(self, path, overwrite=overwrite)
 
 
 def load(path: str | os.PathLike[str], *, bearing: str = "") -> Result:

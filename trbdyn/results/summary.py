@@ -28,7 +28,7 @@ from trbdyn.results.confidence import confidence
 from trbdyn.results.fields import carrying
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.ranges import rolling_note
-from trbdyn.standards.sheet import at_equilibrium, sheet
+from trbdyn.standards.sheet import Rating, at_equilibrium, life_text, sheet
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -86,8 +86,7 @@ def summary(result: Result) -> Summary:
     if len(result) > 1:
         out |= _motion(result)
     out |= _running_plays(result.scene) | _deflection(result)
-    # the ring of a bearing on a shaft moves: what it carries is known from its records alone (trbdyn.rating of the result)
-    out |= {} if "assembly" in result.meta else _ratings(result.scene)
+    out |= ratings(steady_sheet(result))
     out |= _cost(result)
     out["accuracy_note"] = result.meta.get("accuracy") or None
     return Summary({name: clean(out.get(name)) for name in QUANTITIES})
@@ -113,16 +112,24 @@ def _deflection(result: Result) -> dict[str, Any]:
     return {"cage_deflection": largest}
 
 
-def _ratings(scene: Scene) -> dict[str, Any]:
-    """Numbers of the engineer's sheet (`trbdyn.rating`) where speed and loads are constant; its equilibrium takes some 10 ms."""
-    if (
-        not all(is_constant(quantity) for quantity in scene.ring_quantities().values())
-        or scene.rotating_load is not None
-    ):
-        return {}
+def steady_sheet(result: Result) -> Rating | None:
+    """The engineer's sheet (`trbdyn.rating`) of a scene whose speed and loads are constant; its equilibrium takes some 10 ms.
+
+    None where they change, and of a bearing on a shaft, whose scene has no loads: there the records make the sheet.
+    """
+    scene = result.scene
+    constant = all(is_constant(quantity) for quantity in scene.ring_quantities().values())
+    if not constant or scene.rotating_load is not None or "assembly" in result.meta:
+        return None
     try:
-        found = sheet(scene, at_equilibrium(scene))
+        return sheet(scene, at_equilibrium(scene))
     except TrbError:
+        return None
+
+
+def ratings(found: Rating | None) -> dict[str, Any]:
+    """Numbers of a sheet by their names in a summary."""
+    if found is None:
         return {}
     return {"basic_life_hours": found.life_hours} | {name: getattr(found, name) for name in RATINGS}
 
@@ -318,9 +325,8 @@ def torque_note(window: Result, inner: float, outer: float) -> str | None:
     effects = window.scene.effects
     if effects.films and effects.rolling_resistance and not effects.rolling_pressure_force:
         return (
-            "rolling resistance acts without the film's pressure force on the roller (effects.rolling_pressure_force is off, as "
-            "in the paper), so the moments on a roller balance only if its two raceways carry different torques; "
-            "Effects.standard() has that force, and both rings agree"
+            "rolling resistance acts without the film's pressure force on the roller, as in the paper, so moments on a roller "
+            "balance only if its raceways carry different torques; the standard effects have that force, and both rings agree"
         )
     return (
         "rollers and cage speed up or slow down within the window, "
@@ -407,7 +413,8 @@ def shown(values: Mapping[str, Any]) -> Shown:
                 (f"    {part.replace('_', ' ')}", _number(entry), unit) for part, entry in value.items() if entry
             )
         else:
-            rows.append((words, _number(value, (values.get("confidence") or {}).get(name)), unit, name))
+            number = _number(value, (values.get("confidence") or {}).get(name))
+            rows.append((words, life_text(value) if unit == "h" else number, unit, name))
     return Shown(rows=tuple(rows), head=("quantity", "value", "unit", "name"), notes=tuple(notes))
 
 

@@ -10,10 +10,11 @@ from trbdyn.base.expected import expect
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.motion import History, value_at
 from trbdyn.model.scene import Scene
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
 from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, lamina_loads, ring_loads, sheet
-from trbdyn.standards.system import SystemRating, system_sheet
+from trbdyn.standards.system import SystemRating, system_of, system_sheet
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 
 RECORDS: Final = 60
@@ -33,7 +34,7 @@ def rating(
 
 @overload
 def rating(
-    subject: Assembly | ShaftEquilibrium,
+    subject: Assembly | AssemblyResult | ShaftEquilibrium,
     *,
     cleanliness: str | None = None,
     filtered: bool | None = None,
@@ -43,7 +44,7 @@ def rating(
 
 
 def rating(
-    subject: Scene | Result | Assembly | ShaftEquilibrium,
+    subject: Scene | Result | Assembly | AssemblyResult | ShaftEquilibrium,
     *,
     cleanliness: str | None = None,
     filtered: bool | None = None,
@@ -58,9 +59,9 @@ def rating(
 
     Parameters
     ----------
-    subject : Scene, Result, Assembly or ShaftEquilibrium
-        A result needs the groups cage and rollers. Of an assembly each bearing has a sheet under the loads of the equilibrium,
-        and the whole has lives.
+    subject : Scene, Result, Assembly, AssemblyResult or ShaftEquilibrium
+        A result needs the groups cage and rollers. Of an assembly each bearing has a sheet, under the loads of the equilibrium or
+        of its run, and the whole has lives.
     cleanliness : {'13/10', '15/12', '17/14', '19/16', '21/18'}, optional
         Particles in the oil, the last two numbers of ISO 4406; that of the scene's lubricant by default, and 17/14 where that
         has none, which is said with what a neighbouring class gives.
@@ -102,11 +103,13 @@ def rating(
         "contamination": contamination,
         "reliability": reliability,
     }
-    expect("subject", subject, Scene, Result, Assembly, ShaftEquilibrium)
+    expect("subject", subject, Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium)
     if isinstance(subject, Scene):
         return sheet(subject, at_equilibrium(subject), **options)
     if isinstance(subject, Result):
         return sheet(subject.scene, of_run(subject), **options)
+    if isinstance(subject, AssemblyResult):
+        return system_of({name: sheet(one.scene, of_run(one), **options) for name, one in subject.items()})
     if isinstance(subject, ShaftEquilibrium):
         return system_sheet(subject, **options)
     return system_sheet(equilibrium(subject), **options)

@@ -48,6 +48,8 @@ class RatingRow:
         Its unit; empty for pure numbers.
     note : str
         Where it comes from, or what it means.
+    longest : float
+        Value beyond which no number is shown.
     """
 
     name: str
@@ -56,11 +58,14 @@ class RatingRow:
     value: float | None
     unit: str
     note: str
+    longest: float = math.inf
 
     @property
     def shown(self) -> str:
         """The value as text, four digits; a life beyond a million hours as such."""
-        return life_text(self.value) if self.unit == "h" else _digits(self.value)
+        if self.unit == "h":
+            return life_text(self.value)
+        return _digits(self.value) if self.value is None or self.value <= self.longest else f">{self.longest:.4g}"
 
 
 RATED_AS_RADIAL: Final = 1e-3
@@ -187,8 +192,17 @@ class Rating(Displayed):
     @property
     def rows(self) -> tuple[RatingRow, ...]:
         """Every number with words, symbol, unit and note."""
+        turns = 60e-6 * LONGEST_LIFE * self.speed_rpm
         return tuple(
-            RatingRow(name, words, symbol, getattr(self, name), unit, self.notes.get(name, ""))
+            RatingRow(
+                name,
+                words,
+                symbol,
+                getattr(self, name),
+                unit,
+                self.notes.get(name, ""),
+                turns if unit == "million revolutions" and turns > 0.0 else math.inf,
+            )
             for name, (words, symbol, unit) in _ROWS.items()
         )
 
@@ -219,8 +233,10 @@ WHICH_LIFE: Final = (
 
 
 def life_text(hours: float | None) -> str:
-    """A life (h) as text, four digits."""
-    return ">1e6" if hours is not None and hours > LONGEST_LIFE else _digits(hours)
+    """A life (h) as text, four digits that count, without an exponent."""
+    if hours is None:
+        return "-"
+    return ">1e6" if hours > LONGEST_LIFE else f"{float(f'{hours:.4g}'):g}"
 
 
 def _digits(value: float | None) -> str:

@@ -77,7 +77,11 @@ def system_life(lives: Sequence[float | None]) -> float | None:
 
 def system_sheet(found: ShaftEquilibrium, **options: Any) -> SystemRating:
     """Sheets of all bearings of a shaft in equilibrium; see `trbdyn.rating`."""
-    sheets = {one.name: sheet(one.scene, loading_of(one), **options) for one in found.bearings}
+    return system_of({one.name: sheet(one.scene, loading_of(one), **options) for one in found.bearings})
+
+
+def system_of(sheets: dict[str, Rating]) -> SystemRating:
+    """The sheets of all bearings of a shaft, and the lives of the whole."""
     unknown = {life: any(_lacks(one, life) for one in sheets.values()) for life in _LIVES}
     lives = {
         life: None if unknown[life] else system_life([getattr(one, life) for one in sheets.values()]) for life in _LIVES
