@@ -29,9 +29,9 @@ def pair() -> trb.AssemblyResult:
 def test_a_table(result: trb.Result, tmp_path: Path) -> None:
     table = pandas.read_csv(result.export(tmp_path / "run.csv"))
     assert next(iter(table)) == "time [s]"
-    assert np.array_equal(table["time [s]"], result.time)
-    assert np.array_equal(table["outer_load[3] [N]"], result.outer_load[:, 3])
-    assert np.array_equal(table["roller_position[2].y [m]"], result.roller_position[:, 2, 1])
+    np.testing.assert_allclose(table["time [s]"], result.time, rtol=1e-14)
+    np.testing.assert_allclose(table["outer_load[3] [N]"], result.outer_load[:, 3], rtol=1e-14)
+    np.testing.assert_allclose(table["roller_position[2].y [m]"], result.roller_position[:, 2, 1], rtol=1e-14)
     assert len(table.columns) == sum(result[field.name][0].size for field in result.fields)
 
 

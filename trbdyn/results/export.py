@@ -43,8 +43,6 @@ def export(
 
 def _csv(bearings: Mapping[str, Result], assembly: Any) -> bytes:
     """A row for each record and a column for each number, its unit behind its name."""
-    import pandas
-
     columns: dict[str, Array] = {}
     for bearing, result in bearings.items():
         before = f"{bearing}." if bearing else ""
@@ -60,7 +58,10 @@ def _csv(bearings: Mapping[str, Result], assembly: Any) -> bytes:
                     for k, dim in zip(place, field.dims, strict=True)
                 )
                 columns[f"{before}{field.name}{index}{unit}"] = values[(slice(None), *place)]
-    return bytes(pandas.DataFrame(columns).to_csv(index=False, lineterminator="\n").encode())
+    paper = io.StringIO()
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(paper, table, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+    return paper.getvalue().encode()
 
 
 def _matlab(bearings: Mapping[str, Result], assembly: Any) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Final, overload
 
 import numpy as np
@@ -108,7 +109,7 @@ def rating(
         return sheet(subject, at_equilibrium(subject), **options)
     if isinstance(subject, Result):
         return sheet(subject.scene, of_run(subject), **options)
-    if isinstance(subject, AssemblyResult):
+    if isinstance(subject, Mapping):
         return system_of({name: sheet(one.scene, of_run(one), **options) for name, one in subject.items()})
     if isinstance(subject, ShaftEquilibrium):
         return system_sheet(subject, **options)
