@@ -10,7 +10,8 @@
 #   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make cross      the core and its C tests for Windows, aarch64 and macOS; where a system can be had here, the tests run; minutes long
-#   make docs       the documentation site in build/docs; its code is run, warnings are errors
+#   make docs       the documentation site in build/docs, ready to host (make site is the same); its code is run, and a page whose inputs
+#                   are those of the last run is not run again; warnings are errors
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
 #   make install    only the environment and the package
@@ -42,14 +43,16 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: cross demo docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
+.PHONY: cross demo site docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
 	$(PY) -m trbdyn demo -o demo --overwrite
 
+site: docs
+
 docs: install $(VENV)/.docs
-	$(PY) -m sphinx -q -W --keep-going -b html -d build/docs-cache docs build/docs
+	$(PY) -m sphinx -W --keep-going -b html -d build/docs-cache docs build/docs
 	@echo "build/docs/index.html"
 
 wheels: install

@@ -1,10 +1,13 @@
 """How the documentation site is built: MyST pages, code cells executed at build, warnings are errors (`make docs`)."""
 
+import hashlib
 import logging
 import os
 import sys
 import tempfile
 from pathlib import Path
+
+import numpy as np
 
 import trbdyn
 
@@ -38,7 +41,14 @@ myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 exclude_patterns = ["_build", "extensions", "static"]
 
-nb_execution_mode = "force"
+# A page is run once, and its outputs are kept as long as its cells, the package and its core are the same.
+_package = Path(trbdyn.__file__).parent
+_inputs = hashlib.sha256()
+for _file in sorted(entry for entry in _package.rglob("*") if entry.is_file() and entry.suffix not in (".pyc", ".so")):
+    _inputs.update(str(_file.relative_to(_package)).encode() + b"\0" + _file.read_bytes())
+_inputs.update(Path(trbdyn._core.__file__).read_bytes() + np.__version__.encode())
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(Path(__file__).parents[1] / "build" / "docs-cells" / _inputs.hexdigest()[:16])
 nb_execution_raise_on_error = True
 nb_execution_timeout = 600
 nb_execution_show_tb = True
