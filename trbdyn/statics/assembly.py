@@ -372,7 +372,8 @@ class _Search:
         if not longest < math.inf:
             return None
         try:
-            other = self.system.at(balance.place + min(1.0, LONGEST_STEP / max(longest, 1e-30)) * step, self.reference)
+            share = min(1.0, LONGEST_STEP / max(longest, 1e-30))
+            other = self.system.at(balance.place + share * step, self.reference, near=balance.answers)
         except _core.CoreLoadError:
             return None
         lower = other.energy < balance.energy - 1e-13 * abs(balance.energy)

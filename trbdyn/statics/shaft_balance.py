@@ -8,6 +8,7 @@ of its rollers at speed, found by the core.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 from typing import Any, Final
@@ -15,12 +16,17 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn import _core
 from trbdyn.model.assembly import Assembly, ShaftBearing
 from trbdyn.model.motion import value_at
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import nominal_angles
 
 Array = NDArray[np.float64]
+
+MOST_FOLLOW: Final = 100.0
+"""Largest motion of a roller, over that of its ring, by which it follows the ring. Where contacts hardly touch, slopes give more;
+between cone and cup, whose slopes differ by a few degrees, a roller goes some ten times as far at most."""
 
 _ALONG: Final = np.array([0.0, 0.0, 1.0])
 
@@ -37,6 +43,8 @@ class Answer:
         Force and moment that hold the inner ring there (N, N m).
     stiffness : ndarray, shape (5, 5)
         Slopes of the reaction with the displacement.
+    rollers : ndarray, shape (Z, 4)
+        Offsets of each roller: radius, axial position (m), tilt, skew (rad).
     follow : ndarray, shape (Z, 4, 5)
         How each roller follows the ring.
     loads : ndarray, shape (Z, 3)
@@ -48,6 +56,7 @@ class Answer:
     displacement: Array
     reaction: Array
     stiffness: Array
+    rollers: Array
     follow: Array
     loads: Array
     energy: float
@@ -115,28 +124,53 @@ class ShaftOnBearings:
             moment = np.array([*(value_at(part, time) for part in load.moment), 0.0])
             self.loads.append((load.position, np.array([*load.offset, 0.0]), force, moment))
 
-    def answer(self, index: int, displacement: Array) -> Answer:
+    def answer(self, index: int, displacement: Array, near: Answer | None = None) -> Answer:
         """What a bearing does where its inner ring stands at a displacement (m, rad).
+
+        Its rollers are searched for from where they follow the ring from a place `near`, and else from their places without load.
 
         Raises
         ------
         CoreLoadError
             If its rollers have no equilibrium there.
         """
+        if near is not None:
+            with contextlib.suppress(_core.CoreLoadError):
+                return self._solved(index, displacement, self._followed(index, displacement, near).ravel())
+        return self._solved(index, displacement, None)
+
+    def _followed(self, index: int, displacement: Array, near: Answer) -> Array:
+        """Where the rollers follow the ring from a place close by. One that hardly touches stays."""
+        bearing = self.assembly.bearings[index].bearing
+        radius, half = 0.5 * bearing.pitch_diameter, 0.5 * bearing.roller.effective_length
+        moved = displacement - near.displacement
+        follows = near.follow @ moved
+        longest = np.max(np.abs(moved * [1.0, 1.0, 1.0, radius, radius]))
+        usual = np.max(np.abs(follows * [1.0, 1.0, half, half]), axis=1) < MOST_FOLLOW * longest
+        return near.rollers + follows * usual[:, None]
+
+    def _solved(self, index: int, displacement: Array, rollers: Array | None) -> Answer:
         turned = -self.assembly.bearings[index].side
         found: dict[str, Any] = self._models[index].equilibrium(
-            np.zeros(5), np.ones(5), displacement, turned * self.speed, self._angles[index], None, True, True
+            np.zeros(5), np.ones(5), displacement, turned * self.speed, self._angles[index], rollers, True, True
         )
         return Answer(
             displacement=displacement,
             reaction=found["reaction"],
             stiffness=found["stiffness"],
+            rollers=found["rollers"],
             follow=found["follow"].reshape(-1, 4, 5),
             loads=found["loads"],
             energy=found["energy"],
         )
 
-    def at(self, place: Array, reference: float, answers: tuple[Answer, ...] | None = None) -> Balance:
+    def at(
+        self,
+        place: Array,
+        reference: float,
+        answers: tuple[Answer, ...] | None = None,
+        near: tuple[Answer, ...] | None = None,
+    ) -> Balance:
         """Forces, slopes and potential where the shaft's axis stands at a place.
 
         Parameters
@@ -147,6 +181,8 @@ class ShaftOnBearings:
             Position of the reference point along the shaft (m).
         answers : tuple of Answer, optional
             Of the bearings at this place, if they are known.
+        near : tuple of Answer, optional
+            Of the bearings at a place close by, from where their rollers follow.
 
         Raises
         ------
@@ -160,7 +196,8 @@ class ShaftOnBearings:
             arm = one.centre_plane - reference
             to_ring = ring_slopes(one, arm, turning, place.size, self._spring(index))
             where = self._ring_place(index, place, arm, axis)
-            answer = self.answer(index, where) if answers is None else answers[index]
+            guess = None if near is None else near[index]
+            answer = self.answer(index, where, guess) if answers is None else answers[index]
             given.append(answer)
             turn3, turn2 = turns_of(one)
             change = answer.stiffness @ to_ring
