@@ -187,7 +187,9 @@ def share_carried(assembly: trb.Assembly) -> float:
         lever = offset + np.array([0.0, 0.0, position - reference])
         load += np.concatenate([force, (np.cross(lever, force) + moment)[:2]])
     bounds = [(None if pulls else 0.0, None) for pulls in either] + [(0.0, 10.0)]
-    limits, most, first = [], [], 0
+    limits: list[Array] = []
+    most: list[float] = []
+    first = 0
     for one, (own, _) in zip(assembly.bearings, parts, strict=True):
         if one.spring is not None:
             row = np.zeros(len(bounds))
