@@ -1,12 +1,13 @@
 """Ordinary scenes, drawn by a seed: whether any is slower than real time, and whether all are right.
 
-    python benchmarks/ordinary.py [--seed 0] [--scenes 60] [--quick] [--json FILE]
+    python benchmarks/ordinary.py [--seed 0] [--scenes 60] [--beside multirate] [--quick] [--json FILE]
 
 Bearings are those of catalogue pages, and the two that are shipped; 400 to 7000 rpm and loads of 2 to 40 % of the dynamic rating
 C, each drawn evenly in its logarithm, half of the scenes with a radial load of 0.3 to 3 times the axial one; effects and
 tolerances are those that a user gets without asking. Each scene runs for a turn that is forgotten, then for another one in
 which processor time and steps are counted. It is judged against a run of the same part with the tolerances of `reference`,
-exact forces of raceways and ribs and no tangents: the mean loss.
+exact forces of raceways and ribs and no tangents: the mean loss. With ``--beside`` another integrator takes the same part in
+turns with the usual one, a tenth of it at a time, and is judged likewise.
 """
 
 from __future__ import annotations
@@ -49,6 +50,16 @@ COLUMNS: Final = {
     "loss_off": "1: its difference from the tight run, over it",
     "closure": "1: residual of the energy audit over the dissipated work",
     "warnings": "1: warnings of the run",
+    "time_ratio": "1: processor time of the other integrator over that of the usual one, median of ten parts in turns",
+    "body_ratio": "1: steps of bodies of the usual integrator over those of the other one",
+    "beside_loss_off": "1: difference of the other integrator's loss from the tight run, over it",
+    "beside_closure": "1: its residual of the energy audit over the dissipated work",
+    "beside_warnings": "1: warnings of its run",
+    "mean_time_ratio": "1: geometric mean of the ratios of time",
+    "worst_time_ratio": "1: largest of them",
+    "mean_body_ratio": "1: geometric mean of the ratios of steps",
+    "worst_beside_loss_off": "1: largest difference of its loss from the tight run",
+    "median_beside_loss_off": "1: median of these differences",
     "scenes": "1: scenes",
     "slower": "1: of them slower than real time",
     "median_factor": "1: median of their real-time factors",
@@ -104,6 +115,25 @@ def measured(scene: trb.Scene, settle: float, turns: float) -> tuple[dict[str, A
     return found | {"ms": 1e3 * spent * turn / bearing, "real_time_factor": bearing / spent}, state
 
 
+def in_turns(scene: trb.Scene, settle: float, turns: float, other: str) -> dict[str, float]:
+    """Time and steps of another integrator beside the usual one; which comes first alternates."""
+    sims = [trb.Simulation(scene), trb.Simulation(scene, integrator=other)]
+    turn = 60.0 / float(scene.speed_rpm)
+    spent: tuple[list[float], list[float]] = ([], [])
+    for sim in sims:
+        while sim.time < settle * turn:
+            sim.step()
+    before = [sim.statistics["body_steps"] for sim in sims]
+    for part in range(1, 11):
+        for k in (0, 1) if part % 2 else (1, 0):
+            began = time.thread_time()
+            while sims[k].time < (settle + 0.1 * part * turns) * turn:
+                sims[k].step()
+            spent[k].append(time.thread_time() - began)
+    steps = [sim.statistics["body_steps"] - was for sim, was in zip(sims, before, strict=True)]
+    return {"time_ratio": float(np.median(np.divide(spent[1], spent[0]))), "body_ratio": steps[0] / steps[1]}
+
+
 NAMES: Final = {"steps": "steps", "evaluations": "rhs_evaluations"}
 TIGHT: Final[dict[str, Any]] = {"accuracy": "reference", "rings_share": 0.0}
 
@@ -122,6 +152,9 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--scenes", type=int, default=60)
     parser.add_argument("--unjudged", action="store_true", help="no tight runs")
+    parser.add_argument(
+        "--beside", choices=("multirate", "erk"), help="another integrator, in turns with the usual one"
+    )
     options = parser.parse_args(arguments)
     report = common.Report("ordinary", options, COLUMNS)
     count, settle, turns = (6, 0.3, 0.1) if options.quick else (options.scenes, 1.0, 1.0)
@@ -136,6 +169,12 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
                 loss, closure, warned = loss_of(scene, state, duration, {})
                 tight, _, _ = loss_of(scene, state, duration, TIGHT)
                 found |= {"loss": loss, "loss_off": abs(loss / tight - 1.0), "closure": closure, "warnings": warned}
+            if options.beside:
+                found |= in_turns(scene, settle, turns, options.beside)
+            if options.beside and not options.unjudged:
+                loss, closure, warned = loss_of(scene, state, duration, {"integrator": options.beside})
+                off = abs(loss / tight - 1.0)
+                found |= {"beside_loss_off": off, "beside_closure": closure, "beside_warnings": warned}
         report.add(scene=number, **row, **found)
         print(common.table(report.results[-1:], SHOWN).splitlines()[-1], flush=True)
     factors = np.array([row["real_time_factor"] for row in report.results])
@@ -154,7 +193,18 @@ def main(arguments: Sequence[str] | None = None) -> common.Report:
             "median_loss_off": float(np.median(off)),
             "warned": sum(row["warnings"] > 0 for row in report.results),
         }
-    print("\n" + common.table(report.results, SHOWN) + "\n\n" + common.table([report.summary], report.summary))
+    if options.beside:
+        ratios, bodies = (np.array([row[name] for row in report.results]) for name in ("time_ratio", "body_ratio"))
+        report.summary |= {
+            "mean_time_ratio": float(np.exp(np.log(ratios).mean())),
+            "worst_time_ratio": float(ratios.max()),
+            "mean_body_ratio": float(np.exp(np.log(bodies).mean())),
+        }
+    if options.beside and not options.unjudged:
+        off = np.array([row["beside_loss_off"] for row in report.results])
+        report.summary |= {"worst_beside_loss_off": float(off.max()), "median_beside_loss_off": float(np.median(off))}
+    shown = (*SHOWN, *BESIDE) if options.beside else SHOWN
+    print("\n" + common.table(report.results, shown) + "\n\n" + common.table([report.summary], report.summary))
     report.finish()
     return report
 
@@ -174,6 +224,8 @@ SHOWN: Final = (
     "closure",
     "warnings",
 )
+
+BESIDE: Final = ("time_ratio", "body_ratio")
 
 if __name__ == "__main__":
     main()

@@ -233,6 +233,35 @@ static void test_touch(void)
   drop(&b);
 }
 
+/* Rollers that vibrate while the cage flies: they need far more steps than it, and none is ahead by more than is kept, so that the state at the begin of
+ * the last step can still be had. */
+static void test_lead(void)
+{
+  bench              b;
+  const trb_settings settings = rig_settings();
+  const trb_params   p = rig_params();
+  double             before[ROOM], y[ROOM];
+  int                most = 0;
+  make(&b, &p);
+  for (int j = 0; j < p.n_rollers; j += 2) b.start[trb_state_roller(b.system, j) + TRB_ROLLER_v_r] += 0.02;
+  if (!CHECK(open_with(&b, &settings, "multirate") == TRB_OK)) return;
+  const trb_multirate *s = b.sim->integrator.self;
+  for (int i = 0; i < 400; i++) {
+    const double from = b.sim->integrator.time;
+    memcpy(before, b.sim->integrator.y, sizeof before);
+    if (!CHECK(trb_simulation_step(b.sim, &message) == TRB_OK)) break;
+    CHECK(trb_simulation_state_at(b.sim, from, y, &message) == TRB_OK);
+    for (int k = 0; k < b.sim->integrator.n_main; k++) CHECK_NEAR(y[k], before[k], 1e-12 + 1e-9 * fabs(before[k]));
+    for (int j = 0; j < s->n_rollers; j++) {
+      const int ahead = trb_course_lead(&s->movers[j].course, from);
+      most = ahead > most ? ahead : most;
+    }
+  }
+  printf("rollers took up to %d steps in one of the cage\n", most);
+  CHECK(most >= TRB_COURSE_LEAD && most <= 2 * TRB_COURSE_LEAD);
+  drop(&b);
+}
+
 /* A history whose speed has a kink: the steps of every body end there. */
 static void test_stops(void)
 {
@@ -322,6 +351,7 @@ int main(void)
   test_refused();
   test_convergence();
   test_touch();
+  test_lead();
   test_stops();
   test_failed();
   test_effort();
