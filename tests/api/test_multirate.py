@@ -49,8 +49,8 @@ def test_it_agrees_with_cvode(name: str) -> None:
 def test_what_it_cannot_do_is_refused() -> None:
     scene = scene_30310(2000.0, 4930.0)
     for settings, says in (({"max_order": 5}, "max_order is not 2"),):
-        with pytest.raises(InputError, match=f"{says}; choose integrator = 'bdf'"):
+        with pytest.raises(InputError, match=f"integrator = 'multirate' : {says}; choose integrator = 'bdf'"):
             Simulation(scene, integrator="multirate", **settings)
     free = scene.replace(ring="free", ring_body=trb.RingBody(mass=1.0, inertia_axial=1e-3, inertia_transverse=1e-3))
-    with pytest.raises(InputError, match="a ring moves freely; choose integrator = 'bdf'"):
+    with pytest.raises(InputError, match="integrator = 'multirate' : a ring moves freely; choose integrator = 'bdf'"):
         Simulation(free, integrator="multirate")

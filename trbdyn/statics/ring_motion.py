@@ -103,7 +103,18 @@ class RingMotion:
         try:
             return _core.Simulation((model,), (self.prescribed,), time, vector, settings)
         except ValueError as error:
-            raise InputError.of("state", "given", str(error)) from None
+            raise refused(error, settings) from None
+
+
+def refused(error: ValueError, settings: dict[str, float | str]) -> InputError:
+    """What the core says against a simulation: the integrator cannot do it, or else the state cannot be used."""
+    kind, text = settings["integrator"], str(error)
+    of_integrator = text.removeprefix(f"integrator = '{kind}': ")
+    return (
+        InputError.of("state", "given", text)
+        if of_integrator == text
+        else InputError.of("integrator", kind, of_integrator)
+    )
 
 
 def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:

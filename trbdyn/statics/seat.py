@@ -36,7 +36,7 @@ from trbdyn.statics.core_model import build_model, model_of
 from trbdyn.statics.equilibrium import Equilibrium
 from trbdyn.statics.free_ring import axis_of, put_axis, turn_of
 from trbdyn.statics.plausible import unusual
-from trbdyn.statics.ring_motion import RingMotion, housing_hold, placed_again, ring_motion
+from trbdyn.statics.ring_motion import RingMotion, housing_hold, placed_again, refused, ring_motion
 from trbdyn.statics.start import start_state
 from trbdyn.statics.state_view import StateView
 
@@ -233,7 +233,7 @@ class Seated:
                 models, tuple(one.motion.prescribed for one in self.bearings), time, vector, settings
             )
         except ValueError as error:
-            raise InputError.of("state", "given", str(error)) from None
+            raise refused(error, settings) from None
 
 
 def seat_alone(scene: Scene, instruction_set: str = "") -> Seated:
