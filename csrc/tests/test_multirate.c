@@ -248,7 +248,7 @@ static void test_lead(void)
   const trb_multirate *s = b.sim->integrator.self;
   for (int i = 0; i < 400; i++) {
     const double from = b.sim->integrator.time;
-    memcpy(before, b.sim->integrator.y, sizeof before);
+    memcpy(before, b.sim->integrator.y, (size_t)b.sim->integrator.n * sizeof *before);
     if (!CHECK(trb_simulation_step(b.sim, &message) == TRB_OK)) break;
     CHECK(trb_simulation_state_at(b.sim, from, y, &message) == TRB_OK);
     for (int k = 0; k < b.sim->integrator.n_main; k++) CHECK_NEAR(y[k], before[k], 1e-12 + 1e-9 * fabs(before[k]));
