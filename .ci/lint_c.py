@@ -1,6 +1,7 @@
 """Rules of the C sources that no compiler checks. Prints each breach as file:line: text and exits with 1 if there is one.
 
-Sources: includes point one way (ORDER), SUNDIALS and Python headers stay where they belong, nothing prints, exits or aborts, and
+Sources: includes point one way (ORDER), and within a folder no units include each other in a circle, where a unit is a header with the
+source file of its name; SUNDIALS and Python headers stay where they belong, nothing prints, exits or aborts, and
 what moves and steps a system names none of its bodies (NAMED).
 Objects (with --objects BUILD): exported symbols start with trb_, the core keeps no writable globals, the extension module shows
 nothing but its init function.
@@ -10,6 +11,7 @@ import argparse
 import re
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -22,7 +24,7 @@ FORBIDDEN = re.compile(rf"\b((?:{CALLS})\s*\(|(?:stdout|stderr)\b)")
 # the kinematic orbit is a number of the geometry, and a speed that is prescribed has the name that users know.
 NUMBER = r"(?-i:\bTRB_(?:BODY|PAIR)_\w+)"
 NAMED = re.compile(rf"\b\w*(?:cage|inner|outer)\w*\b|{NUMBER}", re.I)
-MAY_NAME = {"motion/fields.h": "", "motion/fields.c": NUMBER}  # what these must not name all the same
+MAY_NAME = {"motion/fields.h": "", "motion/shown.c": NUMBER}  # what these must not name all the same
 MAY_BE_NAMED = {"cage_speed_ratio", "TRB_CHANNEL_outer_speed"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 # comments, strings, characters
@@ -61,8 +63,22 @@ def check_includes(path: str, text: str) -> list[tuple[int, str]]:
     return found
 
 
+def circle_of_units() -> list[str]:
+    """Units that include each other in a circle, as a line of text; nothing if there is none."""
+    units: dict[str, set[str]] = {}
+    for file in CSRC.glob("*/*.[ch]"):
+        unit = file.relative_to(CSRC).with_suffix("").as_posix()
+        headers = {header.removesuffix(".h") for _, header in INCLUDE.findall(file.read_text(encoding="utf-8"))}
+        units.setdefault(unit, set()).update(headers - {unit})
+    try:
+        TopologicalSorter(units).prepare()
+    except CycleError as error:
+        return [f"csrc: includes run in a circle: {' -> '.join(error.args[1][::-1])}"]
+    return []
+
+
 def check_sources() -> list[str]:
-    breaches = []
+    breaches = circle_of_units()
     for file in sorted([*CSRC.glob("*/*.[ch]"), *CSRC.glob("*.h")]):
         path = file.relative_to(CSRC).as_posix()
         if path.startswith(("tests/", "cmake/")):

@@ -14,6 +14,7 @@ is an assembly, or a result that of one.
 import ast
 import sys
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import grimp
@@ -39,36 +40,14 @@ COMMANDS = ("trbdyn/cli/",)
 MODELS = ("trbdyn/model/",)
 
 
-def circles(package: str) -> list[list[str]]:
-    """Sets of modules of which each imports the others, directly or not; each in order of names."""
+def circle(package: str) -> list[str]:
+    """Modules of which each imports the next, and the last the first; empty if there is no such circle."""
     graph = grimp.build_graph(package, exclude_type_checking_imports=True, cache_dir=None)
-    imports = {module: sorted(graph.find_modules_directly_imported_by(module)) for module in graph.modules}
-    index: dict[str, int] = {}
-    lowest: dict[str, int] = {}
-    open_ones: list[str] = []
-    found: list[list[str]] = []
-
-    def visit(module: str) -> None:
-        """Tarjan's algorithm for strongly connected components."""
-        index[module] = lowest[module] = len(index)
-        open_ones.append(module)
-        for other in imports[module]:
-            if other not in index:
-                visit(other)
-                lowest[module] = min(lowest[module], lowest[other])
-            elif other in open_ones:
-                lowest[module] = min(lowest[module], index[other])
-        if lowest[module] == index[module]:
-            start = open_ones.index(module)
-            circle = open_ones[start:]
-            del open_ones[start:]
-            if len(circle) > 1 or module in imports[module]:
-                found.append(sorted(circle))
-
-    for module in sorted(imports):
-        if module not in index:
-            visit(module)
-    return found
+    try:
+        TopologicalSorter({one: graph.find_modules_directly_imported_by(one) for one in graph.modules}).prepare()
+    except CycleError as error:
+        return list(error.args[1])[::-1]
+    return []
 
 
 def late_imports(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -97,7 +76,8 @@ def below(module: str, tops: tuple[str, ...]) -> bool:
 
 
 def main() -> int:
-    breaches = [f"imports run in a circle: {', '.join(circle)}" for circle in circles(PACKAGE)]
+    found = circle(PACKAGE)
+    breaches = [f"imports run in a circle: {' -> '.join(found)}"] if found else []
     for path in sorted((ROOT / PACKAGE).rglob("*.py")):
         name, tree = path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
         for line in () if name.startswith(MODELS) else looks_for_assemblies(tree):

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "bearing/model.h"
+#include "laws/smooth.h"
 
 /* By which the steps of a patch may differ, over a step: they are differences of angles of a few radians. */
 #define TRB_EVEN 1e-6
@@ -65,15 +65,15 @@ void trb_form_free(trb_form *form)
   *form = (trb_form){0};
 }
 
-static trb_status check_row(const trb_model *m, const double *rows, int i, int n_columns, trb_message *message)
+static trb_status check_row(int n_rollers, const double *rows, int i, int n_columns, trb_message *message)
 {
   const double *row = rows + (size_t)i * (size_t)n_columns, *before = row - n_columns;
   for (int c = 0; c < n_columns; c++)
     if (!isfinite(row[c])) return trb_fail(message, TRB_ERR_INPUT, "form, row %d: column %d is not finite", i, c);
   if (row[TRB_FORM_surface] != floor(row[TRB_FORM_surface]) || row[TRB_FORM_surface] < 0.0 ||
-      row[TRB_FORM_surface] >= trb_form_of_roller(m->n_rollers, 0))
+      row[TRB_FORM_surface] >= trb_form_of_roller(n_rollers, 0))
     return trb_fail(message, TRB_ERR_INPUT, "form, row %d: surface = %g: must be a whole number from 0 to %d", i, row[TRB_FORM_surface],
-                    trb_form_of_roller(m->n_rollers, 0) - 1);
+                    trb_form_of_roller(n_rollers, 0) - 1);
   if (!(row[TRB_FORM_scale] > 0.0))
     return trb_fail(message, TRB_ERR_INPUT, "form, row %d: scale = %g: must be > 0", i, row[TRB_FORM_scale]);
   if (i == 0 || row[TRB_FORM_patch] != before[TRB_FORM_patch]) return TRB_OK;
@@ -117,21 +117,20 @@ static trb_status read_patch(trb_form *form, const double *rows, int first, int 
   return TRB_OK;
 }
 
-trb_status trb_model_set_form(trb_model *m, const double *rows, int n_rows, int n_columns, trb_message *message)
+trb_status trb_form_read(trb_form *form, int n_rollers, int n_nodes, const double *rows, int n_rows, int n_columns, trb_message *message)
 {
-  trb_form  *form = &m->form;
   trb_status status = TRB_OK;
   int        n_patches = 0;
   if (n_rows == 0) return TRB_OK;
-  if (n_columns != TRB_FORM_depth + 2 * m->n_nodes)
-    return trb_fail(message, TRB_ERR_INPUT, "form: %d columns needed, %d given", TRB_FORM_depth + 2 * m->n_nodes, n_columns);
-  for (int i = 0; i < n_rows && status == TRB_OK; i++) status = check_row(m, rows, i, n_columns, message);
+  if (n_columns != TRB_FORM_depth + 2 * n_nodes)
+    return trb_fail(message, TRB_ERR_INPUT, "form: %d columns needed, %d given", TRB_FORM_depth + 2 * n_nodes, n_columns);
+  for (int i = 0; i < n_rows && status == TRB_OK; i++) status = check_row(n_rollers, rows, i, n_columns, message);
   if (status != TRB_OK) return status;
   for (int i = 0; i < n_rows; i += samples(rows, i, n_rows, n_columns)) n_patches++;
   trb_form_free(form);
-  form->n_nodes = m->n_nodes;
+  form->n_nodes = n_nodes;
   form->patches = trb_zeros((size_t)n_patches, sizeof *form->patches);
-  form->rows = trb_zeros((size_t)n_rows * 2 * (size_t)m->n_nodes, sizeof *form->rows);
+  form->rows = trb_zeros((size_t)n_rows * 2 * (size_t)n_nodes, sizeof *form->rows);
   if (form->patches == NULL || form->rows == NULL) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for the form of surfaces");
   for (int i = 0; i < n_rows && status == TRB_OK;) {
     const int n = samples(rows, i, n_rows, n_columns);

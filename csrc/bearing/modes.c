@@ -2,10 +2,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
-#include "bearing/model.h"
 
 /* Coriolis forces below this share of the largest one are none. */
 #define TRB_NO_CORIOLIS 1e-9
@@ -27,14 +25,6 @@ static int allocate(trb_modes *to, size_t n_faces)
   to->middle = trb_zeros(n_faces + 1, sizeof *to->middle);
   return to->frequency != NULL && to->damping != NULL && to->mass != NULL && to->per != NULL && to->share != NULL && to->yield != NULL &&
          to->coriolis != NULL && to->first_coriolis != NULL && to->shapes != NULL && to->middle != NULL;
-}
-
-/* Mean of the vertices. */
-static trb_vec3 middle_of(const trb_polygon *p)
-{
-  trb_vec3 sum = {0, 0, 0};
-  for (int i = 0; i < p->n; i++) sum = trb_add(sum, trb_polygon_vertex(p, i));
-  return trb_scale(1.0 / p->n, sum);
 }
 
 /* Modes of a ring of beams act on each other only where they have as many waves: the rest are rounding errors, and left out. */
@@ -66,14 +56,9 @@ static trb_status check_row(const double *row, int mode, int n_columns, trb_mess
   return TRB_OK;
 }
 
-trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, int n_columns, trb_message *message)
+trb_status trb_modes_read(trb_modes *to, int n_slots, int n_faces, const double *rows, int n_modes, int n_columns, trb_message *message)
 {
-  trb_modes *to = &m->modes;
-  const int  shapes_end = TRB_MODE_shapes + TRB_SHAPE * m->n_rollers * m->n_slots, columns = shapes_end + n_modes;
-  const int  n_faces = m->first_face[m->n_rollers];
-  if (n_modes != (int)m->params.cage_modes)
-    return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: %d modes are given", m->params.cage_modes, n_modes);
-  if (n_modes <= 0) return TRB_OK;
+  const int shapes_end = TRB_MODE_shapes + TRB_SHAPE * n_slots, columns = shapes_end + n_modes;
   if (n_columns != columns) return trb_fail(message, TRB_ERR_INPUT, "modes: %d columns needed, %d given", columns, n_columns);
   for (int i = 0; i < n_modes; i++) {
     const trb_status status = check_row(rows + (size_t)i * (size_t)n_columns, i, n_columns, message);
@@ -90,14 +75,6 @@ trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, in
   trb_modes_free(to);
   to->n = n_modes;
   if (!allocate(to, (size_t)n_faces)) return trb_fail(message, TRB_ERR_MEMORY, "out of memory for %d modes of the cage", n_modes);
-  for (int j = 0; j < m->n_rollers; j++)
-    for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
-      const int at = TRB_MODE_shapes + TRB_SHAPE * (j * m->n_slots + m->faces[f].slot);
-      double   *shapes = to->shapes + (size_t)f * (size_t)n_modes * TRB_SHAPE_ROOM;
-      to->middle[f] = middle_of(&m->faces[f].surface);
-      for (int i = 0; i < n_modes; i++)
-        memcpy(shapes + (size_t)i * TRB_SHAPE_ROOM, rows + (size_t)i * (size_t)n_columns + at, TRB_SHAPE * sizeof *shapes);
-    }
   for (int i = 0; i < n_modes; i++) {
     const double *row = rows + (size_t)i * (size_t)n_columns, w = row[TRB_MODE_frequency];
     to->frequency[i] = w;

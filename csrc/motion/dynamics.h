@@ -3,7 +3,7 @@
 #ifndef TRB_MOTION_DYNAMICS_H
 #define TRB_MOTION_DYNAMICS_H
 
-#include "motion/fast_pairs.h"
+#include "motion/bound.h"
 #include "motion/ring_motion.h"
 #include "system/system.h"
 
@@ -17,6 +17,18 @@ enum {
   TRB_FLOW_SIZE = TRB_FLOW_quadrature + TRB_FLOW_N_QUADRATURES,
   TRB_FLOW_ROOM = (TRB_FLOW_SIZE + 7) / 8 * 8 /* padded, so that loops over it have no remainder */
 };
+
+/* A pair that is evaluated at every instant, and what is proven of every roller in it. */
+typedef struct trb_fast_pair {
+  const trb_pair *pair;
+  int             row;    /* its number in the system */
+  trb_bound      *bounds; /* n_rollers */
+  trb_arms        arms[TRB_N_GAPS];
+  /* where the other body deforms; NULL where it does not */
+  int    *places; /* [mode]: of its amplitude in the state */
+  double *ways;   /* [roller][mode][gap]: as its kind gives them, for a unit of that coordinate */
+  double *modal;  /* [roller][mode]: those coordinates where the gaps were found */
+} trb_fast_pair;
 
 typedef struct trb_dynamics {
   const trb_system *system;

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "motion/dynamics.h"
 
 /* What a fast pair with a body that deforms keeps of its modes. */
 static int add_modes(const trb_dynamics *d, trb_fast_pair *fast)

@@ -3,43 +3,27 @@
 #ifndef TRB_MOTION_FAST_PAIRS_H
 #define TRB_MOTION_FAST_PAIRS_H
 
-#include "motion/bound.h"
-
-struct trb_dynamics;
-
-/* A pair that is evaluated at every instant, and what is proven of every roller in it. */
-typedef struct trb_fast_pair {
-  const trb_pair *pair;
-  int             row;    /* its number in the system */
-  trb_bound      *bounds; /* n_rollers */
-  trb_arms        arms[TRB_N_GAPS];
-  /* where the other body deforms; NULL where it does not */
-  int    *places; /* [mode]: of its amplitude in the state */
-  double *ways;   /* [roller][mode][gap]: as its kind gives them, for a unit of that coordinate */
-  double *modal;  /* [roller][mode]: those coordinates where the gaps were found */
-} trb_fast_pair;
+#include "motion/dynamics.h"
 
 /* The fast pairs of the workspace; 0: no memory. What was made is freed in either case. */
-int  trb_fast_create(struct trb_dynamics *d);
-void trb_fast_free(struct trb_dynamics *d);
+int  trb_fast_create(trb_dynamics *d);
+void trb_fast_free(trb_dynamics *d);
 
 /* Forget what was proven at earlier states. */
-void trb_fast_forget(struct trb_dynamics *d);
+void trb_fast_forget(trb_dynamics *d);
 /* Pairs in which a roller is not proven clear at a state, bit by fast pair. */
-unsigned trb_fast_near(const struct trb_dynamics *d, int roller, const double *y);
+unsigned trb_fast_near(const trb_dynamics *d, int roller, const double *y);
 /* For a state y near those that were evaluated last: of every roller, the pairs in which it is proven to touch nothing, bit by the pair's row
  * in the system. */
-void trb_fast_apart(const struct trb_dynamics *d, const double *y, unsigned *apart);
+void trb_fast_apart(const trb_dynamics *d, const double *y, unsigned *apart);
 /* Lower bound of the gap of a roller that is left in a fast pair at a state, m; not above 0: it may touch. */
-double trb_fast_gap_left(const struct trb_dynamics *d, int fast, int roller, const double *y);
+double trb_fast_gap_left(const trb_dynamics *d, int fast, int roller, const double *y);
 /* Whether a roller is proven to touch no rigid body in a fast pair as long as coordinates are within ways of those of a state: of its place, and of the
  * hub. */
-int trb_fast_clear_within(const struct trb_dynamics *d, int fast, int roller, const double *y, const double *of_roller,
-                          const double *of_hub);
+int trb_fast_clear_within(const trb_dynamics *d, int fast, int roller, const double *y, const double *of_roller, const double *of_hub);
 /* A fast pair of a roller whose pose is kept (see trb_pair_touch); what is proven of it is kept. */
-trb_gaps trb_fast_touch(struct trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes,
-                        trb_detail *detail);
+trb_gaps trb_fast_touch(trb_dynamics *d, int fast, int roller, const double *y, trb_load *load, trb_slopes *slopes, trb_detail *detail);
 /* Adds the loads of the pairs in which a roller is near (d->near) to its flow and to the loads of the hub's bodies. */
-void trb_fast_add(struct trb_dynamics *d, int roller, const double *y, double *flow);
+void trb_fast_add(trb_dynamics *d, int roller, const double *y, double *flow);
 
 #endif

@@ -1,5 +1,5 @@
 /* The table of all recorded quantities. It defines the layout of a record; the HDF5 file, the plots and the documentation take names,
- * units, shapes and texts from here. Each kind of thing has a list of its quantities, which motion/fields.c fills; a row of TRB_SHOWN says
+ * units, shapes and texts from here. Each kind of thing has a list of its quantities, which motion/shown.c fills; a row of TRB_SHOWN says
  * what there is of it.
  *
  * TRB_FIELDS(X): X(name, group, kind, unit, text). A kind is a shape; roller = one number for each roller. */
@@ -105,7 +105,7 @@ typedef enum trb_field_kind {
   TRB_WORKS(TRB_FIELD_OF_WORK, X) \
   TRB_LOSSES(TRB_FIELD_OF_LOSS, X)
 
-/* What there is. S(X, kind, as, group, of, at) is a row that fields.c fills, C one of a contact of the rollers with a ring. Fields are named
+/* What there is. S(X, kind, as, group, of, at) is a row that shown.c fills, C one of a contact of the rollers with a ring. Fields are named
  * <as>_<quantity>; of: number of its body or pair; at: what texts call it. A system has the fields of the pairs that it has; the bodies
  * are those of each bearing. Contacts have peaks, too (motion/peak_fields.h). */
 #define TRB_SHOWN_CONTACTS(C, X) \

@@ -6,6 +6,7 @@
 
 #include "contact/kernels.h"
 #include "motion/bound.h"
+#include "motion/fast_pairs.h"
 
 const trb_peak_quantity trb_peak_quantities[TRB_N_PEAK_QUANTITIES] = {
 #define TRB_PEAK_QUANTITY(name, field, sense) {TRB_FIELD_AT_##field, TRB_PEAK_##sense},

@@ -1,4 +1,5 @@
 #include "motion/rhs.h"
+#include "motion/fast_pairs.h"
 
 /* What approximates a roller's forces knows surfaces of true form: it stands aside where a roller may be on one that is not, and learns
  * nothing there. */

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "stepping/followers.h"
 
 enum { LINE = 8 }; /* entries of a cache line */
 

@@ -11,20 +11,7 @@
 #define TRB_STEPPING_ARROW_H
 
 #include "base/status.h"
-#include "stepping/blocks.h"
-
-/* The Jacobian J. */
-typedef struct trb_arrow {
-  int               n;           /* rollers */
-  int               width, room; /* of the hub: its entries, and the length of its columns */
-  double            gamma;       /* of the system matrix I - gamma J */
-  trb_arrow_block  *rollers;     /* n */
-  trb_arrow_border *borders;     /* n */
-  double           *hub;         /* [width][room], column by column, padded by zeros */
-  double           *memory;      /* of the borders */
-} trb_arrow;
-
-struct trb_followers;
+#include "stepping/followers.h"
 
 typedef struct trb_arrow_factors {
   const trb_block_kernels *kernels;
@@ -34,7 +21,7 @@ typedef struct trb_arrow_factors {
   trb_arrow_factor_border *borders;
   trb_hub_factor           hub;
   double                  *memory;    /* of the borders */
-  struct trb_followers    *followers; /* entries of the hub that are eliminated first; NULL: none */
+  trb_followers           *followers; /* entries of the hub that are eliminated first; NULL: none */
 } trb_arrow_factors;
 
 /* hub_width: entries of the hub, from 0. */

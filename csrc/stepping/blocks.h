@@ -86,4 +86,15 @@ extern const trb_block_kernels trb_block_kernels_scalar, trb_block_kernels_base,
 /* Kernels of a variant, an index into trb_kernel_variants. */
 const trb_block_kernels *trb_block_kernels_of(int variant);
 
+/* The Jacobian J in these blocks (stepping/arrow.h). */
+typedef struct trb_arrow {
+  int               n;           /* rollers */
+  int               width, room; /* of the hub: its entries, and the length of its columns */
+  double            gamma;       /* of the system matrix I - gamma J */
+  trb_arrow_block  *rollers;     /* n */
+  trb_arrow_border *borders;     /* n */
+  double           *hub;         /* [width][room], column by column, padded by zeros */
+  double           *memory;      /* of the borders */
+} trb_arrow;
+
 #endif

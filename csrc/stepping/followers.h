@@ -4,7 +4,7 @@
 #ifndef TRB_STEPPING_FOLLOWERS_H
 #define TRB_STEPPING_FOLLOWERS_H
 
-#include "stepping/arrow.h"
+#include "stepping/blocks.h"
 
 typedef struct trb_followers {
   int              n, kept;        /* followers, and entries that are kept */

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "motion/fast_pairs.h"
 
 /* Steps ahead in which a gap may close. */
 static const double ahead = 3.0;

@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "stepping/multirate.h"
+#include "motion/fast_pairs.h"
 
 /* Tries of one step; errors too large, one after the other, after which a body begins again from its rates. */
 enum { MOST_TRIES = 60, UNTIL_AGAIN = 3 };

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "stepping/multirate.h"
+#include "motion/fast_pairs.h"
 
 /* Steps in which a roller of the hub's team has touched nothing until it leaves. */
 enum { UNTIL_LEAVES = 30 };

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/thread.h"
+#include "motion/fast_pairs.h"
 
 /* Places of the queue; how many of them are filled, or free again, before a thread that waits is woken. */
 enum { PLACES = 128, ENOUGH = 32, FREE = 64 };

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "stepping/vectors.h"
+#include "motion/fast_pairs.h"
 
 static trb_status check_settings(const trb_settings *settings, trb_message *message)
 {

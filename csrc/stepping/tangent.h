@@ -88,7 +88,7 @@ static inline double trb_tangent_weight(const trb_tangent_measure *measure, int 
 
 /* Steps of the differences, by kind of entry: small beside the scale on which the laws curve (micrometres of interference, a slip of 1e-4)
  * and large beside rounding. */
-extern const double trb_difference[TRB_N_TOLERANCES];
+static const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
 
 trb_status trb_tangents_create(const trb_system *system, trb_tangents **tangents, trb_message *message);
 void       trb_tangents_free(trb_tangents *tangents);

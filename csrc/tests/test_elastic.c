@@ -6,6 +6,7 @@
 #include "check.h"
 #include "contact/kernels.h"
 #include "motion/audit.h"
+#include "motion/fast_pairs.h"
 #include "rig.h"
 #include "stepping/jacobian.h"
 

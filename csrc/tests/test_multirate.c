@@ -5,6 +5,7 @@
 #include "check.h"
 #include "rig.h"
 #include "stepping/multirate.h"
+#include "motion/fast_pairs.h"
 
 enum { ROOM = 512 };
 static const double speed = 100.0 * TRB_PI;

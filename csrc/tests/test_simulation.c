@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "motion/fast_pairs.h"
 #include "rig.h"
 
 static trb_system      *built;

@@ -7,8 +7,6 @@
 #include "base/memory.h"
 #include "stepping/tangent_learn.h"
 
-const double trb_difference[TRB_N_TOLERANCES] = {1e-10, 1e-8, 1e-7, 1e-5, 1.0};
-
 /* Turn of the frame R by which slopes over it are computed, rad. */
 static const double turn_difference = 1e-5;
 /* A tangent is used if its origins were good for this many evaluations in the mean, or the present one for that many. */
