@@ -14,6 +14,7 @@
 #                   are those of the last run is not run again; warnings are errors
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
+#   make count      how many lines the sources have, by folder
 #   make install    only the environment and the package
 #   make clean      remove what was built; make distclean: .venv too
 #
@@ -43,7 +44,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: cross demo site docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
+.PHONY: count cross demo site docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -105,6 +106,9 @@ adversary: install
 
 mutate: install $(VENV)/.test
 	$(PY) tests/mutation/mutate.py --count $(or $(COUNT),250) --minutes $(or $(MINUTES),90) --seed $(or $(SEED),1)
+
+count:
+	@$(PYTHON) .ci/count.py
 
 install: build/.package
 

@@ -1,8 +1,8 @@
 """Rules of the C sources that no compiler checks. Prints each breach as file:line: text and exits with 1 if there is one.
 
-Sources: includes point one way (ORDER), and within a folder no units include each other in a circle, where a unit is a header with the
-source file of its name; SUNDIALS and Python headers stay where they belong, nothing prints, exits or aborts, and
-what moves and steps a system names none of its bodies (NAMED).
+Sources: includes point one way (ORDER), and no units include each other in a circle, where a unit is a header with the source
+file of its name; SUNDIALS and Python headers stay where they belong, nothing prints, exits or aborts, and what
+moves and steps a system names none of its bodies (NAMED).
 Objects (with --objects BUILD): exported symbols start with trb_, the core keeps no writable globals, the extension module shows
 nothing but its init function.
 """

@@ -1,10 +1,13 @@
 """The order of the test files: those that take longest come first, so that several processes end at about the same time.
 
+Linear algebra takes one thread: several processes with two threads each wait for each other most of the time.
+
 Tests of Ctrl-C send signals: a shell that starts tests in the background lets them ignore it; Python then installs no handler.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 from typing import Final
 
@@ -39,6 +42,7 @@ LONGEST: Final = (
 )
 
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when NumPy is imported, after this
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -19,27 +19,29 @@ FINE = ("right", "warned", "stopped", "refused", "unjudged")
 FOUND = sorted((HERE / "found").glob("*.json"))
 
 
+QUICK = {
+    "cylindrical": (2,),
+    "damped": (2, 3),
+    "filmed": (2, 3),
+    "free": (1, 3),
+    "guided": (0, 2),
+    "housed": (1, 4),
+    "light": (0,),
+    "outer": (1, 3),
+    "pair": (3,),
+    "pieces": (0,),
+    "pitted": (4,),
+    "repeating": (2,),
+    "usual": (2, 4),
+    "wide": (0, 3),
+}
+"""Seeds of the scenes of each kind that are not among the slow tests."""
+
+
 def _seeds() -> list[Any]:
-    """Five scenes of each kind; of those that take longer the quickest, and the others among the slow tests."""
-    quick = {
-        "cylindrical": (1, 2),
-        "damped": (1, 2, 3),
-        "light": (0,),
-        "pair": (3,),
-        "pieces": (0,),
-        "pitted": (0, 4),
-        "repeating": (2,),
-    }
-    quick |= {
-        "filmed": (2, 3, 4),
-        "free": (0, 1, 3, 4),
-        "guided": (0, 1, 2),
-        "outer": (0, 1, 3, 4),
-        "usual": (1, 2, 3, 4),
-        "wide": (0, 1, 2, 3),
-    }
+    """Five scenes of each kind."""
     return [
-        pytest.param(kind, seed, marks=[] if seed in quick.get(kind, range(5)) else [pytest.mark.slow])
+        pytest.param(kind, seed, marks=[] if seed in QUICK[kind] else [pytest.mark.slow])
         for kind in sorted(KINDS)
         for seed in range(5)
     ]

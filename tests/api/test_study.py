@@ -547,7 +547,7 @@ class TestCommand:
     def test_ctrl_c_ends_cleanly_and_resume_goes_on(self, tmp_path: Path) -> None:
         kind = '[study.grid]\n"scene.speed_rpm" = [1000.0, 2000.0, 3000.0]\n"bearing.cage.mass" = [0.1, 0.2, 0.3, 0.4]'
         file = self.write(tmp_path / "many.toml", kind)
-        file.write_text(file.read_text().replace("duration = 4e-3", "duration = 0.05"))
+        file.write_text(file.read_text().replace("duration = 4e-3", "duration = 0.02"))
         out = tmp_path / "out"
         words = [sys.executable, "-P", "-m", "trbdyn", "sweep", str(file), "-o", str(out), "--workers", "2", "--quiet"]
         with subprocess.Popen(words, start_new_session=True, stderr=subprocess.PIPE) as process:

@@ -380,7 +380,7 @@ def callback(sim):
 
 if True:
     try:
-        trb.Simulation(paper_30310()).run(duration=0.02, save_every=1e-5, checkpoint_every=2e-3, output=output,
+        trb.Simulation(paper_30310()).run(duration=6e-3, save_every=1e-5, checkpoint_every=1e-3, output=output,
         callback=callback)
     except trb.TrbError as error:
         print("child:", error, flush=True)
@@ -409,7 +409,7 @@ def test_a_forked_child_leaves_the_file_alone(tmp_path: Path, how: str) -> None:
         process.wait(60)
         assert ("child:" in said) is (how in ("goes on", "stops"))
         take_lock(path).close()
-        result, whole = trb.load(path), run(reference, duration=0.02, checkpoint_every=2e-3)
+        result, whole = trb.load(path), run(reference, duration=6e-3, checkpoint_every=1e-3)
         assert result.success
         for name in ("time", "cage_position", "work_shaft"):
             np.testing.assert_array_equal(result[name], whole[name])

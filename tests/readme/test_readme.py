@@ -73,6 +73,8 @@ SHORTER = {  # options that the page or the command itself names
     "python benchmarks/paper": " --help",
 }
 SLOWER = (
+    "make demo",
+    "python -m trbdyn plot ",
     "python -m trbdyn run pair_30310 ",
     "python -m trbdyn ensemble ",
     "python -m trbdyn plan ",

@@ -19,7 +19,7 @@ from trbdyn.model.cases import paper_30310
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint, checkpoint_path, next_time, previous_path
 
-EVERY = 1.7e-3
+EVERY, END = 1.7e-3, 0.01
 
 
 def scene() -> trb.Scene:
@@ -39,7 +39,7 @@ def cut_after(time: float) -> Callable[[trb.Simulation], None]:
 
 
 def run(output: Path | None = None, **options: Any) -> trb.Result:
-    chosen: dict[str, Any] = {"duration": 0.02, "checkpoint_every": EVERY, "save_every": 2e-5} | options
+    chosen: dict[str, Any] = {"duration": END, "checkpoint_every": EVERY, "save_every": 2e-5} | options
     return trb.Simulation(scene()).run(output=output, **chosen)
 
 
@@ -54,7 +54,7 @@ def broken(tmp_path: Path) -> Path:
     """A run that an exception has ended half way, with its checkpoints."""
     path = tmp_path / "run.h5"
     with pytest.raises(Cut):
-        run(path, callback=cut_after(0.012))
+        run(path, callback=cut_after(0.006))
     return path
 
 
@@ -73,7 +73,7 @@ def test_output_times_change_no_bit(reference: trb.Result, save_every: float) ->
     other = run(save_every=save_every)
     np.testing.assert_array_equal(other.final_state, reference.final_state)
     assert other.stats["steps"] == reference.stats["steps"]
-    assert other.stats["restarts"] == reference.stats["restarts"] == 1 + int(0.02 / EVERY)
+    assert other.stats["restarts"] == reference.stats["restarts"] == 1 + int(END / EVERY)
     for name in reference.peaks:
         np.testing.assert_array_equal(other.peaks[name], reference.peaks[name], err_msg=name)
 
@@ -199,7 +199,7 @@ def test_runs_without_a_schedule_cannot_be_resumed(tmp_path: Path) -> None:
 def test_a_checkpoint_of_another_run_is_refused(broken: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.h5"
     with pytest.raises(Cut):
-        run(other, callback=cut_after(0.01))
+        run(other, callback=cut_after(0.005))
     checkpoint_path(other).replace(checkpoint_path(broken))
     with pytest.raises(FileError, match="belongs to another run"):
         trb.resume(broken)
@@ -224,7 +224,7 @@ def test_a_lost_result_file_before_the_first_checkpoint_is_made_anew(tmp_path: P
     path = tmp_path / "run.h5"
     with pytest.raises(Cut):
         trb.Simulation(scene()).run(
-            duration=0.02, save_every=2e-5, checkpoint_every=EVERY, output=path, callback=cut_after(0.0)
+            duration=END, save_every=2e-5, checkpoint_every=EVERY, output=path, callback=cut_after(0.0)
         )
     start = previous_path(checkpoint_path(path))
     if start.exists():

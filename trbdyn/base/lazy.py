@@ -1,0 +1,39 @@
+"""Names of a package that are imported when they are first used, and are listed once."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+
+def lazy_names(package: str, file: str) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+    """``__all__``, ``__getattr__`` and ``__dir__`` of a package.
+
+    The names are those that its file imports under ``if TYPE_CHECKING``, as ``from module import name as name``: type checkers
+    read them there, too.
+
+    Parameters
+    ----------
+    package, file : str
+        ``__name__`` and ``__file__`` of the package.
+    """
+    blocks = [node for node in ast.parse(Path(file).read_text(encoding="utf-8")).body if isinstance(node, ast.If)]
+    places: dict[str, tuple[str, str]] = {}
+    for node in (entry for block in blocks for entry in block.body):
+        if isinstance(node, ast.ImportFrom) and node.module is not None:
+            places |= {alias.asname: (node.module, alias.name) for alias in node.names if alias.asname is not None}
+
+    def found(name: str) -> Any:
+        if name not in places:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        module, own = places[name]
+        value = None if module == package else getattr(importlib.import_module(module), own, None)
+        value = importlib.import_module(f"{module}.{own}") if value is None else value
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return sorted(places), found, lambda: sorted(places)
