@@ -126,7 +126,7 @@ def test_every_run_that_ended_early_goes_on(broken: Path, reference: trb.Result)
 
 
 def test_a_run_resumed_and_broken_again(broken: Path, reference: trb.Result) -> None:
-    for later in (0.013, 0.016):
+    for later in (0.007, 0.0085):
         with pytest.raises(Cut):
             trb.resume(broken, callback=cut_after(later))
     same(trb.resume(broken), reference)
