@@ -88,7 +88,7 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     want : mapping of str to float
         Wanted relative error by the name of the average.
     period : float
-        Time of a turn of the shaft (s).
+        Time of a turn of the shaft, or of the outer ring where the shaft rests (s).
     length : Length
         What to keep, and the processor time after which the run ends: how dear a second of bearing time is once the motion has
         settled is not known beforehand.
@@ -107,9 +107,8 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
         raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
     if len(result) < LEAST_RECORDS:
         turns = float(result["time"][-1] - result["time"][0]) / period
-        allowed = (
-            f"is not enough: {length.patience:.2g} s, the share of one run, bring {turns:.2g} turns of the shaft (s)"
-        )
+        share = f"{length.patience:.2g} s, the share of one run,"
+        allowed = f"is not enough: {share} bring {turns:.2g} turns of the {scene.turning_ring} (s)"
         raise InputError.of("effort", effort, allowed)
     names, settling = list(want), result.settling()
     began, end = float(result["time"][0]), float(result["time"][-1])
@@ -127,7 +126,7 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     notes += [f"in the run that it stands on: {text}" for text in result.warnings]
     turns = (end - began) / period
     if turns < LEAST_TURNS:
-        notes.append(f"only {turns:.2g} turns of the shaft could be looked at; allow more effort")
+        notes.append(f"only {turns:.2g} turns of the {scene.turning_ring} could be looked at; allow more effort")
     drift = np.zeros(len(names)) if settling.settled else _drift(result, names, size, settling)
     assert result.final_state is not None
     angle = scene.start_shaft_angle + scene.shaft_turn(result.final_time)

@@ -52,9 +52,9 @@ class Wishes:
 
     @property
     def period(self) -> float:
-        """Time of a turn of the shaft (s)."""
-        assert isinstance(self.scene.speed_rpm, float)
-        return 60.0 / abs(self.scene.speed_rpm)
+        """Time of a turn of the shaft, or of the outer ring where the shaft rests (s)."""
+        assert isinstance(self.scene.turning_rpm, float)
+        return 60.0 / abs(self.scene.turning_rpm)
 
     @property
     def of_cage(self) -> bool:
@@ -95,10 +95,14 @@ def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effor
         parts = quantity if isinstance(quantity, tuple) else (quantity,)
         if any(isinstance(part, History) for part in parts):
             raise InputError.of(field, "a history", "must be constant: averages of a changing motion cannot be planned")
-    if scene.speed_rpm == 0.0:
-        raise InputError.of(
-            "speed_rpm", 0.0, "must not be 0: averages of a bearing that stands still cannot be planned (rpm)"
+    if scene.torque is not None:
+        limit = (
+            "must not be given: the speed changes with it, and averages of a changing motion cannot be planned (N m)"
         )
+        raise InputError.of("torque", scene.torque, limit)
+    if scene.turning_rpm == 0.0:
+        limit = "must not be 0 where the outer ring rests, too: averages of a bearing at rest cannot be planned (rpm)"
+        raise InputError.of("speed_rpm", 0.0, limit)
     return Wishes(scene, {name: float(wish) for name, wish in want.items()}, budget, float(effort))
 
 
