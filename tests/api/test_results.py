@@ -543,6 +543,7 @@ def test_a_full_disk_keeps_what_it_has_room_for(
 
     monkeypatch.setattr(writer, "_reserve", limited)
     monkeypatch.setattr(result_file, "FLUSH_BYTES", 1 << 30)
+    monkeypatch.setattr(result_file, "FLUSH_SECONDS", 1e9)
     writer.append(synthetic.records[:2000])
     with pytest.raises(FileError, match="no space"):
         writer.flush()

@@ -239,6 +239,19 @@ def full_disk(room: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
+def test_a_run_begins_only_where_the_disk_has_room_for_a_record(tmp_path: Path) -> None:
+    """A short run is written at its end: on a full disk it would be lost, and could not be resumed."""
+    steps: list[float] = []
+    sim = trb.Simulation(trb.cases.paper_30310(3000.0), accuracy="fast")
+    how: Any = {"duration": 1e-3, "output": tmp_path / "run.h5", "callback": lambda now: steps.append(now.time)}
+    with full_disk(500_000), pytest.raises(trb.FileError, match=r"run\.h5: the result file cannot be written"):
+        sim.run(**how)
+    assert sim.time == 0.0
+    assert not steps
+    assert list(tmp_path.iterdir()) == []
+    assert len(sim.run(**how)) > 1
+
+
 @pytest.mark.parametrize("name", sorted(WRITERS))
 def test_a_file_is_replaced_only_if_asked_and_stays_whole(name: str, run_file: Path, tmp_path: Path) -> None:
     ending, call = WRITERS[name]

@@ -154,8 +154,9 @@ class ResultWriter:
     Notes
     -----
     Records are written when two seconds have gone by or 8 MB wait, a part of a chunk less often (`LONGEST_SECONDS`). A run that
-    is killed leaves a file that holds everything up to the last write. Room on the disk is made sure of before each write, so
-    that a full disk is an error and leaves a readable file too. Use it as a context manager, or call `close`.
+    is killed leaves a file that holds everything up to the last write. Room on the disk is made sure of at the beginning and
+    before each write, so that a full disk is an error and leaves a readable file too. Use it as a context manager, or call
+    `close`.
 
     The file belongs to the process that made it: in a forked child the writer is closed. If another program removes or replaces
     the file, the records are kept (see `flush`).
@@ -195,6 +196,7 @@ class ResultWriter:
             replaced = take_lock(self.path) if overwrite and self.path.exists() else None
             try:
                 draft, self._lock = create_draft(self.path, uuid.uuid4().hex)
+                self._make_sure_of_room(draft)
                 _WRITERS.add(self)
                 begin = partial(self._begin, draft, make, taken_over, replace=replaced is not None)
                 if self._second is None or replaced is not None:
@@ -204,6 +206,15 @@ class ResultWriter:
             finally:
                 if replaced is not None:
                     replaced.close()
+
+    def _make_sure_of_room(self, draft: Path) -> None:
+        """Refuse a disk without room for a record before the first step: a short run is written at its end, and would be lost."""
+        try:
+            self._reserve(self._row_bytes + SPARE_BYTES)
+        except OSError:
+            self._let_go()
+            draft.unlink(missing_ok=True)
+            raise
 
     def _begin(
         self, draft: Path, make: partial[None], taken_over: tuple[Sequence[FileSource], int] | None, *, replace: bool
