@@ -255,7 +255,7 @@ def check_housing(scene: Scene) -> None:
     if scene.start.kind == "state" and scene.start.displacement is None:
         limit = "must be given with a housing, whose support carries the load of the bearing there: Start.state(sim.state) (m)"
         raise InputError.of(("start", "displacement"), None, limit)
-    if scene.start.kind == "state":
+    if scene.start.kind == "state" and scene.start.housing_load is None:
         _check_hold(scene)
     if scene.ring_body is None:
         return
@@ -267,10 +267,8 @@ def check_housing(scene: Scene) -> None:
 
 
 def _check_hold(scene: Scene) -> None:
-    """Refuse changes in time of what the support's force follows from: that of the first start, which a state does not know."""
-    limit = (
-        "must be constant in a run from a state with a housing: what its support carries counts from the first start"
-    )
+    """Refuse changes in time of what the support's force follows from: that of the first start, which is not given."""
+    limit = "must be constant in a run from a state with a housing, or start.housing_load given: Start.state(sim.state)"
     for path, quantity in (
         (("speed_rpm",), scene.speed_rpm),
         (("outer_speed_rpm",), scene.outer_speed_rpm),

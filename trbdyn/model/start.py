@@ -29,12 +29,15 @@ class State:
     displacement : ndarray, shape (5,), optional
         Where the inner ring stands: translation along x, y, z (m), rotation about x, y (rad). Of a free ring, whose place is in
         the vector: where it began, and its support is without force.
+    housing_load : ndarray, shape (5,), optional
+        What the support of a housing carried where the run began: force along x, y, z (N), moment about x, y (N m).
     """
 
     time: float
     vector: NDArray[np.float64]
     shaft_angle: float | None = None
     displacement: NDArray[np.float64] | None = None
+    housing_load: NDArray[np.float64] | None = None
 
 
 class Start(Model):
@@ -63,6 +66,9 @@ class Start(Model):
     displacement : tuple of float, shape (5,), optional
         State: where the inner ring stands then (m, rad). A ring that is held stays there, as it does in the run that goes on.
         Of a free ring: where its support is without force.
+    housing_load : tuple of float, shape (5,), optional
+        State: what the support of a housing carried where the run began (N, N m); by default what it carries in the
+        equilibrium at this start.
     """
 
     kind: Literal["equal", "unequal", "whirl", "state"] = "equal"
@@ -74,6 +80,7 @@ class Start(Model):
     state_vector: tuple[Number, ...] = ()
     shaft_angle: Annotated[Number, unit("rad", ge=-1e9, le=1e9)] | None = None
     displacement: tuple[Number, Number, Number, Number, Number] | None = None
+    housing_load: tuple[Number, Number, Number, Number, Number] | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -84,7 +91,8 @@ class Start(Model):
                 else "belongs to a start from a state only"
             )
             raise InputError.of("state_vector", self.state_vector, allowed)
-        for name, given, of in (("shaft_angle", self.shaft_angle, "rad"), ("displacement", self.displacement, "m")):
+        for name, of in (("shaft_angle", "rad"), ("displacement", "m"), ("housing_load", "N")):
+            given = getattr(self, name)
             if self.kind != "state" and given is not None:
                 raise InputError.of(name, given, f"belongs to a start from a state only ({of})")
         return self
@@ -128,6 +136,7 @@ class Start(Model):
         time: float | None = None,
         shaft_angle: float | None = None,
         displacement: ArrayLike | None = None,
+        housing_load: ArrayLike | None = None,
     ) -> Self:
         """A saved state: ``Start.state(sim.state)`` goes on where a simulation is, with its loads and its ring.
 
@@ -143,15 +152,18 @@ class Start(Model):
         displacement : array_like, shape (5,), optional
             Where the inner ring stands: `Simulation.state.displacement`. Without it a ring that is held is placed again, at the
             equilibrium at `time`; where the speed changes that is another place than that of the saved run.
+        housing_load : array_like, shape (5,), optional
+            What the support of a housing carried where the saved run began: `Simulation.state.housing_load`.
         """
         if isinstance(vector, State):
             time = vector.time if time is None else time
             shaft_angle = vector.shaft_angle if shaft_angle is None else shaft_angle
             displacement = vector.displacement if displacement is None else displacement
+            housing_load = vector.housing_load if housing_load is None else housing_load
             vector = vector.vector
         numbers = _numbers("state_vector", vector)
-        place = None if displacement is None else _numbers("displacement", displacement)
-        fields: dict[str, Any] = {} if place is None else {"displacement": place}
+        given = {"displacement": displacement, "housing_load": housing_load}
+        fields: dict[str, Any] = {name: _numbers(name, value) for name, value in given.items() if value is not None}
         return cls(
             kind="state", state_vector=numbers, time=0.0 if time is None else time, shaft_angle=shaft_angle, **fields
         )

@@ -225,7 +225,9 @@ class Simulation(Displayed, Generic[R]):
         else:
             time, vector = self._core.time, self._core.state()
         angle = self.scene.start_shaft_angle + self.scene.shaft_turn(time)
-        return State(time, vector, angle, self.bearings[0].motion.displacement(time))
+        first = self.bearings[0]
+        held = None if first.scene.housing is None else first.motion.housing_load
+        return State(time, vector, angle, first.motion.displacement(time), held)
 
     def view(self, vector: Array | None = None) -> Any:
         """Parts of a state vector by name (`StateView`); of a copy of the present one by default. Those of the first bearing's

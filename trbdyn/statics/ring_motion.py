@@ -86,6 +86,12 @@ class RingMotion:
         return np.asarray(curve(time), dtype=np.float64)
 
     @property
+    def housing_load(self) -> Array:
+        """What the support of a housing carries at the start (N, N m), shape (5,)."""
+        names = [name for name, _, _ in _core.motion_table()]
+        return self.table[0, [1 + 2 * names.index(name) for name in HOUSING_LOADS]]
+
+    @property
     def prescribed(self) -> tuple[Array, float, float, float, float]:
         """What the core takes: table, period, a time and the angles of shaft and outer ring then."""
         return self.table, self.period, self.angle_time, self.shaft_angle, self.outer_angle
@@ -154,10 +160,13 @@ def placed_again(model: _core.Model, scene: Scene, motion: RingMotion) -> str:
 def housing_hold(scene: Scene, equilibrium: Equilibrium) -> dict[str, float]:
     """What the support of a housing carries at the start, by the names of the core's channels (N, N m).
 
-    It is the load of the bearing in its equilibrium, and the weight of the housing; nothing without a housing.
+    It is the load of the bearing in its equilibrium, and the weight of the housing; nothing without a housing. A run that begins
+    in a state of another run has that run's.
     """
     if scene.housing is None:
         return {}
+    if scene.start.housing_load is not None:
+        return dict(zip(HOUSING_LOADS, scene.start.housing_load, strict=True))
     weight = scene.housing.mass * ring_load(scene, scene.start.time).gravity
     arm = scene.bearing.geometry.centre_plane + scene.housing.mass_offset
     turning = arm * np.array([-weight[1], weight[0]])

@@ -130,11 +130,11 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     drift = np.zeros(len(names)) if settling.settled else _drift(result, names, size, settling)
     assert result.final_state is not None
     angle = scene.start_shaft_angle + scene.shaft_turn(result.final_time)
-    stood = None
+    state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle)
     if counts_from_the_start(scene):
         motion, _ = ring_motion(build_model(scene), scene)
-        stood = motion.displacement(result.final_time)
-    state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle, displacement=stood)
+        held = None if scene.housing is None else tuple(motion.housing_load.tolist())
+        state = state.replace(displacement=tuple(motion.displacement(result.final_time).tolist()), housing_load=held)
     return Ground(state, value, size, scatter, drift, end - settled_from, settling.creep_time, spent, tuple(notes))
 
 

@@ -162,7 +162,7 @@ def carried_over(scene: Scene, state: Start, of: Scene) -> Scene:
     for name in set(old.names) & set(new.names):
         if old[name].shape == new[name].shape:
             new[name] = old[name]
-    start = Start.state(vector, time=state.time, shaft_angle=state.shaft_angle, displacement=state.displacement)
+    start = state.replace(state_vector=tuple(vector.tolist()))
     return scene.replace(start=start)
 
 
