@@ -23,7 +23,7 @@ from trbdyn.run.torque_laws import torque_laws
 from trbdyn.study.definition import Base, Case
 from trbdyn.study.runner import Running
 from trbdyn.study.settled import JUDGED, TURNS, failure, run_until_settled, short_run
-from trbdyn.study.uncertainty import FEWEST, LEVEL, Band, checked_bands, drawn_case, open_inputs, unit_draws
+from trbdyn.study.uncertainty import FEWEST, Band, band_of, checked_bands, drawn_case, open_inputs, unit_draws
 
 if TYPE_CHECKING:
     import xarray
@@ -142,12 +142,13 @@ class TorqueMap(Displayed):
                     )
                     row = [f"{temperature:g}", _load_words(at), f"{speed:g}", f"{value:.4g}"]
                     if banded:
-                        row.append(f"{float(at['torque_low']):.4g} to {float(at['torque_high']):.4g}")
+                        held = 100.0 * float(at["torque_held"])
+                        row.append(f"{float(at['torque_low']):.4g} to {float(at['torque_high']):.4g} ({held:.0f} %)")
                     if by_law:
                         row.append(f"{float(at['torque_laws_low']):.3g} to {float(at['torque_laws_high']):.3g}")
                     rows.append((*row, causes, _state(at)))
         head = ["oil (C)", "load (N)", "speed (rpm)", "torque (N m)"]
-        head += [f"{100.0 * LEVEL:.0f} % of the draws"] if banded else []
+        head += ["band (share that it holds)"] if banded else []
         head += ["with other laws"] if by_law else []
         open_points = int((~data["settled"]).sum())
         notes = [f"{open_points} points without a settled torque: see the last column"] if open_points else []
@@ -203,7 +204,7 @@ def torque_map(
     tolerance : float
         Change that may still come, and share of the power that is not lost, up to which a torque has settled (1).
     bands : bool, mapping of str to tuple, or sequence of Band
-        Draw inputs that nobody knows exactly, as `trbdyn.uncertainty` does, and tell between which torques 95 % of the draws of
+        Draw inputs that nobody knows exactly, as `trbdyn.uncertainty` does, and tell the band of the torques of
         each point lie: those of `trbdyn.study.open_inputs` if true, or bands of your own.
     samples : int
         Draws of each point, at least 8.
@@ -383,13 +384,14 @@ def _gathered(
         **{name: (dims, column(name), {"units": "1"}) for name in FILMS},
     }
     if draws:
-        low, high = (np.full(len(places), np.nan) for _ in range(2))
+        low, high, held = (np.full(len(places), np.nan) for _ in range(3))
         for p in range(len(places)):
             torques = [rows[p, d]["torque"] for d in range(1, draws + 1) if rows[p, d]["settled"]]
             if len(torques) >= FEWEST:
-                low[p], high[p] = np.quantile(torques, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+                low[p], high[p], held[p] = band_of(torques)
         variables["torque_low"] = (dims, low.reshape(shape), {"units": "N m"})
         variables["torque_high"] = (dims, high.reshape(shape), {"units": "N m"})
+        variables["torque_held"] = (dims, held.reshape(shape), {"units": "1"})
     found = [torque_laws(base.build({})[0]) if base is not None else None for base, _ in bases]
     if any(one is not None for one in found):
         plain = variables["torque"][1].ravel()

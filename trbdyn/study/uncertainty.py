@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.stats import qmc
 
 from trbdyn.base.expected import expect
@@ -43,7 +43,7 @@ QUANTITIES: Final = (
 )
 """Observables whose shares are printed unless others are asked for."""
 LEVEL: Final = 0.95
-"""Share of the draws that a band holds."""
+"""Share of what may come that a band holds, if the draws are enough for it."""
 FEWEST: Final = 8
 """Fewest draws that make a band."""
 
@@ -80,12 +80,14 @@ class Spread:
     value : float
         With every input as the scene has it.
     mean, low, high : float
-        Mean of the draws, and the band that holds 95 % of them.
+        Mean of the draws, and the band that follows from them.
     shares : dict of str to float
         First-order index of each input: the share of the variance that this input makes by itself, from an additive model
         with a parabola for each input. Empty where the draws are too few.
     rest : float
         Share of the variance that no input makes by itself: inputs acting together, and chance.
+    held : float
+        Share of what may come that the band holds in the mean (`share_held`): 0.95, or less where draws are few.
     """
 
     name: str
@@ -96,6 +98,7 @@ class Spread:
     high: float
     shares: dict[str, float]
     rest: float
+    held: float = LEVEL
 
 
 @dataclass(frozen=True, repr=False)
@@ -136,9 +139,8 @@ class Uncertainty(Displayed):
         for name in self.shown:
             spread = self.spreads[name]
             unit = f" {spread.unit}" if spread.unit else ""
-            lines.append(
-                f"{name} = {spread.value:.4g}{unit}; 95 % of the draws: {spread.low:.4g} to {spread.high:.4g}{unit}"
-            )
+            held = f"{100.0 * spread.held:.0f} % lie within {spread.low:.4g} to {spread.high:.4g}{unit}"
+            lines.append(f"{name} = {spread.value:.4g}{unit}; {held}")
             largest = sorted(spread.shares.items(), key=lambda entry: -entry[1])[:5]
             lines += [f"  {100.0 * share:5.1f} %  {path}" for path, share in largest if share >= 0.01]
             if spread.shares:
@@ -156,11 +158,12 @@ class Uncertainty(Displayed):
             spread = self.spreads[name]
             largest = sorted(spread.shares.items(), key=lambda entry: -entry[1])[:5]
             causes = ", ".join(f"{path} {100.0 * share:.0f} %" for path, share in largest if share >= 0.01)
-            rows.append((name, f"{spread.value:.4g}", spread.unit, f"{spread.low:.4g} to {spread.high:.4g}", causes))
+            band = f"{spread.low:.4g} to {spread.high:.4g} ({100.0 * spread.held:.0f} %)"
+            rows.append((name, f"{spread.value:.4g}", spread.unit, band, causes))
         title = f"{self.draws} draws of {len(self.bands)} inputs{self._refusals()}"
         torque = self.spreads["torque"] if "torque" in self.shown else None
         notes = () if self.laws is None or torque is None else (f"torque: {self.laws.words(torque.low, torque.high)}",)
-        head = ("name", "value", "unit", "95 % of the draws", "shares of the variance")
+        head = ("name", "value", "unit", "band (share that it holds)", "shares of the variance")
         return Shown(title, tuple(rows), head, notes)
 
     def _refusals(self) -> str:
@@ -250,8 +253,9 @@ def uncertainty(
 ) -> Uncertainty:
     """The band of every observable that follows from the bands of the inputs.
 
-    Inputs are drawn together by a scrambled Sobol sequence (`scipy.stats.qmc`), every draw is run, and the middle 95 % of
-    the results are the band.
+    Inputs are drawn together by a scrambled Sobol sequence (`scipy.stats.qmc`), every draw is run, and their results give the
+    band. It holds 95 % of what may come, if there are 39 draws at least; fewer have the smallest and the largest of them as
+    band, which holds less, and the share is printed.
 
     Parameters
     ----------
@@ -396,11 +400,29 @@ def _gathered(
 
 
 def _spread(name: str, value: float, values: Array, bands: Sequence[Band], unit: Array) -> Spread:
-    low, high = np.quantile(values, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+    low, high, held = band_of(values)
     found, rest = first_order(unit, values)
     shares = {band.path: float(share) for band, share in zip(bands, found, strict=False)}
     unit_text = SUMMARY[name].unit if name in SUMMARY else ""
-    return Spread(name, unit_text, float(value), float(values.mean()), float(low), float(high), shares, rest)
+    return Spread(name, unit_text, float(value), float(values.mean()), low, high, shares, rest, held)
+
+
+def share_held(draws: int) -> float:
+    """Share of what may come that a band of so many draws holds in the mean: `LEVEL`, but at most that of the smallest and the
+    largest of them.
+
+    Of n independent draws the next one lies between the k-th and the (n + 1 - k)-th with the probability (n + 1 - 2 k) / (n + 1),
+    whatever their distribution (Wilks 1941, Ann. Math. Stat. 12, 91). Draws of a Sobol sequence are more even, and hold more.
+    """
+    return min(LEVEL, (draws - 1) / (draws + 1))
+
+
+def band_of(values: ArrayLike) -> tuple[float, float, float]:
+    """Ends of the band of some draws, and the share of what may come that it holds in the mean (`share_held`)."""
+    given = np.asarray(values, dtype=float)
+    held = share_held(given.size)
+    low, high = np.quantile(given, [0.5 - 0.5 * held, 0.5 + 0.5 * held], method="weibull")
+    return float(low), float(high), held
 
 
 def first_order(unit: Array, values: Array) -> tuple[Array, float]:
