@@ -7,7 +7,8 @@
 #   make stability  the table of hard scenes, minutes long, JSON in build/stability.json (SCENES="name name" picks some)
 #   make notebooks  the notebooks run and keep their outputs
 #   make adversary  random scenes for a time, each judged; failures are shrunk and kept (MINUTES=20, SEED=0)
-#   make fuzz       fuzz targets of the C core under sanitizers, 60 s each (SECONDS=600); needs clang
+#   make fuzz       damaged results, checkpoints and case files (MINUTES=10, SEED=0); fuzz targets of the C core under sanitizers, 60 s
+#                   each (SECONDS=600), for which it needs clang
 #   make sanitize   the C tests and the Python tests that reach all of the C code, under address and undefined-behaviour sanitizers
 #   make cross      the core and its C tests for Windows, aarch64 and macOS; where a system can be had here, the tests run; minutes long
 #   make docs       the documentation site in build/docs, ready to host (make site is the same); its code is run, and a page whose inputs
@@ -98,7 +99,8 @@ stability: install $(VENV)/.test
 notebooks: install $(VENV)/.test
 	$(PY) -m pytest notebooks --nbmake --overwrite
 
-fuzz: $(VENV)/.tools
+fuzz: install
+	$(PY) tests/fuzz/fuzz_files.py --minutes $(or $(MINUTES),1) --seed $(or $(SEED),0)
 	SECONDS_EACH=$(or $(SECONDS),60) .ci/fuzz
 
 adversary: install
