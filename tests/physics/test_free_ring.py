@@ -178,6 +178,22 @@ def test_energy_of_a_coast_down_a_run_up_and_a_drop_to_no_load() -> None:
     assert dropped["ring_position"][-1, 2] == pytest.approx(dropped["ring_position"][0, 2], rel=0.15)
 
 
+@pytest.mark.parametrize(("options", "off"), [({}, 0.05), ({"max_step": 1e-5}, 1e-3)])
+def test_a_summary_says_up_to_which_frequency_vibrations_are_followed(options: dict[str, float], off: float) -> None:
+    """After a small step of the load a ring swings at its natural frequency, or slower where the steps are too long for it."""
+    body = RingBody.hollow_cylinder(mass=5.0, outer_diameter=0.06, length=0.1)
+    scene = scene_of(body, effects=FRICTIONLESS, speed_rpm=300.0, axial_load=4930.0)
+    natural = trb.stiffness(scene).modes(body).frequencies[:2].mean()
+    loaded = scene.replace(radial_load=History.step(0.001, [0.0, 60.0], rise=2e-4))
+    result = Simulation(loaded, **options).run(duration=0.05, save_every=1e-4)
+    course = result["ring_position"][20:, 1]
+    spectrum = np.abs(np.fft.rfft((course - course.mean()) * np.hanning(course.size), 32 * course.size))
+    share = np.fft.rfftfreq(32 * course.size, 1e-4)[spectrum.argmax()] / natural - 1.0
+    is_followed = result.summary()["followed_frequency"] > natural
+    assert is_followed == bool(options)
+    assert (abs(share) < off) if is_followed else (-2.0 * off < share < -0.01)
+
+
 def test_a_heavy_ring_is_a_held_one() -> None:
     start = Start.whirl(0.5)
     held = Simulation(scene_of(None, start=start, effects=Effects.standard().replace(gravity=False)))

@@ -244,6 +244,12 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "energy_residual": Quantity("energy audit: residual", "J", "Error of the energy balance."),
     "steps": Quantity("steps", "", "Steps of the integrator."),
     "rhs_evaluations": Quantity("evaluations of the equations of motion", "", "How often all forces were computed."),
+    "followed_frequency": Quantity(
+        "vibrations are followed up to",
+        "Hz",
+        "Vibrations up to this frequency keep it within 1 %; steps slow and damp faster ones. Smaller tolerances, or max_step, "
+        "raise it; trb.stiffness(scene).modes(body) gives the natural frequencies of a shaft.",
+    ),
     "wall_s": Quantity("wall time", "s", "Computing time."),
     "wall_s_per_revolution": Quantity("wall time a revolution", "s", "Computing time for a turn of the shaft."),
     "confidence_note": Quantity(

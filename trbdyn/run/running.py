@@ -132,6 +132,7 @@ class Run:
         self.process = os.getpid()
         self.began = clock.perf_counter()
         self.spent = 0.0
+        self.steps_before = 0.0 if done else sim.statistics["steps"]
         self.beside = has_a_spare_core()
         self.enough = ""
         self.with_peaks = peak_table.GROUP in options.save_groups
@@ -433,6 +434,7 @@ class Run:
                 end=sim._reached,
                 began=self.began,
                 spent=self.spent,
+                steps_before=self.steps_before,
                 integrator=self.options.integrator,
                 instruction_set=sim.instruction_set,
             ),
@@ -501,6 +503,7 @@ def statistics_of(
     end: float,
     began: float,
     spent: float,
+    steps_before: float,
     integrator: str,
     instruction_set: str,
 ) -> dict[str, Any]:
@@ -516,6 +519,8 @@ def statistics_of(
         Bearing time of the run (s).
     began, spent : float
         When it began by the clock, and the time that the core took (s).
+    steps_before : float
+        Steps of the simulation before the run.
     integrator, instruction_set : str
         What it was computed with.
     """
@@ -529,6 +534,7 @@ def statistics_of(
         "wall_s": clock.perf_counter() - began,
         "stepping_s": spent,
         "bearing_time_s": length,
+        "mean_step_s": length / steps if (steps := counted["steps"] - steps_before) > 0.0 else math.nan,
         "revolutions": turned,
         "wall_s_per_revolution": spent / turned if turned > 0.0 else math.nan,
         "real_time_factor": length / spent if spent > 0.0 else math.nan,
