@@ -331,7 +331,7 @@ def _look(watch: Any, run: Run, *, final: bool = False) -> bool:
 def _duration(scene: trb.Scene) -> float:
     """A turn of the shaft, between 4 ms and 0.3 s; histories to their end, those that repeat at least for a period."""
     speed = scene.turning_rpm
-    histories = [q for q in (scene.speed_rpm, scene.axial_load) if isinstance(q, trb.History)]
+    histories = [q for q in (scene.speed_rpm, scene.axial_load, scene.radial_load) if isinstance(q, trb.History)]
     if histories and not any(q.repeats for q in histories):
         return float(1.2 * max(q.times[-1] for q in histories))
     turn = min(max(60.0 / abs(_largest(speed)), 4e-3), 0.3)

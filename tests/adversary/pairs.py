@@ -27,6 +27,8 @@ ORDINARY: Table = {
     "position": 0.0,
     "moment": 0.0,
     "end_share": None,
+    "drop_share": None,
+    "drop_rise": 1e-3,
     "history_s": 5e-3,
     "shaft_mass": 6.0,
     "mass_position": 0.0,
@@ -97,6 +99,17 @@ def pair(rng: np.random.Generator) -> Table:
                 "housing_stiffness": scenes._log(rng, 1e7, 1e10),
                 "housing_damping": scenes._log(rng, 1.0, 1e5),
             }
+    # drawn last, so that a seed's other entries stay what they were
+    for side in ("left", "right"):
+        if table[side]["bearing"] == "30310" and rng.random() < 0.2:
+            table[side].pop("cage_mass", None)
+            table[side]["elastic_modes"] = int(scenes._log(rng, 1.0, 25.0))
+    if "end_share" not in table and rng.random() < 0.2:
+        table |= {
+            "drop_share": scenes._one_of(rng, 0.0, scenes._log(rng, 1.2, 5.0)),
+            "history_s": scenes._log(rng, 2e-3, 2e-2),
+        }
+        table["drop_rise"] = scenes._log(rng, 1e-4, 0.3 * table["history_s"])
     return table
 
 
@@ -130,6 +143,7 @@ def make(table: Table) -> trb.Assembly:
                 effects=scenes._effects(own),
                 start=scenes._start_of(own),
                 housing=housing,
+                elastic_cage=scenes._elastic_cage(own),
                 defects=scenes._defects(own, bearing),
             )
         )
@@ -139,6 +153,8 @@ def make(table: Table) -> trb.Assembly:
     ).replace(damping=t["damping"], unbalance=t["unbalance_share"] * t["radial"] * RATING / max(speed, 50.0) ** 2)
 
     def force(size: float) -> float | trb.History:
+        if t["drop_share"] is not None:
+            return scenes.dropped(size, t["drop_share"], t["history_s"], t["drop_rise"])
         if t["end_share"] is None:
             return size
         return trb.History.ramp(0.2 * t["history_s"], 1.2 * t["history_s"], size, t["end_share"] * size)
@@ -153,7 +169,7 @@ def duration_of(table: Table) -> float:
     """Half a turn of the shaft, between 3 and 50 ms; loads that change to their end."""
     t = ORDINARY | table
     turn = min(max(30.0 / abs(t["speed_rpm"]), 3e-3), 0.05)
-    return turn if t["end_share"] is None else max(turn, 1.5 * t["history_s"])
+    return turn if t["end_share"] is t["drop_share"] is None else max(turn, 1.5 * t["history_s"])
 
 
 def run(assembly: trb.Assembly, duration: float, **options: Any) -> tuple[dict[str, Any], trb.AssemblyResult]:

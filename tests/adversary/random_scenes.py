@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.model.cases import bearing_32216, bearing_nj210, rig_30310
+from trbdyn.model.cases import bearing_32216, bearing_nj210, cage_body_30310, rig_30310
 from trbdyn.model.lubricants import iso_vg, vg100
 
 Table = dict[str, Any]
@@ -52,6 +52,8 @@ ORDINARY: Table = {
     "end_speed_rpm": None,
     "end_axial_load": None,
     "history_s": 0.005,
+    "drop_share": None,
+    "drop_rise": 1e-3,
     "oil": None,
     "oil_fill": 0.0,
     "pocket_film": 0.0,
@@ -72,6 +74,9 @@ ORDINARY: Table = {
     "ring_offset": 0.0,
     "unbalance_share": 0.0,
     "ring_damping": 0.0,
+    "support_stiffness": None,
+    "support_tilt": 1.0,
+    "support_position": 0.0,
     "moment_share": 0.0,
     "torque": None,
     "housing_mass": None,
@@ -79,6 +84,10 @@ ORDINARY: Table = {
     "housing_offset": 0.0,
     "housing_stiffness": 3e8,
     "housing_damping": 0.0,
+    "elastic_modes": None,
+    "cage_material": "steel",
+    "rim_width": 1.0,
+    "cracked_bars": 0,
     "pit_on": None,
     "pit_length": 2e-3,
     "pit_depth": 30e-6,
@@ -316,12 +325,62 @@ def pitted(rng: np.random.Generator) -> Table:
     return table
 
 
+def supported(rng: np.random.Generator) -> Table:
+    """A free ring whose shaft a spring holds, soft or stiff, with or without stiffness against tilt, near it or far from it."""
+    return free(rng) | {
+        "support_stiffness": _log(rng, 1e5, 1e9),
+        "support_tilt": _one_of(rng, 0.0, _log(rng, 0.01, 10.0)),
+        "support_position": float(rng.uniform(-0.2, 0.2)),
+    }
+
+
+def drop(rng: np.random.Generator) -> Table:
+    """A load that goes in part or whole and comes back, or rises to some times its size, within 0.1 ms to some milliseconds."""
+    table = _one_of(rng, usual, light, guided, free, supported, housed)(rng)
+    for name in ("displacement_x", "end_speed_rpm", "end_axial_load", "rotating_share"):
+        table.pop(name, None)
+    table |= {
+        "speed_rpm": _log(rng, 30.0, 8000.0),
+        "drop_share": _one_of(rng, 0.0, float(rng.uniform(0.0, 0.5)), _log(rng, 1.2, 5.0)),
+        "history_s": _log(rng, 2e-3, 3e-2),
+    }
+    if "housing_mass" in table:
+        table.setdefault("ring_mass", _log(rng, 0.1, 300.0))  # a load that changes then moves both rings
+    return table | {"drop_rise": _log(rng, 1e-4, 0.3 * table["history_s"])}
+
+
+def elastic(rng: np.random.Generator) -> Table:
+    """A cage that deforms: steel or polyamide, narrow or wide rims, a few modes or many, whole or with cracked bars."""
+    table = _one_of(rng, usual, light, wide, free, outer, housed, drop)(rng)
+    for name in ("cage_mass", "guidance", "land_clearance", "land_film", "land_fill"):
+        table.pop(name, None)
+    return table | {
+        "bearing": "30310",
+        "planar": False,
+        "elastic_modes": int(_log(rng, 1.0, 25.0)),
+        "cage_material": _one_of(rng, "steel", "polyamide"),
+        "rim_width": _log(rng, 0.6, 1.5),
+        "cracked_bars": _one_of(rng, 0, 0, 0, 1, 2),
+    }
+
+
+def hub(rng: np.random.Generator) -> Table:
+    """A wheel hub: the outer ring turns, the inner ring is at rest, on an axle of its own or driven by a torque from there on."""
+    table = _one_of(rng, usual, light, free, supported, housed, drop, elastic)(rng)
+    for name in ("end_speed_rpm", "rotating_share", "unbalance_share", "torque"):
+        table.pop(name, None)
+    table |= {"speed_rpm": 0.0, "outer_speed_rpm": _log(rng, 10.0, 3000.0) * _one_of(rng, -1.0, 1.0), "oil_fill": 0.0}
+    if "ring_mass" in table and rng.random() < 0.3:
+        table["torque"] = float(rng.uniform(-0.5, 0.5))
+    return table
+
+
 def cylindrical(rng: np.random.Generator) -> Table:
     """Cylindrical rollers: all types of ribs, loose or tight, round or nearly flat ends. The load that others have along the axis
     acts across it, and a share of it along the axis where ribs can carry it.
     """
-    table = _one_of(rng, usual, light, wide, guided, filmed, free, outer, housed, pitted)(rng)
-    for name in ("displacement_x", "back_rib"):
+    table = _one_of(rng, usual, light, wide, guided, filmed, free, outer, housed, pitted, drop, hub)(rng)
+    for name in ("displacement_x", "back_rib", "elastic_modes"):
         table.pop(name, None)
     table |= {"flanges": _one_of(rng, "NU", "NJ", "NUP", "N"), "bearing": "nj210"}
     if table["flanges"] in ("NJ", "NUP"):
@@ -338,6 +397,10 @@ def cylindrical(rng: np.random.Generator) -> Table:
 
 
 KINDS = {
+    "supported": supported,
+    "drop": drop,
+    "elastic": elastic,
+    "hub": hub,
     "cylindrical": cylindrical,
     "pitted": pitted,
     "housed": housed,
@@ -394,17 +457,20 @@ def make(table: Table) -> trb.Scene:
             lowest *= 1.0 - t["repeating_share"]
         fields |= {
             "axial_load": _quantity(t, "axial_load", t["axial_load"], t["end_axial_load"]),
-            "radial_load": t["radial_share"] * lowest / slope,
+            "radial_load": _quantity(t, "radial_load", t["radial_share"] * lowest / slope, None),
             "radial_direction_deg": t["direction_deg"],
         }
         if t["rotating_share"] > 0.0:
             fields["rotating_load"] = trb.RotatingLoad(t["rotating_share"] * lowest / slope, turns=t["rotating_turns"])
-        if t["end_axial_load"] is not None or t["rotating_share"] > 0.0 or t["repeating"] == "axial_load":
+        if _follows(t):
             fields["ring"] = "follows"
     if t["ring_mass"] is not None:
         fields |= _free_ring(t, bearing)
     if t["housing_mass"] is not None:
         fields["housing"] = _housing(t, bearing)
+    if t["drop_share"] is not None and t["ring_mass"] is None and t["flanges"] is None:
+        fields["unloaded"] = "rests"
+    fields["elastic_cage"] = _elastic_cage(t)
     fields["defects"] = _defects(t, bearing)
     return trb.Scene(bearing, start=_start_of(t), **fields)
 
@@ -421,9 +487,15 @@ def _across(t: Table) -> Table:
         fields["displacement"] = (None, None, t["displacement_z"])
     if t["rotating_share"] > 0.0:
         fields["rotating_load"] = trb.RotatingLoad(t["rotating_share"] * t["axial_load"], turns=t["rotating_turns"])
-    if t["end_axial_load"] is not None or t["rotating_share"] > 0.0 or t["repeating"] == "axial_load":
+    if _follows(t):
         fields["ring"] = "follows"
     return fields
+
+
+def _follows(t: Table) -> bool:
+    """Whether a ring without mass has a load that changes."""
+    changes = t["end_axial_load"] is not None or t["drop_share"] is not None or t["repeating"] == "axial_load"
+    return bool(changes or t["rotating_share"] > 0.0)
 
 
 def _free_ring(t: Table, bearing: trb.Bearing) -> Table:
@@ -437,6 +509,14 @@ def _free_ring(t: Table, bearing: trb.Bearing) -> Table:
     body = body.replace(
         unbalance=t["unbalance_share"] * t["axial_load"] / max(speed, 10.0) ** 2, damping=t["ring_damping"]
     )
+    if t["support_stiffness"] is not None:
+        stiffness = t["support_stiffness"] * size
+        body = body.replace(
+            support_radial=stiffness,
+            support_axial=0.5 * stiffness,
+            support_tilt=t["support_tilt"] * stiffness * (0.5 * pitch) ** 2,
+            support_position=t["support_position"] * size,
+        )
     if t["flanges"] is not None and t["axial_share"] == 0.0:
         body = body.replace(support_axial=1e7 * size)
     moment = t["moment_share"] * t["axial_load"] * 0.1 * pitch
@@ -492,12 +572,9 @@ def _bearing(t: Table) -> trb.Bearing:
     else:
         bearing = rig_30310() if t["bearing"] == "30310" else bearing_32216()
     cage = bearing.cage
-    cage = cage.replace(
-        mass=cage.mass * t["cage_mass"],
-        inertia_axial=cage.inertia_axial * t["cage_mass"],
-        inertia_transverse=cage.inertia_transverse * t["cage_mass"],
-        **{name: getattr(cage, name) * t["play"] for name in SCALED},
-    )
+    weights = {name: getattr(cage, name) * t["cage_mass"] for name in ("mass", "inertia_axial", "inertia_transverse")}
+    plays = {name: getattr(cage, name) * t["play"] for name in SCALED}
+    cage = cage.replace(**weights, **plays) if t["elastic_modes"] is None else _cage_of_beams(t, plays)
     roller = bearing.roller
     if t["scatter"] > 0.0:
         deviations = np.random.default_rng(t["seed"]).uniform(-0.5, 0.5, bearing.n_rollers) * t["scatter"]
@@ -509,6 +586,21 @@ def _bearing(t: Table) -> trb.Bearing:
         fill=t["land_fill"],
     )
     return bearing.replace(cage=cage, roller=roller, land=land)
+
+
+def _cage_of_beams(t: Table, plays: dict[str, float]) -> trb.Cage:
+    """The cage of the 30310 with rims and bars of a material, from which its mass and its modes follow."""
+    body = cage_body_30310()
+    rims = {name: getattr(body, name) * t["rim_width"] for name in ("small_rim_width", "large_rim_width")}
+    material = {"steel": trb.Material.steel, "polyamide": trb.Material.polyamide}[t["cage_material"]]()
+    return trb.Cage(**plays, body=body.replace(**rims), material=material)
+
+
+def _elastic_cage(t: Table) -> trb.ElasticCage | None:
+    """Cracked bars lie opposite each other, or nearly so."""
+    if t["elastic_modes"] is None:
+        return None
+    return trb.ElasticCage(n_modes=t["elastic_modes"], cracked_bars=tuple(9 * k for k in range(t["cracked_bars"])))
 
 
 def _effects(t: Table) -> trb.Effects:
@@ -559,7 +651,14 @@ def _quantity(t: Table, name: str, begin: float, end: float | None) -> float | t
     if t["repeating"] == name:
         return trb.History.harmonic(begin, t["repeating_share"] * abs(begin), frequency_hz=t["repeating_hz"])
     duration = t["history_s"]
+    if t["drop_share"] is not None and name != "speed":
+        return dropped(begin, t["drop_share"], duration, t["drop_rise"])
     return begin if end is None else trb.History.ramp(0.2 * duration, 1.2 * duration, begin, end)
+
+
+def dropped(begin: float, share: float, duration: float, rise: float) -> trb.History:
+    """What falls or rises to a share of itself and comes back, within a time."""
+    return trb.History.step((0.3 * duration, 0.7 * duration), (begin, share * begin, begin), rise=rise)
 
 
 def _log(rng: np.random.Generator, low: float, high: float) -> float:
