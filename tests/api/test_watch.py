@@ -7,10 +7,12 @@ import re
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import trbdyn as trb
 from trbdyn.model.cases import paper_30310
+from trbdyn.run import vibrations
 from trbdyn.run.options import ACCURACY
 from trbdyn.run.watch import LEAST_STORED_SHARE, LOST_SHARE, STOP, WARN, WINDOWS, Watch
 
@@ -203,6 +205,19 @@ def test_vibrations_that_the_steps_follow_are_no_reason_to_warn():
     finer = {name: 0.4 * value for name, value in ACCURACY["reference"].model_dump().items()}
     result = trb.Simulation(hardly_loaded(), accuracy="reference", **finer).run(duration=0.015, save_every=1e-3)
     assert result.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("off", "scatter", "certain", "possible"),
+    [(0.0, 0.2, False, False), (0.03, 0.2, False, True), (0.3, 0.2, True, True), (0.005, 1e-4, False, False)],
+)
+def test_a_difference_is_said_beyond_the_scatter_of_runs_that_are_as_good(off, scatter, certain, possible):
+    """What lies within the scatter is said only where vibrations grow on, as without damping."""
+    fine = 1.0 + off + scatter * np.tile([1.0, -1.0], 4)
+    difference = vibrations._difference(10.0 * fine, np.full(8, 10.0))
+    assert difference.value == pytest.approx(off)
+    assert difference.notable(certain=True) == certain
+    assert difference.notable(certain=False) == possible
 
 
 def test_a_run_in_short_pieces_is_watched_as_one():

@@ -53,8 +53,6 @@ BLOCKS: Final = 8
 """Pieces of the second half of a probe, whose scatter says how well its difference is known."""
 NOTABLE: Final = 0.01
 """Difference of the loss, or of the mean load of the rollers, from which on a run warns."""
-UNSURE: Final = 0.05
-"""A difference that may be larger than this is said, too, though the probe does not show it for certain."""
 FINER: Final = 0.1
 """Factor of the tolerances where they are those of 'reference' already, or smaller."""
 
@@ -71,10 +69,9 @@ class Difference:
         """Bound of its size."""
         return abs(self.value) + self.half_width
 
-    @property
-    def notable(self) -> bool:
-        """Whether it is said."""
-        return abs(self.value) > max(NOTABLE, self.half_width) or not self.within <= UNSURE
+    def notable(self, *, certain: bool) -> bool:
+        """Whether it is said: beyond `NOTABLE`, and beyond the scatter of runs that are as good if it has to be `certain`."""
+        return not abs(self.value) <= (max(NOTABLE, self.half_width) if certain else NOTABLE)
 
     def said(self, what: str) -> str:
         if abs(self.value) <= self.half_width:
@@ -103,15 +100,9 @@ class Probe:
     load: Difference
     steps: int
 
-    @property
-    def notable(self) -> bool:
-        """Whether a difference is said."""
-        return self.loss.notable or self.load.notable
-
-    @property
-    def visible(self) -> bool:
-        """Whether a difference may be as large as `NOTABLE`."""
-        return not (self.loss.within <= NOTABLE and self.load.within <= NOTABLE)
+    def notable(self, *, certain: bool) -> bool:
+        """Whether a difference is said, see `Difference.notable`."""
+        return self.loss.notable(certain=certain) or self.load.notable(certain=certain)
 
     def said(self) -> str:
         return (

@@ -253,7 +253,7 @@ class Watch:
             return
         probe = vibrations.probe(self._sim, self._bearing, whole.since, whole.state, most, length=time - whole.since)
         account.probe_steps += most if probe is None else probe.steps
-        if probe is not None and not probe.notable:
+        if probe is not None and not probe.notable(certain=False):
             return
         measured = "how right they are could not be measured" if probe is None else probe.said()
         self._say(
@@ -286,9 +286,9 @@ class Watch:
             account.probe_steps += account.probed.steps if account.probed is not None else most
             account.probed_size = size
         damped = self._damped(now)
-        # without damping large vibrations go on growing: the piece must then show no difference at all
+        # without damping large vibrations go on growing: a difference is then said although it is within the scatter
         growing = not damped and size > vibrations.SIZE
-        if account.probed is not None and not (account.probed.visible if growing else account.probed.notable):
+        if account.probed is not None and not account.probed.notable(certain=not growing):
             return
         took = f"takes {100.0 * share:.3g} % of the energy of these vibrations" + (
             " in place of damping" if damped else ""
