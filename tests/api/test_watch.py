@@ -201,7 +201,7 @@ def test_what_the_steps_take_from_vibrations_is_seen_and_measured():
 
 def test_vibrations_that_the_steps_follow_are_no_reason_to_warn():
     """The rollers vibrate here as well, but damping takes what feeds it, and the numbers are right. With 'reference' the steps
-    take 6 % of it, close to what is measured and said."""
+    take 6 % of it."""
     finer = {name: 0.4 * value for name, value in ACCURACY["reference"].model_dump().items()}
     result = trb.Simulation(hardly_loaded(), accuracy="reference", **finer).run(duration=0.015, save_every=1e-3)
     assert result.warnings == ()

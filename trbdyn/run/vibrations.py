@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SHARE: Final = 0.05
-"""Share of the energy fed into vibrations that the integration may take in place of damping."""
+SHARE: Final = 0.25
+"""Share of the energy fed into vibrations that the integration may take in place of damping: so much of the vibrations, and of
+what they do to losses and loads, is missing (N12)."""
 MEMORY: Final = 5e-3
 """Time over which vibrations add up before the damping of a lightly loaded contact takes them (s)."""
 SIZE: Final = 0.01
