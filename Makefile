@@ -13,6 +13,7 @@
 #   make cross      the core and its C tests for Windows, aarch64 and macOS; where a system can be had here, the tests run; minutes long
 #   make docs       the documentation site in build/docs, ready to host (make site is the same); its code is run, and a page whose inputs
 #                   are those of the last run is not run again; warnings are errors
+#   make figures    the pictures of README and site are made again (FIGURES="report.png" picks some); needs Chromium
 #   make wheels     a source distribution and a wheel in dist/, audited and tried in an empty environment
 #   make mutate     small faults put into a copy of the sources: how many do the tests notice? (COUNT=250 MINUTES=90 SEED=1)
 #   make count      how many lines the sources have, by folder
@@ -45,7 +46,7 @@ DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=
 
 export MPLBACKEND := Agg
 
-.PHONY: count cross demo site docs wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
+.PHONY: count cross demo site docs figures wheels test lint format bench stability notebooks fuzz sanitize mutate adversary install clean distclean
 .NOTPARALLEL:
 
 demo: install
@@ -56,6 +57,9 @@ site: docs
 docs: install $(VENV)/.docs
 	$(PY) -m sphinx -W --keep-going -b html -d build/docs-cache docs build/docs
 	@echo "build/docs/index.html"
+
+figures: install $(VENV)/.test
+	$(PY) docs/figures.py $(FIGURES)
 
 wheels: install
 	.ci/wheels

@@ -44,6 +44,7 @@ LINK = re.compile(r"\]\(([^)#]+)[^)]*\)")
 
 WHOLE = {
     "make docs",
+    "make figures",
     "make wheels",
     "make test",
     "make lint",

@@ -119,7 +119,8 @@ def _head(results: Sequence[Result], names: Sequence[str], title: str) -> str:
             if result.meta.get(key)
         )
         label = f"<b>{safe(name)}</b>: " if len(results) > 1 else ""
-        lines.append(f"{label}{safe(words)}; {safe(result.scene.lubricant.name)}; {safe(made)}")
+        parts = [words, result.scene.lubricant.name, made]
+        lines.append(label + safe("; ".join(part for part in parts if part)))
     return f"<h1>{safe(title)}</h1>\n<p class='sub'>{'<br>'.join(lines)}</p>"
 
 

@@ -61,7 +61,7 @@ class TorqueLaws:
     def words(self, low: float, high: float) -> str:
         """The band in words, with the laws and the record."""
         wide = self.band(low, high)
-        names = " and ".join(self.factors)
+        names = " and ".join(name.replace("_", "-").title() for name in self.factors)
         return f"{wide[0]:.3g} to {wide[1]:.3g} N m with the laws {names}" + (f"; {self.record}" if self.record else "")
 
 

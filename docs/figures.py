@@ -1,0 +1,113 @@
+"""Pictures of README and site, made again: ``make figures``, or ``python docs/figures.py report.png`` for one of them.
+
+Each picture shows a run. Beside the pictures lies `shown.json`: what the scene of each picture gave when it was made. A test
+computes these numbers again, so that a picture which is older than what it shows is named. Pictures of pages need Chromium.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+import trbdyn as trb
+
+ROOT = Path(__file__).resolve().parents[1]
+SHOWN = ROOT / "docs" / "pictures" / "shown.json"
+NUMBERS: Final = ("torque", "power_loss", "cage_speed_ratio", "outer_load_mean", "inner_load_mean", "rib_load_mean")
+TURNS: Final = 50.0
+TOP: Final = ("cage_locus", "load_zone")
+"""Pictures of the report: its top alone is photographed."""
+
+
+def scene() -> trb.Scene:
+    return trb.cases.scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+
+
+def slow() -> trb.Scene:
+    """A point of the Stribeck curve."""
+    return trb.cases.scene_30310(100.0, 4930.0)
+
+
+@cache
+def numbers(of: Callable[[], trb.Scene]) -> dict[str, float]:
+    """What a scene gives, from a short run."""
+    values = trb.Simulation(of(), accuracy="fast").run(revolutions=1.0).summary()
+    return {name: values[name] for name in NUMBERS}
+
+
+@cache
+def long_run() -> trb.Result:
+    return trb.Simulation(scene()).run(revolutions=TURNS)
+
+
+def locus(path: Path) -> None:
+    trb.plot.save(trb.plot.cage_locus(long_run()), path, overwrite=True)
+
+
+def report(path: Path) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        page = trb.report(long_run(), Path(folder) / "report.html", pictures=TOP)
+        photograph(page, path, (1100, 1400), "document.readyState == 'complete'")
+
+
+def viewer(path: Path) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "view.html"
+        trb.view(long_run(), page, max_frames=200)
+        photograph(page, path, (1200, 760), "window.trbView && document.getElementById('message').textContent == ''")
+
+
+def photograph(page: Path, path: Path, size: tuple[int, int], ready: str) -> None:
+    sys.path.insert(0, str(ROOT / "tests" / "view"))
+    from browser import Browser
+
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:  # Chromium still writes while it ends
+        browser = Browser(Path(folder), size)
+        try:
+            browser.open(page, ready)
+            browser.frame()
+            browser.picture(path)
+        finally:
+            browser.close()
+
+
+def stribeck(path: Path) -> None:
+    found = trb.torque_map(
+        trb.cases.rig_30310(),
+        speeds=[10.0, 20.0, 40.0, 70.0, 100.0, 200.0, 500.0, 1000.0, 3000.0],
+        loads=[4930.0],
+        temperatures=[40.0, 60.0, 90.0],
+    )
+    found.picture(path, overwrite=True)
+
+
+PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], trb.Scene]]]] = {
+    "benchmarks/pictures/demo_cage_locus.png": (locus, scene),
+    "docs/pictures/report.png": (report, scene),
+    "docs/pictures/viewer.png": (viewer, scene),
+    "docs/pictures/stribeck.png": (stribeck, slow),
+}
+"""Pictures, who makes them, and the scene whose numbers say whether they are old."""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", help="files, without their folders; all by default")
+    wanted = parser.parse_args().names
+    shown = json.loads(SHOWN.read_text()) if SHOWN.exists() else {}
+    for name, (make, of) in PICTURES.items():
+        if not wanted or Path(name).name in wanted:
+            make(ROOT / name)
+            shown[name] = numbers(of)
+            SHOWN.write_text(json.dumps(shown, indent=2) + "\n")
+            print(name)
+
+
+if __name__ == "__main__":
+    main()

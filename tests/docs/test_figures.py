@@ -1,0 +1,55 @@
+"""No picture of README and site is older than what it shows: its numbers, computed again, are those of the day it was made."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+pytestmark = pytest.mark.skipif(
+    not (ROOT / "docs").is_dir(), reason="the documentation is not part of a source distribution"
+)
+
+
+@pytest.fixture(scope="module")
+def figures() -> Any:
+    sys.path.insert(0, str(ROOT / "docs"))
+    import figures
+
+    return figures
+
+
+def test_no_picture_is_older_than_what_it_shows(figures: Any) -> None:
+    shown = json.loads(figures.SHOWN.read_text())
+    old = []
+    for name, (_, scene) in figures.PICTURES.items():
+        assert (ROOT / name).exists(), name
+        now = figures.numbers(scene)
+        if name not in shown or any(now[key] != pytest.approx(shown[name][key], rel=0.01) for key in now):
+            old.append(name)
+    assert not old, f"make figures: {old}"
+
+
+def test_every_picture_of_the_site_has_its_maker(figures: Any) -> None:
+    made = {(ROOT / name).resolve() for name in figures.PICTURES}
+    assert {path.resolve() for path in (ROOT / "docs" / "pictures").glob("*.png")} <= made
+
+
+def test_figures_of_the_readme(figures: Any) -> None:
+    """Loads, cage speed and torque of the table "How fast, how accurate"."""
+    now, text = figures.numbers(figures.scene), (ROOT / "README.md").read_text(encoding="utf-8")
+
+    def row(start: str) -> list[float]:
+        found = re.search(rf"^\| {start}[^|]*\|([^|]*)\|", text, re.MULTILINE)
+        assert found is not None, start
+        return [float(number) for number in re.findall(r"\d+\.\d+", found[1])]
+
+    loads = [now[f"{side}_load_mean"] for side in ("outer", "inner", "rib")]
+    assert row("load of a roller at outer race, inner race, rib") == pytest.approx(loads, rel=2e-3)
+    assert row("cage speed over shaft speed") == pytest.approx([now["cage_speed_ratio"]], rel=1e-3)
+    assert row("friction torque of the shaft")[0] == pytest.approx(now["torque"], rel=0.01)
