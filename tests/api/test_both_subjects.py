@@ -16,7 +16,7 @@ from trbdyn.cli import main
 from trbdyn.errors import InputError, StepError
 from trbdyn.run import memory, running
 from trbdyn.run.checkpoint import checkpoint_path
-from trbdyn.study import thermal, torque_map, whirl
+from trbdyn.study import thermal, whirl
 from trbdyn.study.definition import Base
 
 SCENE = trb.cases.scene_30310(3000.0, 4930.0)
@@ -220,8 +220,7 @@ def test_uncertainty(name: str) -> None:
     assert all(band.low < band.high for band in trb.study.open_inputs(SUBJECTS[name]))
 
 
-def test_torque_map(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(torque_map, "TURNS", (0.5,))
+def test_torque_map(name: str) -> None:
     how: dict[str, Any] = {"temperatures": [60.0], "tolerance": 0.3, "workers": 2}
     found = trb.torque_map(SUBJECTS[name], [3000.0], [3000.0], **how)
     torque = found.data["torque"].values.ravel()
