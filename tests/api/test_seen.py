@@ -249,14 +249,16 @@ class Pictures:
         yield (
             "draw_balance",
             draw_balance(
-                SimpleNamespace(
-                    temperatures=temperatures,
-                    bands={name: (value - 5.0, value + 9.0) for name, value in temperatures.items()},
-                    curve=np.array([[30.0, 400.0], [60.0, 300.0], [90.0, 240.0]]),
-                    power=270.0,
-                    scene=SimpleNamespace(bearing=SimpleNamespace(name="a bearing")),
-                    paths=trb.HeatPaths(outer_ring_to_surroundings=2.0, housing_air_c=25.0, shaft_end_c=10.0),
-                )
+                [
+                    SimpleNamespace(
+                        temperatures=temperatures,
+                        bands={name: (value - 5.0, value + 9.0) for name, value in temperatures.items()},
+                        curve=np.array([[30.0, 400.0], [60.0, 300.0], [90.0, 240.0]]),
+                        power=270.0,
+                        scene=SimpleNamespace(bearing=SimpleNamespace(name="a bearing")),
+                        paths=trb.HeatPaths(outer_ring_to_surroundings=2.0, housing_air_c=25.0, shaft_end_c=10.0),
+                    )
+                ]
             ),
         )
 

@@ -27,6 +27,8 @@ from trbdyn.model.cases import paper_30310
 from trbdyn.plot import animation
 from trbdyn.reporting import save_pdf
 from trbdyn.results import summary
+from trbdyn.results.assembly import AssemblyResult
+from trbdyn.results.export import export
 from trbdyn.study import gather
 from trbdyn.viewer import View, save_gltf
 
@@ -52,7 +54,7 @@ def picture_of(module: str, function: str, owner: str) -> Callable[..., Any]:
         method = getattr(importlib.import_module(home), name).picture
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(importlib.import_module(module), function, lambda *rest: plt.figure())
-            return method(SimpleNamespace(data=None), path, **how)
+            return method(SimpleNamespace(data=None, values=tuple), path, **how)
 
     return call
 
@@ -67,6 +69,12 @@ def caged() -> trb.Bearing:
     return trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
 
 
+class Named(dict[str, trb.Result]):
+    """Results by names, as those of an assembly are."""
+
+    assembly = None
+
+
 def moving(run: trb.Result) -> Any:
     return animation.animate(run, last=1.0, frames=2)
 
@@ -76,6 +84,7 @@ PICTURES = {
     f"{STUDY}cage_map.CageMap": ("trbdyn.plot.cage_map", "draw_map"),
     f"{STUDY}torque_map.TorqueMap": ("trbdyn.plot.torque", "draw_map"),
     f"{STUDY}thermal.Thermal": ("trbdyn.plot.heat", "draw_balance"),
+    f"{STUDY}thermal.AssemblyThermal": ("trbdyn.plot.heat", "draw_balance"),
     f"{STUDY}planning.proposal.Plan": ("trbdyn.study.planning.picture", "draw"),
 }
 WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
@@ -95,6 +104,12 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
     "trbdyn.cage.modes.CageModes.save": (
         "a.h5",
         lambda run, path, **how: CageModes.of_frame(caged(), 2).save(path, **how),
+    ),
+    "trbdyn.results.export.export": ("a.csv", lambda run, path, **how: export(run, path, **how)),
+    "trbdyn.results.result.Result.export": ("a.mat", lambda run, path, **how: run.export(path, **how)),
+    "trbdyn.results.assembly.AssemblyResult.export": (
+        "a.csv",
+        lambda run, path, **how: AssemblyResult.export(Named({"left": run}), path, **how),  # type: ignore[arg-type]
     ),
     "trbdyn.study.gather.save": ("a.nc", lambda run, path, **how: gather.save(dataset(), path, **how)),
     "trbdyn.run.simulation.Simulation.run": (
@@ -193,6 +208,8 @@ MAY_WRITE = {
     "base/own_files.py": "the one way",
     "base/locks.py": "opens what is there",
     "results/hdf5_file.py": "fills a draft",
+    "results/result_file.py": "has the system put its draft on the disk",
+    "results/export.py": "fills memory",
     "cage/modes.py": "fills memory",
     "run/checkpoint.py": "moves its own checkpoints",
     "study/gather.py": "fills memory",

@@ -169,17 +169,39 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Shorten the signature that ``help`` shows: no types, which the docstring tells, and inner models by their
-        names.
-        """
         super().__pydantic_init_subclass__(**options)
-        full = inspect.signature(cls)
-        parameters = [
-            entry.replace(annotation=inspect.Parameter.empty, default=_brief(entry.default))
-            for entry in full.parameters.values()
-            if entry.kind is not inspect.Parameter.VAR_POSITIONAL
-        ]
-        cls.__signature__ = full.replace(parameters=parameters, return_annotation=inspect.Signature.empty)
+        cls._shorten_signature()
+
+    @classmethod
+    def model_rebuild(cls, **options: Any) -> bool | None:
+        """Build the model when it is first used; see pydantic."""
+        options["_parent_namespace_depth"] = options.get("_parent_namespace_depth", 2) + 1
+        done = super().model_rebuild(**options)
+        cls._shorten_signature()
+        return done
+
+    @classmethod
+    def _shorten_signature(cls) -> None:
+        """What ``help`` shows: no types, which the docstring tells, and inner models by their names."""
+        variable = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+        own = list(inspect.signature(cls.__init__).parameters.values())[1:]
+        given = {
+            entry.name: entry.replace(annotation=inspect.Parameter.empty, default=_brief(entry.default))
+            for entry in own
+            if entry.kind not in variable
+        }
+        fields = {
+            name: inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=inspect.Parameter.empty
+                if field.is_required()
+                else _brief(field.get_default(call_default_factory=False)),
+            )
+            for name, field in cls.model_fields.items()
+            if name not in given
+        }
+        cls.__signature__ = inspect.Signature([*given.values(), *fields.values()])
 
     def __dir__(self) -> list[str]:
         """What `dir` of the class lists, so that completion shows fields and methods of the model, none of pydantic's."""

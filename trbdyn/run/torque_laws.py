@@ -92,6 +92,8 @@ def torque_laws(subject: Subject) -> TorqueLaws | None:
     parts = [part for part in subject.parts.values() if part.effects.films and part.effects.rolling_resistance]
     if not parts:
         return None
+    # an elastic cage has no part in it, and its file is not read
+    subject = subject.replace({f"{prefix}elastic_cage": None for prefix in subject.parts})
     own = _power(subject)
     if not own > 0.0:
         return None
@@ -119,7 +121,7 @@ def straight_rollers(scene: Scene) -> tuple[float, float] | None:
     tuple of float, or None
         Both factors (1); None where the profile is given, or straight.
     """
-    bearing = scene.bearing
+    bearing, scene = scene.bearing, scene.replace(elastic_cage=None)
     if bearing.roller.profile.kind == "straight" or not any(
         path.startswith("roller.profile") for path in bearing.assumed
     ):
