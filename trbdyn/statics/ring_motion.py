@@ -114,7 +114,7 @@ class RingMotion:
 
 def refused(error: ValueError, settings: dict[str, float | str]) -> InputError:
     """What the core says against a simulation: the integrator cannot do it, or else the state cannot be used."""
-    kind, text = settings["integrator"], str(error)
+    kind, text = settings.get("integrator", ""), str(error)
     of_integrator = text.removeprefix(f"integrator = '{kind}': ")
     return (
         InputError.of("state", "given", text)
