@@ -22,6 +22,7 @@ from trbdyn import _core
 from trbdyn.model.flatten import ring_load
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import EquilibriumSolver, least_axial_load, most_radial_load, nominal_angles
+from trbdyn.statics.ring_motion import ring_motion
 from trbdyn.statics.shaft_balance import ShaftOnBearings
 
 Array = NDArray[np.float64]
@@ -297,3 +298,12 @@ def test_rollers_that_hardly_touch_and_springs_far_back_do_not_stop_the_search(n
 @pytest.mark.parametrize("count", [20, pytest.param(500, marks=pytest.mark.slow)])
 def test_no_light_load_is_refused_that_another_search_finds(count: int) -> None:
     assert refused_scenes(49, count) == []
+
+
+@pytest.mark.parametrize("speed", [30.0, 1000.0])
+def test_a_ring_that_rests_takes_up_its_load_without_a_jump(speed: float) -> None:
+    load = trb.History(times=(0.0, 0.01, 0.02, 0.03, 0.04), values=(1000.0, 1000.0, 0.0, 0.0, 1000.0))
+    scene = trb.Scene(trb.cases.rig_30310(), axial_load=load, speed_rpm=speed, unloaded="rests", ring="follows")
+    motion, _ = ring_motion(normal_contacts(scene), scene)
+    assert abs(motion.displacement(0.025)[2]) < 1e-7
+    assert motion.displacement(0.04)[2] == pytest.approx(motion.displacement(0.0)[2], rel=1e-6)

@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 JUST_CARRIES: Final = 1.0001
 """Axial load, over `least_axial_load`, under which a ring just carries."""
+JUST_CARRIED: Final = 1e-3
+"""At least this force (N) is carried then: less than the core's balance leaves would say nothing of the ring's place."""
 
 BEYOND_REACH: Final = 1.005
 """Radial load, over the largest that the rollers' places allow, that is refused at once: elastic rollers differ by less."""
@@ -126,7 +128,7 @@ class EquilibriumSolver:
     ) -> Equilibrium:
         """The equilibrium of a ring that goes no further than where it just carries; its loads hold it there or before."""
         rest = self._resting(load, time)
-        if -load.force[2] > JUST_CARRIES * least_axial_load(self.scene, time):
+        if -load.force[2] > _just_carried(self.scene, time):
             with contextlib.suppress(LoadError):
                 found = self._solve(load, time, guess, share, None)
                 if found.displacement[2] <= rest:
@@ -139,7 +141,7 @@ class EquilibriumSolver:
         """Axial place (m) at which rollers and rings just touch at a speed: rollers that orbit press into the cup."""
         speeds = load.shaft_speed, load.outer_speed
         if speeds not in self._rests:
-            axial = JUST_CARRIES * least_axial_load(self.scene, time)
+            axial = _just_carried(self.scene, time)
             alone = replace(load, force=np.array([0.0, 0.0, -axial]), fixed=np.array([0.0, 0.0, 0.0, 1.0, 1.0]))
             alone = replace(alone, displacement=np.zeros(5))
             place = 0.0 if axial == 0.0 else float(self._solve(alone, time, None, 0.0, None).displacement[2])
@@ -303,6 +305,12 @@ class EquilibriumSolver:
         """Rollers that went along the cup by this axial distance (m), as a guess."""
         slope = math.tan(math.radians(self.scene.bearing.cup_half_angle_deg))
         return np.tile([shift * slope, shift, 0.0, 0.0], self.angles.size)
+
+
+def _just_carried(scene: Scene, time: float) -> float:
+    """Axial load (N) under which a ring just carries; 0 where the rollers need none."""
+    least = least_axial_load(scene, time)
+    return max(JUST_CARRIES * least, least + JUST_CARRIED) if least > 0.0 else 0.0
 
 
 def least_axial_load(scene: Scene, time: float = 0.0) -> float:
