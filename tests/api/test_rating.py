@@ -336,13 +336,28 @@ def test_the_report_has_the_sheet(tmp_path: Path) -> None:
     assert "No ratings: result" in page
 
 
-@pytest.mark.parametrize(("axial", "radial", "ratio"), [(4930.0, 0.0, 3.70), (5000.0, 8000.0, 2.67)])
+LOGARITHMIC = trb.cases.bearing_32216().replace({"roller.profile": trb.cases.rig_30310().roller.profile})
+"""Its rollers with the profile that was assumed before that of its source was known."""
+WITHOUT_RIBS = trb.cases.bearing_nj210().replace({"ribs.flanges": "NU"})
+
+
+@pytest.mark.parametrize(
+    ("bearing", "axial", "radial", "ratio"),
+    [
+        (trb.cases.rig_30310(), 4930.0, 0.0, 3.70),
+        (trb.cases.rig_30310(), 5000.0, 8000.0, 2.67),
+        (LOGARITHMIC, 8000.0, 12800.0, 4.62),
+        (trb.cases.bearing_32216(), 8000.0, 12800.0, 3.61),
+        (WITHOUT_RIBS, 0.0, 8000.0, 1.81),
+    ],
+    ids=["30310-axial", "30310-combined", "32216-logarithmic", "32216", "NU"],
+)
 def test_the_modified_reference_life_has_a_life_factor_for_each_lamina(
-    axial: float, radial: float, ratio: float
+    bearing: trb.Bearing, axial: float, radial: float, ratio: float
 ) -> None:
     """Formulas (31) and (33) of ISO 16281, each lamina and ring by itself; one factor at Pref was several times longer."""
-    own = trb.Scene(trb.cases.rig_30310(), speed_rpm=2000.0, axial_load=axial, radial_load=radial)
-    found, loading, bearing = trb.rating(own), at_equilibrium(own), own.bearing
+    own = trb.Scene(bearing, speed_rpm=2000.0, axial_load=axial, radial_load=radial)
+    found, loading = trb.rating(own), at_equilibrium(own)
     angle, count = math.radians(bearing.cup_half_angle_deg), loading.lamina_loads.shape[2]
     ratings = lamina.contact_ratings(
         found.dynamic_rating,
