@@ -92,3 +92,18 @@ def test_what_unpacks_to_gigabytes_is_refused_at_once(good: bytes, tmp_path: Pat
     with pytest.raises(trb.FileError, match=r"more than a result holds there|damaged"):
         trb.load(path)
     assert time.monotonic() - began < 3.0
+
+
+@pytest.mark.parametrize("notes", [7, None, "text", [1, "a"]])
+def test_notes_of_another_kind_do_not_break_a_report(good: bytes, tmp_path: Path, notes: Any) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(good)
+    with h5py.File(path, "r") as file:
+        head = json.loads(bytes(file["run/head"][0]))
+    head["meta"]["notes"] = notes
+    replaced(path, "run/head", np.array([json.dumps(head).encode()]), chunks=(1,))
+    try:
+        result = trb.load(path)
+    except trb.FileError:
+        return
+    trb.report(result, tmp_path / "report.html", pictures=[])

@@ -294,6 +294,7 @@ class FileSource:
         _check_files(self.path, scene)
         stats, counters = (_table(ending.get(key, {})) for key in ("stats", "counters"))
         meta |= {key: head[key] for key in ("trbdyn_version", "created", "schema_version")}
+        meta |= {"notes": list(_texts(meta["notes"]))} if "notes" in meta else {}
         message, final_time = str(ending.get("message", "")), float(ending.get("final_time", np.nan))
         state = np.asarray(read_text_or_state(_run(file), "final_state"), dtype=float) if self.finished else np.empty(0)
         if not self.finished:
