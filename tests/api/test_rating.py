@@ -335,7 +335,7 @@ def test_the_report_has_the_sheet(tmp_path: Path) -> None:
     assert "assumed: give cleanliness" in page
     lean = trb.Simulation(SCENE).run(revolutions=0.2, save_groups=["torque"])
     page = trb.report(lean, tmp_path / "lean.html", pictures=[]).read_text(encoding="utf-8")
-    assert "No ratings: result" in page
+    assert "basic rating life L10h" in page
 
 
 LOGARITHMIC = trb.cases.bearing_32216().replace({"roller.profile": trb.cases.rig_30310().roller.profile})
