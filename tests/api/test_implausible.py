@@ -150,3 +150,26 @@ def test_a_film_in_the_pockets_that_is_hardly_one(effects: dict[str, Any], rough
         trb.Simulation(scene)
     found = [str(one.message) for one in said if issubclass(one.category, UnusualInput)]
     assert (words in found[0]) if words else not found
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [("cage.play_radial", 0.25), ("cage.play_axial", 0.4), ("land.clearance", 0.1)],
+)
+def test_a_clearance_in_millimetres_is_refused(path: str, value: float) -> None:
+    with pytest.raises(
+        trb.InputError, match=rf"{path} = {value:g} : must be below the diameter.* would be {1e-3 * value:g} m"
+    ):
+        RIG.replace({path: value})
+
+
+def test_a_misalignment_in_milliradians_is_said() -> None:
+    with pytest.warns(UnusualInput, match=r"misalignment_x = 0\.03 rad is 1\.72 degrees.*give 3e-05"):
+        trb.Simulation(trb.cases.scene_30310(misalignment_x=0.03, axial_load=20e3))
+
+
+def test_a_change_without_its_table_is_told_where_it_belongs(capsys: pytest.CaptureFixture[str], tmp_path: Any) -> None:
+    from trbdyn.cli import main
+
+    assert main(["run", "rig_30310", "--set", "speed_rpm=500", "-o", str(tmp_path / "a.h5")]) != 0
+    assert "did you mean scene.speed_rpm?" in capsys.readouterr().err

@@ -46,6 +46,7 @@ def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Ass
 
 
 def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:
+    from trbdyn.model.scene import Scene
     from trbdyn.run.toml_assembly import find_subject, shipped_assemblies
     from trbdyn.run.toml_case import read_tables, shipped_cases
 
@@ -59,6 +60,9 @@ def _tables(name: str, changes: Sequence[str]) -> dict[str, Any]:
         *tables, last = key.strip().split(".")
         if not equals or not last:
             raise InputError.of("--set", change, "must be KEY=VALUE, for instance scene.speed_rpm=1000")
+        if not tables and "scene" in values and not isinstance(values.get(last), dict):
+            hint = f"; did you mean scene.{last}?" if last in Scene.model_fields else ""
+            raise InputError.of("--set", change, f"must name a table, for instance scene.speed_rpm=1000{hint}")
         table: Any = values
         for part in tables:
             if isinstance(table, list):

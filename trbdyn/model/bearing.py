@@ -561,6 +561,17 @@ class Bearing(Model):
                 )
                 raise InputError.of(path, value, allowed)
 
+    def _check_clearances(self) -> None:
+        """No clearance is as large as a roller is thick: such a number was meant in millimetres."""
+        most = self.roller.diameter
+        for part, name in _CLEARANCES:
+            value = getattr(getattr(self, part), name)
+            if value >= most:
+                allowed = (
+                    f"must be below the diameter of the rollers, {most:g} (m); {value:g} mm would be {1e-3 * value:g} m"
+                )
+                raise InputError.of((part, name), value, allowed)
+
     def _check_profiles(self) -> None:
         half = 0.5 * self.roller.effective_length
         for path, profile in (
@@ -577,6 +588,7 @@ class Bearing(Model):
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_kind()
+        self._check_clearances()
         self._check_profiles()
         given = self.roller.diameter_deviation
         if given is not None and len(given) != self.n_rollers:
@@ -613,6 +625,14 @@ class Bearing(Model):
             raise InputError(problems)
 
 
+_CLEARANCES: Final = (
+    ("cage", "play_radial"),
+    ("cage", "play_circumferential"),
+    ("cage", "play_axial"),
+    ("land", "clearance"),
+    ("ribs", "clearance"),
+    ("ribs", "front_clearance"),
+)
 _OF_CONES: Final = (
     ("ribs", "front_clearance"),
     ("ribs", "front_low"),

@@ -25,6 +25,8 @@ JUST_CARRIES: Final = 1.0001
 """Axial load, over `least_axial_load`, under which a ring just carries."""
 JUST_CARRIED: Final = 1e-3
 """At least this force (N) is carried then: less than the core's balance leaves would say nothing of the ring's place."""
+MORE_CARRIED: Final = (1.0, 10.0, 100.0)
+"""Factors of this excess that are tried in turn, where rollers that hardly touch leave the balance unsolved."""
 
 BEYOND_REACH: Final = 1.005
 """Radial load, over the largest that the rollers' places allow, that is refused at once: elastic rollers differ by less."""
@@ -141,10 +143,17 @@ class EquilibriumSolver:
         """Axial place (m) at which rollers and rings just touch at a speed: rollers that orbit press into the cup."""
         speeds = load.shaft_speed, load.outer_speed
         if speeds not in self._rests:
-            axial = _just_carried(self.scene, time)
-            alone = replace(load, force=np.array([0.0, 0.0, -axial]), fixed=np.array([0.0, 0.0, 0.0, 1.0, 1.0]))
-            alone = replace(alone, displacement=np.zeros(5))
-            place = 0.0 if axial == 0.0 else float(self._solve(alone, time, None, 0.0, None).displacement[2])
+            least, axial = least_axial_load(self.scene, time), _just_carried(self.scene, time)
+            alone = replace(load, fixed=np.array([0.0, 0.0, 0.0, 1.0, 1.0]), displacement=np.zeros(5))
+            place = 0.0
+            for more in MORE_CARRIED if axial > 0.0 else ():
+                force = np.array([0.0, 0.0, -(least + more * (axial - least))])
+                try:
+                    place = float(self._solve(replace(alone, force=force), time, None, 0.0, None).displacement[2])
+                    break
+                except LoadError:
+                    if more == MORE_CARRIED[-1]:
+                        raise
             self._rests[speeds] = place
         return self._rests[speeds]
 

@@ -29,7 +29,8 @@ FRAME_MASS: Final = 0.05
 """Share by which a cage may be heavier or lighter than the frame of beams by whose modes it deforms."""
 LARGEST_PLAY_SHARE: Final = 0.1
 """Largest usual play of a cage's pocket, in units of the roller's diameter; usual are 0.01 to 0.03."""
-
+LARGEST_TILT: Final = 0.01
+"""Largest misalignment (rad) that can be meant: with 10 mrad rollers carry at one end only; bearings are made for 0.5 to 1."""
 
 _PRESSURES: Final = ("outer_pressure_peak", "inner_pressure_peak")
 
@@ -49,11 +50,25 @@ def unusual(scene: Scene, equilibrium: Equilibrium) -> tuple[str, ...]:
             *_cage(scene),
             _fill(scene),
             _gravity(scene),
+            *_tilts(scene),
             _planar(scene),
             *_defects(scene, equilibrium),
         )
         if text
     )
+
+
+def _tilts(scene: Scene) -> list[str]:
+    """Misalignments that can hardly be meant in radians."""
+    found = []
+    for name in ("misalignment_x", "misalignment_y"):
+        angle = max(values_of(getattr(scene, name)), key=abs)
+        if abs(angle) > LARGEST_TILT:
+            found.append(
+                f"{name} = {angle:g} rad is {math.degrees(angle):.3g} degrees: bearings are made for about 0.001 rad; "
+                f"if it was meant in mrad, give {1e-3 * angle:g}"
+            )
+    return found
 
 
 def _pressures(scene: Scene, equilibrium: Equilibrium) -> dict[str, float]:
