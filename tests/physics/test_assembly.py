@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 import trbdyn as trb
-from trbdyn import Effects, FileError, InputError, RingBody, RunWarning, Scene, Simulation, Start
+from trbdyn import Effects, FileError, InputError, RingBody, Scene, Simulation, Start
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.run.replay import Replay
 from trbdyn.standards.sheet import life_text
@@ -169,10 +169,15 @@ def test_momentum() -> None:
 
 
 def test_one_side_unloaded_and_back() -> None:
-    """An axial load larger than the preload lifts the rollers of one bearing off; a load that turns round loads it again."""
+    """An axial load larger than the preload lifts the rollers of one bearing off; a load that turns round loads it again.
+
+    Nothing holds the rollers that are lifted off; how they vibrate alters no loss, so that no warning is needed.
+    """
     history = trb.History.table([0.0, 4e-3, 14e-3, 20e-3, 40e-3], [0.0, 12e3, 12e3, -12e3, -12e3])
-    with pytest.warns(RunWarning, match="rollers vibrate on their raceways"):  # nothing holds those that are lifted off
-        result = pair({"force_z": history}).run(duration=0.03)
+    result = pair({"force_z": history}).run(duration=0.03)
+    tight = pair({"force_z": history}, options={"accuracy": "reference"}).run(duration=0.03)
+    for name in result:
+        assert result[name].summary()["power_loss"] == pytest.approx(tight[name].summary()["power_loss"], rel=0.02)
     left, right = (one.outer_load.sum(axis=1) for one in result.values())
     first = int(np.searchsorted(result.time, 13e-3))
     assert result.success
