@@ -70,4 +70,4 @@ html_title = f"trbdyn {version}"
 html_show_sphinx = False
 html_static_path = ["static"]
 html_css_files = ["widths.css"]
-html_search_scorer = "static/scorer.js"
+html_search_scorer = str(Path(__file__).resolve().parent / "static" / "scorer.js")
