@@ -169,7 +169,7 @@ def test_percentiles_of_the_orbit_follow_its_mean_place() -> None:
     intervals of the orbit's percentiles held the value of many cages in 16 of 100 cases.
     """
     cages = [Locus(place) for place in lingering_whirls(np.random.default_rng(3), 100, 80).transpose(1, 0, 2)]
-    for name, most in (("orbit_rms_over_cpr", 0.99), ("axis_distance_over_cpr", 1.0)):
+    for name, most in (("orbit_radius_over_cpr", 0.99), ("axis_distance_over_cpr", 1.0)):
         for share, end in ((0.05, "p05"), (0.95, "p95")):
             found = np.array([np.quantile(getattr(cage, name), share) for cage in cages])
             series = [_as_means(cage)[f"{name}_{end}"].reshape(40, -1) for cage in cages]  # type: ignore[arg-type]

@@ -78,7 +78,7 @@ def test_others() -> None:
     for call in OF_ANY.values():
         assert refused(call, BEARING).startswith("must be a Scene or an Assembly: put it into one, trb.Scene(bearing")
         assert refused(call, None) == "must be a Scene or an Assembly"
-    assert refused(trb.rating, BEARING).startswith("must be a Scene, a Result, an Assembly or a ShaftEquilibrium")
+    assert refused(trb.rating, BEARING).startswith("must be a Scene, a Result, an Assembly, an AssemblyResult")
     assert (
         refused(lambda given: trb.torque_map(given, [1000.0], [1000.0]), None)
         == "must be a Scene, an Assembly or a Bearing"

@@ -137,6 +137,7 @@ _INTERNAL: Final = (
     "model_fields",
     "model_computed_fields",
     "model_post_init",
+    "model_rebuild",
     "model_validate",
 )
 
