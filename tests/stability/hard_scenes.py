@@ -309,7 +309,7 @@ HARD: tuple[Hard, ...] = (
         "nothing keeps rollers apart",
         lambda: S(
             1000.0,
-            bearing=cage(play_circumferential=8e-3, play_radial=16e-3),
+            bearing=cage(play_circumferential=8e-3, play_radial=13e-3),
             effects=effects(bodies="rollers"),
             start=trb.Start.unequal(3, spread=1.0),
         ),
