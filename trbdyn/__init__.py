@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from trbdyn.model.land import Land as Land
     from trbdyn.model.lubricants import Lubricant as Lubricant, Oil as Oil
     from trbdyn.model.motion import History as History
+    from trbdyn.model.mounting import Mounting as Mounting, Temperatures as Temperatures
     from trbdyn.model.planet import planet as planet
     from trbdyn.model.pocket import Face as Face, OtherPocket as OtherPocket, Pocket as Pocket
     from trbdyn.model.ring_body import Housing as Housing, RingBody as RingBody
@@ -73,6 +74,7 @@ if TYPE_CHECKING:
     from trbdyn.run.wear import wear as wear
     from trbdyn.standards.frequencies import frequencies as frequencies
     from trbdyn.statics.assembly import equilibrium as equilibrium, stiffness as stiffness
+    from trbdyn.statics.fit import fit as fit
     from trbdyn.statics.preload import preload_diagram as preload_diagram
     from trbdyn.study.cage_map import cage_map as cage_map
     from trbdyn.study.planning import plan as plan

@@ -302,3 +302,12 @@ def test_pdf(result: trb.Result, tmp_path: Path) -> None:
     data = (tmp_path / "r.pdf").read_bytes()
     assert data.startswith(b"%PDF-")
     assert np.log10(len(data)) > 4
+
+
+def test_further_tables(result: trb.Result, tmp_path: Path) -> None:
+    seat = trb.Mounting(bore=0.05, outside=0.11, width=0.02925, shaft="m6", housing="N7")
+    fits = trb.fit(result.scene, seat)
+    text = trb.report(result, tmp_path / "r.html", pictures=[], tables=[fits]).read_text(encoding="utf-8")
+    assert cells(text, "shaft m6")[0] == "9.0 to 37.0"
+    with pytest.raises(trb.InputError, match=r"tables\[0\]"):
+        trb.report(result, tmp_path / "r.html", tables=["fits"], overwrite=True)

@@ -12,31 +12,10 @@ from typing import Final
 from trbdyn.errors import InputError
 from trbdyn.model.catalogue_rollers import Page
 from trbdyn.model.estimated import Estimated
+from trbdyn.model.tolerances import CLEARANCE_SIZES, clearance_limits
 
 TYPES: Final = ("NU", "NJ", "NUP", "N")
 """Types of cylindrical bearings (ISO 15)."""
-CLEARANCES: Final = (
-    (0.030, 20, 45),
-    (0.040, 25, 50),
-    (0.050, 30, 60),
-    (0.065, 40, 70),
-    (0.080, 40, 75),
-    (0.100, 50, 85),
-    (0.120, 50, 90),
-    (0.140, 60, 105),
-    (0.160, 70, 120),
-    (0.180, 75, 125),
-    (0.200, 90, 145),
-    (0.225, 105, 165),
-    (0.250, 110, 175),
-    (0.280, 125, 195),
-    (0.315, 130, 205),
-    (0.355, 145, 225),
-    (0.400, 190, 280),
-    (0.450, 210, 310),
-    (0.500, 220, 330),
-)
-"""Radial clearance of cylindrical bearings before mounting, group N of ISO 5753-1: bore up to (m), least, largest (um)."""
 AFTER_FIT: Final = 0.5
 """Share of that clearance that fits and warm shafts leave; assumed, between none and all of it."""
 
@@ -96,9 +75,8 @@ def with_raceways(page: Page, F: float | None, E: float | None) -> tuple[Page, l
 
 def usual_clearance(bore: float) -> Estimated:
     """Operating clearance of a cylindrical bearing: what fits leave of group N."""
-    up_to = next((row for row in CLEARANCES if bore <= row[0]), CLEARANCES[-1])
-    larger = max(bore / up_to[0], 1.0)
-    least, most = (1e-6 * larger * end for end in up_to[1:])
+    listed = min(bore, 1e-3 * CLEARANCE_SIZES[-1])
+    least, most = (end * bore / listed for end in clearance_limits("CN", listed))
     source = (
         f"{AFTER_FIT:g} of group N of ISO 5753-1, {1e6 * least:.3g} to {1e6 * most:.3g} um before mounting, assumed; band from "
         "none to all of it"

@@ -107,10 +107,10 @@ def strains(scene: Scene, growth: Growth) -> Strains:
     """
     bearing = scene.bearing
     found = Strains(
-        cage=_expansion(bearing, "cage", growth.cage_c - growth.reference_c),
-        rollers=_expansion(bearing, "roller", growth.rollers_c - growth.reference_c),
-        inner_ring=_expansion(bearing, "", growth.inner_ring_c - growth.reference_c),
-        outer_ring=_expansion(bearing, "", growth.outer_ring_c - growth.reference_c),
+        cage=part_strain(bearing, "cage", growth.cage_c - growth.reference_c),
+        rollers=part_strain(bearing, "roller", growth.rollers_c - growth.reference_c),
+        inner_ring=part_strain(bearing, "", growth.inner_ring_c - growth.reference_c),
+        outer_ring=part_strain(bearing, "", growth.outer_ring_c - growth.reference_c),
         rotation=_rotation(scene) if growth.centrifugal else 0.0,
     )
     for name, strain in vars(found).items():
@@ -126,12 +126,29 @@ def _material(bearing: Bearing, part: str) -> tuple[tuple[str, ...], Material]:
     return (("bearing", part, "material"), own) if own else (("bearing", "material"), bearing.material)
 
 
-def _expansion(bearing: Bearing, part: str, rise: float) -> float:
-    path, material = _material(bearing, part)
+def part_strain(bearing: Bearing, part: str, rise: float) -> float:
+    """Strain of a bearing's part, cage or roller or, without a name, a ring, that is warmer by some kelvin (1).
+
+    Raises
+    ------
+    InputError
+        If its thermal expansion is needed and not given.
+    """
+    return material_strain(*_material(bearing, part), rise)
+
+
+def material_strain(path: tuple[str, ...], material: Material, rise: float) -> float:
+    """Strain of a material that is warmer by some kelvin (1); the path names it in messages.
+
+    Raises
+    ------
+    InputError
+        If its thermal expansion is needed and not given.
+    """
     if rise == 0.0:
         return 0.0
     if material.expansion is None:
-        raise InputError.of((*path, "expansion"), None, "must be given: growth changes its temperature (1/K)")
+        raise InputError.of((*path, "expansion"), None, "must be given: its temperature changes (1/K)")
     return material.expansion * rise
 
 
@@ -158,12 +175,19 @@ def _rotation(scene: Scene) -> float:
 
 def roller_shift(bearing: Bearing, found: Strains) -> float:
     """How far the rollers' centres move outward (m); see the top of this file."""
+    slide = apex_slide(bearing, found.inner_ring - found.rollers)
+    return 0.5 * found.rollers * bearing.pitch_diameter + slide * math.sin(bearing.geometry.cone_half_angle)
+
+
+def apex_slide(bearing: Bearing, relative: float) -> float:
+    """How far the rollers slide along the cone, towards their large ends, when the inner ring has grown more than they by a
+    strain (m); s at the top of this file.
+    """
     geometry = bearing.geometry
     contact = np.array([geometry.rib_contact_radius, geometry.rib_contact_z])
     normal = np.array([math.sin(geometry.rib_normal_angle), math.cos(geometry.rib_normal_angle)])
     along = np.array([math.sin(geometry.cone_half_angle), math.cos(geometry.cone_half_angle)])
-    apex = (found.inner_ring - found.rollers) * float(contact @ normal) / float(along @ normal)
-    return 0.5 * found.rollers * bearing.pitch_diameter + apex * math.sin(geometry.cone_half_angle)
+    return relative * float(contact @ normal) / float(along @ normal)
 
 
 def grown_pocket(bearing: Bearing, pocket: Pocket, found: Strains) -> Pocket:

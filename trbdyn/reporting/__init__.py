@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from trbdyn.base.expected import expect
 from trbdyn.base.own_files import output_path, write_whole
+from trbdyn.base.shown import Displayed
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
@@ -32,6 +33,7 @@ def report(
     names: Sequence[str] = ("first", "second"),
     title: str = "",
     pictures: Sequence[str] | None = None,
+    tables: Sequence[Displayed] = (),
     pdf: bool = False,
     overwrite: bool = False,
 ) -> Path:
@@ -55,6 +57,8 @@ def report(
     pictures : sequence of str, optional
         Names of the pictures, of those in `trbdyn.plot.PICTURES` or of an assembly; by default all that the recorded groups
         allow.
+    tables : sequence
+        Further tables to show below, as those of `trbdyn.fit`, `trbdyn.preload_over` and `trbdyn.least_load`.
     pdf : bool
         Also write a PDF beside it; needs Chromium.
     overwrite : bool
@@ -91,6 +95,9 @@ def report(
             raise InputError.of("pictures", name, unknown_name(name, known))
     if len(names) != 2 or isinstance(names, str):
         raise InputError.of("names", names, "must be two names")
+    for index, one in enumerate(tables):
+        expect(f"tables[{index}]", one, Displayed)
+    shown = [one._shown() for one in tables]
     how: dict[str, Any] = {"overwrite": overwrite, "reads": [*files_of(result), *files_of(other)]}
     target = output_path(path, endings=HTML, field="path", **how)  # before the pictures are drawn, which takes a while
     if pdf:
@@ -98,11 +105,11 @@ def report(
     if isinstance(result, Result):
         results = [result] if other is None else [result, other]
         heading = title or f"Report: {' and '.join(dict.fromkeys(run.scene.bearing.name for run in results))}"
-        text = page(results, list(names[: len(results)]), heading, pictures)
+        text = page(results, list(names[: len(results)]), heading, pictures, shown)
     elif other is not None:
         raise InputError.of("other", other, "must not be given: assemblies are reported one by one")
     else:
-        text = page_of_assembly(result, title or f"Report: {', '.join(result)} on one shaft", pictures)
+        text = page_of_assembly(result, title or f"Report: {', '.join(result)} on one shaft", pictures, shown)
     written = write_whole(path, text, endings=HTML, **how)
     if pdf:
         save_pdf(written, written.with_suffix(".pdf"), overwrite=overwrite)

@@ -9,6 +9,7 @@ from functools import partial
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+from trbdyn.base.shown import Shown
 from trbdyn.reporting import tables
 from trbdyn.reporting.captions import CAPTIONS
 from trbdyn.reporting.inputs import Row, rows
@@ -33,12 +34,20 @@ FIRST_PICTURES = ("cage_locus", "load_zone", "torque_split", "film_parameter")
 GRADES = {"good": "good", "care": "take care", "bad": "not good", "plain": ""}
 
 
-def page(results: Sequence[Result], names: Sequence[str], title: str, pictures: Sequence[str] | None) -> str:
-    """The HTML of the report of one run or of two."""
-    return _whole(title, _body(results, names, title, pictures))
+def page(
+    results: Sequence[Result],
+    names: Sequence[str],
+    title: str,
+    pictures: Sequence[str] | None,
+    shown: Sequence[Shown] = (),
+) -> str:
+    """The HTML of the report of one run or of two, with further tables below."""
+    return _whole(title, _body(results, names, title, pictures) + tables.further(shown))
 
 
-def page_of_assembly(result: AssemblyResult, title: str, pictures: Sequence[str] | None) -> str:
+def page_of_assembly(
+    result: AssemblyResult, title: str, pictures: Sequence[str] | None, further: Sequence[Shown] = ()
+) -> str:
     """The HTML of the report of bearings on a shaft: the shaft and what they share, then each bearing as in a report of its
     own."""
     from trbdyn.plot.assembly import of_result
@@ -57,7 +66,7 @@ def page_of_assembly(result: AssemblyResult, title: str, pictures: Sequence[str]
     ]
     of_bearings = None if pictures is None else [name for name in pictures if name not in own]
     parts += [_body([one], [name], f"Bearing {name}", of_bearings) for name, one in result.items()]
-    return _whole(title, "\n".join(parts))
+    return _whole(title, "\n".join(parts) + tables.further(further))
 
 
 def _body(results: Sequence[Result], names: Sequence[str], title: str, pictures: Sequence[str] | None) -> str:

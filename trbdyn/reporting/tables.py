@@ -11,6 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from trbdyn.base.shown import Shown
 from trbdyn.reporting.inputs import Row
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.results.summary import UNPRINTED
@@ -70,6 +71,16 @@ def table_of(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         for row in rows
     )
     return f"<table>{_heads(*head)}{body}</table>"
+
+
+def further(shown: Sequence[Shown]) -> str:
+    """Sections of tables that were given with a report: of fits, of a preload over temperature, of a least load."""
+    return "".join(
+        f"<h2>{safe(one.title)}</h2>{table_of(one.head, one.rows)}"
+        + "".join(f"<h3>{safe(part.title)}</h3>{table_of(part.head, part.rows)}" for part in one.parts)
+        + "".join(f"<p>{safe(note)}</p>" for note in one.notes)
+        for one in shown
+    )
 
 
 def _column(name: str) -> str:

@@ -1,0 +1,281 @@
+"""Fits, growth by temperature and what they leave of end play and clearance, against formulas and samples made here."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import trbdyn as trb
+from trbdyn.model.tolerances import bore_limits, clearance_limits, limits, outside_limits
+from trbdyn.statics.press_fit import PressFit
+
+ALUMINIUM = trb.Material(youngs_modulus=70e9, poisson_ratio=0.33, density=2700.0, expansion=23.5e-6)
+STEEL = trb.Material.steel()
+SEAT = {"bore": 0.050, "outside": 0.110, "width": 0.02925, "shaft": "m6", "housing": "N7"}
+
+
+def pair(arrangement: str = "back to back", spread: float = 0.15, end_play: float = -40e-6) -> trb.Assembly:
+    shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    return trb.Assembly.pair(
+        trb.cases.rig_30310(), arrangement, spread=spread, end_play=end_play, shaft=shaft, speed_rpm=3000.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("code", "size", "lower", "upper"),
+    [
+        ("g6", 0.040, -25, -9),
+        ("h5", 0.040, -11, 0),
+        ("j5", 0.060, -7, 6),
+        ("js7", 0.030, -10.5, 10.5),
+        ("k5", 0.100, 3, 18),
+        ("m6", 0.050, 9, 25),
+        ("n6", 0.140, 27, 52),
+        ("p6", 0.200, 50, 79),
+        ("r6", 0.2001, 80, 109),
+        ("r7", 0.220, 80, 126),
+        ("G7", 0.080, 10, 40),
+        ("H7", 0.180, 0, 40),
+        ("J7", 0.090, -13, 22),
+        ("K6", 0.070, -15, 4),
+        ("K7", 0.080, -21, 9),
+        ("M7", 0.080, -30, 0),
+        ("M6", 0.300, -41, -9),
+        ("N7", 0.110, -45, -10),
+        ("P6", 0.110, -52, -30),
+        ("P7", 0.240, -79, -33),
+    ],
+)
+def test_tolerances_are_those_of_the_standard(code: str, size: float, lower: float, upper: float) -> None:
+    assert np.multiply(limits(code, size), 1e6) == pytest.approx([lower, upper], abs=1e-9)
+
+
+def test_tolerances_of_bearings_and_clearances() -> None:
+    assert bore_limits(0.050, tapered=True) == pytest.approx((-12e-6, 0.0))
+    assert bore_limits(0.0501, tapered=False, accuracy="6") == pytest.approx((-12e-6, 0.0))
+    assert outside_limits(0.110, tapered=True) == pytest.approx((-18e-6, 0.0))
+    assert outside_limits(0.110, tapered=False) == pytest.approx((-15e-6, 0.0))
+    assert clearance_limits("C3", 0.050) == pytest.approx((50e-6, 80e-6))
+    assert clearance_limits("CN", 0.0501) == pytest.approx((40e-6, 70e-6))
+
+
+@pytest.mark.parametrize("code", ["x6", "m11", "m3", "M6x", "Kk7", "", "P9x", "j8", "K9", "jS6"])
+def test_unknown_tolerances_are_refused(code: str) -> None:
+    with pytest.raises(trb.InputError, match="tolerance class of ISO 286"):
+        limits(code, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"shaft": "M6"}, "shaft"),
+        ({"housing": "n7"}, "housing"),
+        ({"shaft": (25e-6, 9e-6)}, "shaft"),
+        ({"shaft_bore": 0.05}, "shaft_bore"),
+        ({"housing_outside": 0.110}, "housing_outside"),
+        ({"outside": 0.040}, "outside"),
+        ({"clearance": "C9"}, "clearance"),
+        ({"bore": 0.700, "outside": 0.9}, "shaft"),
+    ],
+)
+def test_mountings_that_cannot_be_are_refused(changes: dict[str, object], field: str) -> None:
+    with pytest.raises(trb.InputError, match=field):
+        trb.Mounting(**{**SEAT, **changes})
+
+
+def test_a_ring_that_does_not_fit_its_seat_is_refused() -> None:
+    with pytest.raises(trb.InputError, match=r"mounting\.bore.*below the diameter of the raceway"):
+        trb.fit(trb.cases.rig_30310(), trb.Mounting(**{**SEAT, "bore": 0.07}))
+    with pytest.raises(trb.InputError, match="accuracy"):
+        trb.fit(trb.cases.rig_30310(), trb.Mounting(**SEAT, accuracy="6"))
+
+
+def lame(fit: PressFit, interference: float) -> tuple[float, float, float]:
+    """Pressure (Pa), growth of the outside and shrinkage of the bore (m, diameters): u = A r + B/r of both rings, and the four
+    conditions at their surfaces, as a system of equations.
+    """
+    a, d, b = 0.5 * fit.bore, 0.5 * fit.seat, 0.5 * fit.outside
+
+    def stress(material: trb.Material, r: float) -> list[float]:
+        e, nu = material.youngs_modulus, material.poisson_ratio
+        return [e / (1.0 - nu), -e / ((1.0 + nu) * r**2)]
+
+    inner_at_d, outer_at_d, outer_at_b = (
+        stress(fit.inner, d),
+        stress(fit.outer, d),
+        stress(fit.outer, b),
+    )
+    first = [*stress(fit.inner, a), 0.0, 0.0] if a else [0.0, 1.0, 0.0, 0.0]
+    rows = np.array(
+        [
+            first,
+            [0.0, 0.0, *outer_at_b],
+            [*inner_at_d, -outer_at_d[0], -outer_at_d[1]],
+            [-d, -1.0 / d, d, 1.0 / d],
+        ]
+    )
+    scale = np.array([[1e11, 1e11, 1e11, 1.0]]).T
+    one = np.linalg.solve(rows / scale, np.array([0.0, 0.0, 0.0, 0.5 * interference]))
+    pressure = -(inner_at_d[0] * one[0] + inner_at_d[1] * one[1])
+    shrinks = -2.0 * (one[0] * a + one[1] / a) if a else 0.0
+    return pressure, 2.0 * (one[2] * b + one[3] / b), shrinks
+
+
+@pytest.mark.parametrize(
+    "fit",
+    [
+        PressFit(0.0, 0.050, 0.0686, STEEL, STEEL),
+        PressFit(0.030, 0.050, 0.0686, STEEL, STEEL),
+        PressFit(0.096, 0.110, 0.165, STEEL, ALUMINIUM),
+        PressFit(0.096, 0.110, 0.120, STEEL, trb.Material(youngs_modulus=110e9, poisson_ratio=0.26)),
+    ],
+)
+def test_rings_are_those_of_lame(fit: PressFit) -> None:
+    pressure, grows, shrinks = lame(fit, 30e-6)
+    drawn = np.array(30e-6)
+    assert float(fit.pressure(drawn)) == pytest.approx(pressure, rel=1e-9)
+    assert float(fit.outside_growth(drawn)) == pytest.approx(grows, rel=1e-9)
+    assert float(fit.bore_shrinkage(drawn)) == pytest.approx(shrinks, rel=1e-9, abs=1e-20)
+    assert float(fit.pressure(-drawn)) == 0.0
+
+
+def test_rings_of_one_material_are_those_of_catalogues() -> None:
+    """NSK, Rolling Bearings: growth over interference k (1 - k0^2)/(1 - k^2 k0^2), k = d/Di, k0 = d0/d; and the same of a
+    housing, h (1 - h0^2)/(1 - h^2 h0^2), h = De/D, h0 = D/D0.
+    """
+    k, k0 = 50.0 / 68.6, 30.0 / 50.0
+    grows = float(PressFit(0.030, 0.050, 0.0686, STEEL, STEEL).outside_growth(np.array(1e-6)))
+    assert grows == pytest.approx(1e-6 * k * (1.0 - k0**2) / (1.0 - k**2 * k0**2), rel=1e-9)
+    h, h0 = 96.0 / 110.0, 110.0 / 165.0
+    shrinks = float(PressFit(0.096, 0.110, 0.165, STEEL, STEEL).bore_shrinkage(np.array(1e-6)))
+    assert shrinks == pytest.approx(1e-6 * h * (1.0 - h0**2) / (1.0 - h**2 * h0**2), rel=1e-9)
+
+
+def test_a_published_example() -> None:
+    """Powertransmission.com, Bearings with Norm, aluminum housing series, March 2015: an HM804846/10 in aluminium loses half of
+    an interference of 100 um; its outer ring grows by 10 um, which is 27.4 um of axial play. Open are the housing's outside
+    (here 1.5 times that of the bearing) and the ring's raceway (here 80 mm), which change the growth by 3 um.
+    """
+    ring = PressFit(0.080, 0.09525, 1.5 * 0.09525, STEEL, ALUMINIUM)
+    growth = 0.5 * float(ring.bore_shrinkage(np.array(100e-6)) - ring.bore_shrinkage(np.array(50e-6)))
+    assert growth == pytest.approx(10e-6, rel=0.02)
+    page = {"bore": 0.047625, "outside": 0.09525, "width": 0.030162, "C": 107e3, "e": 0.55}
+    bearing = trb.Bearing.from_catalogue(**page)
+    seat = {"bore": 0.047625, "outside": 0.09525, "width": 0.030162, "shaft": (0.0, 0.0)}
+    tight, loose = (
+        trb.fit(bearing, trb.Mounting(**seat, housing=(-u, -u), smoothing=0.0, set="before mounting"))[""]
+        for u in (100e-6, 50e-6)
+    )
+    raceway = 0.5 * (tight.seats[1].raceway - loose.seats[1].raceway)
+    axial = loose.parts["housing_fit"] - tight.parts["housing_fit"]
+    assert axial / raceway == pytest.approx(27.4 / 10.0, rel=0.01)
+
+
+def test_probabilities_are_those_of_a_sample() -> None:
+    """A transition fit and a warm one, and the clearance that is left, against a million bearings with sizes drawn here."""
+    seat = trb.Mounting(
+        bore=0.050, outside=0.090, width=0.020, shaft="k5", housing="K7", clearance="C3", housing_material=ALUMINIUM
+    )
+    warm = trb.Temperatures(shaft_c=60.0, inner_ring_c=62.0, rollers_c=61.0, outer_ring_c=50.0, housing_c=35.0)
+    bearing = trb.cases.bearing_nj210()
+    found = trb.fit(bearing, seat, temperatures=warm)
+    draw, size = np.random.default_rng(7), 1_000_000
+
+    def drawn(low: float, high: float) -> np.ndarray:
+        return 1e-6 * draw.normal(0.5 * (low + high), (high - low) / 6.0, size)
+
+    shaft, bore, outside, housing = drawn(2, 13), drawn(-12, 0), drawn(-15, 0), drawn(-25, 10)
+    steel, other, races = 12e-6, 23.5e-6, bearing.geometry
+    on_shaft = shaft - bore + 0.050 * steel * (40.0 - 42.0)
+    in_housing = outside - housing + 0.090 * (steel * 30.0 - other * 15.0)
+    for part, sample in zip(found[""].seats, (on_shaft, in_housing), strict=True):
+        assert part.probability == pytest.approx(np.mean(sample > 0.0), abs=2e-3)
+    inner, outer = 2.0 * races.inner_race_radius, 2.0 * races.outer_race_radius
+    k, left = 0.050 / inner, np.where(on_shaft > 0.0, 0.050 / 0.052 * on_shaft, 0.0)
+    grows = k * left
+    ring = PressFit(outer, 0.090, 0.135, STEEL, ALUMINIUM)
+    shrinks = np.where(in_housing > 0.0, 0.090 / 0.092 * in_housing, 0.0) * lame(ring, 1e-6)[2] / 1e-6
+    rings = steel * (30.0 * outer - 42.0 * inner - 2.0 * 41.0 * bearing.roller.diameter)
+    play = drawn(50, 80) - grows - shrinks + rings
+    told = found.plays[""]["operating"]
+    low, high = np.quantile(play, [0.005, 0.995])
+    assert told.mean == pytest.approx(play.mean(), abs=0.05e-6)
+    assert (told.low, told.high) == pytest.approx((low, high), abs=0.5e-6)
+    assert found.subject.radial_clearance == told.mean
+
+
+def test_a_pinion_in_aluminium() -> None:
+    """Two bearings 0.11 m apart, 60 K warmer in aluminium: 76 um by the length between them, more than three times the 22.7 um
+    that 5 kN of preload are.
+    """
+    one = pair()
+    planes = [bearing.centre_plane for bearing in one.bearings]
+    one = pair(spread=0.15 + 0.11 - (planes[1] - planes[0]))
+    planes = [bearing.centre_plane for bearing in one.bearings]
+    assert planes[1] - planes[0] == pytest.approx(0.11)
+    warm = trb.fit(one, trb.Mounting(**SEAT, housing_material=ALUMINIUM), temperatures=trb.Temperatures.uniform(80.0))
+    span = sum(bearing.parts["span"] for bearing in warm.values())
+    assert span == pytest.approx(-0.11 * 60.0 * 11.5e-6, rel=1e-9)
+    assert -1e6 * span == pytest.approx(75.9, abs=0.1)
+    half = 0.5 * 22.7e-6
+    preloaded = one.replace(bearings=tuple(bearing.replace(end_play=-half) for bearing in one.bearings))
+    assert trb.equilibrium(preloaded)["left"].axial_load == pytest.approx(5000.0, rel=0.7)
+    other = pair("face to face", spread=0.05)
+    grows = trb.fit(
+        other, trb.Mounting(**SEAT, housing_material=ALUMINIUM), temperatures=trb.Temperatures.uniform(80.0)
+    )
+    assert sum(bearing.parts["span"] for bearing in grows.values()) > 0.0
+    assert any("may creep" in text for text in warm.warnings)
+
+
+def test_bearings_with_one_apex_keep_their_play() -> None:
+    """A well-known rule of adjusted pairs: where the apexes of both bearings meet, a warm shaft with its inner rings and rollers
+    changes nothing, as all of them grow away from one point.
+    """
+    bearing = trb.cases.rig_30310()
+    planes = [one.centre_plane for one in pair(spread=0.3).bearings]
+    spread = 0.3 + 2.0 * bearing.geometry.centre_plane - (planes[1] - planes[0])
+    warm = trb.Temperatures(shaft_c=70.0, inner_ring_c=70.0, rollers_c=70.0, outer_ring_c=20.0, housing_c=20.0)
+    found = trb.fit(pair(spread=spread), trb.Mounting(**SEAT), temperatures=warm)
+    plays = found.plays["end play"]
+    assert plays["operating"].mean == pytest.approx(plays["mounted"].mean, abs=1e-12)
+    nearer = trb.fit(pair(spread=spread - 0.1), trb.Mounting(**SEAT), temperatures=warm).plays["end play"]
+    assert nearer["operating"].mean - nearer["mounted"].mean == pytest.approx(-0.1 * 50.0 * 12e-6, rel=1e-9)
+
+
+def test_one_material_at_one_temperature_changes_nothing() -> None:
+    for subject in (pair(), trb.cases.bearing_nj210()):
+        seat = SEAT if isinstance(subject, trb.Assembly) else {**SEAT, "outside": 0.090}
+        found = trb.fit(subject, trb.Mounting(**seat), temperatures=trb.Temperatures.uniform(120.0))
+        for plays in found.plays.values():
+            change = plays["operating"].mean - plays["mounted"].mean
+            assert change == pytest.approx(0.0, abs=1e-12)
+
+
+def test_sets_before_mounting_lose_their_play_by_the_fits() -> None:
+    one = pair()
+    mounted, before = (
+        trb.fit(one, trb.Mounting(**SEAT, set=when)).plays["end play"]["operating"].mean
+        for when in ("mounted", "before mounting")
+    )
+    cot = 1.0 / math.tan(math.radians(one.bearings[0].bearing.cup_half_angle_deg))
+    seats = trb.fit(one, trb.Mounting(**SEAT))["left"].seats
+    assert mounted == pytest.approx(-40e-6)
+    assert before == pytest.approx(mounted - cot * sum(seat.raceway for seat in seats), rel=2e-2)
+
+
+def test_what_it_takes() -> None:
+    one = pair()
+    with pytest.raises(trb.InputError, match="left, right"):
+        trb.fit(one, {"left": trb.Mounting(**SEAT)})
+    iron = trb.Material(youngs_modulus=110e9, poisson_ratio=0.26)
+    with pytest.raises(trb.InputError, match="expansion"):
+        trb.fit(one, trb.Mounting(**SEAT, housing_material=iron), temperatures=trb.Temperatures.uniform(60.0))
+    with pytest.raises(trb.InputError, match="seed"):
+        trb.fit(one, trb.Mounting(**SEAT), seed=-1)
+    found = trb.fit(one, trb.Mounting(**SEAT))
+    assert "left shaft m6" in str(found)
+    assert "m6" in found._repr_html_()
+    assert [bearing.end_play for bearing in found.subject.bearings] == pytest.approx([-20e-6, -20e-6])
