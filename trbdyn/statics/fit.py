@@ -17,7 +17,7 @@ from scipy.stats import norm, qmc
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError
-from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
+from trbdyn.model.assembly import Assembly, ShaftBearing, Subject, assembly_of
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.growth import apex_slide, material_strain, part_strain
 from trbdyn.model.mounting import Mounting, Temperatures
@@ -276,7 +276,7 @@ def fit(
         mounted[name], operating[name] = one.plays(draws)
         means[name] = float(operating[name].mean())
     groups = {name: [name] for name, bearing in bearings.items() if bearing.is_cylindrical}
-    if isinstance(subject, Assembly):
+    if places:
         groups["end play"] = [name for name in bearings if name not in groups]
     plays = {
         title: {
@@ -456,11 +456,12 @@ def _bearings(subject: Subject) -> dict[str, Bearing]:
 
 def _places(subject: Bearing | Subject) -> dict[str, tuple[ShaftBearing, float]]:
     """Each bearing of a shaft with the position from which lengths grow: the middle between the bearings."""
-    if not isinstance(subject, Assembly):
+    shaft = assembly_of(subject)
+    if shaft is None:
         return {}
-    planes = [one.centre_plane for one in subject.bearings]
+    planes = [one.centre_plane for one in shaft.bearings]
     middle = 0.5 * (min(planes) + max(planes))
-    return {name: (one, middle) for name, one in zip(subject.names, subject.bearings, strict=True)}
+    return {name: (one, middle) for name, one in zip(shaft.names, shaft.bearings, strict=True)}
 
 
 def _by_name(field: str, given: Any, kind: type, bearings: Mapping[str, Bearing]) -> dict[str, Any]:
