@@ -34,9 +34,9 @@ LEFT = 1e-5
 MOST = 40
 """Most slopes that one start of the other search takes."""
 FAR = 1.2e-3
-"""Places (m) beyond which nothing holds a ring."""
-TRAVEL = 1.5e-3
-"""Longest way of an outer ring with a spring (m): the other bearing of the shaft lifts off long before."""
+"""Places (m) beyond which nothing holds a ring or shaft; a ring with a spring may travel farther."""
+TRAVEL = 5e-3
+"""Longest way of an outer ring with a spring (m)."""
 SURELY = 0.97
 """Share of the loads below which there is surely no equilibrium: tilt and displacement alter lever arms by less."""
 
@@ -150,7 +150,7 @@ def other_search(forces: Callable[[Array], Array], starts: list[Array], largest:
                     ).x
             except (ValueError, np.linalg.LinAlgError):
                 continue
-            if np.max(np.abs(found)) * LENGTH < FAR and np.max(np.abs(guarded(found))) < max(LEFT, 1e-5 / largest):
+            if np.max(np.abs(found[:5])) * LENGTH < FAR and np.max(np.abs(guarded(found))) < max(LEFT, 1e-5 / largest):
                 return np.asarray(found)
     return None
 
@@ -289,7 +289,7 @@ def test_no_shaft_is_refused_that_another_search_finds(seed: int, count: int, re
     assert refused_shafts(seed, count) == (refused, [])
 
 
-@pytest.mark.parametrize("number", [53, 176])
+@pytest.mark.parametrize("number", [53, 176, 498])
 def test_rollers_that_hardly_touch_and_springs_far_back_do_not_stop_the_search(number: int) -> None:
     assembly = next(itertools.islice(shafts(48, 500), number, None))
     assert trb.equilibrium(assembly).residual < 1e-6
