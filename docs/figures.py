@@ -10,6 +10,7 @@ import argparse
 import json
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -27,6 +28,11 @@ TOP: Final = ("cage_locus", "load_zone")
 
 def scene() -> trb.Scene:
     return trb.cases.scene_30310(3000.0, 4930.0, start=trb.Start.whirl(0.9))
+
+
+def design() -> trb.Scene:
+    """What the page shows when it is opened for the first time."""
+    return trb.cases.scene_30310(3000.0, 4930.0)
 
 
 def slow() -> trb.Scene:
@@ -77,6 +83,28 @@ def photograph(page: Path, path: Path, size: tuple[int, int], ready: str) -> Non
             browser.close()
 
 
+def app(path: Path) -> None:
+    """The page of `trbdyn app` after a run."""
+    sys.path.insert(0, str(ROOT / "tests" / "app"))
+    from conftest import Server, User, browser_module
+
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        server, browser = Server(Path(folder) / "app"), browser_module().Browser(Path(folder), (1400, 900))
+        try:
+            browser.go(server.address, "document.querySelector('[data-path=source]')")
+            user = User(browser)
+            user.click("tab.run")
+            user.click("want.cage")
+            user.click("run")
+            user.says("run done", 120.0)
+            user.click("tab.results")
+            time.sleep(8.0)  # the 3-D view draws itself in a frame of its own
+            browser.picture(path)
+        finally:
+            browser.close()
+            server.end()
+
+
 def stribeck(path: Path) -> None:
     found = trb.torque_map(
         trb.cases.rig_30310(),
@@ -91,6 +119,7 @@ PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], trb.Scene]]
     "benchmarks/pictures/demo_cage_locus.png": (locus, scene),
     "docs/pictures/report.png": (report, scene),
     "docs/pictures/viewer.png": (viewer, scene),
+    "docs/pictures/app.png": (app, design),
     "docs/pictures/stribeck.png": (stribeck, slow),
 }
 """Pictures, who makes them, and the scene whose numbers say whether they are old."""

@@ -46,7 +46,7 @@ class Browser:
                 "--enable-unsafe-swiftshader",
                 "--hide-scrollbars",
                 "--disable-dev-shm-usage",
-                "--host-resolver-rules=MAP * ~NOTFOUND",
+                "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
                 "--remote-debugging-port=0",
                 f"--user-data-dir={folder / 'profile'}",
                 f"--window-size={size[0]},{size[1]}",
@@ -123,10 +123,13 @@ class Browser:
         return out["result"].get("value")
 
     def open(self, path: Path, ready: str = "document.readyState == 'complete'", place: str = "") -> None:
+        self.go(path.resolve().as_uri() + place, ready)
+
+    def go(self, address: str, ready: str = "document.readyState == 'complete'") -> None:
         self.errors.clear()
         self.requests.clear()
         self.call("Page.navigate", url="about:blank")
-        self.call("Page.navigate", url=path.resolve().as_uri() + place)
+        self.call("Page.navigate", url=address)
         self.wait(ready)
 
     def wait(self, condition: str, seconds: float = 60.0) -> None:

@@ -12,6 +12,7 @@ import argparse
 from collections.abc import Sequence
 
 from trbdyn.base.version import __version__
+from trbdyn.cli.app import add_app_parser
 from trbdyn.cli.cases import add_case_parsers
 from trbdyn.cli.demo import add_demo_parser
 from trbdyn.cli.ensemble import add_ensemble_parser
@@ -70,5 +71,6 @@ def make_parser() -> argparse.ArgumentParser:
     add_rating_parser(commands, common)
     add_torque_parser(commands, common)
     add_thermal_parser(commands, common)
+    add_app_parser(commands, common)
     add_case_parsers(commands, common)
     return parser

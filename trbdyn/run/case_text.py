@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import re
 import textwrap
 from typing import TYPE_CHECKING, Any, Final
@@ -52,6 +53,30 @@ def case_text(scene: Scene, run: RunOptions, *, title: str = "") -> str:
         lines += [f"# {part}" for part in textwrap.wrap(_HEADS[name], WIDTH - 2)]
         lines += [f"[{name}]", *_table(name, model, scene), ""]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def tables_text(tables: dict[str, Any], *, title: str = "") -> str:
+    """Tables of a case or of an assembly as TOML, without comments.
+
+    Parameters
+    ----------
+    tables : dict
+        Tables, and lists of tables, by their names.
+    title : str
+        First line.
+
+    Returns
+    -------
+    str
+        Text that reads back to the same tables, without what is None.
+    """
+    lines = [f"# {title}"] if title else []
+    for name, value in tables.items():
+        several = isinstance(value, list)
+        for table in value if several else [value]:
+            lines += ["", f"[[{name}]]" if several else f"[{name}]"]
+            lines += [f"{key} = {_toml(entry)}" for key, entry in table.items() if entry is not None]
+    return "\n".join(lines).lstrip() + "\n"
 
 
 def _table(name: str, model: Model, scene: Scene) -> list[str]:
@@ -123,7 +148,7 @@ def _toml(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # TOML has the escapes of JSON
     if isinstance(value, int | float):
         return repr(value)
     if isinstance(value, dict):

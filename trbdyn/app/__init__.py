@@ -1,0 +1,29 @@
+"""A page in the browser, on the own machine: choose a bearing, run it, see results, without programming (`trbdyn app`).
+
+It is built on NiceGUI, the extra ``trbdyn[app]``. The page holds no physics: a `Design` is what was typed, its tables are those
+of a case file, and tasks in processes of their own call the functions that a program would call.
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from trbdyn.errors import TrbError
+
+__all__ = ["MissingExtra", "need_nicegui"]
+
+
+class MissingExtra(TrbError):
+    """A part of trbdyn was called whose packages are not installed."""
+
+
+def need_nicegui() -> None:
+    """Check that the page can be made.
+
+    Raises
+    ------
+    MissingExtra
+        If NiceGUI is not installed.
+    """
+    if find_spec("nicegui") is None:
+        raise MissingExtra("the page needs NiceGUI, which is not installed: pip install 'trbdyn[app]'")

@@ -1,0 +1,223 @@
+"""Tasks in processes of their own, seen from the page: progress, stop, end; and the folder that keeps what they made."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+import time
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, Final
+
+from trbdyn.app.design import Design
+from trbdyn.app.tasks import work
+from trbdyn.base.own_files import write_whole
+from trbdyn.errors import FileError
+
+GRACE: Final = 20.0
+"""Time that a task has to end after it was told to (s)."""
+META: Final = "about.json"
+DESIGN: Final = "design.json"
+
+
+class Job:
+    """A task under way.
+
+    Attributes
+    ----------
+    share : float or None
+        How much of it is done, from 0 to 1; None: not known.
+    text : str
+        What it does, or how it ended.
+    state : {'running', 'done', 'stopped', 'failed'}
+        Whether and how it ended.
+    problems : dict of str to str
+        What was wrong with its input, by field.
+    answer : dict
+        What it gave.
+    """
+
+    def __init__(self, kind: str, folder: Path, arguments: dict[str, Any]) -> None:
+        context = get_context("spawn")
+        self._hears, says = context.Pipe(duplex=False)
+        heard, self._tells = context.Pipe(duplex=False)
+        self.kind, self.folder = kind, folder
+        self.share: float | None = None
+        self.text, self.state = "starting", "running"
+        self.problems: dict[str, str] = {}
+        self.answer: dict[str, Any] = {}
+        self._stopped_at = 0.0
+        self._process = context.Process(target=work, args=(says, heard, kind, str(folder), arguments))
+        self._process.start()
+        says.close()
+        heard.close()
+
+    @property
+    def running(self) -> bool:
+        return self.state == "running"
+
+    def look(self) -> bool:
+        """Take in what the task has told; gives whether it has ended just now."""
+        if not self.running:
+            return False
+        try:
+            while self._hears.poll() and self._take(*self._hears.recv()):
+                pass
+        except (EOFError, OSError):
+            self._process.join(5.0)
+            self.state, self.text = "failed", f"its process ended, exit code {self._process.exitcode}"
+        if self._stopped_at and time.monotonic() - self._stopped_at > GRACE:
+            self._process.kill()
+            self.state, self.text = "stopped", "it did not answer and was ended"
+        return not self.running
+
+    def _take(self, word: str, *rest: Any) -> bool:
+        """Take in a message; gives whether the task goes on."""
+        if word == "progress":
+            self.share, self.text = rest
+            return True
+        self.state, self.text = "stopped" if self._stopped_at and word == "done" else word, rest[0]
+        if word == "failed":
+            self.problems = rest[1]
+        else:
+            self.answer = rest[1]
+        self._process.join(5.0)
+        return False
+
+    def stop(self) -> None:
+        """Stop it as Ctrl-C does: a run keeps what it has recorded."""
+        if self.running:
+            self._stopped_at = self._stopped_at or time.monotonic()
+            with contextlib.suppress(OSError):
+                self._tells.send("stop")
+
+    def end(self) -> None:
+        """End it now, as the page ends."""
+        self.stop()
+        self._process.join(GRACE if self.running else 1.0)
+        if self._process.is_alive():
+            self._process.kill()
+
+
+@dataclass
+class Kept:
+    """What a task has made, in a folder of its own.
+
+    Attributes
+    ----------
+    name : str
+        Name of the folder.
+    title : str
+        What it is, for the page.
+    kind : str
+        'run', 'sweep' or 'compare'.
+    about : dict
+        What the page shows of it.
+    """
+
+    name: str
+    title: str
+    kind: str
+    about: dict[str, Any]
+
+
+@dataclass
+class Bench:
+    """Everything that the page shows: the design, the task under way, what was made. All tabs of a browser show the same one.
+
+    Attributes
+    ----------
+    root : Path
+        The folder that keeps it.
+    design : Design
+        What was typed.
+    job : Job or None
+        The last task.
+    version : int
+        Rises whenever something has changed.
+    """
+
+    root: Path
+    design: Design = field(default_factory=Design)
+    job: Job | None = None
+    version: int = 0
+
+    @classmethod
+    def open(cls, root: Path) -> Bench:
+        """The bench that a folder keeps.
+
+        Raises
+        ------
+        FileError
+            If the folder cannot be used.
+        """
+        try:
+            (root / "runs").mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise FileError(f"{root}: the folder cannot be made: {error.strerror or error}") from None
+        bench = cls(root)
+        with contextlib.suppress(OSError, UnicodeDecodeError):
+            bench.design = Design.from_json((root / DESIGN).read_text(encoding="utf-8"))
+        return bench
+
+    def changed(self) -> int:
+        """Keep the design, and tell all tabs; gives the new version."""
+        write_whole(self.root / DESIGN, self.design.to_json(), overwrite=True)
+        self.version += 1
+        return self.version
+
+    def start(self, kind: str, title: str, arguments: dict[str, Any], texts: dict[str, str]) -> Job | None:
+        """Begin a task in a new folder, with files of texts; nothing if one is under way."""
+        if self.job is not None and self.job.running:
+            return None
+        folder = self._new_folder(title)
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        about = {"title": title, "kind": kind, "when": time.strftime("%Y-%m-%d %H:%M"), "state": "not finished"}
+        (folder / META).write_text(json.dumps(about), encoding="utf-8")
+        self.job = Job(kind, folder, arguments)
+        self.version += 1
+        return self.job
+
+    def again(self, kind: str, name: str, arguments: dict[str, Any]) -> None:
+        """Begin a task in the folder of one that has ended."""
+        if self.job is None or not self.job.running:
+            self.job = Job(kind, self.root / "runs" / name, arguments)
+            self.version += 1
+
+    def _new_folder(self, title: str) -> Path:
+        runs = self.root / "runs"
+        numbers = [int(path.name[:4]) for path in runs.iterdir() if re.match(r"\d{4}", path.name)]
+        words = re.sub(r"[^A-Za-z0-9]+", "-", title).strip("-")[:40] or "run"
+        folder = runs / f"{max(numbers, default=0) + 1:04d}-{words}"
+        folder.mkdir()
+        return folder
+
+    def look(self) -> None:
+        """Take in what the task has told; keep how it ended."""
+        if self.job is None or not self.job.look():
+            return
+        self.version += 1
+        path = self.job.folder / META
+        about = json.loads(path.read_text(encoding="utf-8"))
+        if self.job.kind != "pdf":
+            about |= {"state": self.job.state, "text": self.job.text} | self.job.answer
+            path.write_text(json.dumps(about), encoding="utf-8")
+
+    def kept(self) -> list[Kept]:
+        """What was made, the newest first."""
+        found = []
+        for folder in sorted((self.root / "runs").iterdir(), reverse=True):
+            with contextlib.suppress(OSError, ValueError, KeyError):
+                about = json.loads((folder / META).read_text(encoding="utf-8"))
+                found.append(Kept(folder.name, str(about["title"]), str(about["kind"]), about))
+        return found
+
+    def file(self, name: str, inside: str) -> Path | None:
+        """A file of a folder that was made here; None for anything else, such as a path that leads out of it."""
+        folder = self.root / "runs" / name
+        path = (folder / inside).resolve()
+        safe = path.is_relative_to(folder.resolve()) and folder.resolve().parent == (self.root / "runs").resolve()
+        return path if safe and path.is_file() else None

@@ -1,0 +1,57 @@
+"""What a user wants to know: the averages that a plan finds for it, and the pictures and tables that show it."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+
+class Question(NamedTuple):
+    """Something that a user wants to know.
+
+    Attributes
+    ----------
+    words : str
+        It on the page.
+    want : dict of str to float
+        Averages that decide it, with the relative errors that are good enough, for `trbdyn.plan`.
+    pictures : tuple of str
+        Names of the pictures that show it.
+    tables : tuple of str
+        What is computed besides: 'rating', 'stiffness'.
+    """
+
+    words: str
+    want: dict[str, float]
+    pictures: tuple[str, ...] = ()
+    tables: tuple[str, ...] = ()
+
+
+QUESTIONS: Final[dict[str, Question]] = {
+    "torque": Question("friction torque and losses", {"torque": 0.02}, ("torque_split", "power_split")),
+    "life": Question("rating life", {"outer_load_mean": 0.02}, ("load_zone",), ("rating",)),
+    "cage": Question(
+        "motion of the cage and its forces",
+        {"orbit_rms_over_cpr": 0.05, "pocket_force_p95": 0.1},
+        ("cage_locus", "orbit_radius", "pocket_forces"),
+    ),
+    "stiffness": Question("stiffness", {"outer_load_mean": 0.02}, ("contact_loads",), ("stiffness",)),
+    "pressures": Question(
+        "contact pressures and films",
+        {"outer_load_mean": 0.02, "film_parameter_outer": 0.05},
+        ("pressure_map", "film_map"),
+    ),
+}
+OF_SHAFT: Final = ("bearing_loads", "shaft_orbits")
+"""Pictures of several bearings on a shaft."""
+SWEPT: Final = ("torque", "power_loss", "orbit_rms_over_cpr", "cage_slip", "pocket_force_p95", "outer_load_mean",
+                "film_parameter_outer", "settling")  # fmt: skip
+"""Numbers in the table of a sweep."""
+
+
+def want_of(names: list[str]) -> dict[str, float]:
+    """Averages with their errors that decide all of some questions: the smallest error of each."""
+    found: dict[str, float] = {}
+    for name in names:
+        for average, error in QUESTIONS[name].want.items():
+            found[average] = min(error, found.get(average, error))
+    return found

@@ -1,0 +1,83 @@
+"""The server of the page: on this machine alone, with a token in its address."""
+
+from __future__ import annotations
+
+import socket
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+import uvicorn
+from fastapi import FastAPI
+from fastapi.responses import FileResponse, PlainTextResponse, Response
+from nicegui import ui
+
+from trbdyn.app.guard import HOSTS, Guard
+from trbdyn.app.jobs import Bench
+from trbdyn.app.page import show_page
+from trbdyn.errors import FileError
+
+OF_STRANGERS = "sandbox allow-scripts; default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; \
+script-src 'unsafe-inline' 'unsafe-eval' data: blob:; worker-src blob:; font-src data:; connect-src data: blob:; \
+frame-ancestors 'self'"
+"""What reports and views may do: names in them come from cases of others. They are drawn, and reach nothing else."""
+
+
+def application(bench: Bench) -> FastAPI:
+    """The page, and the files of the runs."""
+    app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
+
+    @app.get("/files/{name}/{inside:path}", response_model=None)
+    def file(name: str, inside: str) -> Response:
+        path = bench.file(name, inside)
+        if path is None:
+            return PlainTextResponse("there is no such file", status_code=404)
+        headers = {"Content-Security-Policy": OF_STRANGERS, "Cache-Control": "no-store"}
+        if path.suffix not in (".html", ".png"):
+            headers["Content-Disposition"] = f'attachment; filename="{path.name}"'
+        return FileResponse(path, headers=headers)
+
+    def root() -> None:
+        show_page(bench)
+
+    ui.run_with(app, root=root, title="trbdyn", show_welcome_message=False, reconnect_timeout=30.0)
+    return app
+
+
+def serve(folder: Path, *, port: int = 0, browser: bool = True) -> None:
+    """Serve the page until Ctrl-C.
+
+    Parameters
+    ----------
+    folder : Path
+        Keeps the design and all runs; made if it is missing.
+    port : int
+        Port on this machine; 0: any that is free.
+    browser : bool
+        Open the page in the browser.
+
+    Raises
+    ------
+    FileError
+        If the folder or the port cannot be used.
+    """
+    bench = Bench.open(folder)
+    listener = socket.socket()
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((HOSTS[0], port))
+        listener.listen()
+    except (OSError, OverflowError) as error:
+        raise FileError(f"port {port}: cannot be used: {getattr(error, 'strerror', None) or error}") from None
+    port = listener.getsockname()[1]
+    guard = Guard(application(bench), port)
+    address = f"http://{HOSTS[0]}:{port}/?token={guard.token}"
+    print(f"trbdyn app: {address}\nIt keeps everything in {folder}. Ctrl-C ends it.", flush=True)
+    if browser:
+        webbrowser.open(address)
+    options: dict[str, Any] = {"log_level": "warning", "access_log": False, "server_header": False}
+    try:
+        uvicorn.Server(uvicorn.Config(guard, **options)).run(sockets=[listener])
+    finally:
+        if bench.job is not None:
+            bench.job.end()

@@ -1,0 +1,211 @@
+"""What takes time, done in a process of its own that can be stopped: runs, plans, sweeps, comparisons, PDF."""
+
+from __future__ import annotations
+
+import _thread
+import json
+import os
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, Final, cast
+
+import numpy as np
+
+from trbdyn.app.questions import OF_SHAFT, QUESTIONS, SWEPT, want_of
+from trbdyn.errors import InputError, TrbError
+from trbdyn.reporting import report, save_pdf
+from trbdyn.results.assembly import load
+from trbdyn.results.quantities import QUANTITIES
+from trbdyn.run.case_text import case_text
+from trbdyn.run.options import RunOptions
+from trbdyn.run.rating import rating
+from trbdyn.run.simulation import Simulation
+from trbdyn.run.toml_assembly import subject_from_dict
+from trbdyn.statics.assembly import stiffness
+from trbdyn.study.planning import plan
+from trbdyn.study.runner import run as run_study
+from trbdyn.viewer import view
+
+Say = Callable[[float | None, str], None]
+PAUSE: Final = 0.2
+"""Least time between two messages about progress (s)."""
+LAST_WORDS: Final = 10.0
+"""Time that a task has to close its files when the page has ended (s)."""
+
+
+def work(said: Connection, heard: Connection, kind: str, folder: str, arguments: dict[str, Any]) -> None:
+    """Do a task; what is told goes through `said`, and a message from `heard`, or its end, stops it as Ctrl-C does."""
+    os.environ["MPLBACKEND"] = "Agg"
+    threading.Thread(target=_listen, args=(heard,), daemon=True).start()
+
+    def say(share: float | None, text: str) -> None:
+        said.send(("progress", share, text))
+
+    try:
+        said.send(("done", *TASKS[kind](Path(folder), say, **arguments)))
+    except KeyboardInterrupt:
+        said.send(("stopped", "stopped", {}))
+    except InputError as error:
+        problems = {".".join(map(str, one.path)): one.allowed for one in error.problems}
+        said.send(("failed", str(error), problems))
+    except (TrbError, OSError, MemoryError) as error:
+        said.send(("failed", str(error) or type(error).__name__, {}))
+    except Exception as error:
+        said.send(("failed", f"a fault of trbdyn itself, please report it: {type(error).__name__}: {error}", {}))
+
+
+def _listen(heard: Connection) -> None:
+    """Each message interrupts what goes on; where the page itself has ended, this process ends soon after."""
+    try:
+        while True:
+            heard.recv()
+            _thread.interrupt_main()
+    except (EOFError, OSError):
+        _thread.interrupt_main()
+        time.sleep(LAST_WORDS)
+        os._exit(1)
+
+
+def _run(
+    folder: Path, say: Say, *, tables: dict[str, Any], wants: list[str], planned: bool
+) -> tuple[str, dict[str, Any]]:
+    """Run a case, planned for some questions where that is wanted; write records, pictures, report and view."""
+    subject, options = subject_from_dict(tables)
+    extra: dict[str, Any] = {}
+    if planned:
+        say(None, "looking for the cheapest run that answers the question")
+        found = plan(cast(Any, subject), want_of(wants))
+        subject = found.scene
+        options = RunOptions(accuracy=found.accuracy, duration=found.duration, save_every=found.save_every)
+        (folder / "case.toml").write_text(
+            case_text(found.scene, options, title="found by trbdyn.plan"), encoding="utf-8"
+        )
+        extra["plan"] = str(found)
+    say(0.0, "starting")
+    simulation = Simulation(subject, **options.of_simulation())
+    begin, end = simulation.time, options.end_time(subject, simulation.time)
+    last = [0.0]
+
+    def look(running: Simulation) -> None:
+        if time.monotonic() - last[0] > PAUSE:
+            last[0] = time.monotonic()
+            say(
+                (running.time - begin) / (end - begin),
+                f"{1e3 * (running.time - begin):.4g} ms of {1e3 * (end - begin):.4g} ms",
+            )
+
+    result = simulation.run(
+        revolutions=options.revolutions,
+        duration=options.duration,
+        save_every=options.save_every,
+        output=folder / "run.h5",
+        callback=look,
+    )
+    return _shown(folder, say, result, subject, wants, extra)
+
+
+def _shown(
+    folder: Path, say: Say, result: Any, subject: Any, wants: list[str], extra: dict[str, Any]
+) -> tuple[str, dict[str, Any]]:
+    """Everything that the page shows of a result."""
+    from trbdyn.plot import all as save_pictures
+    from trbdyn.plot import drawable
+
+    parts = dict(zip(subject.names, result.parts, strict=True))
+    numbers = {name: [list(row) for row in one.summary()._shown().rows] for name, one in parts.items()}
+    (folder / "summary.json").write_text(json.dumps(numbers), encoding="utf-8")
+    chosen = [picture for name in wants for picture in QUESTIONS[name].pictures] or ["torque_split"]
+    say(1.0, "drawing")
+    of_shaft = OF_SHAFT if len(parts) > 1 else ()
+    chosen = [*of_shaft, *(name for name in chosen if name in drawable(result.parts[0]))]
+    save_pictures(result, folder / "pictures", chosen)
+    texts = {}
+    for table in dict.fromkeys(table for name in wants for table in QUESTIONS[name].tables):
+        say(1.0, table)
+        try:
+            texts[table] = str(rating(result) if table == "rating" else stiffness(subject))
+        except TrbError as error:
+            texts[table] = str(error)
+    say(1.0, "3-D view")
+    view(result, folder / "view.html")
+    say(1.0, "report")
+    report(result, folder / "report.html", pictures=chosen)
+    message = "; ".join(dict.fromkeys(one.message for one in parts.values()))
+    return message, {**extra, "tables": texts, "wanted": [*want_of(wants)], "success": result.success}
+
+
+def _pdf(folder: Path, say: Say, *, page: str) -> tuple[str, dict[str, Any]]:
+    """Print a report."""
+    say(None, "printing")
+    save_pdf(folder / page, (folder / page).with_suffix(".pdf"), overwrite=True)
+    return "printed", {}
+
+
+def _compare(folder: Path, say: Say, *, files: list[str], names: list[str]) -> tuple[str, dict[str, Any]]:
+    """A report of two runs side by side."""
+    say(None, "comparing")
+    first, second = (load(file) for file in files)
+    report(first, folder / "report.html", other=second, names=names, overwrite=True)
+    return "compared", {}
+
+
+class _Counting(ThreadPoolExecutor):
+    """Threads that tell how many cases are done."""
+
+    def __init__(self, workers: int, total: int, say: Say) -> None:
+        super().__init__(workers)
+        self._say, self._total, self._done = say, total, 0
+
+    def submit(self, *given: Any, **named: Any) -> Future[Any]:
+        future = super().submit(*given, **named)
+        future.add_done_callback(self._count)
+        return future
+
+    def _count(self, _: Future[Any]) -> None:
+        self._done += 1
+        self._say(self._done / self._total, f"{self._done} of {self._total} cases")
+
+
+def _sweep(
+    folder: Path, say: Say, *, path: str, labels: list[str], cases: list[dict[str, Any]]
+) -> tuple[str, dict[str, Any]]:
+    """Run a design for some values of one input; a table and pictures of what follows."""
+    import matplotlib.pyplot as plt
+
+    from trbdyn.plot.style import plain, styled
+
+    say(0.0, f"0 of {len(cases)} cases")
+    with _Counting(2, len(cases), say) as threads:
+        data = run_study([subject_from_dict(tables) for tables in cases], folder / "runs", executor=threads)
+    names = [name for name in SWEPT if name in data]
+    rows = [[label, str(data["status"].values[k]), *(_cell(data[name].values[k]) for name in names)]
+            for k, label in enumerate(labels)]  # fmt: skip
+    drawn = [name for name in names if data[name].dtype.kind == "f" and np.isfinite(data[name].values).any()]
+    with styled():
+        size = (7.0, 2.2 * max(len(drawn), 1))
+        figure, axes = plt.subplots(len(drawn) or 1, 1, figsize=size, sharex=True, squeeze=False)
+        for name, ax in zip(drawn, axes[:, 0], strict=False):
+            quantity = QUANTITIES.get(name)
+            unit = f" ({quantity.unit})" if quantity is not None and quantity.unit not in ("", "1") else ""
+            ax.plot(labels, data[name].values, marker="o")
+            ax.set_title((quantity.words if quantity is not None else name) + unit, fontsize=9)
+        axes[-1, 0].set_xlabel(plain(path))
+        figure.savefig(folder / "sweep.png", dpi=110)
+        plt.close(figure)
+    return f"{len(rows)} cases", {"head": [path, "status", *names], "rows": rows}
+
+
+def _cell(value: Any) -> str:
+    return f"{float(value):.5g}" if isinstance(value, float) else str(value)
+
+
+TASKS: Final[dict[str, Callable[..., tuple[str, dict[str, Any]]]]] = {
+    "run": _run,
+    "pdf": _pdf,
+    "compare": _compare,
+    "sweep": _sweep,
+}
