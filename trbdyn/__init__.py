@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from trbdyn.statics.preload import preload_diagram as preload_diagram
     from trbdyn.study.cage_map import cage_map as cage_map
     from trbdyn.study.planning import plan as plan
+    from trbdyn.study.preload_over import preload_over as preload_over
     from trbdyn.study.surrogate import surrogate as surrogate
     from trbdyn.study.thermal import thermal as thermal
     from trbdyn.study.torque_map import torque_map as torque_map

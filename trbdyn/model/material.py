@@ -90,6 +90,20 @@ class Material(Model):
         """
         return cls(youngs_modulus=100e9, poisson_ratio=0.34, density=8400.0, expansion=20.5e-6, damping_ratio=0.003)
 
+    @classmethod
+    def aluminium(cls) -> Self:
+        """Aluminium of cast housings, AlSi: 72 GPa, 0.33, 2700 kg/m3; 23.5e-6 1/K, of AlSi10Mg 21 to 22e-6 (EN 1706). Damping
+        ratio 0.002: assumed.
+        """
+        return cls(youngs_modulus=72e9, poisson_ratio=0.33, density=2700.0, expansion=23.5e-6, damping_ratio=0.002)
+
+    @classmethod
+    def grey_iron(cls) -> Self:
+        """Grey cast iron of housings, EN-GJL-250: 110 GPa, 0.26, 7200 kg/m3, 11.7e-6 1/K (EN 1561, annex). Damping ratio
+        0.005: assumed.
+        """
+        return cls(youngs_modulus=110e9, poisson_ratio=0.26, density=7200.0, expansion=11.7e-6, damping_ratio=0.005)
+
 
 class Roughness(Model):
     """Composite rms roughness of the rolling contacts.

@@ -288,7 +288,7 @@ def thermal(
     True
     """
     expect("scene", subject, Scene, Assembly)
-    own = _own_paths(subject, paths)
+    own = own_paths(subject, paths)
     for prefix, part in subject.parts.items():
         if part.lubricant.oil is None:
             limit = "must be given: heat changes the temperature of the lubricant"
@@ -324,7 +324,7 @@ def _parts(subject: Subject) -> list[Scene | ShaftBearing]:
     return [*subject.parts.values()]
 
 
-def _own_paths(subject: Subject, paths: HeatPaths | Mapping[str, HeatPaths]) -> list[HeatPaths]:
+def own_paths(subject: Subject, paths: HeatPaths | Mapping[str, HeatPaths]) -> list[HeatPaths]:
     """The paths of each bearing."""
     if not isinstance(paths, Mapping):
         expect("paths", paths, HeatPaths)
