@@ -286,7 +286,7 @@ def preload_over(
     ...                     housing_material=trb.Material.aluminium())
     >>> found = trb.preload_over(pair, seat, [20.0, 80.0])
     >>> [round(1e6 * row.plays["end play"]) for row in found.rows]
-    [-30, 135]
+    [-30, 96]
     """
     expect("subject", subject, Scene, Assembly)
     if not len(temperatures):
@@ -499,7 +499,7 @@ class _Balance:
             if np.max(np.abs(now - power)) < CLOSE * np.max(np.abs(power)):
                 feedback = float(np.max(np.linalg.eigvals(slopes).real))
                 return (power, feedback) if feedback < 1.0 else None
-            step: Array = np.linalg.solve(np.eye(power.size) - slopes, now - power)
+            step = np.asarray(np.linalg.solve(np.eye(power.size) - slopes, now - power), dtype=np.float64)
             step *= min(1.0, 0.5 / max(float(np.max(np.abs(step) / np.maximum(power, 1e-9))), 1e-9))
             while (further := self._step(power, step, outside)) is None:
                 step = np.asarray(0.3 * step)
