@@ -43,6 +43,17 @@ def test_the_shipped_case_is_what_its_tables_say() -> None:
     assert run.revolutions == 8.0
 
 
+def test_a_hub_of_a_file() -> None:
+    """The outer rings turn, the road presses on the wheel."""
+    tables = changed("assembly", "outer_speed_rpm", value=600.0)
+    tables["assembly"]["speed_rpm"] = 0.0
+    tables["loads"] = [{"wheel": {"position": 0.01, "rolling_radius": 0.3, "load": 4000.0}}]
+    hub, _ = assembly_from_dict(tables)
+    assert hub.turning_rpm == 600.0
+    assert hub.loads == (trb.ShaftLoad.wheel(position=0.01, rolling_radius=0.3, load=4000.0),)
+    assert "600 rpm of the outer rings" in hub.title
+
+
 def test_a_bearing_may_have_tables_of_its_own() -> None:
     tables = changed("bearings", 1, "bearing", value={"case": "32216"})
     tables["bearings"][1]["lubricant"] = {"oil": "vg68", "temperature_c": 40.0}

@@ -220,10 +220,10 @@ def test_the_number_of_laminas_does_not_matter() -> None:
 
 def test_the_ring_that_stands_against_the_load_wears_out_first() -> None:
     loads, ratings = uniform(HALF_LOADED * 1e3), np.array([5e4, 4e4])
-    still = reference_life(loads, ratings, inner_turns=False)
+    still = reference_life(loads, ratings, turning=(True, False))
     assert still < reference_life(loads, ratings)  # the weaker inner contact is then always at the same place
     even = uniform(np.full(20, 1e3))
-    assert reference_life(even, ratings, inner_turns=False) == pytest.approx(reference_life(even, ratings))
+    assert reference_life(even, ratings, turning=(True, False)) == pytest.approx(reference_life(even, ratings))
 
 
 def test_a_steady_run_says_what_the_equilibrium_says() -> None:

@@ -191,5 +191,3 @@ def test_refused() -> None:
         scene(0.0, 2e6)
     with pytest.raises(InputError, match=r"oil_fill.*turning outer ring"):
         scene(0.0, 100.0, effects=Effects.standard().replace(oil_fill=0.3))
-    with pytest.raises(InputError, match="inner ring turns alone"):
-        trb.rating(scene(0.0, 100.0))

@@ -22,8 +22,9 @@ from trbdyn.model.growth import Growth
 from trbdyn.model.lubricants import Lubricant, vg100
 from trbdyn.model.motion import History, Quantity, is_constant, value_at, values_of
 from trbdyn.model.ring_body import Housing, RingBody, check_inertias
-from trbdyn.model.scene import MAX_SPEED_RPM, Scene, oil_by_name
+from trbdyn.model.scene import Scene, oil_by_name
 from trbdyn.model.start import Start
+from trbdyn.model.turning import TurningRings
 
 __all__ = [
     "Assembly",
@@ -37,6 +38,16 @@ __all__ = [
 ]
 
 Arrangement = Literal["back to back", "face to face"]
+ROWS: Final[dict[str, tuple[Literal["left", "right"], ...]]] = {
+    "TDO": ("right", "left"),
+    "TDI": ("left", "right"),
+    "TQO": ("left", "right", "left", "right"),
+    "TQI": ("right", "left", "right", "left"),
+}
+"""Where the small ends of the rows point, from left to right. TDO: one double outer ring and two inner rings; TDI: one double
+inner ring and two outer rings; TQO and TQI: four rows, two TDI or two TDO."""
+OWN_FIELDS: Final = ("outer_speed_rpm", "torque", "gravity")
+"""Fields of an `Assembly` beside those that its makers name."""
 MAX_END_PLAY: Final = 3e-4
 """Largest end play or preload of one bearing by displacement (m): where a shaft goes farther, the rollers of the other bearing
 have no equilibrium in the wide gap."""
@@ -260,7 +271,7 @@ def load_centre_offset(bearing: Bearing) -> float:
     >>> import trbdyn as trb
     >>> from trbdyn.model.assembly import load_centre_offset
     >>> round(1e3 * load_centre_offset(trb.cases.rig_30310()), 1)
-    11.1
+    9.5
     """
     geometry = bearing.geometry
     along = geometry.apex_to_mid * math.cos(geometry.roller_half_angle)
@@ -296,6 +307,92 @@ class ShaftLoad(Model):
     force: tuple[Quantity, Quantity, Quantity] = (0.0, 0.0, 0.0)
     offset: tuple[Number, Number] = (0.0, 0.0)
     moment: tuple[Quantity, Quantity] = (0.0, 0.0)
+
+    @classmethod
+    def wheel(
+        cls,
+        *,
+        position: float,
+        rolling_radius: float,
+        load: float,
+        cornering: float = 0.0,
+        centre_height: float = 0.0,
+        track: float | None = None,
+        driving_force: float = 0.0,
+        outboard: Literal["left", "right"] = "right",
+        fixed_to: Literal["outer rings", "shaft"] = "outer rings",
+    ) -> Self:
+        """What the road does to a wheel at its contact patch, which lies below the axis (-y).
+
+        A vehicle that corners with the lateral acceleration a (over that of gravity) presses its outer wheel onto the road with
+        Fz = W (1 + 2 a h/t) and its inner wheel with W (1 - 2 a h/t). Both share the lateral force as they share the load:
+        Fy = a Fz, inboard on the outer wheel.
+
+        Parameters
+        ----------
+        position : float
+            Position of the wheel's middle plane, where the contact patch lies, along the shaft (m).
+        rolling_radius : float
+            Distance of the contact patch from the axis (m).
+        load : float
+            W, load of the wheel on a straight level road (N).
+        cornering : float
+            a (1): positive where this is the outer wheel of the curve, negative where it is the inner one. Usual values of load
+            spectra are up to 0.25, the most that a tyre holds is about 0.8.
+        centre_height : float
+            h, height of the vehicle's centre of mass (m).
+        track : float, optional
+            t, distance of both wheels of the axle (m); needed with a `centre_height`.
+        driving_force : float
+            Force of the road on the tyre along +x (N), of driving or braking. The torque that belongs to it acts about the axis.
+        outboard : {'left', 'right'}
+            Where the outer side of the vehicle lies along the shaft.
+        fixed_to : {'outer rings', 'shaft'}
+            What the wheel turns with. On outer rings, as in a hub on a spindle, the shaft of the assembly is the spindle: it
+            bears the same forces in the opposite direction.
+
+        Raises
+        ------
+        InputError
+            If a number is not allowed, or the wheel would leave the road.
+
+        Notes
+        -----
+        Balance of moments of an axle with the load 2 W; the lateral forces of both wheels in the ratio of their loads are an
+        assumption, as is a contact patch without width.
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> curve = trb.ShaftLoad.wheel(
+        ...     position=0.01, rolling_radius=0.3, load=4000.0, cornering=0.3, centre_height=0.6, track=1.5, fixed_to="shaft"
+        ... )
+        >>> tuple(round(part) for part in curve.force), curve.offset
+        ((0, 4960, -1488), (0.0, -0.3))
+        """
+        if not rolling_radius > 0.0:
+            raise InputError.of("rolling_radius", rolling_radius, "must be > 0 (m)")
+        if not load >= 0.0:
+            raise InputError.of("load", load, "must be >= 0 (N)")
+        if not centre_height >= 0.0:
+            raise InputError.of("centre_height", centre_height, "must be >= 0 (m)")
+        if (centre_height > 0.0 or track is not None) and not (track or 0.0) > 0.0:
+            raise InputError.of("track", track, "must be given with a centre_height, and > 0 (m)")
+        for name, value, known in (
+            ("outboard", outboard, ("left", "right")),
+            ("fixed_to", fixed_to, ("outer rings", "shaft")),
+        ):
+            if value not in known:
+                raise InputError.of(name, value, f"must be one of {', '.join(map(repr, known))}")
+        moved = 0.0 if track is None else 2.0 * cornering * centre_height / track
+        if moved < -1.0:
+            limit = f"must be >= {cornering / -moved:.4g}: the inner wheel leaves the road there (1)"
+            raise InputError.of("cornering", cornering, limit)
+        vertical, side = load * (1.0 + moved), 1.0 if outboard == "right" else -1.0
+        force = (driving_force, vertical, -side * cornering * vertical)
+        sign = 1.0 if fixed_to == "shaft" else -1.0
+        x, y, z = (sign * part + 0.0 for part in force)
+        return cls(position=position, force=(x, y, z), offset=(0.0, -rolling_radius))
 
     @classmethod
     def gear(
@@ -357,8 +454,8 @@ class ShaftLoad(Model):
         return cls(position=position, force=force, offset=(radius * cosine, radius * sine))
 
 
-class Assembly(Model):
-    """Bearings on a rigid shaft. Their outer rings stand in a rigid housing.
+class Assembly(TurningRings, Model):
+    """Bearings on a rigid shaft. Their outer rings stand, or turn, in a rigid housing.
 
     Frame: z along the shaft, to the right in words; the origin anywhere on its axis. Speeds are positive about +z, loads act on
     the shaft.
@@ -373,6 +470,8 @@ class Assembly(Model):
         Forces and moments on the shaft, besides its weight.
     speed_rpm : float or History
         Speed of the shaft (rpm).
+    outer_speed_rpm : float or History
+        Speed of all outer rings (rpm): that of the hub of a wheel, whose spindle has ``speed_rpm = 0``; 0 by default, at rest.
     torque : float or History, optional
         Torque of the drive about z (N m): the shaft then begins at `speed_rpm` and turns as the torque and its bearings let it.
     gravity : tuple of float or History, shape (3,)
@@ -397,6 +496,7 @@ class Assembly(Model):
     bearings: tuple[ShaftBearing, ...]
     loads: tuple[ShaftLoad, ...] = ()
     speed_rpm: Annotated[Quantity, unit("rpm")]
+    outer_speed_rpm: Annotated[Quantity, unit("rpm")] = 0.0
     torque: Annotated[Quantity | None, unit("N m")] = None
     gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
 
@@ -437,7 +537,7 @@ class Assembly(Model):
         if arrangement not in ("back to back", "face to face"):
             raise InputError.of("arrangement", arrangement, "must be 'back to back' or 'face to face'")
         ends = ("right", "left") if arrangement == "back to back" else ("left", "right")
-        own = {name: fields.pop(name) for name in ("torque", "gravity") if name in fields}
+        own = {name: fields.pop(name) for name in OWN_FIELDS if name in fields}
         bearings = tuple(
             ShaftBearing(
                 one, name=name, position=sign * 0.5 * spread, small_ends=small, end_play=0.5 * end_play, **fields
@@ -445,6 +545,81 @@ class Assembly(Model):
             for one, name, sign, small in zip(
                 (bearing, other or bearing), ("left", "right"), (-1.0, 1.0), ends, strict=True
             )
+        )
+        return cls(shaft=shaft, bearings=bearings, loads=tuple(loads), speed_rpm=speed_rpm, **own)
+
+    @classmethod
+    def rows(
+        cls,
+        bearing: Bearing,
+        rows: Literal["TDO", "TDI", "TQO", "TQI"] | Sequence[Literal["left", "right"]],
+        *,
+        row_distance: float | Sequence[float],
+        end_play: float = 0.0,
+        loads: Sequence[ShaftLoad] = (),
+        shaft: Shaft,
+        speed_rpm: Any,
+        **fields: Any,
+    ) -> Self:
+        """A bearing of two or more rows, named row_1 and so on from left to right; its middle is the shaft's origin.
+
+        Parameters
+        ----------
+        bearing : Bearing
+            One row. A catalogue's page of a double row gives the row's own C as that of both over 2^(7/9) = 1.715 (ISO 281).
+        rows : {'TDO', 'TDI', 'TQO', 'TQI'} or sequence of {'left', 'right'}
+            TDO: one double outer ring, the small ends face each other and the load centres lie far apart. TDI: one double inner
+            ring, the large ends face each other. TQO and TQI: four rows, two TDI or two TDO. Else where the small ends of each
+            row point, from left to right: ``("left", "left")`` are two rows in tandem.
+        row_distance : float or sequence of float
+            Distance of the roller-centre planes of neighbours (m): one for all, or each. A spacer is part of it.
+        end_play : float
+            End play of two rows against each other as the spacer sets it (m); negative: preload. Each row takes half of it.
+        loads, shaft, speed_rpm
+            As in `Assembly`.
+        **fields
+            Other fields of the `Assembly`, or of all `ShaftBearing`.
+
+        Raises
+        ------
+        InputError
+            If a number is not allowed, or rows lie within each other.
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+        >>> push = trb.ShaftLoad(position=0.0, force=(0.0, -8000.0, 1500.0))
+        >>> double = trb.Assembly.rows(
+        ...     trb.cases.rig_30310(), "TDO", row_distance=0.032, end_play=-20e-6, loads=[push], shaft=shaft, speed_rpm=1500
+        ... )
+        >>> double.arrangement, [round(1e3 * one.position, 1) for one in double.bearings]
+        ('back to back', [-25.5, 25.5])
+        """
+        if isinstance(rows, str):
+            if rows not in ROWS:
+                limit = f"must be one of {', '.join(ROWS)}, or where the small ends of each row point: ('left', 'left')"
+                raise InputError.of("rows", rows, limit)
+            ends = ROWS[rows]
+        else:
+            ends = tuple(rows)
+        gaps = [row_distance] * (len(ends) - 1) if isinstance(row_distance, int | float) else list(row_distance)
+        if len(gaps) != len(ends) - 1:
+            raise InputError.of(
+                "row_distance", len(gaps), f"must be one number, or {len(ends) - 1} for {len(ends)} rows"
+            )
+        planes = [sum(gaps[:index]) - 0.5 * sum(gaps) for index in range(len(ends))]
+        own = {name: fields.pop(name) for name in OWN_FIELDS if name in fields}
+        bearings = tuple(
+            ShaftBearing(
+                bearing,
+                name=f"row_{index + 1}",
+                position=plane - (load_centre_offset(bearing) if end == "right" else -load_centre_offset(bearing)),
+                small_ends=end,
+                end_play=0.5 * end_play,
+                **fields,
+            )
+            for index, (end, plane) in enumerate(zip(ends, planes, strict=True))
         )
         return cls(shaft=shaft, bearings=bearings, loads=tuple(loads), speed_rpm=speed_rpm, **own)
 
@@ -486,13 +661,15 @@ class Assembly(Model):
             Place of its inner ring against its outer ring, in the bearing's frame (m, rad).
         """
         one, turned = self.bearings[index], -self.bearings[index].side
-        speed, x, y, z = (
-            quantity if time is None else value_at(quantity, time) for quantity in (self.speed_rpm, *self.gravity)
+        speed, outer, x, y, z = (
+            quantity if time is None else value_at(quantity, time)
+            for quantity in (self.speed_rpm, self.outer_speed_rpm, *self.gravity)
         )
         place = [float(value) for value in displacement]
         return Scene(
             one.bearing,
             speed_rpm=scaled(speed, turned),
+            outer_speed_rpm=scaled(outer, turned) if self.outer_turns else 0.0,
             displacement=(place[0], place[1], place[2]),
             misalignment_x=place[3],
             misalignment_y=place[4],
@@ -511,9 +688,7 @@ class Assembly(Model):
         if len(self.bearings) < 2:
             limit = "must be two or more; a Scene with ring = 'free' is a shaft on one bearing"
             raise InputError.of("bearings", len(self.bearings), limit)
-        speed = max(values_of(self.speed_rpm), key=abs)
-        if abs(speed) > MAX_SPEED_RPM:
-            raise InputError.of("speed_rpm", speed, f"must be from {-MAX_SPEED_RPM:g} to {MAX_SPEED_RPM:g} (rpm)")
+        self.check_speeds()
         self._check_names()
         self._check_places()
         self._check_held()
@@ -581,6 +756,8 @@ class Assembly(Model):
     def quantities(self) -> dict[str, float | History]:
         """Everything that may change in time, by the field's name."""
         found: dict[str, float | History] = {"speed_rpm": self.speed_rpm}
+        if self.outer_turns:
+            found["outer_speed_rpm"] = self.outer_speed_rpm
         for index, load in enumerate(self.loads):
             for name, parts in (("force", load.force), ("moment", load.moment)):
                 found |= {f"loads[{index}].{name}[{axis}]": part for axis, part in enumerate(parts)}
@@ -619,20 +796,23 @@ class Assembly(Model):
 
     def orbit_speed(self, time: float) -> float:
         """Speed at which the slowest of the cages goes round the axis in pure rolling (rad/s)."""
-        ratio = min(one.bearing.geometry.cage_speed_ratio for one in self.bearings)
-        return ratio * value_at(self.speed_rpm, time) * math.pi / 30.0
-
-    @property
-    def turning_rpm(self) -> float | History:
-        """The speed by which turns are counted (rpm)."""
-        return self.speed_rpm
+        ratios = [one.bearing.geometry.cage_speed_ratio for one in self.bearings]
+        inner, outer = (value_at(speed, time) for speed in (self.speed_rpm, self.outer_speed_rpm))
+        return min((ratio * (inner - outer) + outer for ratio in ratios), key=abs) * math.pi / 30.0
 
     @property
     def title(self) -> str:
         """Bearings, arrangement and speed in words."""
         kinds = ", ".join(f"{name} {one.bearing.name}" for name, one in zip(self.names, self.bearings, strict=True))
-        speed = f"{self.speed_rpm:g} rpm" if isinstance(self.speed_rpm, int | float) else "a speed that changes in time"
-        return f"{kinds}, {self.arrangement}, {speed}"
+        given = self.turning_rpm
+        speed = f"{given:g} rpm" if isinstance(given, int | float) else "a speed that changes in time"
+        of = "" if self.turning_ring == "shaft" else " of the outer rings"
+        both = f", outer rings {self._outer_text()}" if self.outer_turns and not of else ""
+        return f"{kinds}, {self.arrangement}, {speed}{of}{both}"
+
+    def _outer_text(self) -> str:
+        given = self.outer_speed_rpm
+        return f"{given:g} rpm" if isinstance(given, int | float) else "at a speed that changes in time"
 
     def __repr__(self) -> str:
         return f"<Assembly: {self.title}>"

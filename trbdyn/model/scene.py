@@ -34,10 +34,10 @@ from trbdyn.model.ring_body import Housing, RingBody, check_free_ring, check_hou
 from trbdyn.model.rotating_load import RotatingLoad, check_sign
 from trbdyn.model.shaft import angle_turned, turns
 from trbdyn.model.start import Start
+from trbdyn.model.turning import MAX_SPEED_RPM, TurningRings
 
 __all__ = ["MAX_GRAVITY", "MAX_SPEED_RPM", "RotatingLoad", "Scene", "Start"]
 
-MAX_SPEED_RPM = 1e6
 MAX_GRAVITY = 1e7
 """Largest part of gravity (m/s2), a million times the usual: no machine shakes harder, and nothing overflows."""
 
@@ -58,7 +58,7 @@ def oil_by_name(given: Any) -> Any:
     return OILS[given.lower()]()
 
 
-class Scene(Model):
+class Scene(TurningRings, Model):
     """One bearing, what acts on it, and how it starts. Every quantity is a number or a `History`.
 
     Frame: origin at the common apex of the cones, or in the middle of a cylindrical bearing; z along the bearing axis towards the
@@ -291,21 +291,6 @@ class Scene(Model):
         """Overrides of a study that put other speed (rpm) and loads (N) in place of its own."""
         return {"scene.speed_rpm": speed_rpm, "scene.axial_load": axial_load, "scene.radial_load": radial_load}
 
-    @property
-    def outer_turns(self) -> bool:
-        """Whether the outer ring turns at any time."""
-        return any(values_of(self.outer_speed_rpm))
-
-    @property
-    def turning_rpm(self) -> float | History:
-        """The speed by which turns are counted (rpm): that of the shaft, or of the outer ring where the shaft rests."""
-        return self.speed_rpm if self.turning_ring == "shaft" else self.outer_speed_rpm
-
-    @property
-    def turning_ring(self) -> Literal["shaft", "outer ring"]:
-        """What turns are counted of: the shaft, or the outer ring where the shaft rests."""
-        return "outer ring" if self.outer_turns and not any(values_of(self.speed_rpm)) else "shaft"
-
     def orbit_speed(self, time: float) -> float:
         """Speed at which rollers and cage go round the axis in pure rolling (rad/s)."""
         inner, outer = (value_at(speed, time) for speed in (self.speed_rpm, self.outer_speed_rpm))
@@ -397,10 +382,7 @@ class Scene(Model):
         return self
 
     def _check_motion(self) -> None:
-        for name, quantity in (("speed_rpm", self.speed_rpm), ("outer_speed_rpm", self.outer_speed_rpm)):
-            speed = max(values_of(quantity), key=abs)
-            if abs(speed) > MAX_SPEED_RPM:
-                raise InputError.of(name, speed, f"must be from {-MAX_SPEED_RPM:g} to {MAX_SPEED_RPM:g} (rpm)")
+        self.check_speeds()
         if self.outer_turns:
             self._check_outer()
         for place, quantity in enumerate(self.gravity):

@@ -117,7 +117,7 @@ def rating(
 
 
 def of_run(result: Result) -> Loading:
-    """Loads of a run's records after the transient; each counts by the shaft's speed, that is by revolutions.
+    """Loads of a run's records after the transient; each counts by the speed between the rings, that is by revolutions.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def of_run(result: Result) -> Loading:
     replay, scene, time = Replay(result), result.scene, result["time"]
     first = int(np.searchsorted(time, result.settling().time)) if len(result) > 2 else 0
     chosen = np.unique(np.linspace(min(first, len(result) - 1), len(result) - 1, RECORDS).round().astype(int))
-    speeds = np.abs(result["shaft_speed"][chosen])
+    speeds = np.abs(result.rolling_speed[chosen])
     shares = speeds / speeds.sum() if speeds.sum() > 0.0 else np.full(chosen.size, 1.0 / chosen.size)
     loads, axial, radial, pressure = [], 0.0, 0.0, 0.0
     x, y, z, *_ = scene.ring_is_placed

@@ -4,13 +4,13 @@ A file has the tables ``[assembly]`` (speed_rpm, torque, gravity), ``[shaft]``, 
 each bearing and a table
 ``[[loads]]`` for each load; their keys are the fields of `Assembly`, `Shaft`, `ShaftBearing` and `ShaftLoad`. The tables
 ``[bearing]``, ``[lubricant]`` and ``[effects]`` are those of a case (`trbdyn.run.toml_case`) and hold for all bearings; a bearing
-may have its own. A load with ``gear = {...}`` has the arguments of `ShaftLoad.gear`.
+may have its own. A load with ``gear = {...}`` or ``wheel = {...}`` has the arguments of `ShaftLoad.gear` or `ShaftLoad.wheel`.
 """
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -37,6 +37,7 @@ from trbdyn.run.toml_case import (
 
 FOLDER: Final = DATA / "assemblies"
 SHARED: Final = {"bearing": bearing_from_table, "lubricant": lubricant_from_table, "effects": effects_from_table}
+MADE_LOADS: Final[dict[str, Callable[..., ShaftLoad]]] = {"gear": ShaftLoad.gear, "wheel": ShaftLoad.wheel}
 TABLES: Final = ("assembly", "shaft", "bearings", "loads", "run", *SHARED)
 
 
@@ -151,13 +152,14 @@ def _bearing(table: Table, shared: Mapping[str, Any], index: int) -> ShaftBearin
 
 def _load(table: Table, index: int) -> ShaftLoad:
     path = ("loads", index)
-    if "gear" not in table:
+    kind = next((name for name in MADE_LOADS if name in table), None)
+    if kind is None:
         return build(ShaftLoad, table, path)
-    arguments = {**table_of(table, "gear"), **without(table, "gear")}
-    known = inspect.signature(ShaftLoad.gear).parameters
+    arguments = {**table_of(table, kind), **without(table, kind)}
+    known = inspect.signature(MADE_LOADS[kind]).parameters
     check_names(arguments, known, path)
     for name, parameter in known.items():
         if parameter.default is parameter.empty and name not in arguments:
-            raise InputError.of((*path, "gear"), table["gear"], f"must have {name}")
+            raise InputError.of((*path, kind), table[kind], f"must have {name}")
     with located(path):
-        return ShaftLoad.gear(**arguments)
+        return MADE_LOADS[kind](**arguments)

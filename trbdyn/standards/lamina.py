@@ -3,7 +3,7 @@
 A roller's contact line is cut into n_s laminas of equal length. With q the load of a lamina of a roller (N) times the stress
 concentration f at its place, the load that counts for the lamina is the mean over all places of the rollers,
 
-    q_ei = [mean q^4]^(1/4) on the ring that turns against the load,   q_ee = [mean q^4.5]^(1/4.5) on the other one,
+    q_ei = [mean q^4]^(1/4) on a ring that turns against the load,   q_ee = [mean q^4.5]^(1/4.5) on one that stands,
 
 and the life is L10r = {sum over laminas [(q_ei/q_ci)^4.5 + (q_ee/q_ce)^4.5]}^(-8/9) million revolutions, with the dynamic
 load rating of a lamina q_c = Q_c n_s^(-7/9). The ratings Q_c of the contact at one ring follow from C.
@@ -112,7 +112,7 @@ class LaminaLoads:
         ratings: Array,
         *,
         weights: Array | None = None,
-        inner_turns: bool = True,
+        turning: tuple[bool, bool] = (False, True),
         edges: bool = True,
     ) -> LaminaLoads:
         """The means over all places of the rollers.
@@ -125,17 +125,17 @@ class LaminaLoads:
             See `contact_ratings`.
         weights : ndarray, shape (P,), optional
             Share of the revolutions that each place stands for; equal by default.
-        inner_turns : bool
-            Whether the inner ring turns against the load; else the outer ring does.
+        turning : tuple of bool
+            Whether the outer, and whether the inner ring turns against the load.
         edges : bool
             Whether `stress_concentration` counts.
         """
         count = loads.shape[2]
         concentration = stress_concentration(count) if edges else np.ones(count)
         each = ratings * count ** (-7.0 / 9.0)
-        exponents = (4.5, 4.0) if inner_turns else (4.0, 4.5)
         means = []
-        for ring, exponent in enumerate(exponents):
+        for ring, turns in enumerate(turning):
+            exponent = 4.0 if turns else 4.5
             share = np.maximum(loads[ring], 0.0) * concentration / each[ring]
             means.append(np.average(share**exponent, axis=0, weights=weights) ** (1.0 / exponent))
         return cls(np.array(means), each)

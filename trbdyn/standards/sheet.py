@@ -118,7 +118,7 @@ class Rating(Displayed):
     axial_load, radial_load : float
         Fa and Fr (N).
     speed_rpm : float
-        n (rpm).
+        n, of the inner ring relative to the outer ring (rpm).
     dynamic_rating, static_rating, fatigue_limit : float
         C, C0 and Cu (N).
     e, Y, Y0 : float or None
@@ -250,7 +250,7 @@ class Loading:
     Attributes
     ----------
     axial_load, radial_load, speed_rpm : float
-        Means (N, N, rpm).
+        Means (N, N, rpm); the speed is that of the inner ring relative to the outer ring, on which lives and films depend.
     lamina_loads : ndarray, shape (2, P, n_s)
         Loads of the laminas at the outer and the inner ring (N), see `lamina.reference_life`.
     weights : ndarray, shape (P,), or None
@@ -306,7 +306,7 @@ def at_equilibrium(scene: Scene) -> Loading:
     return Loading(
         axial_load=carried[0] if z else value_at(scene.axial_load, start),
         radial_load=carried[1] if x or y else value_at(scene.radial_load, start),
-        speed_rpm=value_at(scene.speed_rpm, start),
+        speed_rpm=scene.rolling_rpm(start),
         lamina_loads=loads,
         weights=None,
         largest_pressure=float(np.max(contacts["raceway_pressure"])),
@@ -314,12 +314,15 @@ def at_equilibrium(scene: Scene) -> Loading:
     )
 
 
-def inner_turns_against_load(scene: Scene) -> bool:
-    """Whether the inner ring turns against the load: not where the larger load turns with the shaft."""
+def turning_against_load(scene: Scene) -> tuple[bool, bool]:
+    """Whether the outer, and whether the inner ring turns against the larger one of both loads, which may rotate itself."""
     rotating, start = scene.rotating_load, scene.start.time
-    if rotating is None or rotating.frequency_hz is not None or abs(rotating.turns - 1.0) > 1e-9:
-        return True
-    return value_at(rotating.load, start) <= value_at(scene.radial_load, start)
+    inner, outer = (value_at(speed, start) for speed in (scene.speed_rpm, scene.outer_speed_rpm))
+    load = 0.0
+    if rotating is not None and value_at(rotating.load, start) > value_at(scene.radial_load, start):
+        load = rotating.turns * inner if rotating.frequency_hz is None else 60.0 * rotating.frequency_hz
+    turning = tuple(not math.isclose(speed, load, rel_tol=1e-9, abs_tol=1e-9) for speed in (outer, inner))
+    return (turning[0], turning[1]) if any(turning) else (False, True)
 
 
 def sheet(
@@ -332,10 +335,9 @@ def sheet(
     reliability: float = 90.0,
 ) -> Rating:
     """The sheet of a scene under a loading; see `trbdyn.rating`."""
-    if scene.outer_turns:
-        allowed = "must be 0: the ratings are those of a bearing whose inner ring turns alone (rpm)"
-        raise InputError.of("outer_speed_rpm", scene.outer_speed_rpm, allowed)
     notes: dict[str, str] = {}
+    if scene.outer_turns:
+        notes["speed_rpm"] = "of the inner ring relative to the outer ring"
     said: list[str] = []
     bearing = scene.bearing
     pitch, angle = bearing.pitch_diameter, math.radians(bearing.cup_half_angle_deg)
@@ -367,8 +369,9 @@ def sheet(
     ratings = lamina.contact_ratings(
         C, n_rollers=bearing.n_rollers, roller_diameter=bearing.roller.diameter, pitch_diameter=pitch, angle=angle
     )
-    inner = inner_turns_against_load(scene)
-    laminas = lamina.LaminaLoads.of(loading.lamina_loads, ratings, weights=loading.weights, inner_turns=inner)
+    laminas = lamina.LaminaLoads.of(
+        loading.lamina_loads, ratings, weights=loading.weights, turning=turning_against_load(scene)
+    )
     reference = _finite(laminas.reference_life)
     notes["reference_life"] = f"ISO 16281, {lamina.LAMINAS} laminas, {loading.source}"
     reference_load = None if reference is None else C / reference ** (1.0 / iso281.LIFE_EXPONENT)

@@ -110,7 +110,8 @@ class ShaftOnBearings:
 
     def __init__(self, assembly: Assembly, time: float) -> None:
         self.assembly = assembly
-        self.speed = value_at(assembly.speed_rpm, time) * math.pi / 30.0
+        speeds = assembly.speed_rpm, assembly.outer_speed_rpm
+        self.speed, self.outer_speed = (value_at(speed, time) * math.pi / 30.0 for speed in speeds)
         scenes = [
             assembly.scene(index, time=time, displacement=(0, 0, -1e-6, 0, 0))
             for index in range(len(assembly.bearings))
@@ -152,7 +153,15 @@ class ShaftOnBearings:
     def _solved(self, index: int, displacement: Array, rollers: Array | None) -> Answer:
         turned = -self.assembly.bearings[index].side
         found: dict[str, Any] = self._models[index].equilibrium(
-            np.zeros(5), np.ones(5), displacement, turned * self.speed, self._angles[index], rollers, True, True
+            np.zeros(5),
+            np.ones(5),
+            displacement,
+            turned * self.speed,
+            self._angles[index],
+            rollers,
+            True,
+            True,
+            outer_speed=turned * self.outer_speed,
         )
         return Answer(
             displacement=displacement,
