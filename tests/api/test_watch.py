@@ -95,8 +95,8 @@ class _Sim:
 def _window(work: float, loss: float, kinetic: float, elastic: float, **options: Any) -> tuple[str | None, list[str]]:
     sim, found = _Sim(), []
     watch = Watch(sim, BEARING, WINDOWS * 1e-3, found, **options)  # type: ignore[arg-type]
-    sim._core.time, sim._core.row = 1e-3, [work, loss, kinetic, elastic]
-    return watch.look(), found
+    sim._core.time, sim._core.row = 5e-4, [work, loss, kinetic, elastic]
+    return watch.look(final=True), found
 
 
 @pytest.mark.parametrize(
@@ -116,6 +116,37 @@ def test_bounds(work, loss, warned, ended):
     reason, found = _window(work, loss, 0.0, 0.0)
     assert bool(found) is warned
     assert (reason is not None) is ended
+
+
+QUIET = [1.0] * (WINDOWS - 2) + [0.1, 0.1]
+
+
+@pytest.mark.parametrize(
+    ("turned_over", "off", "said"),
+    [
+        (QUIET, [0.0] * (WINDOWS - 2) + [3.0 * WARN, 3.0 * WARN], ""),
+        (QUIET, [0.0] * (WINDOWS - 2) + [2.0 * STOP, 0.0], "from 0.018 s to 0.019 s"),
+        (QUIET, [1.2 * WARN] * WINDOWS, "from 0 s to 0.02 s"),
+        (QUIET, [1.2 * WARN, -1.2 * WARN] * (WINDOWS // 2), "from 0 s to 0.02 s"),
+        ([100.0] * (WINDOWS // 2) + [1.0] * (WINDOWS // 2), [0.0] * 10 + [1.5 * WARN] * 10, "from 0.01 s to 0.02 s"),
+    ],
+    ids=["quiet", "far off", "everywhere", "either sign", "after the transient"],
+)
+@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
+def test_windows_are_judged_by_what_they_do_to_averages(turned_over, off, said):
+    """Averages are made over the whole run or over what follows its transient. What is off in windows that turn over little
+    does nothing to them; in a part of its own, or with signs that cancel, it does.
+    """
+    sim, found = _Sim(), []
+    watch = Watch(sim, BEARING, WINDOWS * 1e-3, found, going_on=True)  # type: ignore[arg-type]
+    for number, (turned, share) in enumerate(zip(turned_over, off, strict=True), start=1):
+        before = sim._core.row
+        # all that is put in is lost, but for the residual
+        sim._core.time = number * 1e-3 * (1.0 + 1e-9)
+        sim._core.row = [before[0] + turned, before[1] + turned - share * turned, 0.0, 0.0]
+        watch.look()
+    watch.judge_averages()
+    assert [said in text for text in found] == [True] * bool(said)
 
 
 @pytest.mark.parametrize(

@@ -103,11 +103,11 @@ def shafts(seed: int, count: int) -> Iterator[trb.Assembly]:
 
 
 def light_loads(seed: int, count: int) -> Iterator[trb.Scene]:
-    """Random bearings under light loads: just carried, resting, with play in the axial place, cylinders."""
+    """Random bearings under light loads: just carried, 0.1 to 300 N across, resting, with play in the axial place, cylinders."""
     random, bearings = np.random.default_rng(seed), tapered()
     for _ in range(count):
         bearing, speed = bearings[random.choice(list(bearings))], random_speed(random)
-        kind = random.choice(["light", "light", "rests", "placed", "cylinder"])
+        kind = random.choice(["light", "light", "across", "rests", "placed", "cylinder"])
         direction = float(random.choice([0.0, 90.0, 180.0, random.uniform(0.0, 360.0)]))
         given: dict[str, Any] = {"speed_rpm": speed, "radial_direction_deg": direction}
         if kind == "cylinder":
@@ -125,6 +125,11 @@ def light_loads(seed: int, count: int) -> Iterator[trb.Scene]:
             place = float(random.uniform(-5e-6, 40e-6))
             radial = float(10.0 ** random.uniform(-1.0, 3.5))
             yield trb.Scene(bearing, displacement=(None, None, place), radial_load=radial, **given)
+        elif kind == "across":
+            radial = float(10.0 ** random.uniform(-1.0, 2.5))
+            held_by = math.tan(math.radians(bearing.cup_half_angle_deg)) * radial
+            axial = float(1.05 * least_axial_load(alone) + random.uniform(1.2, 4.0) * held_by)
+            yield trb.Scene(bearing, axial_load=axial, radial_load=radial, **given)
         else:
             radial = float(random.uniform(0.0, 0.85)) * most_radial_load(alone, axial)
             yield trb.Scene(bearing, axial_load=axial, radial_load=radial, **given)

@@ -129,6 +129,7 @@ class Run:
         self.writer: ResultWriter | None = None
         self.output: Path | None = None
         self.interrupted: list[int] = []
+        self.watches: list[Watch] = []
         self.process = os.getpid()
         self.began = clock.perf_counter()
         self.spent = 0.0
@@ -256,6 +257,7 @@ class Run:
         due = checkpoint.next_time(sim._begun, every)
         going_on = self.options.when_wrong == "go_on"
         watches = [Watch(sim, one.of, float(self.times[-1]), one.doubts, going_on=going_on) for one in self.bearings]
+        self.watches = watches
         while self.done < self.times.size:
             look = self.bearings[0].until.next_look(self.done)
             chunk = self.times[self.done : min(self.done + CHUNK_RECORDS, look or self.times.size)]
@@ -375,7 +377,8 @@ class Run:
             stepping_s=self.spent,
             state=sim._core.state(),
             peaks=sim._core.save_peaks(),
-            warnings=[f"{one.of.said}{text}" for one in self.bearings for text in one.doubts],
+            warnings=[f"{one.of.said}{text}" for one in self.bearings for text in one.doubts]
+            + [text for watch in self.watches for text in watch.averages_doubts(named=True)],
         )
         checkpoint.write(checkpoint.checkpoint_path(self.output), found)
 
@@ -415,6 +418,8 @@ class Run:
 
     def _finish(self, success: bool, message: str) -> Result | AssemblyResult:
         sim = self.sim
+        for watch in self.watches:
+            watch.judge_averages()
         if success:
             sim._stand_at(float(self.times[-1]))
         else:

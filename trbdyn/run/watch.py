@@ -2,12 +2,13 @@
 
 The core integrates every work and every loss beside the motion, so an error of the integration shows as energy that nobody put
 in or took out. The watch looks at it every few milliseconds of computing and sums it over windows of the run, over the whole
-run, and over all runs of one simulation since it began, so that a run in short pieces is judged as a whole. A window whose
-energy is off by more than `WARN` of what was turned over in it gives a warning. One in which more than `STOP` was made ends
-the run, as its losses, slip and forces would be wrong by as much. So does one in which that much is missing, if losses or the
-work put in are a large share of what was turned over. Over all runs it is looked at beside the losses as well: a bearing that
-loses little may turn over much more. What the integration takes from vibrations is compared with what damping takes, and its
-effect is measured (`trbdyn.run.vibrations`).
+run, and over all runs of one simulation since it began, so that a run in short pieces is judged as a whole. The figures of a
+run are averages over the whole of it, or over what follows its transient: the second half at least. So errors of windows are
+summed up, without their signs, over each such part, and one above `WARN` of what was turned over there gives a warning. A
+window of its own counts from `STOP` on. One in which more than that was made ends the run, as its losses, slip and forces would
+be wrong by as much. So does one in which that much is missing, if losses or the work put in are a large share of what was
+turned over. Over all runs it is looked at beside the losses as well: a bearing that loses little may turn over much more. What
+the integration takes from vibrations is compared with what damping takes, and its effect is measured (`trbdyn.run.vibrations`).
 """
 
 from __future__ import annotations
@@ -31,9 +32,11 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 WARN: Final = 0.01
-"""Residual of the energy over the energy turned over in a window, above which a run warns."""
+"""Residual of the energy over the energy turned over in what averages are made of, above which a run warns."""
 STOP: Final = 0.1
-"""The same, above which a run ends."""
+"""The same in a window, above which a run ends."""
+TRANSIENT: Final = 0.5
+"""Share of a run that averages leave out at most (`trbdyn.Result.settled`)."""
 DISSIPATING: Final = 0.3
 """Share of losses, or of the work put in, in the energy turned over above which missing energy ends a run, too."""
 LOST_SHARE: Final = 0.01
@@ -61,6 +64,7 @@ RING_GONE: Final = 0.5
 REPEATED_SHARE: Final = 0.5
 """Share of steps that had to be repeated above which a run warns."""
 MOST_WARNINGS: Final = 8
+TIGHTER: Final = "try accuracy='reference', or smaller tolerances"
 
 
 @dataclass
@@ -145,7 +149,8 @@ class Watch:
         if bearing.name not in sim._accounts:
             sim._accounts[bearing.name] = Account(Span(time, now, state=sim._core.state()), small_since=time)
         self._account = sim._accounts[bearing.name]
-        self._last = now
+        self._windows: list[tuple[float, float, float]] = []
+        self._last, self._last_time = now, time
         self._run = Span(time, now, state=sim._core.state())
         self._window = Span(time, now, state=sim._core.state())
         self._vibrating = Span(time, now, state=sim._core.state())
@@ -160,23 +165,26 @@ class Watch:
             Whether the run has reached its end.
         """
         now, time = self._energies(), self._sim._core.time
+        self._last_time = time
         reason = self._look_at_steps() or self._look_at_ring() or self._look_at_shaft()
         exchanged = sum(0.5 * abs(now[name] - self._last[name]) for name in now)
         for span in (self._window, self._vibrating, self._run, self._account.whole):
             span.add(exchanged, now["elastic_energy"])
         self._last = now
         if (final and time > self._window.since) or time - self._window.since >= self._length:
-            reason = self._judge(self._window, now, time) or reason
+            reason = self._judge(self._window, now, time, STOP) or reason
+            self._windows.append((self._window.since, _missing(self._window.first, now)[0], self._window.turned_over))
             self._window = Span(time, now, state=self._sim._core.state())
         # windows of a short run are too short to see a vibration in
         if time - self._vibrating.since >= max(self._length, vibrations.SHORTEST):
             self._suspect(self._vibrating, now, time)
             self._vibrating = Span(time, now, state=self._sim._core.state())
         if final and time > self._run.since:
-            reason = self._judge(self._run, now, time) or reason
+            reason = self._judge(self._run, now, time, STOP) or reason
+            self.judge_averages()
             # what a short piece does not show may show in all of them
             if self._account.whole.since < self._run.since and "energy" not in self._noted:
-                self._judge(self._account.whole, now, time)
+                self._judge(self._account.whole, now, time, WARN)
             if "energy" not in self._noted:
                 self._judge_losses(now, time)
             self._judge_vibrations(now, time)
@@ -206,22 +214,40 @@ class Watch:
         statistics = self._sim._core.statistics()
         return float(statistics["error_failures"] + statistics["nonlinear_failures"])
 
-    def _judge(self, span: Span, now: dict[str, float], time: float) -> str | None:
+    def averages_doubts(self, *, named: bool = False) -> list[str]:
+        """What is wrong with averages over the run so far, or over what follows its transient, if it was not said; with the
+        bearing's name where several run.
+        """
+        if not self._windows or "energy" in self._noted:
+            return []
+        first, end = self._windows[0][0], self._last_time
+        latest = first + TRANSIENT * (end - first) + self._length
+        for number, (since, _, _) in enumerate(self._windows):
+            if number and since > latest:
+                break
+            missing = [one for _, one, _ in self._windows[number:]]
+            turned_over = sum(one for _, _, one in self._windows[number:])
+            off = sum(map(abs, missing)) / _scale(turned_over, self._last)
+            if off > WARN:
+                return [f"{self._bearing.said if named else ''}{_said(since, end, off, sum(missing))}; {TIGHTER}"]
+        return []
+
+    def judge_averages(self) -> None:
+        """Say it with the result, once."""
+        for text in self.averages_doubts():
+            self._say(text, "energy")
+
+    def _judge(self, span: Span, now: dict[str, float], time: float, most: float) -> str | None:
         missing, put_in, lost = _missing(span.first, now)
-        stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
-        scale = max(span.turned_over, STORED_SHARE * stored, LEAST_ENERGY)
+        scale = _scale(span.turned_over, now)
         off = abs(missing) / scale
-        if math.isfinite(off) and off <= WARN:
+        if math.isfinite(off) and off <= most:
             return None
-        what = "was made by the integration" if missing < 0.0 else "got lost in the integration"
-        text = (
-            f"from {span.since:.6g} s to {time:.6g} s the energy does not add up: "
-            f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
-        )
+        text = _said(span.since, time, off, missing)
         # where little else takes energy, vibrations that the steps do not resolve lose theirs: the run warns and goes on
         wrong = not math.isfinite(off) or (off > STOP and (missing < 0.0 or max(lost, put_in) > DISSIPATING * scale))
         if not wrong:
-            self._say(text + "; try accuracy='reference', or smaller tolerances", "energy")
+            self._say(f"{text}; {TIGHTER}", "energy")
             return None
         self._say(text, "energy")
         advice = "Try accuracy='reference' or smaller tolerances, or when_wrong='go_on' to go on all the same"
@@ -236,7 +262,7 @@ class Watch:
         self._say(
             f"from {whole.since:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, and the integration "
             f"{'took' if missing > 0.0 else 'made'} {abs(missing):.2g} J: where losses come from impacts or vibrations they "
-            "may be wrong by as much; try accuracy='reference', or smaller tolerances",
+            f"may be wrong by as much; {TIGHTER}",
             "losses",
         )
 
@@ -258,7 +284,7 @@ class Watch:
         measured = "how right they are could not be measured" if probe is None else probe.said()
         self._say(
             f"from {whole.since:.6g} s to {time:.6g} s the bearing lost {lost:.2g} J, less than the tolerances leave open beside "
-            f"a kinetic energy of {kinetic:.2g} J: {measured}; try accuracy='reference', or smaller tolerances",
+            f"a kinetic energy of {kinetic:.2g} J: {measured}; {TIGHTER}",
             "small losses",
         )
 
@@ -294,7 +320,7 @@ class Watch:
             " in place of damping" if damped else ""
         )
         measured = "what that does could not be measured" if account.probed is None else account.probed.said()
-        advice = "try accuracy='reference', or smaller tolerances"
+        advice = TIGHTER
         if not damped:
             advice = "give the contacts the damping that they have (effects.damping), or try smaller tolerances"
         self._say(
@@ -391,3 +417,17 @@ def _missing(then: dict[str, float], now: dict[str, float]) -> tuple[float, floa
     put_in = sum(value for name, value in change.items() if name.startswith("work_"))
     lost = sum(value for name, value in change.items() if name.startswith("loss_"))
     return put_in - lost - change["kinetic_energy"] - change["elastic_energy"], put_in, lost
+
+
+def _scale(turned_over: float, now: dict[str, float]) -> float:
+    """Energy that an error of it is compared with (J)."""
+    stored = abs(now["kinetic_energy"]) + abs(now["elastic_energy"])
+    return max(turned_over, STORED_SHARE * stored, LEAST_ENERGY)
+
+
+def _said(since: float, until: float, off: float, missing: float) -> str:
+    what = "was made by the integration" if missing < 0.0 else "got lost in the integration"
+    return (
+        f"from {since:.6g} s to {until:.6g} s the energy does not add up: "
+        f"{100.0 * off:.2g} % of what was turned over {what}; losses, slip and forces there may be wrong by as much"
+    )
