@@ -96,6 +96,14 @@ def server(tmp_path: Path) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One for tests that run nothing."""
+    running = Server(tmp_path_factory.mktemp("app") / "app")
+    yield running
+    running.end()
+
+
+@pytest.fixture(scope="module")
 def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     module = browser_module()
     if module.executable() is None:

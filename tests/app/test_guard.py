@@ -50,8 +50,8 @@ def shaken(server: Any, **headers: str) -> int:
         loop.close()
 
 
-def test_only_the_page_itself_is_answered(server: Any) -> None:
-    own, cookie = f"http://127.0.0.1:{server.port}", f"trbdyn_{server.port}={server.token}"
+def test_only_the_page_itself_is_answered(shared: Any) -> None:
+    own, cookie = f"http://127.0.0.1:{shared.port}", f"trbdyn_{shared.port}={shared.token}"
     paths = (
         "/",
         SOCKET.replace("websocket", "polling"),
@@ -60,49 +60,49 @@ def test_only_the_page_itself_is_answered(server: Any) -> None:
         "/?token=wrong",
     )
     for path in paths:
-        assert ask(server, path)[0] == 403
-        assert ask(server, path, Cookie=f"trbdyn_{server.port}=wrong")[0] == 403
-        assert ask(server, path, Cookie=cookie, Host="evil.example")[0] == 403  # a name that leads here
-        assert ask(server, path, Cookie=cookie, Host=f"evil.example:{server.port}")[0] == 403
-        assert ask(server, path, "POST", Cookie=cookie, Origin="http://evil.example")[0] == 403
-        assert ask(server, path, Cookie=cookie, Origin="null")[0] == 403  # a report or a view, which is in a sandbox
-        assert ask(server, path, Cookie=cookie, Origin=f"http://127.0.0.1:{server.port + 1}")[0] == 403
-    status, headers, body = ask(server, f"/?token={server.token}")
+        assert ask(shared, path)[0] == 403
+        assert ask(shared, path, Cookie=f"trbdyn_{shared.port}=wrong")[0] == 403
+        assert ask(shared, path, Cookie=cookie, Host="evil.example")[0] == 403  # a name that leads here
+        assert ask(shared, path, Cookie=cookie, Host=f"evil.example:{shared.port}")[0] == 403
+        assert ask(shared, path, "POST", Cookie=cookie, Origin="http://evil.example")[0] == 403
+        assert ask(shared, path, Cookie=cookie, Origin="null")[0] == 403  # a report or a view, which is in a sandbox
+        assert ask(shared, path, Cookie=cookie, Origin=f"http://127.0.0.1:{shared.port + 1}")[0] == 403
+    status, headers, body = ask(shared, f"/?token={shared.token}")
     assert status == 200
     assert "HttpOnly" in headers["set-cookie"]
     assert "SameSite=Strict" in headers["set-cookie"]
     assert "nicegui" not in body.lower()  # not yet the page: the browser comes again with its cookie
-    status, headers, body = ask(server, "/", Cookie=cookie)
+    status, headers, body = ask(shared, "/", Cookie=cookie)
     assert status == 200
     assert headers["x-frame-options"] == "SAMEORIGIN"
-    assert server.token not in body
-    assert shaken(server, Cookie=cookie, Origin=own) == 101
-    assert shaken(server, Cookie=cookie, Origin="http://evil.example") == 403
-    assert shaken(server, Cookie=cookie) == 403
-    assert shaken(server, Origin=own) == 403
+    assert shared.token not in body
+    assert shaken(shared, Cookie=cookie, Origin=own) == 101
+    assert shaken(shared, Cookie=cookie, Origin="http://evil.example") == 403
+    assert shaken(shared, Cookie=cookie) == 403
+    assert shaken(shared, Origin=own) == 403
 
 
-def test_it_listens_on_this_machine_alone(server: Any) -> None:
+def test_it_listens_on_this_machine_alone(shared: Any) -> None:
     rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-    listening = [row[1] for row in rows if row[3] == "0A" and row[1].endswith(f":{server.port:04X}")]
-    assert listening == [f"0100007F:{server.port:04X}"]
+    listening = [row[1] for row in rows if row[3] == "0A" and row[1].endswith(f":{shared.port:04X}")]
+    assert listening == [f"0100007F:{shared.port:04X}"]
     rows = [line.split() for line in Path("/proc/net/tcp6").read_text().splitlines()[1:]]
-    assert not [row for row in rows if row[3] == "0A" and row[1].endswith(f":{server.port:04X}")]
+    assert not [row for row in rows if row[3] == "0A" and row[1].endswith(f":{shared.port:04X}")]
 
 
-def test_files_come_from_the_runs_alone_and_reach_nothing(server: Any) -> None:
-    cookie = f"trbdyn_{server.port}={server.token}"
-    folder = server.folder / "runs" / "0001-x"
+def test_files_come_from_the_runs_alone_and_reach_nothing(shared: Any) -> None:
+    cookie = f"trbdyn_{shared.port}={shared.token}"
+    folder = shared.folder / "runs" / "0001-x"
     folder.mkdir()
     (folder / "report.html").write_text("<script>fetch('/')</script>")
-    (server.folder / "secret.txt").write_text("secret")
-    (folder / "link").symlink_to(server.folder / "secret.txt")
-    status, headers, _ = ask(server, "/files/0001-x/report.html", Cookie=cookie)
+    (shared.folder / "secret.txt").write_text("secret")
+    (folder / "link").symlink_to(shared.folder / "secret.txt")
+    status, headers, _ = ask(shared, "/files/0001-x/report.html", Cookie=cookie)
     assert status == 200
     assert headers["content-security-policy"].startswith("sandbox allow-scripts; default-src 'none'")
     for path in ("../secret.txt", "0001-x/../../secret.txt", "..%2fsecret.txt", "0001-x/..%2f..%2fsecret.txt",
                  "0001-x/link", "0001-x//etc/passwd", "0001-x/%2fetc%2fpasswd", "../runs", "0001-x/"):  # fmt: skip
-        status, _, body = ask(server, f"/files/{path}", Cookie=cookie)
+        status, _, body = ask(shared, f"/files/{path}", Cookie=cookie)
         assert status in (404, 405), path
         assert "secret" not in body
 

@@ -12,6 +12,7 @@ from typing import Any, Final
 from trbdyn.app import fields as of
 from trbdyn.app import units
 from trbdyn.app.fields import Field
+from trbdyn.app.questions import QUESTIONS, want_of
 from trbdyn.errors import InputError, Problem, TrbError, join_path
 from trbdyn.model.assembly import Assembly, Shaft, ShaftLoad, Subject
 from trbdyn.model.bearing import Bearing
@@ -73,6 +74,7 @@ class Design:
             known = {name: values[name] for name in cls.__dataclass_fields__ if name in values}
             made = cls(**known)
             made.typed = {str(path): str(value) for path, value in made.typed.items()}
+            made.wants = [name for name in QUESTIONS if name in made.wants]
             made.units = {si: one for si, one in made.units.items() if one in units.CHOSEN.get(si, ())}
             return made
         except (ValueError, TypeError, AttributeError):
@@ -300,19 +302,24 @@ def _pair(made: Built, tables: dict[str, Any]) -> Assembly:
 
 def script(design: Design, made: Built) -> str:
     """The Python program that does what the page does."""
-    lines = ["import trbdyn as trb", ""]
     run, pair = made.options, "assembly" in made.tables
+    lines = ["import trbdyn as trb", ""]
     if design.source == "case" or design.planned:
-        reads = "subject = trb.load_assembly" if pair else "subject, _ = trb.load_case"
+        if design.planned:
+            lines.append(f"# case.toml lies beside the run: what trb.plan(scene, {want_of(design.wants)!r}) has found")
+        reads = "subject = trb.load_assembly" if pair else "subject, options = trb.load_case"
         lines.append(f'{reads}("case.toml")')
     else:
         lines += _bearing_lines(design, made)
         lines += _pair_lines(made) if pair else _scene_lines(made)
+    of_case = design.planned and not pair
     length = f"revolutions={run.revolutions!r}" if run.duration is None else f"duration={run.duration!r}"
+    how = "**options.of_simulation()" if of_case else f'accuracy="{run.accuracy}"'
+    keep = "duration=options.duration, save_every=options.save_every" if of_case else length
+    if run.save_every is not None and not of_case:
+        keep += f", save_every={run.save_every!r}"
     lines += [
-        f'result = trb.Simulation(subject, accuracy="{run.accuracy}").run({length}'
-        + (f", save_every={run.save_every!r}" if run.save_every is not None else "")
-        + ', output="run.h5", overwrite=True)',
+        f'result = trb.Simulation(subject, {how}).run({keep}, output="run.h5", overwrite=True)',
         "print(result.summary())",
         'trb.report(result, "report.html", overwrite=True)',
         'trb.view(result, "view.html", overwrite=True)',

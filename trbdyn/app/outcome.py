@@ -43,8 +43,6 @@ def show_run(page: Page) -> None:
 
     words = "find effects, accuracy and length for it (trbdyn.plan): short runs of about 15 s come first"
     ui.switch(words, value=design.planned, on_change=plan).props["data-path"] = "planned"
-    if design.planned and design.pair:
-        ui.label("A pair on a shaft cannot be planned: switch it off.").classes("text-red-700")
     if not design.planned:
         show_fields(page, run_fields())
     with ui.row().classes("items-center w-full"):
@@ -57,6 +55,7 @@ def show_run(page: Page) -> None:
             page.script = ui.label().classes("trb-text").props('data-path="script"')
         with ui.expansion("the same as a case (TOML)").classes("w-full"):
             page.case = ui.label().classes("trb-text")
+    tell_program(page)
 
 
 def case_of(made: Built) -> str:
@@ -107,8 +106,13 @@ def tell_run(page: Page) -> None:
     )
     if job is not None and job.problems:
         page.said.text += " " + "; ".join(f"{path}: {text}" for path, text in job.problems.items())
-    page.script.text = script(page.bench.design, page.built) if page.built.subject is not None else ""
-    page.case.text = case_of(page.built)
+
+
+def tell_program(page: Page) -> None:
+    """Show the program and the case that do the same."""
+    if hasattr(page, "script"):
+        page.script.text = script(page.bench.design, page.built) if page.built.subject is not None else ""
+        page.case.text = case_of(page.built)
 
 
 def refresh(page: Page) -> None:
@@ -163,7 +167,10 @@ def _show_kept(page: Page, one: Kept) -> None:
     if wanted := [
         [name, *row] for name, rows in numbers.items() for row in rows if row[3:] and row[3] in about.get("wanted", ())
     ]:
-        _table(["bearing", "quantity", "value", "unit"], [row[:4] for row in wanted])
+        first = 0 if len(numbers) > 1 else 1
+        _table(["bearing", "quantity", "value", "unit"][first:], [row[first:4] for row in wanted])
+    if one.kind == "compare" and page.bench.file(one.name, "report.html"):
+        ui.element("iframe").props(f'src="{address}/report.html" sandbox').classes("w-full").style("height: 60rem")
     with ui.element("div").classes("trb-wide"):
         if page.bench.file(one.name, "view.html"):
             frame = ui.element("iframe").props(f'src="{address}/view.html" sandbox="allow-scripts" data-path="view"')
@@ -171,8 +178,6 @@ def _show_kept(page: Page, one: Kept) -> None:
         with ui.column():
             for path in sorted((folder / "pictures").rglob("*.png")):
                 ui.element("img").props["src"] = f"{address}/{path.relative_to(folder).as_posix()}"
-        if one.kind == "compare" and page.bench.file(one.name, "report.html"):
-            ui.element("iframe").props(f'src="{address}/report.html" sandbox').classes("w-full").style("height: 60rem")
     for name, text in about.get("tables", {}).items():
         with ui.expansion(name, value=True).classes("w-full"):
             ui.label(str(text)).classes("trb-text")

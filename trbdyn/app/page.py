@@ -197,6 +197,7 @@ class Page:
             f"{len(problems)} to correct{f': {said}' if said else ''}" if problems else "inputs complete"
         )
         outcome.tell_run(self)
+        outcome.tell_program(self)
 
     async def open_case(self, event: events.UploadEventArguments) -> None:
         """Take a case file in the place of the bearing."""
