@@ -87,7 +87,7 @@ def rating(
 
     Notes
     -----
-    Sources: ISO 281:2007, ISO/TS 16281:2008, ISO 76:2006; docs/theory/ratings.md.
+    Sources: ISO 281:2007, ISO 16281:2025 as far as it could be read, else ISO/TS 16281:2008, ISO 76:2006; docs/theory/ratings.md.
 
     Examples
     --------

@@ -1,4 +1,5 @@
-"""Reference life of ISO 16281 from the loads of laminas: slices of the contact lines of rollers and raceways.
+"""Reference life of ISO 16281:2025 from the loads of laminas: slices of the contact lines of rollers and raceways. What is of
+that edition and what of ISO/TS 16281:2008 stands in docs/theory/ratings.md#reference-life.
 
 A roller's contact line is cut into n_s laminas of equal length. With q the load of a lamina of a roller (N) times the stress
 concentration f at its place, the load that counts for the lamina is the mean over all places of the rollers,

@@ -373,7 +373,7 @@ def sheet(
         loading.lamina_loads, ratings, weights=loading.weights, turning=turning_against_load(scene)
     )
     reference = _finite(laminas.reference_life)
-    notes["reference_life"] = f"ISO 16281, {lamina.LAMINAS} laminas, {loading.source}"
+    notes["reference_life"] = f"ISO 16281:2025, {lamina.LAMINAS} laminas, {loading.source}"
     reference_load = None if reference is None else C / reference ** (1.0 / iso281.LIFE_EXPONENT)
 
     viscosity = 1e6 * scene.lubricant.kinematic_viscosity

@@ -234,9 +234,9 @@ def torque_map(
     >>> found.lowest(load=1)[0]
     500.0
     """
-    scene = _subject(subject)
+    scene = subject_of(subject)
     run = RunOptions(accuracy="fast") if options is None else options
-    places = _places(scene, speeds, loads, temperatures)
+    places = places_of(scene, speeds, loads, temperatures)
     if not 0.0 < number_of("tolerance", tolerance) < 1.0:
         raise InputError.of("tolerance", tolerance, "must be above 0 and below 1")
     drawn = () if bands is False else checked_bands(open_inputs(scene) if bands is True else bands)
@@ -244,7 +244,7 @@ def torque_map(
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
             raise InputError.of(field, value, f"must be a whole number, at least {least}")
     unit = unit_draws(len(drawn), int(samples), int(seed)) if drawn else np.empty((0, 0))
-    bases = [_at_place(scene, place) for place in places]
+    bases = [at_place(scene, place) for place in places]
     if not any(base for base, _ in bases):
         raise InputError.of("loads", loads, f"no point can be built; the first: {bases[0][1]}")
     rows = run_until_settled(
@@ -258,7 +258,7 @@ def torque_map(
     return TorqueMap(_gathered(scene, places, bases, rows, len(unit)), float(tolerance))
 
 
-def _subject(subject: Bearing | Subject) -> Subject:
+def subject_of(subject: Bearing | Subject) -> Subject:
     if isinstance(subject, Bearing):
         return Scene(subject, speed_rpm=1000.0, axial_load=1000.0)
     expect("subject", subject, Scene, Assembly, Bearing)
@@ -268,7 +268,7 @@ def _subject(subject: Bearing | Subject) -> Subject:
 Place = tuple[float, float, tuple[float, float]]
 
 
-def _places(scene: Subject, speeds: Any, loads: Any, temperatures: Any) -> list[Place]:
+def places_of(scene: Subject, speeds: Any, loads: Any, temperatures: Any) -> list[Place]:
     """(temperature, speed, (axial, radial)) of every point, the last changing fastest."""
     listed = {"speeds": speeds, "loads": loads}
     listed |= {} if temperatures is None else {"temperatures": temperatures}
@@ -297,7 +297,7 @@ def _temperature(subject: Subject) -> float:
     return subject.part.lubricant.temperature_c
 
 
-def _at_place(scene: Subject, place: Place) -> tuple[Base | None, str]:
+def at_place(scene: Subject, place: Place) -> tuple[Base | None, str]:
     temperature, speed, (axial, radial) = place
     overrides = scene.loaded(speed, axial, radial)
     if temperature != _temperature(scene):
