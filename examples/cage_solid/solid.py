@@ -63,7 +63,6 @@ def mesh(bearing: trb.Bearing, size: float) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (m), shape (N, 3), and quadratic tetrahedra in CalculiX's order, shape (E, 10), of the cage."""
     body = bearing.cage.body
     wall = Wall.of(bearing, body)
-    corner = wall.thickness / 3.0 if body.corner_radius is None else body.corner_radius
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     occ = gmsh.model.occ
@@ -81,7 +80,7 @@ def mesh(bearing: trb.Bearing, size: float) -> tuple[np.ndarray, np.ndarray]:
         turned = occ.revolve([(2, occ.addPlaneSurface([loop]))], 0, 0, 0, 0, 0, 1, 2.0 * math.pi)
         parts += [entity for entity in turned if entity[0] == 3]
     whole, _ = occ.fuse(parts[:1], parts[1:])
-    first = window(wall, bearing, corner)
+    first = window(wall, bearing, wall.corner_radius)
     cutters = [(3, first)]
     for pocket in range(1, wall.n_pockets):
         copy = occ.copy([(3, first)])

@@ -47,7 +47,7 @@ def test_mass_and_inertias_against_random_points() -> None:
 
 def test_a_flat_hoop() -> None:
     """Rims of a cylinder with pockets of no length, by hand: two tubes."""
-    wall = Wall(12, 0.05, 0.0, 0.0, 2e-3, 2e-3, 2e-3, 0.0, 0.0, 4e-3, 4e-3, np.array([-0.4, -0.9, 0.0]), -0.02)
+    wall = Wall(12, 0.05, 0.0, 0.0, 2e-3, 2e-3, 2e-3, 0.0, 0.0, 4e-3, 4e-3, np.array([-0.4, -0.9, 0.0]), -0.02, 0.0)
     found = cage_mass(wall, 8000.0)
     mass = 8000.0 * math.pi * (0.051**2 - 0.049**2) * 8e-3
     assert found.mass == pytest.approx(mass, rel=1e-12)

@@ -70,6 +70,10 @@ class Beam:
         Its section.
     stiffer : float
         Factor of Young's modulus (1).
+    joint : Section, optional
+        The section that resists, where a member joins another one; in the plane of the local x and y it does not bend.
+    heavy : bool
+        Whether it has mass; False where another beam has it already.
     """
 
     start: int
@@ -79,6 +83,8 @@ class Beam:
     side: FloatArray
     section: Section
     stiffer: float = 1.0
+    joint: Section | None = None
+    heavy: bool = True
 
 
 @dataclass(frozen=True)
@@ -99,25 +105,32 @@ class Elasticity:
     shear: bool = True
 
 
-def local_matrices(length: float, section: Section, made: Elasticity) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and mass of a beam in its local axes, each of shape (12, 12)."""
+RIGID: Final = 1e3
+"""Factor of a second moment of area that stands for rigid."""
+
+
+def local_matrices(
+    length: float, section: Section, made: Elasticity, joint: Section | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and mass of a beam in its local axes, each of shape (12, 12); a `joint` resists with its own section."""
     young, rigidity = made.youngs_modulus, 0.5 * made.youngs_modulus / (1.0 + made.poisson_ratio)
     shear = 10.0 * (1.0 + made.poisson_ratio) / (12.0 + 11.0 * made.poisson_ratio)  # Cowper 1966, rectangle
     stiffness, mass = np.zeros((12, 12)), np.zeros((12, 12))
+    resists = joint or section
     line = made.density * section.area * length
     polar = made.density * (section.about_y + section.about_z) * length
     for first, stiff, heavy in (
-        (0, young * section.area / length, line),
-        (3, rigidity * section.torsion / length, polar),
+        (0, young * resists.area / length, line),
+        (3, rigidity * resists.torsion / length, polar),
     ):
         at = np.ix_((first, first + 6), (first, first + 6))
         stiffness[at] += stiff * np.array([[1.0, -1.0], [-1.0, 1.0]])
         mass[at] += heavy / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
-    for places, signs, second in (
-        ((1, 5, 7, 11), (1.0, 1.0, 1.0, 1.0), section.about_z),
-        ((2, 4, 8, 10), (1.0, -1.0, 1.0, -1.0), section.about_y),
+    for places, signs, second, turns in (
+        ((1, 5, 7, 11), (1.0, 1.0, 1.0, 1.0), resists.about_z * (1.0 if joint is None else RIGID), section.about_z),
+        ((2, 4, 8, 10), (1.0, -1.0, 1.0, -1.0), resists.about_y, section.about_y),
     ):
-        soft = 12.0 * young * second / (shear * rigidity * section.area * length**2) if made.shear else 0.0
+        soft = 12.0 * young * second / (shear * rigidity * resists.area * length**2) if made.shear else 0.0
         at, sign = np.ix_(places, places), np.outer(signs, signs)
         bend = np.array(
             [
@@ -129,7 +142,7 @@ def local_matrices(length: float, section: Section, made: Elasticity) -> tuple[F
         )
         scale = np.array([1.0, length, 1.0, length])
         stiffness[at] += sign * young * second / (length**3 * (1.0 + soft)) * bend * np.outer(scale, scale)
-        mass[at] += sign * _bending_mass(length, soft, line, made.density * second * length if made.shear else 0.0)
+        mass[at] += sign * _bending_mass(length, soft, line, made.density * turns * length if made.shear else 0.0)
     return stiffness, mass
 
 
@@ -207,8 +220,10 @@ class Frame:
             own = Elasticity(beam.stiffer * made.youngs_modulus, made.poisson_ratio, made.density, made.shear)
             turn, length = _to_local(nodes, beam)
             places = _places(beam)
-            for matrix, total in zip(local_matrices(length, beam.section, own), (stiffness, mass), strict=True):
-                total[np.ix_(places, places)] += turn.T @ matrix @ turn
+            stiff, heavy = local_matrices(length, beam.section, own, beam.joint)
+            stiffness[np.ix_(places, places)] += turn.T @ stiff @ turn
+            if beam.heavy:
+                mass[np.ix_(places, places)] += turn.T @ heavy @ turn
         return cls(nodes, tuple(beams), made, stiffness, mass)
 
     def rigid_motions(self) -> FloatArray:
@@ -277,7 +292,7 @@ class Frame:
             beam.stiffer * self.made.youngs_modulus, self.made.poisson_ratio, self.made.density, self.made.shear
         )
         turn, length = _to_local(self.nodes, beam)
-        stiffness, _ = local_matrices(length, beam.section, own)
+        stiffness, _ = local_matrices(length, beam.section, own, beam.joint)
         found: FloatArray = stiffness @ (turn @ displacements[_places(beam)])
         return found
 

@@ -1,8 +1,10 @@
 """The frame of beams that stands for a cage: two rims and a bar between each two windows (docs/theory/cage.md#a-frame-of-beams).
 
 Rims are polygons along the middle of their sections, bars run along the wall's middle surface from window's end to window's
-end, tied to the rims' nodes by rigid arms over half of a rim's width. Where a bar joins a rim, the rim is as wide as rim and bar
-together: a share of that length is taken as rigid (`RIGID_SHARE`).
+end. Bars and rims are about as wide as the windows, so their joints have a size. Where a bar joins a rim, the rim does not
+bend in the wall's surface, and resists bending out of it and torsion as if it were wider by a share of the bar (`JOINED`);
+rounded corners make this part longer (`ROUNDED`). A bar goes on into the rim by a share of its thickness (`ROOTED`); from there
+to the rim's middle it is rigid.
 """
 
 from __future__ import annotations
@@ -24,12 +26,13 @@ from trbdyn.model.pocket import Face, every_face
 
 FloatArray = NDArray[np.float64]
 
-RIGID_SHARE: Final = 0.5
-"""Share of the length in which bar and rim join that is rigid: half of it, the usual choice for frames of deep members;
-assumed.
-"""
-RIGID: Final = 1e3
-"""Factor of Young's modulus that stands for rigid."""
+JOINED: Final = 0.25
+"""Share of a bar's width by which the rim is wider where the bar joins it."""
+ROUNDED: Final = 0.5
+"""Share of the radius of a window's corners by which the joint goes on into the window."""
+ROOTED: Final = 0.25
+"""Length over its thickness by which a bar goes on into the rim. These three were chosen beside solid models of three cages,
+and a fourth one was held back (docs/theory/cage.md#the-joints-beside-a-solid)."""
 CRACKED: Final = 1e-6
 """Factor of Young's modulus of the beam in which a bar is cracked through."""
 ENDS: Final = ("small", "large")
@@ -210,19 +213,21 @@ class _Builder:
         section = Section(width, wall.small_thickness if small else wall.large_thickness)
         window = float(wall.half_angle(np.array([edge]), np.array([wall.height]))[0])
         pitch = math.pi / count
-        free = window + (1.0 - RIGID_SHARE) * (pitch - window)
+        rho, _ = wall.place(np.array(edge), np.array(wall.height))
+        free = max(window - ROUNDED * wall.corner_radius / float(rho), 0.5 * window)
+        joint = Section(width + JOINED * wall.bar_width(edge), section.thickness)
         steps = np.linspace(-free, free, self.rim_elements + 1)
-        ring = [  # (angle, factor of the modulus of the beam that ends there), from the middle of a bar to the next
-            (2.0 * pitch * k + step, RIGID if place in (0, self.rim_elements + 1) else 1.0)
+        ring = [  # (angle, section of the joint if the beam that ends there is one), from the middle of a bar to the next
+            (2.0 * pitch * k + step, joint if place in (0, self.rim_elements + 1) else None)
             for k in range(count)
             for place, step in enumerate((*steps, pitch))
         ]
         numbers = [self._add(self._point(middle, angle)) for angle, _ in ring]
-        for place, (_, stiffer) in enumerate(ring):
+        for place, (_, wider) in enumerate(ring):
             before = numbers[place - 1]
             half = 0.5 * (self.nodes[numbers[place]] + self.nodes[before])
             side = self._along_wall(math.atan2(half[1], half[0]))
-            self.beams.append(Beam(before, numbers[place], np.zeros(3), np.zeros(3), side, section, stiffer))
+            self.beams.append(Beam(before, numbers[place], np.zeros(3), np.zeros(3), side, section, joint=wider))
         block = self.rim_elements + 2
         joints = [numbers[block * k + block - 1] for k in range(count)]
         return joints, [numbers[block * k + self.rim_elements // 2] for k in range(count)]
@@ -231,19 +236,18 @@ class _Builder:
         """Beams of the bar behind pocket k."""
         wall, angle = self.wall, (2 * k + 1) * math.pi / self.wall.n_pockets
         stations = np.linspace(wall.small_edge, wall.large_edge, self.bar_elements + 1)
-        inner = [self._add(self._point(float(a), angle)) for a in stations[1:-1]]
-        numbers = [small, *inner, large]
+        numbers = [self._add(self._point(float(a), angle)) for a in stations]
+        side, none = np.array([-math.sin(angle), math.cos(angle), 0.0]), np.zeros(3)
+        for rim, root, a in ((small, numbers[0], stations[0]), (large, numbers[-1], stations[-1])):
+            way = self.nodes[root] - self.nodes[rim]
+            arm = max(1.0 - ROOTED * wall.thickness / float(np.linalg.norm(way)), 0.0) * way
+            section = Section(wall.bar_width(float(a)), wall.thickness)
+            self.beams.append(Beam(rim, root, arm, none, side, section, heavy=False))  # the rim has its mass
         first = len(self.beams)
-        side = np.array([-math.sin(angle), math.cos(angle), 0.0])
         for place in range(self.bar_elements):
-            arms = [np.zeros(3), np.zeros(3)]
-            if place == 0:
-                arms[0] = self._point(float(stations[0]), angle) - self.nodes[small]
-            if place == self.bar_elements - 1:
-                arms[1] = self._point(float(stations[-1]), angle) - self.nodes[large]
             width = wall.bar_width(float(0.5 * (stations[place] + stations[place + 1])))
             section, stiffer = Section(width, wall.thickness), CRACKED if place == 0 and k in self.cracked else 1.0
-            self.beams.append(Beam(numbers[place], numbers[place + 1], arms[0], arms[1], side, section, stiffer))
+            self.beams.append(Beam(numbers[place], numbers[place + 1], none, none, side, section, stiffer))
         return tuple(range(first, len(self.beams)))
 
     def _at_face(

@@ -48,7 +48,8 @@ class CageBody(Model):
         Distance of the wall's middle surface outward from the rollers' axes (m); by default the middle of the end walls' bands,
         ``(wall_inner + wall_outer)/2`` of the cage.
     corner_radius : float, optional
-        Radius of the windows' corners (m); by default a third of the wall's thickness. It counts for the notch stress only.
+        Radius of the windows' corners (m); by default a third of the wall's thickness. It stiffens the joints of an elastic cage;
+        the mass is that of sharp corners.
 
     Examples
     --------
@@ -96,6 +97,8 @@ class Wall:
         Normal of the leading bar's face in the axes radial, circumferential, axial.
     distance : float
         Distance of that plane along its normal from the point on the axis in the roller-centre plane (m).
+    corner_radius : float
+        Radius of the windows' corners (m).
     """
 
     n_pockets: int
@@ -111,6 +114,7 @@ class Wall:
     large_width: float
     normal: FloatArray
     distance: float
+    corner_radius: float
 
     @classmethod
     def of(cls, bearing: Bearing, body: CageBody) -> Wall:
@@ -142,6 +146,7 @@ class Wall:
             large_width=body.large_rim_width,
             normal=normal,
             distance=float(normal @ (axes @ np.array(face.origin) + np.array([radius, 0.0, 0.0]))),
+            corner_radius=body.thickness / 3.0 if body.corner_radius is None else body.corner_radius,
         )
         wall._check(bearing)
         return wall

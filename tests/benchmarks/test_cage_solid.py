@@ -1,0 +1,51 @@
+"""The frame of beams beside stored results of solid models; `python benchmarks/cage_solid.py --solid` makes these again."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+pytestmark = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="the benchmarks are not part of a source distribution")
+CAGES = ("30310", "30310, wall of 3 mm", "30310, rims of 3.5 and 7 mm", "32216")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _path() -> Iterator[None]:
+    sys.path.insert(0, str(BENCHMARKS))
+    yield
+    sys.path.remove(str(BENCHMARKS))
+
+
+@pytest.mark.parametrize("name", CAGES)
+def test_the_frame_of_beams_is_near_a_solid(name: str) -> None:
+    """Joints without a size: the lowest mode 5 % high, the largest stress at a root 9 to 35 % low."""
+    import cage_solid
+
+    solid = json.loads(cage_solid.STORED.read_text(encoding="utf-8"))[name]
+    bearing = cage_solid.bearings()[name]
+    found = cage_solid.beams(bearing)
+    ratio = found["frequency"] / np.array(solid["frequency"])
+    assert np.abs(ratio[:12] - 1.0).max() < 0.03
+    assert np.abs(ratio - 1.0).max() < 0.12
+    stress, largest = np.array(solid["stress"]), float(np.abs(solid["stress"]).max())
+    assert np.abs(found["stress"]).max() == pytest.approx(largest, rel=0.1)
+    assert np.abs(found["stress"] - stress).max() < 0.2 * largest
+    assert np.sqrt(np.mean((found["stress"] - stress) ** 2)) < 0.06 * largest
+    # both hold the same push: what bars give the rims is what accelerates these
+    np.testing.assert_allclose(
+        found["root"][0, :, 1:3].sum(axis=0), np.array(solid["root"])[0, :, 1:3].sum(axis=0), rtol=0.02
+    )
+
+
+def test_the_command_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    import cage_solid
+
+    report = cage_solid.main(["--quick"])
+    assert {row["cage"] for row in report.results} == {"30310"}
+    assert "largest stress" in capsys.readouterr().out
