@@ -31,6 +31,7 @@ HEAVY = (
     "pydantic_core",
     "SALib",
     "scipy",
+    "skfem",
     "sklearn",
     "tqdm",
     "xarray",

@@ -1,12 +1,11 @@
-"""Natural modes of the 30310 cage from an independent solid model, beside those of the frame of beams.
+"""Natural modes of the 30310 cage from an independent solid model, beside those of the package.
 
     python examples/cage_solid/solid.py            # frequencies side by side; solid_modes.h5, which trbdyn's CageModes.load reads
     python examples/cage_solid/solid.py --size 2   # finer: edges of the tetrahedra in mm
 
 Gmsh (PyPI: gmsh) makes the body by turning the wall about the axis and cutting the windows with their rounded corners, and
 meshes it with quadratic tetrahedra; CalculiX (Debian: calculix-ccx) finds the modes of the free body. Nothing of trbdyn's
-frame is in it but the cage's dimensions. What is done with the modes is what a script for any other finite-element program
-has to do.
+finite elements is in it but the cage's dimensions. What is done with the modes is what a script for any other program has to do.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ import gmsh
 import numpy as np
 
 import trbdyn as trb
-from trbdyn.cage.frame import cage_frame, pocket_axes
+from trbdyn.cage.cage_solid import cage_solid, pocket_axes
 from trbdyn.cage.modes import CageModes
 from trbdyn.model.cage_body import Wall, cage_mass
 
@@ -174,7 +173,7 @@ def modes_of(
     stresses: np.ndarray,
 ) -> CageModes:
     """What trbdyn needs of the modes: motion of the faces by least squares over their nodes, stress at the bars' roots."""
-    built, radius = cage_frame(bearing), 0.5 * bearing.pitch_diameter
+    built, radius = cage_solid(bearing), 0.5 * bearing.pitch_diameter
     weights = lumped_mass(nodes, tets, float(bearing.cage_material.density or 0.0))
     modal = np.einsum("n,mnk,mnk->m", weights, shapes, shapes)
     motions = np.zeros((len(shapes), len(built.faces), 6))
@@ -249,19 +248,19 @@ def main() -> None:
         squares = solve(nodes, tets, bearing.cage_material, given.modes, Path(folder))
         shapes, stresses = results(Path(folder) / "cage.frd", given.modes, len(nodes))
     solid = modes_of(bearing, nodes, tets, squares[RIGID:], shapes, stresses)
-    beams = CageModes.of_frame(bearing, 2 * given.modes)
-    both = np.einsum("mfi,nfi->mn", solid.shape[:, :, :3], beams.shape[:, :, :3])
+    own = CageModes.of_body(bearing, 2 * given.modes)
+    both = np.einsum("mfi,nfi->mn", solid.shape[:, :, :3], own.shape[:, :, :3])
     sizes = np.einsum("mfi,mfi->m", solid.shape[:, :, :3], solid.shape[:, :, :3])
-    other = np.einsum("mfi,mfi->m", beams.shape[:, :, :3], beams.shape[:, :, :3])
+    other = np.einsum("mfi,mfi->m", own.shape[:, :, :3], own.shape[:, :, :3])
     alike = both**2 / np.outer(sizes, other)
-    print("mode   solid Hz   beams Hz   difference   likeness of the shapes (MAC, over the modes of one frequency)")
-    one = np.abs(beams.frequency[:, None] / beams.frequency[None, :] - 1.0) < 1e-4
+    print("mode   solid Hz   trbdyn Hz   difference   likeness of the shapes (MAC, over the modes of one frequency)")
+    one = np.abs(own.frequency[:, None] / own.frequency[None, :] - 1.0) < 1e-4
     for k in range(given.modes):
         likeness = one @ alike[k]
         j = int(np.argmax(likeness))
-        ratio = beams.frequency[j] / solid.frequency[k] - 1.0
+        ratio = own.frequency[j] / solid.frequency[k] - 1.0
         print(
-            f"{k + 1:4} {solid.frequency[k]:10.1f} {beams.frequency[j]:10.1f} {100 * ratio:+10.1f} %   {likeness[j]:.3f}"
+            f"{k + 1:4} {solid.frequency[k]:10.1f} {own.frequency[j]:10.1f} {100 * ratio:+10.1f} %   {likeness[j]:.3f}"
         )
     print(solid.save(given.output, overwrite=given.overwrite))
 

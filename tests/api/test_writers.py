@@ -103,7 +103,7 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
     ),
     "trbdyn.cage.modes.CageModes.save": (
         "a.h5",
-        lambda run, path, **how: CageModes.of_frame(caged(), 2).save(path, **how),
+        lambda run, path, **how: CageModes.of_body(caged(), 2).save(path, **how),
     ),
     "trbdyn.results.export.export": ("a.csv", lambda run, path, **how: export(run, path, **how)),
     "trbdyn.results.result.Result.export": ("a.mat", lambda run, path, **how: run.export(path, **how)),

@@ -1,4 +1,4 @@
-"""The frame of beams beside stored results of solid models; `python benchmarks/cage_solid.py --solid` makes these again."""
+"""Elastic cages beside stored results of CalculiX; `python benchmarks/cage_solid.py --solid` makes these again."""
 
 from __future__ import annotations
 
@@ -23,20 +23,17 @@ def _path() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("name", CAGES)
-def test_the_frame_of_beams_is_near_a_solid(name: str) -> None:
-    """Joints without a size: the lowest mode 5 % high, the largest stress at a root 9 to 35 % low."""
+def test_an_elastic_cage_is_near_calculix(name: str) -> None:
+    """A frame of beams had the 16th mode 11 % low and the largest stress at a root 9 to 35 % low."""
     import cage_solid
 
     solid = json.loads(cage_solid.STORED.read_text(encoding="utf-8"))[name]
-    bearing = cage_solid.bearings()[name]
-    found = cage_solid.beams(bearing)
+    found = cage_solid.elements(cage_solid.bearings()[name])
     ratio = found["frequency"] / np.array(solid["frequency"])
-    assert np.abs(ratio[:12] - 1.0).max() < 0.03
-    assert np.abs(ratio - 1.0).max() < 0.12
+    assert np.abs(ratio - 1.0).max() < 0.03
     stress, largest = np.array(solid["stress"]), float(np.abs(solid["stress"]).max())
     assert np.abs(found["stress"]).max() == pytest.approx(largest, rel=0.1)
-    assert np.abs(found["stress"] - stress).max() < 0.2 * largest
-    assert np.sqrt(np.mean((found["stress"] - stress) ** 2)) < 0.06 * largest
+    assert np.abs(found["stress"] - stress).max() < 0.1 * largest
     # both hold the same push: what bars give the rims is what accelerates these
     np.testing.assert_allclose(
         found["root"][0, :, 1:3].sum(axis=0), np.array(solid["root"])[0, :, 1:3].sum(axis=0), rtol=0.02

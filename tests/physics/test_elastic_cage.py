@@ -9,17 +9,21 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
 import trbdyn as trb
 from trbdyn import Effects, InputError, Scene, Simulation
-from trbdyn.cage.frame import cage_frame, pocket_axes
+from trbdyn.cage.cage_solid import CageSolid, cage_solid, pocket_axes
 from trbdyn.cage.modes import CageModes
 from trbdyn.cage.simulated import _modes, cage_modes
 from trbdyn.cage.stress import CageStress, cage_stress
 
 Array = NDArray[np.float64]
 BEARING = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
+
+
+@pytest.fixture(scope="module")
+def built() -> CageSolid:
+    return cage_solid(BEARING)
 
 
 def scene(elastic: trb.ElasticCage | None, effects: Effects | None = None, **changes: Any) -> Scene:
@@ -54,7 +58,7 @@ def squeezed(sim: Simulation, least: float) -> Array:
 
 def test_a_cage_a_hundred_times_as_fast_is_a_rigid_one(tmp_path: Path) -> None:
     """Young's modulus times 1e4, of the modes alone: the contacts keep theirs. The modes come from a file."""
-    modes = CageModes.of_frame(BEARING, 12)
+    modes = CageModes.of_body(BEARING, 12)
     stiff = CageModes(**{**vars(modes), "frequency": 100.0 * modes.frequency})
     path = stiff.save(tmp_path / "stiff.h5")
     start = trb.Start(kind="whirl", eccentricity=0.8)
@@ -104,13 +108,12 @@ def loudest(values: Array, low: float, high: float) -> float:
 
 
 def test_a_struck_cage_rings_at_its_first_modes() -> None:
-    """The face that was struck moves at the frequencies of the frame, and vibrations decay."""
+    """The face that was struck moves at the natural frequencies, and vibrations decay."""
     slow = scene(trb.ElasticCage(n_modes=12, damping_ratio=0.005), speed_rpm=100.0)
     result, modes = struck(slow), cage_modes(slow)
     at = list(zip(modes.face_pocket, modes.face_name, strict=True)).index((0, "leading_bar"))
     moved = result["cage_mode"] @ modes.shape[:, at, 0]
-    frame, _ = cage_frame(BEARING).frame.natural(6)
-    for expected in (frame[0], frame[2], frame[4]):
+    for expected in modes.frequency[[0, 2, 4]]:
         assert loudest(moved, 0.8 * expected, 1.2 * expected) == pytest.approx(expected, rel=0.01)
     speeds = 2.0 * np.pi * modes.frequency
     energy = modes.modal_mass * (result["cage_mode_rate"] ** 2 + (speeds * result["cage_mode"]) ** 2)
@@ -140,37 +143,18 @@ def test_coriolis_forces_part_the_frequencies_of_a_cage_that_turns() -> None:
 # ---- static bending, action and reaction ----
 
 
-def test_all_modes_together_bend_as_the_stiffness_of_the_frame() -> None:
-    """Two opposite forces on bars: the sum over every mode of a coarse frame is the solution with its stiffness matrix."""
-    built = cage_frame(BEARING, rim_elements=2, bar_elements=2)
-    squares, shapes = eigh(built.frame.stiffness, built.frame.mass)
-    frequency = np.sqrt(squares[6:]) / (2.0 * np.pi)
-    modes = CageModes.of_shapes(built, frequency, shapes[:, 6:], 0.01, "all")
-    faces = [(pocket, face.name) for pocket, face in built.faces]
-    pair = [faces.index((pocket, "leading_bar")) for pocket in (0, 6)]
-    load = built.loads_of_faces()
-    forces = load[:, 6 * pair[0] + 1] - load[:, 6 * pair[1] + 1]
-    pull = modes.shape[:, pair[0], 1] - modes.shape[:, pair[1], 1]
-    amplitude = pull / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)
-    exact = built.at_faces @ built.frame.static(forces[:, None])[:, 0]
-    found = np.einsum("m,mfi->fi", amplitude, modes.shape)
-    assert np.abs(found - exact)[:, :3].max() < 1e-6 * np.abs(exact[:, :3]).max()
-    stress = built.stress(built.frame.static(forces[:, None]))[:, 0]
-    assert np.abs(amplitude @ modes.stress - stress).max() < 1e-6 * np.abs(stress).max()
-
-
 @pytest.mark.parametrize("lubrication", ["mixed", "dry"])
-def test_rollers_push_the_modes_with_what_pushes_them(lubrication: str) -> None:
+def test_rollers_push_the_modes_with_what_pushes_them(lubrication: str, built: CageSolid) -> None:
     """Generalised forces from the wrench of each roller on the cage, and its face's shape; the amplitudes at which the modes
-    would rest bend the cage as the frame's stiffness does under the same wrenches, but for the modes that are left out.
+    would rest bend the cage as its stiffness does under the same wrenches, but for the modes that are left out.
     """
     count = 100
     effects = Effects.standard().replace(lubrication=lubrication, pocket_ends=False)
     sim = Simulation(scene(trb.ElasticCage(n_modes=count), effects))
-    modes, built = cage_modes(sim.scene), cage_frame(BEARING)
+    modes = cage_modes(sim.scene)
     vector = squeezed(sim, 200.0)
     found, rates = sim.contacts(vector, 0.0), sim.derivative(vector, 0.0)
-    force, loads = np.zeros(count), np.zeros(6 * len(built.frame.nodes))
+    force, loads = np.zeros(count), np.zeros(built.solid.nodes.size)
     places = {name: at for at, name in enumerate(zip(modes.face_pocket, modes.face_name, strict=True))}
     leading = next(face for face in BEARING.pocket.faces if face.name == "leading_bar")
     for pocket in (0, 6):
@@ -182,12 +166,12 @@ def test_rollers_push_the_modes_with_what_pushes_them(lubrication: str) -> None:
         wrench = np.concatenate([axes @ push, axes @ moment])
         at = places[(pocket, "leading_bar")]
         force += modes.shape[:, at] @ wrench
-        loads += built.loads_of_faces()[:, 6 * at : 6 * at + 6] @ wrench
+        loads += built.at_faces[6 * at : 6 * at + 6].T @ wrench
     assert np.linalg.norm(found["cage_force"][[0, 6]], axis=1).min() > 100.0
     assert np.linalg.norm(np.delete(found["cage_force"], [0, 6], axis=0)) == 0.0
     assert modes.modal_mass * accelerations(sim, rates) == pytest.approx(force, abs=1e-9 * np.abs(force).max())
     amplitude = force / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)
-    exact = (built.at_faces @ built.frame.static(loads[:, None])[:, 0])[:, :3]
+    exact = (built.at_faces @ built.solid.static(loads[:, None])[:, 0]).reshape(-1, 6)[:, :3]
     for some, allowed in ((20, 0.2), (40, 0.15), (count, 0.06)):
         bent = np.einsum("m,mfi->fi", amplitude[:some], modes.shape[:some])[:, :3]
         assert np.abs(bent - exact).max() < allowed * np.abs(exact).max(), some
@@ -233,11 +217,11 @@ def test_what_does_not_go_together_is_refused(tmp_path: Path) -> None:
         scene(elastic, Effects.standard().replace(guidance="outer_land"))
     with pytest.raises(InputError, match=r"bearing\.cage\.body = None"):
         scene(elastic, bearing=trb.cases.rig_30310())
-    with pytest.raises(InputError, match="rim_elements = 3 : must be even"):
-        trb.ElasticCage(rim_elements=3)
+    with pytest.raises(InputError, match="fineness = 4 : must be <= 3"):
+        trb.ElasticCage(fineness=4)
     with pytest.raises(InputError, match=r"elastic_cage\.file = .*cannot be read"):
         trb.ElasticCage(file=str(tmp_path / "none.h5"))
-    modes = CageModes.of_frame(BEARING, 4)
+    modes = CageModes.of_body(BEARING, 4)
     path = modes.save(tmp_path / "modes.h5")
     with pytest.raises(InputError, match="n_modes = 9 : must be <= 4"):
         Simulation(scene(trb.ElasticCage(n_modes=9, file=str(path))))
@@ -249,13 +233,13 @@ def test_what_does_not_go_together_is_refused(tmp_path: Path) -> None:
     known = scene(trb.ElasticCage(n_modes=4, file=str(path)))
     assert Scene.from_json(known.to_json()) == known
     Simulation(known)
-    CageModes.of_frame(BEARING, 5).save(path, overwrite=True)
+    CageModes.of_body(BEARING, 5).save(path, overwrite=True)
     _modes.cache_clear()
     with pytest.raises(InputError, match="which has changed since"):
         Simulation(known)
 
 
-def test_a_mass_that_is_not_that_of_the_frame_is_said() -> None:
+def test_a_mass_that_is_not_that_of_the_body_is_said() -> None:
     """Its frequencies would be those of another cage."""
     bearing = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
     given = {"speed_rpm": 3000, "axial_load": 4930.0, "elastic_cage": trb.ElasticCage(n_modes=2)}
@@ -281,24 +265,24 @@ def test_records_keep_the_modes_and_are_evaluated_again(tmp_path: Path) -> None:
 # ---- stress ----
 
 
-def test_stress_is_that_of_the_frame_where_nothing_vibrates() -> None:
+def test_stress_is_that_of_the_elements_where_nothing_vibrates(built: CageSolid) -> None:
     """Forces that rest, and the amplitudes at which the modes rest under them: the static stress, with any number of modes."""
     for count in (6, 20):
         still = scene(trb.ElasticCage(n_modes=count))
-        modes, built = cage_modes(still), cage_frame(BEARING)
+        modes = cage_modes(still)
         force = np.zeros((1, 12, 4))
         names = [(pocket, face.name) for pocket, face in built.faces]
-        loads = np.zeros((6 * len(built.frame.nodes), 1))
+        loads = np.zeros((built.solid.nodes.size, 1))
         pull = np.zeros(count)
         for pocket, name, size in ((0, "leading_bar", 50.0), (5, "trailing_bar", 80.0), (6, "large_end_wall", 20.0)):
             at = names.index((pocket, name))
             face = built.faces[at][1]
             force[0, pocket, face.slot] = size
-            loads[:, 0] -= size * built.loads_of_faces()[:, 6 * at : 6 * at + 3] @ face.normal
+            loads[:, 0] -= size * built.at_faces[6 * at : 6 * at + 3].T @ face.normal
             pull -= size * modes.shape[:, at, :3] @ face.normal
         amplitude = pull / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)
         found = cage_stress(still, np.zeros(1), amplitude[None, :], force, notch_factor=2.0)
-        exact = built.stress(built.frame.static(loads))[:, 0]
+        exact = (built.stress_of @ built.solid.static(loads))[:, 0]
         assert found.stress[0] == pytest.approx(2.0 * exact, abs=1e-6 * np.abs(exact).max())
         assert found.worst[2] == pytest.approx(2.0 * exact[np.argmax(np.abs(exact))])
         assert found.is_complete

@@ -1,1 +1,1 @@
-"""Elasticity of the cage: a frame of beams, natural modes and their file, stress from static loads."""
+"""Elasticity of the cage: finite elements, natural modes and their file, stress from static loads."""

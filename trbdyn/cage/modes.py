@@ -2,7 +2,8 @@
 
 A mode has a frequency, a damping ratio, a modal mass, and for each unit of its amplitude q the motion of every face's frame
 and the stress at named points. Its equation is q'' + 2 zeta w q' + w^2 q = (sum over faces of shape . wrench)/(modal mass).
-Modes come from the frame of beams (`CageModes.of_frame`) or from a file that a finite-element program's results were written to.
+Modes come from the finite elements of the package (`CageModes.of_body`), or from a file that another finite-element program's
+results were written to.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.own_files import write_whole
-from trbdyn.cage.frame import CageFrame, cage_frame
+from trbdyn.cage.cage_solid import CageSolid, cage_solid
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.bearing import Bearing
 
@@ -37,6 +38,8 @@ UNITS: Final = {
     "point_name": "",
 }
 
+MOST: Final = 200
+"""Most modes of a finite-element model: higher ones need a finer mesh."""
 OPTIONAL: Final = ("coriolis",)
 """Datasets that a file may lack."""
 
@@ -119,8 +122,8 @@ class CageModes:
                 raise InputError.of(what, str(double), "must not stand there twice")
 
     @classmethod
-    def of_frame(cls, bearing: Bearing, count: int = 20, **elements: Any) -> CageModes:
-        """Modes of the frame of beams of a bearing's cage (`trbdyn.cage.frame.cage_frame`).
+    def of_body(cls, bearing: Bearing, count: int = 20, **elements: Any) -> CageModes:
+        """Modes of the finite-element model of a bearing's cage (`trbdyn.cage.cage_solid.cage_solid`).
 
         Parameters
         ----------
@@ -129,7 +132,7 @@ class CageModes:
         count : int
             Number of modes.
         **elements
-            Further arguments of `cage_frame`.
+            Further arguments of `cage_solid`.
 
         Raises
         ------
@@ -139,19 +142,18 @@ class CageModes:
         damping = bearing.cage_material.damping_ratio
         if damping is None:
             raise InputError.of(("bearing", "cage", "material", "damping_ratio"), None, "must be given (1)")
-        built = cage_frame(bearing, **elements)
-        most = 6 * len(built.frame.nodes) // 4
-        if not 1 <= count <= most:
-            raise InputError.of("count", count, f"must be from 1 to {most} with these elements")
-        frequency, shapes = built.frame.natural(count)
-        return cls.of_shapes(built, frequency, shapes, damping, f"frame of beams, cage of {bearing.name}")
+        if not 1 <= count <= MOST:
+            raise InputError.of("count", count, f"must be from 1 to {MOST}")
+        built = cage_solid(bearing, **elements)
+        frequency, shapes = built.solid.natural(count)
+        return cls.of_shapes(built, frequency, shapes, damping, f"finite elements, cage of {bearing.name}")
 
     @classmethod
     def of_shapes(
-        cls, built: CageFrame, frequency: FloatArray, shapes: FloatArray, damping: float, source: str
+        cls, built: CageSolid, frequency: FloatArray, shapes: FloatArray, damping: float, source: str
     ) -> CageModes:
-        """Modes from shapes of unit modal mass of a frame, scaled so that the largest displacement of a face is 1."""
-        shape = np.einsum("fij,jm->mfi", built.at_faces, shapes)
+        """Modes from shapes of unit modal mass of a model, scaled so that the largest displacement of a face is 1."""
+        shape = (built.at_faces @ shapes).T.reshape(len(frequency), -1, 6)
         largest = np.linalg.norm(shape[:, :, :3], axis=2).max(axis=1)
         largest = np.where(
             largest > 1e-9 * largest.max(), largest, 1.0
@@ -165,7 +167,7 @@ class CageModes:
             shape=shape / largest[:, None, None],
             point_name=built.corners,
             point_place=built.corner_places,
-            stress=(built.stress(shapes) / largest).T,
+            stress=(built.stress_of @ shapes / largest).T,
             coriolis=built.coriolis(shapes / largest),
             source=source,
         )

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.cage.frame import CageFrame, cage_frame
+from trbdyn.cage.cage_solid import CageSolid, cage_solid
 from trbdyn.cage.modes import CageModes
 from trbdyn.errors import InputError
 from trbdyn.model.elastic_cage import ElasticCage, digest_of
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 FloatArray = NDArray[np.float64]
+AT_ONCE: Final = 20
+"""Modes are found in groups of so many, so that scenes with a few more or less share them."""
 
 
 def cage_modes(scene: Scene) -> CageModes:
@@ -49,7 +52,7 @@ def _modes(bearing: Bearing, elastic: ElasticCage) -> CageModes:
         built, frequency, shapes = _natural(bearing, elastic)
         given = bearing.cage_material.damping_ratio if elastic.damping_ratio is None else elastic.damping_ratio
         assert given is not None  # the scene has checked it
-        source = f"frame of beams, cage of {bearing.name}"
+        source = f"finite elements, cage of {bearing.name}"
         found = CageModes.of_shapes(built, frequency, shapes, given, source)
         ratio = found.damping_ratio
     if elastic.n_modes > len(found.frequency):
@@ -69,19 +72,32 @@ def _modes(bearing: Bearing, elastic: ElasticCage) -> CageModes:
     )
 
 
+def _natural(bearing: Bearing, elastic: ElasticCage) -> tuple[CageSolid, FloatArray, FloatArray]:
+    count = AT_ONCE * math.ceil(elastic.n_modes / AT_ONCE)
+    built, frequency, shapes = _at_once(bearing, elastic.fineness, elastic.cracked_bars, count)
+    return built, frequency[: elastic.n_modes], shapes[:, : elastic.n_modes]
+
+
+@lru_cache(maxsize=2)
+def _at_once(
+    bearing: Bearing, fineness: int, cracked_bars: tuple[int, ...], count: int
+) -> tuple[CageSolid, FloatArray, FloatArray]:
+    built = cage_solid(bearing, fineness=fineness, cracked_bars=cracked_bars)
+    return built, *built.solid.natural(count)
+
+
 @lru_cache(maxsize=8)
-def _natural(bearing: Bearing, elastic: ElasticCage) -> tuple[CageFrame, FloatArray, FloatArray]:
-    built = cage_frame(
-        bearing,
-        rim_elements=elastic.rim_elements,
-        bar_elements=elastic.bar_elements,
-        cracked_bars=elastic.cracked_bars,
-    )
-    return built, *built.frame.natural(elastic.n_modes)
+def stress_at_rest(bearing: Bearing, elastic: ElasticCage) -> FloatArray:
+    """Static stress at the bars' roots of the finite-element model for a unit force on each face of each pocket, shape (F, P)
+    (Pa/N).
+    """
+    built, _, _ = _natural(bearing, elastic)
+    return np.asarray((built.stress_of @ built.solid.static(built.pushes())).T)
 
 
-def frame_displacements(scene: Scene, amplitude: FloatArray) -> tuple[CageFrame, FloatArray]:
-    """The frame of beams of a scene's cage, and the displacements of its nodes (m), shape (N, 3), at amplitudes of its modes (m).
+def displacements(scene: Scene, amplitude: FloatArray) -> tuple[CageSolid, FloatArray]:
+    """The finite-element model of a scene's cage, and the displacements of its nodes (m), shape (N, 3), at amplitudes (m)
+    of its modes.
 
     Raises
     ------
@@ -93,11 +109,11 @@ def frame_displacements(scene: Scene, amplitude: FloatArray) -> tuple[CageFrame,
     assert elastic is not None  # cage_modes has looked
     if elastic.file is not None:
         raise InputError.of(
-            ("elastic_cage", "file"), elastic.file, "must not be given: its modes have no frame of beams"
+            ("elastic_cage", "file"), elastic.file, "must not be given: its modes have no finite-element model"
         )
     built, _, shapes = _natural(scene.bearing, elastic)
     scaled = shapes * np.sqrt(modes.modal_mass)  # of unit modal mass before
-    return built, (scaled @ amplitude).reshape(-1, 6)[:, :3]
+    return built, (scaled @ amplitude).reshape(-1, 3)
 
 
 def mode_rows(scene: Scene) -> FloatArray:

@@ -2,8 +2,8 @@
 (docs/theory/cage.md#stress-at-the-roots-of-the-bars).
 
 Modes that are left out of a simulation hardly move the cage, but they carry most of the stress near a force: for a force on a
-bar, the lowest 20 give half of it. They follow the force without delay, so their part is static: what the frame of beams carries
-under the recorded forces of the pockets, less what the modes that move would carry at rest.
+bar, the lowest 20 give less than half of it. They follow the force without delay, so their part is static: what the finite
+elements carry under the recorded forces of the pockets, less what the modes that move would carry at rest.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.cage.modes import CageModes
-from trbdyn.cage.simulated import cage_modes, frame_displacements, shapes_by_slot
+from trbdyn.cage.simulated import cage_modes, shapes_by_slot, stress_at_rest
 from trbdyn.errors import InputError
 from trbdyn.model.pocket import every_face
 
@@ -238,14 +238,10 @@ def _at_rest(scene: Scene, modes: CageModes) -> FloatArray:
 
 
 def _whole(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
-    """The same of the whole frame of beams."""
-    built, _ = frame_displacements(scene, np.zeros(len(modes.frequency)))
-    loads = built.loads_of_faces()
-    forces = np.stack(
-        [loads[:, 6 * at : 6 * at + 3] @ -face.normal for at, (_, face) in enumerate(built.faces)], axis=1
-    )
-    stress = built.stress(built.frame.static(forces))
+    """The same of the whole finite-element model."""
+    assert scene.elastic_cage is not None  # cage_modes has looked
+    stress = stress_at_rest(scene.bearing, scene.elastic_cage)
     found = np.zeros((scene.bearing.n_rollers, slots, len(modes.point_name)))
-    for at, (pocket, face) in enumerate(built.faces):
-        found[pocket, face.slot] = stress[:, at]
+    for at, (pocket, face) in enumerate(every_face(scene.bearing)):
+        found[pocket, face.slot] = stress[at]
     return found.reshape(-1, len(modes.point_name))

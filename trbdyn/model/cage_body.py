@@ -169,6 +169,12 @@ class Wall:
             there = f"windows take {math.degrees(widest):.4g} deg to each side, {180 / self.n_pockets:.4g} are there"
             limit = f"must leave a bar: {there} (m)"
             raise InputError.of(("body", "thickness"), self.thickness, limit)
+        rho, _ = self.place(np.array([self.small_edge, self.large_edge]), np.array([[low], [high]]))
+        most = min(float(np.min(rho * corners)), 0.5 * (self.large_edge - self.small_edge))
+        if not self.corner_radius < most:
+            raise InputError.of(
+                ("body", "corner_radius"), self.corner_radius, f"must be < {most:.4g}: half a window (m)"
+            )
 
     def place(self, a: FloatArray, n: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Radius and height above the roller-centre plane (m) of points of the wall."""

@@ -24,7 +24,7 @@ LARGEST_FILE: Final = 1 << 28
 
 
 class ElasticCage(Model):
-    """How the cage of a scene deforms: by the lowest natural modes of a frame of beams, or of a file
+    """How the cage of a scene deforms: by the lowest natural modes of its finite elements, or of a file
     (docs/theory/cage.md#an-elastic-cage).
 
     Parameters
@@ -33,14 +33,14 @@ class ElasticCage(Model):
         Number of modes, from the lowest on.
     damping_ratio : float, optional
         Damping of every mode over the critical one (1); by default that of the cage's material, or of the file.
-    rim_elements, bar_elements : int
-        Beams of a rim along a window, and of a bar: even numbers. They have no meaning for modes of a file.
+    fineness : int
+        Into how many parts each edge of the coarsest finite-element mesh is divided. It has no meaning for modes of a file.
     cracked_bars : tuple of int
-        Bars of the frame of beams that are cracked through at their root at the small end; bar k lies behind pocket k in the
-        direction of rotation. The surfaces of a crack pass through each other.
+        Bars of the finite-element model that are cracked through at their root at the small end; bar k lies behind pocket k in
+        the direction of rotation. The surfaces of a crack pass through each other.
     file : str, optional
         File of modes that `trbdyn.cage.modes.CageModes.save`, or a finite-element program's script, has written. Without it the
-        modes are those of a frame of beams, made from ``bearing.cage.body`` and the cage's material.
+        modes are those of a finite-element model, made from ``bearing.cage.body`` and the cage's material.
     file_sha256 : str, optional
         SHA-256 of that file, by which another file of the same name is found out; by default it is taken from the file.
 
@@ -62,17 +62,13 @@ class ElasticCage(Model):
 
     n_modes: Annotated[Whole, parameter("cage_modes", ge=1)] = 20
     damping_ratio: Annotated[Number | None, unit("1", ge=0.0, lt=1.0)] = None
-    rim_elements: Annotated[Whole, unit("1", ge=2, le=20)] = 4
-    bar_elements: Annotated[Whole, unit("1", ge=2, le=20)] = 6
+    fineness: Annotated[Whole, unit("1", ge=1, le=3)] = 1
     cracked_bars: tuple[Annotated[Whole, unit("1", ge=0)], ...] = ()
     file: Annotated[str | None, Field(min_length=1)] = None
     file_sha256: Annotated[str | None, Field(min_length=64, max_length=64)] = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        for name in ("rim_elements", "bar_elements"):
-            if getattr(self, name) % 2:
-                raise InputError.of(name, getattr(self, name), "must be even")
         if self.file is not None and self.cracked_bars:
             raise InputError.of(
                 "cracked_bars", self.cracked_bars, "must not be given with a file, whose modes know its cracks"
@@ -120,7 +116,9 @@ def check_elastic_cage(scene: Scene) -> None:
     if elastic.file is not None:
         return
     if cage.body is None:
-        limit = "must be given where elastic_cage has no file: beams need rims and bars (trb.CageBody)"
+        limit = (
+            "must be given where elastic_cage has no file: a finite-element model needs rims and bars (trb.CageBody)"
+        )
         raise InputError.of(("bearing", "cage", "body"), None, limit)
     whole = scene.bearing.n_rollers - len(set(elastic.cracked_bars))
     if any(bar >= scene.bearing.n_rollers for bar in elastic.cracked_bars) or whole < LEAST_WHOLE_BARS:

@@ -8,10 +8,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from trbdyn.cage.simulated import cage_modes, frame_displacements
+from trbdyn.cage.simulated import cage_modes, displacements
 from trbdyn.errors import InputError
 from trbdyn.plot.style import COLOURS, GREY, canvas, sequence, styled
 
@@ -30,7 +31,7 @@ def cage_shape(result: Result, record: int | None = None, factor: float | None =
     Parameters
     ----------
     result : Result
-        Of a scene whose elastic cage is a frame of beams; needs the group cage.
+        Of a scene whose elastic cage has modes of its own body, not of a file; needs the group cage.
     record : int, optional
         Number of the record; by default the one at which a face moves most.
     factor : float, optional
@@ -45,19 +46,36 @@ def cage_shape(result: Result, record: int | None = None, factor: float | None =
     if record is None:
         size = np.array([np.linalg.norm(np.tensordot(one, shape, 1), axis=1).max() for one in result["cage_mode"]])
         record = int(np.argmax(size))
-    built, moved = frame_displacements(result.scene, result["cage_mode"][record])
-    nodes, length = built.frame.nodes, np.linalg.norm(moved, axis=1)
+    built, moved = displacements(result.scene, result["cage_mode"][record])
+    mesh = built.solid.basis.mesh
+    nodes, faces = (
+        mesh.p.T,
+        mesh.facets[:, mesh.boundary_facets()].T,
+    )  # corners of the elements come first among the nodes
+    moved = moved[: len(nodes)]
+    length = np.linalg.norm(moved, axis=1)
     if factor is None:
         factor = SIZE * float(np.hypot(*nodes[:, :2].T).max()) / max(float(length.max()), 1e-30)
     to = nodes + factor * moved
-    ends = np.array([(beam.start, beam.end) for beam in built.frame.beams])
+    shade = sequence()(length[faces].mean(axis=1) / max(float(length.max()), 1e-30))
     with styled():
         figure, axes = plt.subplots(1, 2, figsize=(8.0, 4.4), width_ratios=(1.0, 0.5))
-        for ax, (across, up), front in ((axes[0], (0, 1), None), (axes[1], (2, 1), nodes[:, 0] > 0.0)):
-            for start, end in ends if front is None else ends[front[ends].all(axis=1)]:
-                ax.plot(*(1e3 * nodes[[start, end]][:, [across, up]].T), color=GREY, linewidth=0.8)
-                shade = sequence()(0.5 * (length[start] + length[end]) / max(length.max(), 1e-30))
-                ax.plot(*(1e3 * to[[start, end]][:, [across, up]].T), color=shade, linewidth=2.0)
+        # from the large ends one looks against z; from the side against x, at the half that lies there
+        for ax, (across, up, depth) in ((axes[0], (0, 1, 2)), (axes[1], (2, 1, 0))):
+            shown = np.argsort(to[faces, depth].mean(axis=1).round(7), kind="stable")
+            shown = shown if depth == 2 else shown[nodes[faces[shown], 0].min(axis=1) > 0.0]
+            for places, colour in ((nodes, GREY), (to, shade[shown])):
+                outlines = 1e3 * places[faces[shown]][:, :, [across, up]]
+                still = places is nodes
+                ax.add_collection(
+                    PolyCollection(
+                        outlines,
+                        facecolors="none" if still else colour,
+                        edgecolors=colour if still else "none",
+                        linewidths=0.3,
+                    )
+                )
+            ax.autoscale_view()
             ax.set(aspect="equal", xlabel=f"{'xyz'[across]} of the cage (mm)", ylabel="y of the cage (mm)")
         axes[1].set_title("half of it, from the side")
         scale = ScalarMappable(Normalize(0.0, 1e6 * float(length.max())), sequence())

@@ -101,7 +101,7 @@ def _running_plays(scene: Scene) -> dict[str, Any]:
 
 
 def _deflection(result: Result) -> dict[str, Any]:
-    """Largest displacement of the middle of a face by the modes of an elastic cage's frame of beams, at any record."""
+    """Largest displacement of the middle of a face by the modes of an elastic cage's finite-element model, at any record."""
     elastic = result.scene.elastic_cage
     if elastic is None or elastic.file is not None or "cage" not in result.groups:
         return {}  # a summary opens no file whose name stands in a result

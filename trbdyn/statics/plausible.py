@@ -25,8 +25,8 @@ bearings.
 
 LOADED_SHARE: Final = 0.05
 """Share of the heaviest load of a roller up to which a place of the outer ring counts as unloaded."""
-FRAME_MASS: Final = 0.05
-"""Share by which a cage may be heavier or lighter than the frame of beams by whose modes it deforms."""
+BODY_MASS: Final = 0.05
+"""Share by which a cage may be heavier or lighter than the finite-element model by whose modes it deforms."""
 LARGEST_PLAY_SHARE: Final = 0.1
 """Largest usual play of a cage's pocket, in units of the roller's diameter; usual are 0.01 to 0.03."""
 LARGEST_TILT: Final = 0.01
@@ -144,21 +144,21 @@ def _cage(scene: Scene) -> list[str]:
     """Mass and inertia that a cage can have, but that can hardly be meant."""
     if scene.effects.bodies == "rollers":
         return []
-    return CageSpace.of(scene.bearing).unusual(scene.bearing.cage, scene.bearing.cage_material) + _frame(scene)
+    return CageSpace.of(scene.bearing).unusual(scene.bearing.cage, scene.bearing.cage_material) + _body(scene)
 
 
-def _frame(scene: Scene) -> list[str]:
-    """A cage that weighs something else than the frame of beams whose modes it deforms by."""
+def _body(scene: Scene) -> list[str]:
+    """A cage that weighs something else than the finite-element model whose modes it deforms by."""
     bearing, cage = scene.bearing, scene.bearing.cage
     density = bearing.cage_material.density
     if scene.elastic_cage is None or scene.elastic_cage.file is not None or cage.body is None or density is None:
         return []
     weighed = cage_mass(Wall.of(bearing, cage.body), density).mass
-    if abs(cage.mass / weighed - 1.0) <= FRAME_MASS:
+    if abs(cage.mass / weighed - 1.0) <= BODY_MASS:
         return []
     return [
         f"bearing.cage.mass = {cage.mass:g} kg, but the rims and bars whose natural modes elastic_cage takes weigh "
-        f"{weighed:.4g} kg: its frequencies are those of that frame; let mass and inertia follow from bearing.cage.body"
+        f"{weighed:.4g} kg: its frequencies are those of that body; let mass and inertia follow from bearing.cage.body"
     ]
 
 

@@ -1,0 +1,247 @@
+"""The finite-element model of a bearing's cage: faces of its pockets and the roots of its bars
+(docs/theory/cage.md#a-cage-of-finite-elements).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.base.validation import as_whole_number
+from trbdyn.cage.solid import Elasticity, Solid, crossed, stiffness_of
+from trbdyn.cage.wall_mesh import WallMesh, wall_mesh
+from trbdyn.errors import InputError
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.cage_body import Wall
+from trbdyn.model.pocket import Face, every_face
+
+FloatArray = NDArray[np.float64]
+
+ENDS: Final = ("small", "large")
+SIDES: Final = ("trailing", "leading")
+SURFACES: Final = ("outer", "inner")
+PATCH: Final = 0.1
+"""Part of the wall that follows a face: surfaces whose middles are farther from the face's middle than the nearest one by this
+share of the face's length."""
+ALONG: Final = 0.7
+"""Cosine of the largest angle between a face and the surface of the wall that follows it."""
+
+
+@dataclass(frozen=True, eq=False)
+class CageSolid:
+    """The finite-element model of a cage. Places are those of the cage's frame: origin on the axis in the roller-centre plane, x
+    through the middle of pocket 0, z along the axis towards the large ends.
+
+    Attributes
+    ----------
+    solid : Solid
+        Its elements.
+    faces : tuple of (int, Face)
+        Every face of every pocket: (pocket, face).
+    at_faces : sparse array, shape (6 F, 3 N)
+        Displacement of each face's middle and rotation of the face, in the axes n, t, a of its pocket, from the displacements.
+    corners : tuple of str
+        Names of the points at the bars' roots.
+    corner_places : ndarray, shape (P, 3)
+        Where they are (m).
+    at_roots : sparse array, shape (12 Z, 3 N)
+        Force (N) and moment (N m) on each bar at its small and its large end, along, across and through the bar, from the
+        displacements. Bar k lies behind pocket k in the direction of rotation.
+    stress_of : sparse array, shape (P, 3 N)
+        Nominal stress along the bar at the corners of its roots (Pa) from the displacements: tension and bending about both axes.
+    """
+
+    solid: Solid
+    faces: tuple[tuple[int, Face], ...]
+    at_faces: Any
+    corners: tuple[str, ...]
+    corner_places: FloatArray
+    at_roots: Any
+    stress_of: Any
+
+    def coriolis(self, shapes: FloatArray) -> FloatArray:
+        """Coriolis forces between motions, shape (M, M): on the first one, over the rate of the second one and the cage's angular
+        velocity about its axis (kg). They are ``-2 u1 . (z x u2)`` summed over the mass.
+        """
+        moves = shapes.reshape(-1, 3, shapes.shape[1])
+        carried = np.zeros_like(moves)
+        carried[:, 0], carried[:, 1] = -moves[:, 1], moves[:, 0]
+        product: FloatArray = shapes.T @ (self.solid.mass @ carried.reshape(shapes.shape))
+        return product.T - product
+
+    def pushes(self) -> FloatArray:
+        """Forces at the nodes for a unit normal force on each face, shape (3 N, F)."""
+        normals = np.zeros((6 * len(self.faces), len(self.faces)))
+        for at, (_, face) in enumerate(self.faces):
+            normals[6 * at : 6 * at + 3, at] = -face.normal  # the roller pushes against the face
+        return np.asarray(self.at_faces.T @ normals)
+
+
+def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[int] = ()) -> CageSolid:
+    """The finite-element model of a bearing's cage.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        A bearing whose cage has a `body`, and a material with density.
+    fineness : int
+        Into how many parts each edge of the coarsest mesh is divided, 1 to 3.
+    cracked_bars : iterable of int
+        Bars that are cracked through at their root at the small end; bar k lies behind pocket k in the direction of rotation.
+
+    Raises
+    ------
+    InputError
+        If the cage has no body, its material no density, or a number is not allowed.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> from trbdyn.cage.cage_solid import cage_solid
+    >>> bearing = trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
+    >>> frequencies, shapes = cage_solid(bearing).solid.natural(2)
+    >>> bool(frequencies[0] > 1e3)
+    True
+    """
+    try:
+        parts = as_whole_number(fineness)
+    except ValueError as error:
+        raise InputError.of("fineness", fineness, str(error)) from None
+    if not 1 <= parts <= 3:
+        raise InputError.of("fineness", fineness, "must be 1 to 3")
+    body, material = bearing.cage.body, bearing.cage_material
+    if body is None:
+        limit = "must be given: a finite-element model needs rims and bars (trb.CageBody)"
+        raise InputError.of(("bearing", "cage", "body"), None, limit)
+    if material.density is None:
+        raise InputError.of(("bearing", "cage", "material", "density"), None, "must be given (kg/m3)")
+    made = Elasticity(material.youngs_modulus, material.poisson_ratio, material.density)
+    wall = Wall.of(bearing, body)
+    mesh = wall_mesh(wall, fineness=parts, cracked_bars=frozenset(cracked_bars))
+    solid = Solid.of(mesh.corners, mesh.elements, made)
+    faces = tuple(every_face(bearing))
+    centres, axes = _roots(wall)
+    at_roots = _at_roots(solid, mesh, centres, axes)
+    names = tuple(
+        f"pocket {(k + (side == 'leading')) % wall.n_pockets}, {'trailing' if side == 'leading' else 'leading'} bar, "
+        f"{end} end, {surface}"
+        for k in range(wall.n_pockets)
+        for end in ENDS
+        for side in SIDES
+        for surface in SURFACES
+    )
+    nominal, places = _corners(wall, centres, axes)
+    return CageSolid(
+        solid=solid,
+        faces=faces,
+        at_faces=at_faces(bearing, faces, solid),
+        corners=names,
+        corner_places=places,
+        at_roots=at_roots,
+        stress_of=nominal @ at_roots,
+    )
+
+
+def at_faces(bearing: Bearing, faces: tuple[tuple[int, Face], ...], solid: Solid) -> Any:
+    """From the displacements of a solid to the displacement of each face's middle and the rotation of the face, sparse, shape
+    (6 F, 3 N): those of the rigid body that is nearest, by least squares, to the surface around the face's middle.
+    """
+    from scipy.sparse import coo_array
+
+    mesh = solid.basis.mesh
+    surface = mesh.boundary_facets()
+    ring = mesh.p.T[mesh.facets[:, surface]]  # corner, surface, direction
+    middles = ring.mean(axis=0)
+    normals = np.cross(ring[2] - ring[0], ring[-1] - ring[1])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    inward = mesh.p[:, mesh.t[:, mesh.f2t[0, surface]]].mean(axis=1).T - middles
+    normals *= -np.sign(np.einsum("fk,fk->f", inward, normals))[:, None]
+    rows, columns, values = [], [], []
+    for number, (pocket, face) in enumerate(faces):
+        axes = pocket_axes(bearing, pocket)
+        angle = 2.0 * math.pi * pocket / bearing.n_rollers
+        outline = face.vertices
+        origin = 0.5 * bearing.pitch_diameter * np.array([math.cos(angle), math.sin(angle), 0.0])
+        place = origin + outline.mean(axis=0) @ axes
+        far = np.linalg.norm(middles - place, axis=1)
+        far[normals @ (face.normal @ axes) < ALONG] = math.inf
+        near = surface[far <= far.min() + PATCH * float(np.ptp(outline, axis=0).max())]
+        found = solid.basis.get_dofs(facets=near).flatten()
+        arms = solid.nodes[found] - place
+        motions = np.concatenate([np.hstack([np.eye(3), -crossed(arm)]) for arm in arms])
+        rigid = np.kron(np.eye(2), axes) @ np.linalg.pinv(motions)
+        places = (3 * found[:, None] + np.arange(3)).ravel()
+        rows.append(np.repeat(6 * number + np.arange(6), len(places)))
+        columns.append(np.tile(places, 6))
+        values.append(rigid.ravel())
+    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    return coo_array(entries, shape=(6 * len(faces), solid.nodes.size)).tocsr()
+
+
+def pocket_axes(bearing: Bearing, pocket: int) -> FloatArray:
+    """Axes n, t, a of a pocket as rows, in the cage's frame."""
+    angle, lean = 2.0 * math.pi * pocket / bearing.n_rollers, bearing.geometry.roller_axis_angle
+    sine, cosine = math.sin(lean), math.cos(lean)
+    around = math.cos(angle), math.sin(angle)
+    return np.array(
+        [
+            [cosine * around[0], cosine * around[1], -sine],
+            [-around[1], around[0], 0.0],
+            [sine * around[0], sine * around[1], cosine],
+        ]
+    )
+
+
+def _roots(wall: Wall) -> tuple[FloatArray, FloatArray]:
+    """Middles of the bars' roots, shape (Z, 2, 3) (m), and axes along, across and through the bars, shape (Z, 3, 3)."""
+    angle = (2.0 * np.arange(wall.n_pockets) + 1.0) * math.pi / wall.n_pockets
+    c, s, none = np.cos(angle), np.sin(angle), np.zeros(wall.n_pockets)
+    rho, z = wall.place(np.array([wall.small_edge, wall.large_edge]), np.array(wall.height))
+    centres = np.stack([np.outer(c, rho), np.outer(s, rho), np.broadcast_to(z, (wall.n_pockets, 2))], axis=-1)
+    along = np.stack([math.sin(wall.angle) * c, math.sin(wall.angle) * s, none + math.cos(wall.angle)], axis=-1)
+    across = np.stack([-s, c, none], axis=-1)
+    return centres, np.stack([along, across, np.cross(along, across)], axis=1)
+
+
+def _at_roots(solid: Solid, mesh: WallMesh, centres: FloatArray, axes: FloatArray) -> Any:
+    """Forces and moments at the roots from the displacements: sums of forces at the nodes of the bars' elements, sparse, shape
+    (12 Z, 3 N).
+    """
+    import skfem
+    from scipy.sparse import lil_array
+
+    basis, grid = solid.basis, solid.basis.mesh
+    bars = skfem.CellBasis(grid, basis.elem, quadrature=basis.quadrature, elements=np.flatnonzero(mesh.bar >= 0))
+    sums = lil_array((12 * len(centres), solid.nodes.size))
+    for end, corners in enumerate(mesh.roots):
+        cut = np.flatnonzero(np.isin(grid.facets, corners).all(axis=0))
+        bar_of = mesh.bar[grid.f2t[:, cut]].max(axis=0)
+        for bar, centre in enumerate(centres[:, end]):
+            for node in basis.get_dofs(facets=cut[bar_of == bar]).flatten():
+                arm = crossed(solid.nodes[node] - centre)
+                row = 12 * bar + 6 * end
+                sums[row : row + 6, 3 * node : 3 * node + 3] = np.concatenate([axes[bar], axes[bar] @ arm])
+    return sums.tocsr() @ stiffness_of(bars, solid.made)
+
+
+def _corners(wall: Wall, centres: FloatArray, axes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Nominal stress at the corners of the roots from forces and moments, shape (P, 12 Z), and their places, shape (P, 3)."""
+    count, thickness = wall.n_pockets, wall.thickness
+    stress, places = np.zeros((count, 2, 2, 2, count, 2, 6)), np.zeros((count, 2, 2, 2, 3))
+    for end, (edge, sign) in enumerate(((wall.small_edge, -1.0), (wall.large_edge, 1.0))):
+        width = wall.bar_width(edge)
+        for side, across in enumerate((-0.5, 0.5)):
+            for surface, through in enumerate((-0.5, 0.5)):
+                parts = np.zeros(6)
+                parts[0] = sign / (width * thickness)
+                parts[4] = sign * through * 12.0 / (width * thickness**2)
+                parts[5] = -sign * across * 12.0 / (thickness * width**2)
+                stress[range(count), end, side, surface, range(count), end] = parts
+                off = across * width * axes[:, 1] + through * thickness * axes[:, 2]
+                places[:, end, side, surface] = centres[:, end] + off
+    return stress.reshape(8 * count, 12 * count), places.reshape(-1, 3)
