@@ -20,6 +20,7 @@ from scipy.optimize import least_squares, linprog, root
 import trbdyn as trb
 from trbdyn import _core
 from trbdyn.model.flatten import ring_load
+from trbdyn.model.scene import LEAST_ACROSS
 from trbdyn.statics.core_model import normal_contacts
 from trbdyn.statics.equilibrium import EquilibriumSolver, least_axial_load, most_radial_load, nominal_angles
 from trbdyn.statics.ring_motion import ring_motion
@@ -303,6 +304,24 @@ def test_rollers_that_hardly_touch_and_springs_far_back_do_not_stop_the_search(n
 @pytest.mark.parametrize("count", [20, pytest.param(500, marks=pytest.mark.slow)])
 def test_no_light_load_is_refused_that_another_search_finds(count: int) -> None:
     assert refused_scenes(49, count) == []
+
+
+@pytest.mark.parametrize(("least", "axial_load"), [(LEAST_ACROSS, 0.0), (0.0, 50.0)])
+def test_a_cylindrical_bearing_follows_a_load_that_nearly_goes(least: float, axial_load: float) -> None:
+    """Rollers on ribs centre the ring under an axial load; without any, a load that goes leaves it anywhere in its clearance."""
+    load = trb.History.step((0.004, 0.009), (3000.0, least, 3000.0), rise=8e-4)
+    place = None if axial_load else (None, None, 0.0)
+    scene = trb.cases.scene_nj210().replace(
+        axial_load=axial_load, displacement=place, ring="follows", radial_load=load, speed_rpm=300.0
+    )
+    motion, _ = ring_motion(normal_contacts(scene), scene)
+    clearance = scene.bearing.radial_clearance
+    moved = math.hypot(*motion.displacement(0.006)[:2])
+    assert moved < 1e-9 if axial_load else 0.45 * clearance < moved < 0.55 * clearance
+    with pytest.raises(trb.InputError, match=r"radial_load = 0.0 : must be >= 0.001 at 0.0048 s"):
+        scene.replace(
+            axial_load=0.0, displacement=(None, None, 0.0), radial_load=load.replace(values=(3000.0, 0.0, 0.0, 3000.0))
+        )
 
 
 @pytest.mark.parametrize("speed", [30.0, 1000.0])

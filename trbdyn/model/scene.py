@@ -40,6 +40,8 @@ __all__ = ["MAX_GRAVITY", "MAX_SPEED_RPM", "RotatingLoad", "Scene", "Start"]
 
 MAX_GRAVITY = 1e7
 """Largest part of gravity (m/s2), a million times the usual: no machine shakes harder, and nothing overflows."""
+LEAST_ACROSS = 1e-3
+"""Radial load (N) of a ring with clearance below which the balance of forces does not say where it stands."""
 
 
 def oil_by_name(given: Any) -> Any:
@@ -472,6 +474,7 @@ class Scene(TurningRings, Model):
             if given != usual:
                 allowed = f"must be {usual!r} for cylindrical rollers: it is made for rollers that a cup's slope holds"
                 raise InputError.of(name, given, allowed)
+        self._check_held_across()
         if self.ring_is_placed[2]:
             return
         flanges, supported = (
@@ -496,6 +499,21 @@ class Scene(TurningRings, Model):
                 "displacement = (None, None, 0.0), or a free ring a support, ring_body.support_axial (N)"
             )
             raise InputError.of("axial_load", self.axial_load, allowed)
+
+    def _check_held_across(self) -> None:
+        """A radial load that goes leaves a ring with clearance anywhere in it; an axial load centres it by the ribs."""
+        x, y, z, *_ = self.ring_is_placed
+        if self.rotating_load is not None or x or y or not z:
+            return
+        loads = {time: value_at(self.radial_load, time) for time in knot_times([self.radial_load], self.start.time)}
+        time = min(loads, key=loads.__getitem__)
+        if self.bearing.radial_clearance > 0.0 and loads[time] < LEAST_ACROSS and max(loads.values()) > 0.0:
+            when = "" if is_constant(self.radial_load) else f" at {time:g} s"
+            allowed = (
+                f"must be >= {LEAST_ACROSS:g}{when}: with less, nothing says where in its clearance the ring stands; keep a "
+                "small load, or let the ring move, ring = 'free' (N)"
+            )
+            raise InputError.of("radial_load", loads[time], allowed)
 
     def _check_capacity(self) -> None:
         slope = math.tan(math.radians(self.bearing.cup_half_angle_deg))

@@ -368,15 +368,15 @@ def _why_not(scene: Scene, time: float, said: str, largest: float) -> str:
     when = f" at {time:.6g} s" if changes or scene.rotating_load is not None else ""
     load, z = ring_load(scene, time), scene.ring_is_placed[2]
     axial, radial, speed = -load.force[2], float(np.hypot(*load.force[:2])), value_at(scene.speed_rpm, time)
+    if scene.bearing.is_cylindrical:
+        moments = f", moments {load.moment[0]:g} and {load.moment[1]:g} N m" if np.any(load.moment) else ""
+        return f"no equilibrium{when} under axial_load = {axial:g} N, radial load {radial:g} N{moments}; {said}"
     if z:
         place = load.displacement[2]
         return (
             f"no equilibrium{when} with the ring held at z = {place:g} m under a radial load of {radial:g} N: "
             f"{'move it towards -z, so that rollers and rings touch' if place >= 0.0 else 'the load is too large'}; {said}"
         )
-    if scene.bearing.is_cylindrical:
-        moments = f", moments {load.moment[0]:g} and {load.moment[1]:g} N m" if np.any(load.moment) else ""
-        return f"no equilibrium{when} under axial_load = {axial:g} N, radial load {radial:g} N{moments}; {said}"
     least = least_axial_load(scene, time)
     if axial < least:
         return (
