@@ -48,6 +48,7 @@ if TYPE_CHECKING:
         Scatter as Scatter,
     )
     from trbdyn.model.defects import DepthMap as DepthMap, Pit as Pit, Waviness as Waviness
+    from trbdyn.model.designations import designation as designation, designations as designations
     from trbdyn.model.effects import Effects as Effects
     from trbdyn.model.elastic_cage import ElasticCage as ElasticCage
     from trbdyn.model.growth import Growth as Growth

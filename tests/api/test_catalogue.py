@@ -466,33 +466,112 @@ def test_an_estimated_cage_follows_its_material() -> None:
         trb.Simulation(trb.Scene(light, speed_rpm=300.0, axial_load=3000.0))
 
 
-ROWS = [
-    line.split(",")
-    for line in (Path(__file__).parent / "catalogue_rows.csv").read_text(encoding="utf-8").splitlines()[3:]
-]
+ROWS = trb.designations()
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
-def test_rows_of_catalogues(row: list[str]) -> None:
-    """None is refused or warned of what nobody gave; estimates lie in their bands, and rollers within the cup."""
-    d, outside, width, rating, e = (float(cell) for cell in row[1:6])
-    static, Y = (float(cell) if cell else None for cell in row[6:])
-    bearing = trb.Bearing.from_catalogue(
-        bore=1e-3 * d,
-        outside=1e-3 * outside,
-        width=1e-3 * width,
-        C=1e3 * rating,
-        C0=None if static is None else 1e3 * static,
-        e=e,
-        Y=Y,
-        name=row[0],
-    )
-    assert all(one.low <= one.value <= one.high for one in bearing.estimated)
-    cup = (0.66 if e > 0.7 else 0.78) * 1e-3 * width / math.cos(math.radians(bearing.cup_half_angle_deg))
-    assert bearing.roller.effective_length < 0.97 * cup
+def test_rows_of_the_table() -> None:
+    """None is refused; estimates lie in their bands, and rollers within the cup."""
+    assert len(ROWS) > 300
+    for name, row in ROWS.items():
+        bearing = trb.Bearing.named(name)
+        assert all(one.low <= one.value <= one.high for one in bearing.estimated), name
+        angle = math.radians(bearing.cup_half_angle_deg)
+        cup = (0.66 if math.tan(angle) > 0.47 else 0.78) * row.width / math.cos(angle)
+        assert bearing.roller.effective_length < 0.97 * cup, name
+
+
+@pytest.mark.parametrize("name", [*ROWS][::5])
+def test_rows_of_the_table_run(name: str) -> None:
+    """A simulation of each begins, without a warning of what nobody gave."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        trb.Simulation(trb.Scene(bearing, speed_rpm=1000.0, axial_load=40.0 * rating))
+        trb.Simulation(trb.Scene(trb.Bearing.named(name), speed_rpm=1000.0, axial_load=0.04 * ROWS[name].C))
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ("32208", "32208"),
+        ("HR32208J", "32208"),
+        ("32208 J2/Q", "32208"),
+        ("4T-32008X", "32008"),
+        ("320/28", "320/28"),
+        ("lm67048/10", "LM67048/LM67010"),
+        ("LM67048", "LM67048/LM67010"),
+        ("25580/25520", "25580/25520"),
+    ],
+)
+def test_designations_as_they_are_written(asked: str, found: str) -> None:
+    assert trb.Bearing.named(asked).name == found
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ("32311B", "another contact angle, such as B"),
+        ("25580", "must say which cup: 25580/25520, 25580/25523"),
+        ("99999", "not in the table"),
+        (32208, "must be a text"),
+    ],
+)
+def test_designations_that_are_refused(asked: Any, said: str) -> None:
+    with pytest.raises(trb.InputError, match=said):
+        trb.Bearing.named(asked)
+
+
+def test_a_designation_says_what_is_fact_and_what_is_estimated() -> None:
+    """e of a page is kept for ratings; one that was recalled is an estimate of the angle with a band of 0.03 in e."""
+    stated, recalled, usual = (trb.Bearing.named(name) for name in ("32208", "L44649", "LM742747"))
+    assert stated.ratings.e == 0.37
+    assert (stated.ratings.dynamic, stated.ratings.static) == (77.7e3, 90.8e3)
+    for bearing, band in ((recalled, (0.34, 0.37, 0.40)), (usual, (0.27, 0.36, 0.55))):
+        angle = bearing.estimated[0]
+        assert bearing.ratings.e is None
+        assert (angle.path, angle.unit) == ("cup_half_angle_deg", "deg")
+        found = [1.5 * math.tan(math.radians(value)) for value in (angle.low, angle.value, angle.high)]
+        assert found == pytest.approx(band)
+    text = str(trb.designation("L44649"))
+    assert re.search(r"bore d +26.988 mm +fact", text)
+    assert re.search(r"C +25000 N +fact of this maker", text)
+    assert "e as recalled" in text
+    better = trb.Bearing.named("L44649", e=0.37, n_rollers=18)
+    assert (better.ratings.e, better.n_rollers) == (0.37, 18)
+    assert "n_rollers" not in {one.path for one in better.estimated}
+
+
+HEAD = "name,d,D,T,C,C0,e,Y,source\n"
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("a,40,80,24.75,77.7,90.8,0.37,1.38,mine", r"Y = 1.38 : must be about 1.6"),  # Y of the next row
+        ("a,28.575,73.025,22.225,97,137,,,ISB", r"C = 97000.* the row A has slipped"),  # as ISB prints 02872/02820
+        ("a,40,80,24.75,77.7,908,0.37,1.6,mine", r"C0 = 908000.* must be from"),
+        ("a,80,40,24.75,77.7,90.8,0.37,1.6,mine", r"outside = 0.04 : must be from 0.088"),
+        ("a,40,80,24.75,7.77,9.08,0.37,1.6,mine", r"C = 7770.* must be from 5.17e"),
+        ("a,40,80,24.75,x,90.8,0.37,1.6,mine", r"table.a.C = 'x' : must be a number"),
+        ("a,40,80,,77.7,90.8,0.37,1.6,mine", r"table.a.T.* must be given"),
+    ],
+)
+def test_rows_that_cannot_be_right_are_refused(row: str, said: str, tmp_path: Path) -> None:
+    table = tmp_path / "own.csv"
+    table.write_text(HEAD + "b,40,80,24.75,77.7,90.8,0.37,1.6,mine\n" + row + "\n", encoding="utf-8")
+    with pytest.raises(trb.InputError, match=said):
+        trb.Bearing.named("a", table=table)
+
+
+def test_a_table_of_ones_own(tmp_path: Path) -> None:
+    table = tmp_path / "own.csv"
+    table.write_text("# mine\n" + HEAD + "x1,40,80,24.75,95.5,106,0.37,1.6,my page\n", encoding="utf-8")
+    assert trb.Bearing.named("X1", table=table).ratings.dynamic == pytest.approx(95.5e3)
+    assert trb.designation("x1", table=table).source == "my page"
+    other = tmp_path / "other.csv"
+    other.write_text("name,d\n", encoding="utf-8")
+    with pytest.raises(trb.InputError, match="must have the columns"):
+        trb.designations(other)
+    with pytest.raises(trb.FileError):
+        trb.designations(tmp_path / "none.csv")
 
 
 @pytest.mark.parametrize(

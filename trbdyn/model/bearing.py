@@ -9,6 +9,7 @@ change it where you know better.
 from __future__ import annotations
 
 import math
+import pathlib
 from collections.abc import Mapping
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
@@ -25,6 +26,7 @@ from trbdyn.model.cage_body import CageBody, Wall, cage_mass
 from trbdyn.model.cage_space import CageSpace
 from trbdyn.model.catalogue import fields_from_catalogue
 from trbdyn.model.core_table import parameter
+from trbdyn.model.designations import designation as row_of
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.flatten import bearing_geometry
 from trbdyn.model.geometry import Geometry
@@ -379,6 +381,35 @@ class Bearing(Model):
             others=others,
         )
         return cls(**fields)
+
+    @classmethod
+    def named(cls, designation: str, *, table: str | pathlib.Path | None = None, **known: Any) -> Bearing:
+        """A bearing by its designation: boundary dimensions and ratings of a table, the rest estimated as `from_catalogue` does.
+
+        `trbdyn.designation` shows which number is a fact and of which source, and which one is an estimate.
+
+        Parameters
+        ----------
+        designation : str
+            Such as ``"32208"`` or ``"LM67048/LM67010"``, see `trbdyn.designation`.
+        table : path-like, optional
+            A table of your own, see `trbdyn.designations`.
+        **known
+            What you know better, by the names of `from_catalogue`: ``C=95e3, n_rollers=17``.
+
+        Raises
+        ------
+        InputError
+            If there is no such row, or it cannot be right.
+
+        Examples
+        --------
+        >>> import trbdyn as trb
+        >>> bearing = trb.Bearing.named("32208")
+        >>> bearing.ratings.dynamic, bearing.estimated[0].path
+        (77700.0, 'cup_half_angle_deg')
+        """
+        return cls(**row_of(designation, table=table).fields(**known))
 
     @property
     def estimated(self) -> tuple[Estimated, ...]:

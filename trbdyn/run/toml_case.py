@@ -4,7 +4,7 @@ A case has the tables ``[bearing]``, ``[lubricant]``, ``[effects]``, ``[scene]``
 are the fields of `Bearing`, `Lubricant`, `Effects`, `Scene`, `Start` and `RunOptions`. Some tables may start from
 something known and then change it:
 
-- ``[bearing] case = "30310"``: a bearing that ships with the package;
+- ``[bearing] case = "30310"``: a bearing that ships with the package; ``named = "32208"``: one of the table of designations;
 - ``[bearing.cage.pocket] shape = "drafted"``: a builder of `trbdyn.pocket_shapes`, its arguments beside it; as well in
   ``[[bearing.cage.other_pockets]]``;
 - ``[lubricant] oil = "vg100"``: an oil of `trbdyn.lubricants.OILS` at ``temperature_c``, or the table of an `Oil`;
@@ -153,9 +153,12 @@ def bearing_from_table(table: Table) -> Bearing:
         If a key is unknown or a value not allowed; the message names the full key.
     """
     path = ("bearing",)
-    check_names(table, {*Bearing.model_fields, "case"}, path)
+    check_names(table, {*Bearing.model_fields, "case", "named"}, path)
     base = _choose(table, "case", BEARINGS, path)().inputs() if "case" in table else {}
-    values = _merged(base, without(table, "case"))
+    if "named" in table:
+        with located(path):
+            base = Bearing.named(table["named"]).inputs()
+    values = _merged(base, without(table, "case", "named"))
     cage = values.get("cage")
     if not isinstance(cage, dict) or not _has_shapes(cage):
         return build(Bearing, values, path)
