@@ -60,7 +60,7 @@ WHOLE = {
     ".venv/bin/pytest",
 }
 INSTALLS = {"pip install .", "pip install -e ."}
-RELEASED = {"pip install trbdyn", 'pip install "trbdyn[notebooks]"'}
+RELEASED = {"pip install trbdyn", 'pip install "trbdyn[notebooks]"', 'pip install "trbdyn[app]"'}
 WHEEL = re.compile(r"pip install trbdyn-([\d.]+)-cp311-abi3-(manylinux_\d+_\d+)_x86_64\.whl")
 MINUTES = {
     ".venv/bin/python benchmarks/work_precision.py",
