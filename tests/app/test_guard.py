@@ -67,6 +67,8 @@ def test_only_the_page_itself_is_answered(shared: Any) -> None:
         assert ask(shared, path, "POST", Cookie=cookie, Origin="http://evil.example")[0] == 403
         assert ask(shared, path, Cookie=cookie, Origin="null")[0] == 403  # a report or a view, which is in a sandbox
         assert ask(shared, path, Cookie=cookie, Origin=f"http://127.0.0.1:{shared.port + 1}")[0] == 403
+        for site in ("cross-site", "same-site"):
+            assert ask(shared, path, Cookie=cookie, Sec_Fetch_Site=site)[0] == 403
     status, headers, body = ask(shared, f"/?token={shared.token}")
     assert status == 200
     assert "HttpOnly" in headers["set-cookie"]

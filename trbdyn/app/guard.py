@@ -2,7 +2,8 @@
 
 The token stands in the address that opens the page, once; then it is a cookie that the browser sends for requests of this page
 alone (SameSite=Strict) and shows to no script (HttpOnly). A request is answered if its host is this machine, the page that it
-comes from, if it tells one, is this one, and it has the token; a WebSocket likewise.
+comes from, if it tells one, is this one, and it has the token; a WebSocket likewise. Where the browser tells whose page has asked
+(Sec-Fetch-Site), this must be no other one: a program on another port of this machine is the same site for cookies.
 """
 
 from __future__ import annotations
@@ -60,7 +61,10 @@ class Guard:
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
         if not self._from_here(headers, scope["type"] == "websocket"):
             await _refuse(scope, send, "this page answers only to the address that trbdyn app has printed")
-        elif self._is_token(self._of_cookie(headers)):
+        elif self._is_token(self._of_cookie(headers)) and headers.get("sec-fetch-site", "none") in (
+            "none",
+            "same-origin",
+        ):
             await self._app(scope, receive, _with_headers(send))
         elif scope["type"] == "http" and scope["path"] == "/" and self._is_token(_of_query(scope)):
             cookie = f"{self._cookie}={self.token}; Path=/; HttpOnly; SameSite=Strict"

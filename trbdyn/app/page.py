@@ -129,14 +129,16 @@ class Page:
         select.props("dense dark borderless options-dense").props(f'data-path="unit.{si}"')
 
     def place(self, one: Field, widget: Any) -> None:
-        """Show unit and value that a field has where nothing is typed."""
+        """Show unit and value that a field has where nothing is typed; only what has changed goes to the browser, which would
+        lose what is being typed there.
+        """
         unit = self.bench.design.unit_of(one)
-        widget.props["suffix"] = unit
         default = one.default
         number = isinstance(default, int | float) and not isinstance(default, bool)
-        widget.props["placeholder"] = (
-            units.show(default, one.unit or "1", unit or "1") if number else str(default or "")
-        )
+        shown = units.show(default, one.unit or "1", unit or "1") if number else str(default or "")
+        for name, text in (("suffix", unit), ("placeholder", shown)):
+            if widget.props.get(name) != text:
+                widget.props[name] = text
 
     def typed(self, path: str, text: str) -> None:
         """Take in what was typed into a field."""
@@ -187,7 +189,6 @@ class Page:
                 self.place(self._fields[path], widget)
             if hasattr(widget, "error"):
                 widget.error = problems.get(path)
-            widget.update()
         rest = [text if not path else f"{path}: {text}" for path, text in problems.items() if path not in self.widgets]
         self._general.text = "\n".join(rest)
         names = {path.split(".")[0] for path in problems if path in self.widgets}
