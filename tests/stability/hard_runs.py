@@ -13,10 +13,13 @@ from hard_scenes import Hard, smooth
 from numpy.typing import NDArray
 
 import trbdyn as trb
+from trbdyn.results.assembly import AssemblyResult
 from trbdyn.run import running
 from trbdyn.run.options import ACCURACY
 
 Array = NDArray[np.float64]
+Model = trb.Scene | trb.Assembly
+Found = trb.Result | AssemblyResult
 
 WATCH_RECORDS = 16
 """Records between looks at the count of steps."""
@@ -96,7 +99,7 @@ def judge(hard: Hard, *, quick: bool = False) -> Verdict:
     return verdict
 
 
-def _run(sim: trb.Simulation, duration: float, slow: bool = False) -> tuple[trb.Result, Array]:
+def _run(sim: trb.Simulation, duration: float, slow: bool = False) -> tuple[Found, Array]:
     watched: list[tuple[float, float]] = [(sim.time, 0.0)]
 
     def watch(now: trb.Simulation) -> bool:
@@ -121,20 +124,22 @@ def _smooth_rate() -> float:
     return float(sim.statistics["steps"]) / sim.time
 
 
-def _look_at(hard: Hard, result: trb.Result, watched: Array, verdict: Verdict) -> None:
+def _look_at(hard: Hard, result: Found, watched: Array, verdict: Verdict) -> None:
     verdict.steps = int(result.stats["steps"])
     verdict.smallest_step = float(result.stats["smallest_step"])
     verdict.wall_s_per_revolution = float(result.stats["wall_s_per_revolution"])
     verdict.message = result.message
     verdict.demand(result.success, f"did not finish: {result.message}")
-    for entry in result.fields:
-        values = result[entry.name]
-        if "film_parameter_min" in entry.name:
-            values = values[~np.isnan(values)]  # no film carried a load
-        verdict.demand(bool(np.isfinite(values).all()), f"{entry.name} is not finite")
-        if entry.kind in ("quaternion", "roller_quat"):
-            norm = np.linalg.norm(values, axis=-1)
-            verdict.demand(bool(np.allclose(norm, 1.0, rtol=0.0, atol=1e-12)), f"{entry.name} is not of unit length")
+    for one in result.parts:
+        for entry in one.fields:
+            values = one[entry.name]
+            if "film_parameter_min" in entry.name:
+                values = values[~np.isnan(values)]  # no film carried a load
+            verdict.demand(bool(np.isfinite(values).all()), f"{entry.name} is not finite")
+            if entry.kind in ("quaternion", "roller_quat"):
+                norm = np.linalg.norm(values, axis=-1)
+                unit = bool(np.allclose(norm, 1.0, rtol=0.0, atol=1e-12))
+                verdict.demand(unit, f"{entry.name} is not of unit length")
     verdict.closure = closure(result)
     verdict.demand(
         verdict.closure <= hard.closure, f"energy closes to {verdict.closure:.2g} only, not {hard.closure:g}"
@@ -151,14 +156,22 @@ def _look_at(hard: Hard, result: trb.Result, watched: Array, verdict: Verdict) -
         )
 
 
-def closure(result: trb.Result) -> float:
-    """Residual of the energy audit over what was dissipated, or a thousandth of the largest energy, or 1 uJ."""
-    audit = result.energy_audit
-    energy = float(np.max(np.abs(result.kinetic_energy) + np.abs(result.elastic_energy)))
-    return abs(audit.residual) / max(abs(audit.dissipated), 1e-3 * energy, 1e-6)
+def closure(result: Found) -> float:
+    """Residual of the energy audit over what was dissipated, or a thousandth of the largest energy, or 1 uJ: the largest of the
+    bearings and of the whole.
+    """
+    audits = [(one.energy_audit, _energy(one)) for one in result.parts]
+    if isinstance(result, AssemblyResult):
+        audits.append((result.energy, sum(energy for _, energy in audits)))
+    return max(abs(audit.residual) / max(abs(audit.dissipated), 1e-3 * energy, 1e-6) for audit, energy in audits)
 
 
-def _compare(hard: Hard, scene: trb.Scene, result: trb.Result, verdict: Verdict) -> None:
+def _energy(result: Found) -> float:
+    """Largest kinetic and elastic energy (J)."""
+    return sum(float(np.max(np.abs(one.kinetic_energy) + np.abs(one.elastic_energy))) for one in result.parts)
+
+
+def _compare(hard: Hard, scene: Model, result: Found, verdict: Verdict) -> None:
     short = min(hard.duration, hard.compared)
     tight, _ = _run(trb.Simulation(scene, **TIGHT), short, hard.slow)
     verdict.demand(tight.success, f"the reference did not finish: {tight.message}")
@@ -166,13 +179,14 @@ def _compare(hard: Hard, scene: trb.Scene, result: trb.Result, verdict: Verdict)
     ours = [result, *_runs_beside(hard, scene, short, ACCURACY[hard.accuracy].model_dump())]
     verdict.tolerances = _difference_of_losses(ours, [tight, *_runs_beside(hard, scene, short, TIGHT)], tight.time[-1])
     verdict.demand(verdict.tolerances <= hard.tolerances, f"two tolerances differ by {verdict.tolerances:.2g}")
-    verdict.twin = _made_by_twin(scene, min(short, 0.02))
-    verdict.demand(verdict.twin <= hard.twin, f"without friction {verdict.twin:.2g} of the energy is made or lost")
+    if isinstance(scene, trb.Scene):
+        verdict.twin = _made_by_twin(scene, min(short, 0.02))
+        verdict.demand(verdict.twin <= hard.twin, f"without friction {verdict.twin:.2g} of the energy is made or lost")
     verdict.path = _difference_of_methods(hard, scene)
     verdict.demand(verdict.path <= hard.path, f"two methods differ by {verdict.path:.2g} in their speeds")
 
 
-def _runs_beside(hard: Hard, scene: trb.Scene, duration: float, options: dict[str, Any]) -> list[trb.Result]:
+def _runs_beside(hard: Hard, scene: Model, duration: float, options: dict[str, Any]) -> list[Found]:
     """The other runs of a scene whose single runs part: with tolerances a little smaller and larger."""
     results = []
     for factor in np.linspace(*NEAR, hard.runs - 1):
@@ -181,17 +195,17 @@ def _runs_beside(hard: Hard, scene: trb.Scene, duration: float, options: dict[st
     return results
 
 
-def _lost(result: trb.Result, time: float) -> float:
+def _lost(result: Found, time: float) -> float:
     """Energy lost up to a time (J)."""
     here = int(np.argmin(np.abs(result.time - time)))
-    return sum(float(result[entry.name][here]) for entry in result.fields if entry.name.startswith("loss_"))
+    lost = (one[entry.name] for one in result.parts for entry in one.fields if entry.name.startswith("loss_"))
+    return sum(float(values[here]) for values in lost)
 
 
-def _difference_of_losses(ours: list[trb.Result], theirs: list[trb.Result], time: float) -> float:
+def _difference_of_losses(ours: list[Found], theirs: list[Found], time: float) -> float:
     """Relative difference of the mean loss, over the same time."""
     our, their = (float(np.mean([_lost(result, time) for result in results])) for results in (ours, theirs))
-    energy = float(np.max(theirs[0].kinetic_energy + theirs[0].elastic_energy))
-    return abs(our - their) / max(abs(our), abs(their), 1e-3 * energy, 1e-6)
+    return abs(our - their) / max(abs(our), abs(their), 1e-3 * _energy(theirs[0]), 1e-6)
 
 
 def _made_by_twin(scene: trb.Scene, duration: float) -> float:
@@ -207,7 +221,7 @@ def _made_by_twin(scene: trb.Scene, duration: float) -> float:
     return float(residual / np.max(result.kinetic_energy + result.elastic_energy))
 
 
-def _difference_of_methods(hard: Hard, scene: trb.Scene) -> float:
+def _difference_of_methods(hard: Hard, scene: Model) -> float:
     second: dict[str, Any] = {"integrator": "erk"} if hard.second == "erk" else {"max_order": 5}
     speeds = []
     for options in ({"max_order": 2}, second):
@@ -215,6 +229,9 @@ def _difference_of_methods(hard: Hard, scene: trb.Scene) -> float:
         result, _ = _run(sim, min(hard.window, hard.duration))
         if not result.success:
             return math.inf
-        speeds.append(np.concatenate([result.roller_velocity.reshape(-1), result.cage_velocity.reshape(-1)]))
+        parts = [part.reshape(-1) for one in result.parts for part in (one.roller_velocity, one.cage_velocity)]
+        if isinstance(result, AssemblyResult):
+            parts.append(np.gradient(result.shaft_position, result.time, axis=0).reshape(-1))
+        speeds.append(np.concatenate(parts))
     scale = max(float(np.abs(speeds[0]).max()), 1e-3)
     return float(np.abs(speeds[0] - speeds[1]).max()) / scale

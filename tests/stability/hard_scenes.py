@@ -17,7 +17,7 @@ from trbdyn.model.pocket import OtherPocket, Pocket
 from trbdyn.model.pocket_shapes import chamfered_pocket, default_pocket, one_sided_pocket, stepped_pocket
 from trbdyn.statics.state_view import StateView
 
-Make = Callable[[], trb.Scene]
+Make = Callable[[], trb.Scene | trb.Assembly]
 
 
 UNDAMPED = (
@@ -36,7 +36,7 @@ class Hard:
     name, why : str
         What it is called, and why it is hard.
     make : callable
-        Makes the scene; may raise the promised error.
+        Makes the scene, or bearings on a shaft; may raise the promised error.
     duration : float
         Bearing time (s).
     error : type, optional
@@ -60,7 +60,7 @@ class Hard:
         Bearing time over which two tolerances are compared, and the scene without friction runs (s), if less than
         `duration`.
     path : float
-        Bound of what two methods differ by over `window`: speeds of rollers and cage, over the largest speed.
+        Bound of what two methods differ by over `window`: speeds of rollers, cages and shaft, over the largest speed.
     window : float
         Bearing time over which two methods are compared (s).
     second : {'erk', 'bdf5'}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import sys
 import time
 from dataclasses import asdict
@@ -12,7 +11,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from hard_pairs import PAIRS, HardPair, judge_pair
+from hard_pairs import PAIRS
 from hard_runs import Verdict, judge
 from hard_scenes import HARD
 
@@ -40,48 +39,31 @@ def main() -> int:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the table as JSON")
     parser.add_argument("--quick", action="store_true", help="leave out the slow scenes")
     options = parser.parse_args()
-    unknown = set(options.names) - {hard.name for hard in (*HARD, *PAIRS)}
+    every = (*HARD, *PAIRS)
+    unknown = set(options.names) - {hard.name for hard in every}
     if unknown:
         parser.error(f"no such scene: {', '.join(sorted(unknown))}")
-    of_one = [hard for hard in HARD if not (options.quick and hard.slow)]
-    of_pairs = [] if options.quick and not options.names else list(PAIRS)
-    chosen = [hard for hard in (*of_one, *of_pairs) if (not options.names or hard.name in options.names)]
     print(HEAD)
-    verdicts = []
-    for hard in chosen:
+    verdicts, rows = [], []
+    for hard in every:
+        if (options.names and hard.name not in options.names) or (options.quick and hard.slow and not options.names):
+            continue
         began = time.perf_counter()
-        verdict = judge_pair(hard) if isinstance(hard, HardPair) else judge(hard)
-        verdicts.append((hard, verdict, time.perf_counter() - began))
+        verdict = judge(hard)
+        verdicts.append(verdict)
+        of_hard = {"why": hard.why, "reason": hard.reason, "duration_s": hard.duration}
+        rows.append(of_hard | asdict(verdict) | {"wall_s": time.perf_counter() - began})
         print(line(verdict), flush=True)
         for trouble in verdict.broken:
             print(f"    {trouble}", flush=True)
         if verdict.ratio > MANY:
-            print(
-                f"    more than {MANY:g} times the steps: {getattr(hard, 'reason', '') or 'NO REASON IS KNOWN'}",
-                flush=True,
-            )
+            print(f"    more than {MANY:g} times the steps: {hard.reason or 'NO REASON IS KNOWN'}", flush=True)
     if options.json:
-        rows = [
-            {
-                "why": hard.why,
-                "reason": getattr(hard, "reason", ""),
-                "duration_s": hard.duration,
-                **asdict(verdict),
-                "wall_s": wall,
-            }
-            for hard, verdict, wall in verdicts
-        ]
-        clean = [
-            {
-                key: None if isinstance(value, float) and not math.isfinite(value) else value
-                for key, value in row.items()
-            }
-            for row in rows
-        ]
+        clean = [{name: None if value != value else value for name, value in row.items()} for row in rows]
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(clean, indent=2) + "\n", encoding="utf-8")
-    failed = sum(verdict.status == "failed" for _, verdict, _ in verdicts)
-    promised = sum(verdict.status == "error" for _, verdict, _ in verdicts)
+    failed = sum(verdict.status == "failed" for verdict in verdicts)
+    promised = sum(verdict.status == "error" for verdict in verdicts)
     print(f"status error: {promised} scenes that are impossible, and end with the error that is promised")
     print(f"{len(verdicts) - failed} passed, {failed} failed")
     return int(failed > 0)

@@ -11,7 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from hard_pairs import PAIRS, HardPair, judge_pair
+from hard_pairs import PAIRS
 from hard_runs import judge
 from hard_scenes import HARD, Hard
 
@@ -20,8 +20,9 @@ QUICK = 12
 
 
 def chosen() -> list[Hard]:
-    """Others with every change of the catalogue, the same ones for everybody."""
-    return random.Random(5).sample([hard for hard in HARD if not hard.slow and hard.error is None], QUICK)
+    """A pair, and others with every change of the catalogue, the same ones for everybody."""
+    pair = next(hard for hard in PAIRS if hard.name == "pair_unbalance_10000_rpm")
+    return [pair, *random.Random(5).sample([hard for hard in HARD if not hard.slow and hard.error is None], QUICK)]
 
 
 def test_the_catalogue_is_whole() -> None:
@@ -38,6 +39,7 @@ def test_impossible_scenes_end_with_the_promised_error(hard: Hard) -> None:
 
 
 @pytest.mark.parametrize("hard", chosen(), ids=lambda hard: hard.name)
+@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
 def test_hard_scenes_in_short(hard: Hard) -> None:
     """A quarter of its length, without the comparisons; what follows an event is left to the table. Bounds of rates are four
     times as wide, as what happens at the start counts for more.
@@ -48,22 +50,7 @@ def test_hard_scenes_in_short(hard: Hard) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("hard", HARD, ids=lambda hard: hard.name)
+@pytest.mark.parametrize("hard", [*HARD, *PAIRS], ids=lambda hard: hard.name)
 def test_hard_scenes(hard: Hard) -> None:
     verdict = judge(hard)
     assert verdict.status != "failed", verdict.broken
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("hard", PAIRS, ids=lambda hard: hard.name)
-def test_hard_pairs(hard: HardPair) -> None:
-    verdict = judge_pair(hard)
-    assert verdict.status == "ok", verdict.broken
-
-
-@pytest.mark.parametrize("name", ["pair_unbalance_10000_rpm"])
-@pytest.mark.filterwarnings("ignore::trbdyn.errors.RunWarning")
-def test_hard_pairs_in_short(name: str) -> None:
-    hard = next(one for one in PAIRS if one.name == name)
-    verdict = judge_pair(replace(hard, duration=0.25 * hard.duration, closure=4.0 * hard.closure), quick=True)
-    assert verdict.status == "ok", verdict.broken
