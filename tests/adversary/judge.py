@@ -22,11 +22,7 @@ from random_scenes import ORDINARY, Table, make
 
 import trbdyn as trb
 from trbdyn.run.options import ACCURACY
-
-try:
-    from trbdyn.run.watch import Watch
-except ImportError:  # an older version, to compare with
-    Watch = None
+from trbdyn.run.watch import Watch
 
 Array = NDArray[np.float64]
 
@@ -73,7 +69,6 @@ class Run:
     turned_over: float = math.nan
     stored: float = math.nan
     roller_speed: float = math.nan
-    cage: tuple[float, float] = (math.nan, math.nan)
     mean_step: float = math.nan
     warnings: tuple[str, ...] = ()
     asked: tuple[float, float] = (math.nan, math.nan)
@@ -219,26 +214,23 @@ def _compare(scene: trb.Scene, sim: trb.Simulation, run: Run, tight: Run, verdic
     # the last step of a tight run reaches beyond the end of the judged one, in a short run by much of it
     tight_loss, tight_speed = tight.asked
     scale = max(abs(run.loss), abs(tight_loss), 1e-3 * tight.turned_over, 1e-6 * tight.stored, 1e-9)
-    if abs(run.loss - tight_loss) <= LOSS * scale and abs(run.roller_speed - tight_speed) <= SLIP:
-        return
-    accuracy = sim.options.accuracy
-    options, tighter = _near(accuracy), _near_tight()
-    judged = [(run.loss, run.roller_speed), *_asked_of(scene, options, run.time)]
-    best = [tight.asked, *_asked_of(scene, tighter, run.time)]
-    for place, (name, allowed) in enumerate((("loss", LOSS * scale), ("speed of the rollers", SLIP))):
-        ours, theirs = (np.array([one[place] for one in runs]) for runs in (judged, best))
-        off = abs(ours.mean() - theirs.mean()) - 2.0 * math.sqrt(_error_of_mean(ours) + _error_of_mean(theirs))
-        if off > allowed:
-            verdict.broken.append(f"{name} off by {off / (scale if name == 'loss' else 1.0):.2g} in the mean")
+    found, best = _figures(run.loss, run.roller_speed), _figures(tight_loss, tight_speed)
+    if _differ(found, best, scale):
+        ours = [found, *_asked_of(scene, _near(sim.options.accuracy), run.time)]
+        _compare_means(ours, [best, *_asked_of(scene, _near_tight(), run.time)], scale, verdict)
+
+
+def _figures(loss: float, speed: float) -> dict[str, Any]:
+    return {"loss": loss, "speeds": [speed]}
 
 
 NEARBY = (0.5, 0.7, 1.4, 2.0)
 """Factors of the relative tolerance of runs that are as good."""
 
 
-def _asked_of(scene: trb.Scene, options: list[dict[str, Any]], duration: float) -> list[tuple[float, float]]:
+def _asked_of(scene: trb.Scene, options: list[dict[str, Any]], duration: float) -> list[dict[str, Any]]:
     runs = [bounded_run(trb.Simulation(scene, **one), duration, MOST_TIGHT_STEPS, watched=False) for one in options]
-    return [run.asked for run in runs if run.status == "done"]
+    return [_figures(*run.asked) for run in runs if run.status == "done"]
 
 
 def _error_of_mean(values: np.ndarray) -> float:
@@ -262,7 +254,7 @@ def bounded_run(
     place = sim.state
     found: list[str] = []
     length = duration / pieces
-    watch = Watch(sim, sim.bearings[0], begin + length, found) if Watch is not None and watched else None
+    watch = Watch(sim, sim.bearings[0], begin + length, found) if watched else None
     looks = np.linspace(0.0, duration, 17 if pieces == 1 else pieces + 1)[1:] + begin
     began, half = clock.process_time(), (begin, 0)
     # a run that is cut short is looked at as often as a whole one, so that no exchange of energy is missed
@@ -311,12 +303,10 @@ def bounded_run(
         lost = (1.0 - share) * (_sum(earlier, "loss_") - _sum(first, "loss_")) + share * run.loss
         path = (1.0 - share) * _path(first, earlier) + share * _path(first, last)
         run.asked = lost, path / _nominal_path(sim, duration)
-    if "cage_position" in last:
-        run.cage = (float(last["cage_position"][0]), float(last["cage_position"][1]))
     return run
 
 
-def _look(watch: Any, run: Run, *, final: bool = False) -> bool:
+def _look(watch: Watch | None, run: Run, *, final: bool = False) -> bool:
     """What the program's own watch says now; whether it ends the run."""
     if watch is None:
         return False
