@@ -279,3 +279,23 @@ def test_what_it_takes() -> None:
     assert "left shaft m6" in str(found)
     assert "m6" in found._repr_html_()
     assert [bearing.end_play for bearing in found.subject.bearings] == pytest.approx([-20e-6, -20e-6])
+
+
+def test_a_spring_takes_up_the_growth() -> None:
+    """A spring without stiffness keeps its force; one with stiffness changes it by that of its way."""
+    warm = trb.Temperatures(shaft_c=80.0, inner_ring_c=80.0, rollers_c=80.0, outer_ring_c=40.0, housing_c=40.0)
+    one = pair()
+    for stiffness in (0.0, 2e5):  # the bearings give way, too, by 0.2 % of the spring's way
+        spring = trb.PreloadSpring(force=1500.0, stiffness=stiffness)
+        left, right = one.bearings
+        sprung = one.replace(bearings=(left.replace(end_play=0.0), right.replace(end_play=0.0, spring=spring)))
+        found = trb.fit(sprung, trb.Mounting(**SEAT), temperatures=warm)
+        way = found.plays["way of the spring"]["operating"].mean
+        assert way < -50e-6
+        cold, hot = (trb.equilibrium(subject)["right"].axial_load for subject in (sprung, found.subject))
+        assert hot - cold == pytest.approx(-stiffness * way, rel=4e-3, abs=1e-3)
+    left, right = one.bearings
+    soft = right.replace(end_play=0.0, spring=trb.PreloadSpring(force=10.0, stiffness=1e7))
+    cooled = trb.Temperatures(shaft_c=20.0, inner_ring_c=20.0, rollers_c=20.0, outer_ring_c=80.0, housing_c=80.0)
+    with pytest.raises(trb.InputError, match="force"):
+        trb.fit(one.replace(bearings=(left.replace(end_play=0.0), soft)), trb.Mounting(**SEAT), temperatures=cooled)

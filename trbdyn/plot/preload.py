@@ -30,7 +30,7 @@ def draw_preload_over(found: Any) -> Any:
                 at, [1e6 * p.low for p in plays], [1e6 * p.high for p in plays], color=COLOURS[k], alpha=0.25, lw=0.0
             )
             play.plot(at, [1e6 * p.mean for p in plays], color=COLOURS[k], ls=LINES[k % len(LINES)], label=label)
-            for crossing in found.lost[name]:
+            for crossing in found.lost.get(name, ()):
                 play.axvline(crossing, color=GREY, lw=0.8, ls=":")
         play.axhline(0.0, color=GREY, lw=0.8)
         play.set(ylabel="play, negative: preload (µm)", title="play and 99 % of the parts")

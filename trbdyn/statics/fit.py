@@ -32,6 +32,10 @@ SIGMAS: Final = 6.0
 makes one part in 370 outside of its limits."""
 DRAWS: Final = 4096
 """Draws of all diameters; each costs some multiplications."""
+END_PLAY: Final = "end play"
+WAY: Final = "way of the spring"
+"""Names of the play of all tapered bearings of a shaft together: where a spring presses an outer ring, this ring takes up the
+play by sliding, back where the play is negative."""
 BAND: Final = (0.005, 0.995)
 """Quantiles that a band lies between."""
 
@@ -128,10 +132,10 @@ class Fit(Mapping[str, BearingFit], Displayed):
     ----------
     subject : Bearing, Scene or Assembly
         With its play of operation in the mean: `Bearing.radial_clearance` of a cylindrical bearing, `ShaftBearing.end_play` of
-        tapered ones.
+        tapered ones; where a spring presses one, its force at the place where rings and rollers touch in operation.
     plays : dict of str to dict of str to Play
         ``mounted`` and ``operating`` play: of each cylindrical bearing by its name, of all tapered ones together as
-        ``end play``. One tapered bearing alone has none.
+        ``end play``, or ``way of the spring`` where a spring takes it up. One tapered bearing alone has none.
     """
 
     def __init__(self, bearings: Mapping[str, BearingFit], plays: Mapping[str, dict[str, Play]], subject: Any) -> None:
@@ -277,7 +281,8 @@ def fit(
         means[name] = float(operating[name].mean())
     groups = {name: [name] for name, bearing in bearings.items() if bearing.is_cylindrical}
     if places:
-        groups["end play"] = [name for name in bearings if name not in groups]
+        sprung = any(one.spring is not None for one, _ in places.values())
+        groups[WAY if sprung else END_PLAY] = [name for name in bearings if name not in groups]
     plays = {
         title: {
             "mounted": Play.of(np.sum([mounted[name] for name in names], axis=0)),
@@ -487,6 +492,9 @@ def _in_operation(subject: Bearing | Subject, means: Mapping[str, float]) -> Any
             subject = subject.with_part(prefix, bearing=part.bearing.replace(radial_clearance=play))
         elif isinstance(part, ShaftBearing) and part.spring is None:
             subject = subject.with_part(prefix, end_play=play)
+        elif isinstance(part, ShaftBearing) and part.spring is not None:
+            spring = part.spring  # less play pushes the ring back, which compresses the spring
+            subject = subject.with_part(prefix, spring=spring.replace(force=spring.force - spring.stiffness * play))
     return subject
 
 

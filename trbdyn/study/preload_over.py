@@ -26,7 +26,7 @@ from trbdyn.run.rating import rating
 from trbdyn.run.simulation import Simulation
 from trbdyn.standards.sheet import Rating, life_text
 from trbdyn.statics.assembly import equilibrium, stiffness
-from trbdyn.statics.fit import Fit, fit
+from trbdyn.statics.fit import WAY, Fit, fit
 from trbdyn.study.definition import Base
 from trbdyn.study.heat_network import film_temperature, heat_of, network
 from trbdyn.study.thermal import HOTTEST, own_paths
@@ -371,7 +371,7 @@ class _Warm:
 
     def lost(self, rows: Sequence[AtTemperature]) -> dict[str, tuple[float, ...]]:
         """Temperatures at which plays change their sign, between each two rows (C)."""
-        crossings: dict[str, list[float]] = {name: [] for name in rows[0].plays}
+        crossings: dict[str, list[float]] = {name: [] for name in rows[0].plays if name != WAY}
         for before, after in pairwise(rows):
             for name, found in crossings.items():
                 one, other = before.plays[name], after.plays[name]
