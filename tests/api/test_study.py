@@ -545,7 +545,7 @@ class TestCommand:
 
     @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
     def test_ctrl_c_ends_cleanly_and_resume_goes_on(self, tmp_path: Path) -> None:
-        kind = '[study.grid]\n"scene.speed_rpm" = [1000.0, 2000.0, 3000.0]\n"bearing.cage.mass" = [0.1, 0.2, 0.3, 0.4]'
+        kind = '[study.grid]\n"scene.speed_rpm" = [1000.0, 2000.0, 3000.0]\n"bearing.cage.mass" = [0.1, 0.2]'
         file = self.write(tmp_path / "many.toml", kind)
         file.write_text(file.read_text().replace("duration = 4e-3", "duration = 0.02"))
         out = tmp_path / "out"
@@ -561,12 +561,12 @@ class TestCommand:
         assert "the cases that are done are kept" in said
         assert f"-m trbdyn sweep {file} -o {out}" in said
         done = [out / entry.file for entry in read_lines(out / INDEX)]
-        assert 1 <= len(done) < 12
+        assert 1 <= len(done) < 6
         assert not list(out.glob(".*.part"))
         assert set(done) <= set(out.glob("*.h5"))
         before = {path: path.stat().st_mtime_ns for path in done}
         assert main(["sweep", str(file), "-o", str(out), "--quiet"]) == 0
-        assert len([json.loads(line) for line in (out / INDEX).read_text().splitlines()]) == 12
+        assert len([json.loads(line) for line in (out / INDEX).read_text().splitlines()]) == 6
         assert {path: path.stat().st_mtime_ns for path in before} == before
 
 

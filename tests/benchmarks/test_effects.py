@@ -1,4 +1,7 @@
-"""The benchmark of effects runs and writes what it promises; what is off is not evaluated; code can still be taken out."""
+"""The benchmark of effects runs and writes what it promises; what is off is not evaluated; code can still be taken out.
+
+The benchmark itself is slow: every change runs it once by `make bench SMOKE=1`.
+"""
 
 from __future__ import annotations
 
@@ -27,12 +30,14 @@ def effects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_every_entry_is_described(effects: dict[str, Any]) -> None:
     assert effects["schema"] == "trbdyn-benchmark-1"
     for row in [*effects["results"], effects["summary"]]:
         assert set(row) <= set(effects["columns"])
 
 
+@pytest.mark.slow
 def test_effects_have_their_figures(effects: dict[str, Any]) -> None:
     found = effects["summary"]["effects"]
     assert set(found) == {"thermal", "gravity"}
@@ -40,6 +45,7 @@ def test_effects_have_their_figures(effects: dict[str, Any]) -> None:
         assert set(figures) == {"time_ratio_off", "evaluations_off", "share"}
 
 
+@pytest.mark.slow
 def test_what_is_off_is_not_evaluated(effects: dict[str, Any]) -> None:
     for row in effects["results"]:
         assert row["evaluations_off"] == 0

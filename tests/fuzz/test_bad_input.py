@@ -376,7 +376,7 @@ def test_damaged_checkpoints(files: tuple[bytes, bytes, Path], data: st.DataObje
         checkpoint.read(path)
 
 
-@settings(parent=COMMON, max_examples=150)
+@settings(parent=COMMON, max_examples=60)
 @given(data=st.data())
 def test_damaged_results(files: tuple[bytes, bytes, Path], data: st.DataObject) -> None:
     """A damaged result is refused, or read with the damage in its numbers; nothing else is raised."""

@@ -112,8 +112,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("name", "read", "count"),
     [
-        ("run.h5", read_result, 120),
-        ("cut.h5", read_result, 60),
+        ("run.h5", read_result, 60),
+        ("cut.h5", read_result, 40),
         ("cut.h5.checkpoint", read_checkpoint, 100),
         ("observables.nc", read_dataset, 60),
         ("index.jsonl", read_index, 60),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -49,13 +50,20 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> trb.Result:
     return run(tmp_path_factory.mktemp("reference") / "run.h5")
 
 
-@pytest.fixture
-def broken(tmp_path: Path) -> Path:
-    """A run that an exception has ended half way, with its checkpoints."""
-    path = tmp_path / "run.h5"
+@pytest.fixture(scope="module")
+def cut(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a run that an exception has ended half way."""
+    folder = tmp_path_factory.mktemp("cut")
     with pytest.raises(Cut):
-        run(path, callback=cut_after(0.006))
-    return path
+        run(folder / "run.h5", callback=cut_after(0.006))
+    return folder
+
+
+@pytest.fixture
+def broken(cut: Path, tmp_path: Path) -> Path:
+    """A copy of this run with its checkpoints."""
+    shutil.copytree(cut, tmp_path, dirs_exist_ok=True)
+    return tmp_path / "run.h5"
 
 
 def same(result: trb.Result, reference: trb.Result) -> None:

@@ -101,6 +101,7 @@ def test_a_reader_follows_live(tmp_path: Path, uninterrupted: trb.Result) -> Non
     process = start(runs.RUN, path)
     seen: list[int] = []
     while process.poll() is None:
+        time.sleep(0.03)
         if path.exists():
             live = trb.load(path)
             np.testing.assert_array_equal(live.time, uninterrupted.time[: len(live)])
