@@ -60,6 +60,41 @@ def test_contacts_records_systems_and_states(name: str) -> None:
     assert sim._shown().text()
 
 
+def test_a_run_goes_on_from_a_state(name: str, tmp_path: Path) -> None:
+    """The same bits as the simulation that the state is from, started again there; also through a file and a checkpoint."""
+    sim = simulation(name)
+    sim.run(duration=1e-3)
+    subject = SUBJECTS[name].replace(start=trb.Start.state(sim.state))
+    sim.restart()
+    assert type(subject).from_json(subject.to_json()) == subject
+    other = trb.Simulation(subject, accuracy="fast")
+    assert other.time == sim.time == 1e-3
+    assert other.state.shaft_angle == pytest.approx(sim.state.shaft_angle, rel=1e-12)
+    how: dict[str, Any] = {"duration": 1e-3, "checkpoint_every": 5e-4}
+    one, two = sim.run(**how), other.run(**how, output=tmp_path / "run.h5")
+    assert np.array_equal(sim.state.vector, other.state.vector)
+    assert np.array_equal(sim.state.vector, other.state.vector)
+    for first, second in zip(one.parts, two.parts, strict=True):
+        assert np.array_equal(first["time"], second["time"])
+        assert first["cage_position"] == pytest.approx(second["cage_position"], rel=1e-12)  # a file has 12 digits of it
+
+
+def test_a_pair_goes_on_from_a_state_of_its_own_alone() -> None:
+    sim = simulation("pair")
+    sim.run(duration=2e-4)
+    state = trb.Start.state(sim.state)
+    for change, said in (
+        ({"state_vector": state.state_vector[1:]}, "must have"),
+        ({"time": -1.0}, "where the bearings start"),
+        ({"shaft_angle": 1.0}, "began otherwise"),
+        ({"displacement": (1e-5, 0.0, 0.0, 0.0, 0.0)}, "began otherwise"),
+    ):
+        with pytest.raises(InputError, match=said):
+            trb.Simulation(PAIR.replace(start=state.replace(**change)))
+    with pytest.raises(InputError, match="start of each bearing"):
+        PAIR.replace(start=trb.Start.whirl(0.5))
+
+
 def each_view(sim: Any) -> list[Any]:
     view = sim.view()
     return list(view.values()) if isinstance(view, dict) else [view]

@@ -477,6 +477,9 @@ class Assembly(TurningRings, Model):
     gravity : tuple of float or History, shape (3,)
         Acceleration of gravity (m/s2), for the weight of the shaft; that of rollers and cages is a choice of each bearing's
         effects.
+    start : Start, optional
+        A state of a simulation of this assembly from which runs go on: ``Start.state(simulation.state)``. The starts of the
+        bearings stay those of the simulation that the state is from, as housings and springs count from its equilibrium.
 
     Raises
     ------
@@ -499,6 +502,7 @@ class Assembly(TurningRings, Model):
     outer_speed_rpm: Annotated[Quantity, unit("rpm")] = 0.0
     torque: Annotated[Quantity | None, unit("N m")] = None
     gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
+    start: Start | None = None
 
     @classmethod
     def pair(
@@ -688,6 +692,9 @@ class Assembly(TurningRings, Model):
         if len(self.bearings) < 2:
             limit = "must be two or more; a Scene with ring = 'free' is a shaft on one bearing"
             raise InputError.of("bearings", len(self.bearings), limit)
+        if self.start is not None and self.start.kind != "state":
+            limit = "must be 'state': how rollers and cages start is said by the start of each bearing"
+            raise InputError.of(("start", "kind"), self.start.kind, limit)
         self.check_speeds()
         self._check_names()
         self._check_places()

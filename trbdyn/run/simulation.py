@@ -121,8 +121,8 @@ class Simulation(Displayed, Generic[R]):
         self._totals: dict[str, float] = {}
         self._counted: dict[str, int] = {}
         self._accounts: dict[str, Account] = {}
-        self._begin(self.scene.start.time, self._seated.vector)
-        self._reached = self.scene.start.time
+        self._begin(self._seated.time, self._seated.vector)
+        self._reached = self._seated.time
 
     def __repr__(self) -> str:
         return f"<Simulation: {self._title}; at {self.time:g} s, accuracy {self.options.accuracy!r}>"

@@ -209,10 +209,13 @@ class Seated:
         The bearings.
     vector : ndarray
         The state at the start.
+    time : float
+        When that is (s).
     """
 
     bearings: tuple[SeatedBearing, ...]
     vector: Array
+    time: float
 
     @property
     def moves(self) -> bool:
@@ -252,7 +255,7 @@ def seat_alone(scene: Scene, instruction_set: str = "") -> Seated:
     said = (pressed_rollers(model, scene, motion, vector), placed_again(model, scene, motion))
     unusual_there = (*unusual(scene, equilibrium), *(text for text in said if text))
     bearing = SeatedBearing("", 0, scene, model, motion, equilibrium, model.state_layout(), unusual_there)
-    return Seated((bearing,), vector)
+    return Seated((bearing,), vector, scene.start.time)
 
 
 def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
@@ -297,7 +300,7 @@ def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
         )
         first += models[number].record_length
     put_axis(StateView(layouts[0], vector), shaft[:3], axis_of(shaft[3:]), 0.0)
-    return Seated(tuple(bearings), vector)
+    return Seated(tuple(bearings), vector, seats[0].scene.start.time)
 
 
 def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, Load]) -> None:

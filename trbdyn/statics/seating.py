@@ -6,6 +6,7 @@ way round, all that belongs to the shaft is turned by half a turn about x.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import singledispatch
 from typing import Any
 
@@ -13,11 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
+from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.flatten import Load
 from trbdyn.model.motion import History
 from trbdyn.model.ring_body import RingBody
 from trbdyn.model.scene import Scene
+from trbdyn.model.start import Start
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 from trbdyn.statics.seat import Seat, Seated, Seating, seat_all, seat_alone
 from trbdyn.statics.shaft_balance import axis_of, turns_of
@@ -47,7 +50,39 @@ seated.register(Seating, seat_all)
 
 @seated.register(Assembly)
 def _of_assembly(assembly: Assembly, instruction_set: str = "") -> Seated:
-    return seat_all(seating_of(assembly), instruction_set)
+    found = seat_all(seating_of(assembly), instruction_set)
+    return found if assembly.start is None else _gone_on(found, assembly.start)
+
+
+def _gone_on(seated: Seated, start: Start) -> Seated:
+    """Seated bearings in a state of a simulation that has begun as they do.
+
+    Raises
+    ------
+    InputError
+        If the state is not one of such a simulation.
+    """
+    vector, first = np.array(start.state_vector), seated.bearings[0]
+    if vector.size != seated.vector.size:
+        limit = f"must have {seated.vector.size} for these bearings"
+        raise InputError.of(("start", "state_vector"), f"{vector.size} numbers", limit)
+    if start.time < seated.time:
+        limit = f"must be >= {seated.time:g}, where the bearings start (s)"
+        raise InputError.of(("start", "time"), start.time, limit)
+    own = {
+        "shaft_angle": first.scene.start_shaft_angle + first.scene.shaft_turn(start.time),
+        "displacement": first.motion.displacement(start.time),
+        "housing_load": np.zeros(5) if first.scene.housing is None else first.motion.housing_load,
+    }
+    for name, value in own.items():
+        given = getattr(start, name)
+        if given is not None and not np.allclose(given, value, rtol=1e-6, atol=1e-8):
+            limit = (
+                f"must be {np.array2string(np.asarray(value), precision=6)}, which follows from the starts of the bearings: the "
+                "state is from a simulation that began otherwise"
+            )
+            raise InputError.of(("start", name), given, limit)
+    return replace(seated, vector=vector, time=start.time)
 
 
 def seating_of(assembly: Assembly) -> Seating:
