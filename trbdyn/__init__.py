@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from trbdyn.model.pocket import Face as Face, OtherPocket as OtherPocket, Pocket as Pocket
     from trbdyn.model.ring_body import Housing as Housing, RingBody as RingBody
     from trbdyn.model.scene import RotatingLoad as RotatingLoad, Scene as Scene, Start as Start
+    from trbdyn.model.spectrum import LoadCase as LoadCase, Spectrum as Spectrum
     from trbdyn.plot import animation as animation
     from trbdyn.reporting import report as report
     from trbdyn.results import observables as observables
@@ -81,6 +82,7 @@ if TYPE_CHECKING:
     from trbdyn.study.least_load import least_load as least_load
     from trbdyn.study.planning import plan as plan
     from trbdyn.study.preload_over import preload_over as preload_over
+    from trbdyn.study.spectrum import series_table as series_table, spectrum as spectrum
     from trbdyn.study.surrogate import surrogate as surrogate
     from trbdyn.study.thermal import thermal as thermal
     from trbdyn.study.torque_map import torque_map as torque_map

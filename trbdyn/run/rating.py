@@ -11,11 +11,13 @@ from trbdyn.base.expected import expect
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.motion import History, value_at
 from trbdyn.model.scene import Scene
+from trbdyn.model.spectrum import Spectrum
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.replay import Replay
 from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, lamina_loads, ring_loads, sheet
-from trbdyn.standards.system import SystemRating, system_of, system_sheet
+from trbdyn.standards.spectrum import SpectrumRating, over_cases
+from trbdyn.standards.system import SystemRating, loading_of, system_of, system_sheet
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
 
 RECORDS: Final = 60
@@ -44,14 +46,25 @@ def rating(
 ) -> SystemRating: ...
 
 
+@overload
 def rating(
-    subject: Scene | Result | Assembly | AssemblyResult | ShaftEquilibrium,
+    subject: Spectrum,
     *,
     cleanliness: str | None = None,
     filtered: bool | None = None,
     contamination: float | None = None,
     reliability: float = 90.0,
-) -> Rating | SystemRating:
+) -> SpectrumRating | SystemRating: ...
+
+
+def rating(
+    subject: Scene | Result | Assembly | AssemblyResult | ShaftEquilibrium | Spectrum,
+    *,
+    cleanliness: str | None = None,
+    filtered: bool | None = None,
+    contamination: float | None = None,
+    reliability: float = 90.0,
+) -> Rating | SpectrumRating | SystemRating:
     """What every catalogue program answers first: equivalent load, rating lives, static safety, kappa, limits of speed.
 
     C, C0 and the factors are those of ``bearing.ratings`` (`Bearing.from_catalogue` keeps them there); what is not known is
@@ -60,9 +73,9 @@ def rating(
 
     Parameters
     ----------
-    subject : Scene, Result, Assembly, AssemblyResult or ShaftEquilibrium
+    subject : Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium or Spectrum
         A result needs the groups cage and rollers. Of an assembly each bearing has a sheet, under the loads of the equilibrium or
-        of its run, and the whole has lives.
+        of its run, and the whole has lives. Of a spectrum the damages of its load cases add up.
     cleanliness : {'13/10', '15/12', '17/14', '19/16', '21/18'}, optional
         Particles in the oil, the last two numbers of ISO 4406; that of the scene's lubricant by default, and 17/14 where that
         has none, which is said with what a neighbouring class gives.
@@ -75,8 +88,9 @@ def rating(
 
     Returns
     -------
-    Rating or SystemRating
-        Prints as a table; `Rating.rows` has every number with its symbol, unit and source. Of an assembly a `SystemRating`.
+    Rating, SystemRating or SpectrumRating
+        Prints as a table; `Rating.rows` has every number with its symbol, unit and source. Of an assembly a `SystemRating`, of a
+        spectrum of one bearing a `SpectrumRating`, of a spectrum of an assembly a `SystemRating` of these.
 
     Raises
     ------
@@ -104,7 +118,9 @@ def rating(
         "contamination": contamination,
         "reliability": reliability,
     }
-    expect("subject", subject, Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium)
+    expect("subject", subject, Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium, Spectrum)
+    if isinstance(subject, Spectrum):
+        return _of_spectrum(subject, options)
     if isinstance(subject, Scene):
         return sheet(subject, at_equilibrium(subject), **options)
     if isinstance(subject, Result):
@@ -114,6 +130,23 @@ def rating(
     if isinstance(subject, ShaftEquilibrium):
         return system_sheet(subject, **options)
     return system_sheet(equilibrium(subject), **options)
+
+
+def _of_spectrum(spectrum: Spectrum, options: dict[str, Any]) -> SpectrumRating | SystemRating:
+    names = [one.name for one in spectrum.cases]
+    loadings = [_loadings(one.subject) for one in spectrum.cases]
+    each = {
+        bearing: over_cases(names, spectrum.shares, [one[bearing] for one in loadings], **options)
+        for bearing in loadings[0]
+    }
+    return each[""] if "" in each else system_of(each)
+
+
+def _loadings(subject: Scene | Assembly) -> dict[str, tuple[Scene, Loading]]:
+    """What each bearing carries in its equilibrium, by its name; that of one bearing alone is empty."""
+    if isinstance(subject, Scene):
+        return {"": (subject, at_equilibrium(subject))}
+    return {one.name: (one.scene, loading_of(one)) for one in equilibrium(subject).bearings}
 
 
 def of_run(result: Result) -> Loading:

@@ -325,7 +325,24 @@ def turning_against_load(scene: Scene) -> tuple[bool, bool]:
     return (turning[0], turning[1]) if any(turning) else (False, True)
 
 
-def sheet(
+def sheet(scene: Scene, loading: Loading, **options: Any) -> Rating:
+    """The sheet of a scene under a loading; see `trbdyn.rating`."""
+    return rated(scene, loading, **options)[0]
+
+
+def contact_ratings(scene: Scene) -> Array:
+    """Q_ce and Q_ci of its bearing (N), see `lamina.contact_ratings`."""
+    bearing = scene.bearing
+    return lamina.contact_ratings(
+        _factors(scene, {})[0],
+        n_rollers=bearing.n_rollers,
+        roller_diameter=bearing.roller.diameter,
+        pitch_diameter=bearing.pitch_diameter,
+        angle=math.radians(bearing.cup_half_angle_deg),
+    )
+
+
+def rated(
     scene: Scene,
     loading: Loading,
     *,
@@ -333,8 +350,8 @@ def sheet(
     filtered: bool | None = None,
     contamination: float | None = None,
     reliability: float = 90.0,
-) -> Rating:
-    """The sheet of a scene under a loading; see `trbdyn.rating`."""
+) -> tuple[Rating, Array | None]:
+    """The sheet, and the life factor of each lamina; None where there is none."""
     notes: dict[str, str] = {}
     if scene.outer_turns:
         notes["speed_rpm"] = "of the inner ring relative to the outer ring"
@@ -366,11 +383,8 @@ def sheet(
         )
 
     life = _finite(iso281.basic_life(C, P))
-    ratings = lamina.contact_ratings(
-        C, n_rollers=bearing.n_rollers, roller_diameter=bearing.roller.diameter, pitch_diameter=pitch, angle=angle
-    )
     laminas = lamina.LaminaLoads.of(
-        loading.lamina_loads, ratings, weights=loading.weights, turning=turning_against_load(scene)
+        loading.lamina_loads, contact_ratings(scene), weights=loading.weights, turning=turning_against_load(scene)
     )
     reference = _finite(laminas.reference_life)
     notes["reference_life"] = f"ISO 16281:2025, {lamina.LAMINAS} laminas, {loading.source}"
@@ -383,10 +397,10 @@ def sheet(
     factor, e_C = _life_factor(kappa, oil, Cu, P, pitch, notes, said)
     a1 = iso281.reliability_factor(reliability)
     notes["reliability_factor"] = f"reliability {reliability:g} %"
-    modified_reference = None
+    modified_reference, factors = None, None
     if factor is not None and reference is not None:
         parts = laminas.equivalent_loads(n_rollers=bearing.n_rollers, angle=angle)
-        factors = [_life_factor(kappa, oil, Cu, float(part), pitch, {}, [])[0] or 1.0 for part in parts]
+        factors = np.array([_life_factor(kappa, oil, Cu, float(part), pitch, {}, [])[0] or 1.0 for part in parts])
         modified_reference = a1 * laminas.modified_life(factors.__getitem__)
     modified = _times(a1, factor, life)
     if modified is not None and oil.assumed:
@@ -407,7 +421,7 @@ def sheet(
     safety = PERMISSIBLE_PRESSURE / loading.largest_pressure if loading.largest_pressure > 0.0 else None
     if axial <= 0.0 and radial <= 0.0:
         notes["life"] = "no load"
-    return Rating(
+    found = Rating(
         axial_load=axial,
         radial_load=radial,
         speed_rpm=speed,
@@ -443,6 +457,7 @@ def sheet(
         notes=notes,
         **over,
     )
+    return found, factors
 
 
 def _factors(

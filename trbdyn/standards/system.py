@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.standards.sheet import WHICH_LIFE, Loading, Rating, at_equilibrium, life_text, sheet
+from trbdyn.standards.spectrum import SpectrumRating
 from trbdyn.statics.assembly import BearingOnShaft, ShaftEquilibrium
 
 WEIBULL_SLOPE: Final = 9.0 / 8.0
@@ -22,7 +23,7 @@ class SystemRating(Displayed):
 
     Attributes
     ----------
-    bearings : dict of str to Rating
+    bearings : dict of str to Rating or SpectrumRating
         Sheet of each bearing, by its name.
     life_hours, modified_life_hours : float or None
         Basic and modified rating life of the whole (h); None where it is infinite or a bearing has none.
@@ -30,7 +31,7 @@ class SystemRating(Displayed):
         The same with the reference lives of ISO 16281 (h).
     """
 
-    bearings: dict[str, Rating]
+    bearings: Mapping[str, Rating | SpectrumRating]
     life_hours: float | None
     modified_life_hours: float | None
     reference_life_hours: float | None
@@ -40,7 +41,7 @@ class SystemRating(Displayed):
         return self._shown().text()
 
     def _shown(self) -> Shown:
-        def row(name: str, one: Rating | SystemRating, *loads: str) -> tuple[str, ...]:
+        def row(name: str, one: Rating | SpectrumRating | SystemRating, *loads: str) -> tuple[str, ...]:
             lives = [getattr(one, life) for life in _LIVES]
             return (name, *(loads or ("", "", "")), *map(life_text, lives))
 
@@ -80,7 +81,7 @@ def system_sheet(found: ShaftEquilibrium, **options: Any) -> SystemRating:
     return system_of({one.name: sheet(one.scene, loading_of(one), **options) for one in found.bearings})
 
 
-def system_of(sheets: dict[str, Rating]) -> SystemRating:
+def system_of(sheets: Mapping[str, Rating | SpectrumRating]) -> SystemRating:
     """The sheets of all bearings of a shaft, and the lives of the whole."""
     unknown = {life: any(_lacks(one, life) for one in sheets.values()) for life in _LIVES}
     lives = {
@@ -89,7 +90,7 @@ def system_of(sheets: dict[str, Rating]) -> SystemRating:
     return SystemRating(bearings=sheets, **lives)
 
 
-def _lacks(one: Rating, life: str) -> bool:
+def _lacks(one: Rating | SpectrumRating, life: str) -> bool:
     """Whether a life cannot be told, though the bearing is loaded and turns."""
     return getattr(one, life) is None and one.life_hours is not None
 
