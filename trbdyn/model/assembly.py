@@ -184,7 +184,8 @@ class ShaftBearing(Model):
     start : Start
         How rollers and cage start in a run.
     growth : Growth, optional
-        Temperatures of the parts, as in a `Scene`; they change the plays of the pockets, not the end play.
+        Temperatures of the parts, as in a `Scene`; they change the plays of the pockets. `trbdyn.fit` tells what they make of
+        the end play.
     elastic_cage : ElasticCage, optional
         Deform the cage in runs, as in a `Scene`.
     housing : Housing, optional
