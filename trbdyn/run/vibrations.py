@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 SHARE: Final = 0.25
 """Share of the energy fed into vibrations that the integration may take in place of damping: so much of the vibrations, and of
 what they do to losses and loads, is missing (N12)."""
+GROWING: Final = 0.9
+"""The same from which on vibrations would grow to more than ten times what is left of them, longer than a probe lasts (N12)."""
 MEMORY: Final = 5e-3
 """Time over which vibrations add up before the damping of a lightly loaded contact takes them (s)."""
 SIZE: Final = 0.01

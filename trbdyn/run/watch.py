@@ -312,8 +312,8 @@ class Watch:
             account.probe_steps += account.probed.steps if account.probed is not None else most
             account.probed_size = size
         damped = self._damped(now)
-        # without damping large vibrations go on growing: a difference is then said although it is within the scatter
-        growing = not damped and size > vibrations.SIZE
+        # with next to no damping large vibrations go on growing: a difference is then said although it is within the scatter
+        growing = share > vibrations.GROWING and size > vibrations.SIZE
         if account.probed is not None and not account.probed.notable(certain=not growing):
             return
         took = f"takes {100.0 * share:.3g} % of the energy of these vibrations" + (
