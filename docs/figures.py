@@ -1,26 +1,31 @@
 """Pictures of README and site, made again: ``make figures``, or ``python docs/figures.py report.png`` for one of them.
 
-Each picture shows a run. Beside the pictures lies `shown.json`: what the scene of each picture gave when it was made. A test
+Beside the pictures lies `shown.json`: numbers that belong to what each picture shows, as they were when it was made. A test
 computes these numbers again, so that a picture which is older than what it shows is named. Pictures of pages need Chromium.
+Pictures of benchmarks take up to hours and a quiet machine: they are made only where they are named.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Final
 
 import trbdyn as trb
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "benchmarks"))
 SHOWN = ROOT / "docs" / "pictures" / "shown.json"
-NUMBERS: Final = ("torque", "power_loss", "cage_speed_ratio", "outer_load_mean", "inner_load_mean", "rib_load_mean")
+MOTION: Final = ("cage_speed_ratio", "outer_load_mean", "inner_load_mean", "rib_load_mean")
+FRICTION: Final = (*MOTION, "torque", "power_loss")
+COST: Final = (*MOTION, "steps")
 TURNS: Final = 50.0
 TOP: Final = ("cage_locus", "load_zone")
 """Pictures of the report: its top alone is photographed."""
@@ -40,11 +45,31 @@ def slow() -> trb.Scene:
     return trb.cases.scene_30310(100.0, 4930.0)
 
 
+def paper() -> trb.Scene:
+    """A point of the paper's figure 12a."""
+    from paper.points import FIGURES, Point
+
+    return Point(FIGURES["12a"][-1], "whirl").scene()
+
+
 @cache
-def numbers(of: Callable[[], trb.Scene]) -> dict[str, float]:
+def summary(of: Callable[[], trb.Scene]) -> dict[str, float]:
     """What a scene gives, from a short run."""
-    values = trb.Simulation(of(), accuracy="fast").run(revolutions=1.0).summary()
-    return {name: values[name] for name in NUMBERS}
+    return trb.Simulation(of(), accuracy="fast").run(revolutions=1.0).summary()
+
+
+def numbers(of: Callable[[], trb.Scene], names: tuple[str, ...] = FRICTION) -> dict[str, float]:
+    """Those of a scene's numbers that a picture shows."""
+    return {name: summary(of)[name] for name in names}
+
+
+def laws() -> dict[str, float]:
+    """Laws of rolling resistance at the ends and in the middle of their picture."""
+    from rolling_laws import LAWS
+
+    return {
+        f"{name}, W = {w:g}": float(law(w, 1e-10, 4460.0)) for name, law in LAWS.items() for w in (2e-7, 5e-5, 4e-4)
+    }
 
 
 @cache
@@ -115,25 +140,40 @@ def stribeck(path: Path) -> None:
     found.picture(path, overwrite=True)
 
 
-PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], trb.Scene]]]] = {
-    "benchmarks/pictures/demo_cage_locus.png": (locus, scene),
-    "docs/pictures/report.png": (report, scene),
-    "docs/pictures/viewer.png": (viewer, scene),
-    "docs/pictures/app.png": (app, design),
-    "docs/pictures/stribeck.png": (stribeck, slow),
+def benchmark(*words: str) -> Callable[[Path], None]:
+    """A picture that a script of the benchmarks makes."""
+
+    def make(_: Path) -> None:
+        subprocess.run([sys.executable, *words], cwd=ROOT / "benchmarks", check=True)
+
+    return make
+
+
+PICTURES: Final[dict[str, tuple[Callable[[Path], None], Callable[[], dict[str, float]]]]] = {
+    "benchmarks/pictures/demo_cage_locus.png": (locus, partial(numbers, scene)),
+    "docs/pictures/report.png": (report, partial(numbers, scene)),
+    "docs/pictures/viewer.png": (viewer, partial(numbers, scene)),
+    "docs/pictures/stribeck.png": (stribeck, partial(numbers, slow)),
+    "docs/pictures/app.png": (app, partial(numbers, design)),
+    "benchmarks/pictures/cage_map.png": (benchmark("cage_map.py"), partial(numbers, scene, MOTION)),
+    "benchmarks/pictures/work_precision.png": (benchmark("work_precision.py"), partial(numbers, scene, COST)),
+    "benchmarks/pictures/rolling_laws.png": (benchmark("rolling_laws.py"), laws),
+    "benchmarks/paper/figures/fig_08a_12a.png": (benchmark("-m", "paper"), partial(numbers, paper, MOTION)),
 }
-"""Pictures, who makes them, and the scene whose numbers say whether they are old."""
+"""Pictures, who makes them, and the numbers that say whether they are old."""
+OWN: Final = (locus, report, viewer, stribeck, app)
+"""Makers of minutes, that need no name."""
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("names", nargs="*", help="files, without their folders; all by default")
+    parser.add_argument("names", nargs="*", help="files, without their folders; by default all but those of benchmarks")
     wanted = parser.parse_args().names
     shown = json.loads(SHOWN.read_text()) if SHOWN.exists() else {}
     for name, (make, of) in PICTURES.items():
-        if not wanted or Path(name).name in wanted:
+        if Path(name).name in wanted or (not wanted and make in OWN):
             make(ROOT / name)
-            shown[name] = numbers(of)
+            shown[name] = of()
             SHOWN.write_text(json.dumps(shown, indent=2) + "\n")
             print(name)
 

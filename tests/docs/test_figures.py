@@ -24,20 +24,36 @@ def figures() -> Any:
     return figures
 
 
+STEPS_SCATTER = 0.15
+"""Steps of a colliding run differ between machines by rounding; beyond this, costs in a picture are those of another solver."""
+
+
 def test_no_picture_is_older_than_what_it_shows(figures: Any) -> None:
     shown = json.loads(figures.SHOWN.read_text())
     old = []
-    for name, (_, scene) in figures.PICTURES.items():
+    for name, (_, numbers) in figures.PICTURES.items():
         assert (ROOT / name).exists(), name
-        now = figures.numbers(scene)
-        if name not in shown or any(now[key] != pytest.approx(shown[name][key], rel=0.01) for key in now):
-            old.append(name)
-    assert not old, f"make figures: {old}"
+        now, then = numbers(), shown.get(name, {})
+        if now.keys() != then.keys() or any(
+            now[key] != pytest.approx(then[key], rel=STEPS_SCATTER if key == "steps" else 0.01) for key in now
+        ):
+            old.append(Path(name).name)
+    assert not old, f"make figures FIGURES={' '.join(old)!r}"
 
 
-def test_every_picture_of_the_site_has_its_maker(figures: Any) -> None:
+def test_every_picture_has_its_maker(figures: Any) -> None:
+    """Those that README and site show, and those that lie in the folder of the site."""
     made = {(ROOT / name).resolve() for name in figures.PICTURES}
-    assert {path.resolve() for path in (ROOT / "docs" / "pictures").glob("*.png")} <= made
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    shown = {
+        (page.parent / place).resolve()
+        for page in pages
+        for place in re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", page.read_text(encoding="utf-8"))
+        if "://" not in place
+    }
+    lie = {path.resolve() for path in (ROOT / "docs" / "pictures").glob("*.png")}
+    assert len(shown) >= 8
+    assert shown | lie <= made
 
 
 def test_figures_of_the_readme(figures: Any) -> None:
