@@ -20,7 +20,16 @@ FOUND = sorted((HERE / "found").glob("*.json"))
 
 
 QUICK = {"filmed": (3,), "guided": (2,), "housed": (4,), "pair": (3,), "outer": (3,), "free": (3,), "cylindrical": (2,)}
-QUICK |= {"damped": (3,), "drop": (1,), "hub": (1,), "pitted": (4,), "repeating": (2,), "supported": (1,), "wide": (3,)}
+QUICK |= {
+    "damped": (3,),
+    "drop": (1,),
+    "hub": (1,),
+    "pitted": (4,),
+    "repeating": (2,),
+    "supported": (1,),
+    "wide": (3,),
+    "usual": (4,),
+}
 """Seeds of the scenes of each kind that are not among the slow tests; 0 of the others."""
 
 

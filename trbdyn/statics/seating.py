@@ -69,7 +69,7 @@ def _gone_on(seated: Seated, start: Start) -> Seated:
     if start.time < seated.time:
         limit = f"must be >= {seated.time:g}, where the bearings start (s)"
         raise InputError.of(("start", "time"), start.time, limit)
-    own = {
+    own: dict[str, Any] = {
         "shaft_angle": first.scene.start_shaft_angle + first.scene.shaft_turn(start.time),
         "displacement": first.motion.displacement(start.time),
         "housing_load": np.zeros(5) if first.scene.housing is None else first.motion.housing_load,

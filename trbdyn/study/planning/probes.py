@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 BATCHES: Final = 20
 """Batches of a probe that are compared."""
 TRANSIENT: Final = 0.25
-"""Share of a probe that is left away, in which the motion follows a change of the model."""
+"""Share of a probe that is left out of the averages, in which the motion follows a change of the model."""
 PATIENCE: Final = 4.0
 """A probe that takes so many times the computing time that was expected is ended."""
 
