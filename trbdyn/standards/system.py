@@ -51,6 +51,9 @@ class SystemRating(Displayed):
             for name, one in self.bearings.items()
         ]
         said = tuple(f"{name}: {text}" for name, one in self.bearings.items() for text in one.warnings)
+        worst = (f"{name}: {one.worst}" for name, one in self.bearings.items() if isinstance(one, SpectrumRating))
+        if cases := ", ".join(worst):
+            said = (f"P is the steady load with the same life; Fa and Fr are those of the worst case, {cases}.", *said)
         return Shown("ratings and lives", (head, *rows, row("all", self)), head=head, notes=(*said, WHICH_LIFE))
 
 
