@@ -15,6 +15,7 @@ from trbdyn.app.forms import open_case
 from trbdyn.app.jobs import Bench
 from trbdyn.app.outcome import case_of
 from trbdyn.app.tasks import TASKS
+from trbdyn.cli import main
 from trbdyn.errors import InputError
 from trbdyn.reporting import converter
 
@@ -106,6 +107,29 @@ def test_a_task_says_what_is_wrong_and_can_be_stopped(tmp_path: Path) -> None:
     ended(bench)
     assert job.state == "stopped"
     assert len(trb.load(job.folder / "run.h5")) > 1
+
+
+def test_a_plan_can_be_stopped(tmp_path: Path) -> None:
+    bench = Bench.open(tmp_path)
+    job = bench.start("run", "plan", arguments(Design(typed=dict(SHORT), planned=True)), {})
+    assert job is not None
+    while not job.text.startswith("looking"):
+        assert job.running
+        bench.look()
+        time.sleep(0.05)
+    time.sleep(1.0)
+    job.stop()
+    ended(bench)
+    assert (job.state, job.text) == ("stopped", "stopped")
+    bench.design.typed["scene.speed_rpm"] = "123"
+    bench.changed()
+    assert Bench.open(tmp_path).design == bench.design
+
+
+def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("trbdyn.app.find_spec", lambda name: None)
+    assert main(["app", "--no-browser"]) == 1
+    assert "pip install 'trbdyn[app]'" in capsys.readouterr().err
 
 
 def ended(bench: Bench) -> None:

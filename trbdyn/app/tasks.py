@@ -5,6 +5,7 @@ from __future__ import annotations
 import _thread
 import json
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable
@@ -63,11 +64,19 @@ def _listen(heard: Connection) -> None:
     try:
         while True:
             heard.recv()
-            _thread.interrupt_main()
+            _interrupt()
     except (EOFError, OSError):
-        _thread.interrupt_main()
+        _interrupt()
         time.sleep(LAST_WORDS)
         os._exit(1)
+
+
+def _interrupt() -> None:
+    """Ctrl-C for the main thread. Where the system has such signals it is a true one, which wakes a thread that waits."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+    else:
+        _thread.interrupt_main()
 
 
 def _run(
