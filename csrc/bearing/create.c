@@ -341,14 +341,6 @@ trb_status trb_model_set_drops(trb_model *m, const double *rows, int n_rows, int
   return fill_nodes(m, rows, message);
 }
 
-/* Mean of the vertices. */
-static trb_vec3 middle_of(const trb_polygon *p)
-{
-  trb_vec3 sum = {0, 0, 0};
-  for (int i = 0; i < p->n; i++) sum = trb_add(sum, trb_polygon_vertex(p, i));
-  return trb_scale(1.0 / p->n, sum);
-}
-
 trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, int n_columns, trb_message *message)
 {
   trb_modes *to = &m->modes;
@@ -357,11 +349,12 @@ trb_status trb_model_set_modes(trb_model *m, const double *rows, int n_modes, in
   if (n_modes <= 0) return TRB_OK;
   const trb_status status = trb_modes_read(to, m->n_rollers * m->n_slots, m->first_face[m->n_rollers], rows, n_modes, n_columns, message);
   if (status != TRB_OK) return status;
-  for (int j = 0; j < m->n_rollers; j++)
+  for (int j = 0, leader = 0; j < m->n_rollers; j++)
     for (int f = m->first_face[j]; f < m->first_face[j + 1]; f++) {
+      if (m->faces[f].n_facets > 0) leader = f;
       const int at = TRB_MODE_shapes + TRB_SHAPE * (j * m->n_slots + m->faces[f].slot);
       double   *shapes = to->shapes + (size_t)f * (size_t)n_modes * TRB_SHAPE_ROOM;
-      to->middle[f] = middle_of(&m->faces[f].surface);
+      to->middle[f] = m->faces[leader].middle; /* a surface moves as one */
       for (int i = 0; i < n_modes; i++)
         memcpy(shapes + (size_t)i * TRB_SHAPE_ROOM, rows + (size_t)i * (size_t)n_columns + at, TRB_SHAPE * sizeof *shapes);
     }

@@ -79,8 +79,12 @@ typedef struct trb_ring_body {
   int    is_outer;
 } trb_ring_body;
 
+/* A facet of a surface. Facets of one slot make one surface, and follow each other; each point of the roller meets the nearest of them. */
 typedef struct trb_pocket_face {
   trb_polygon surface;          /* in the frame of its pocket; its normal points towards the roller */
+  trb_vec3    middle;           /* mean of its vertices, m */
+  double      extent;           /* no point of it is further from there, m */
+  int         n_facets;         /* of the surface that begins with it; 0: it is not the first one of its surface */
   double      stiffness_factor; /* of the contact's stiffness */
   double      friction_factor;  /* of the contact's friction coefficient */
   int         part;             /* TRB_PART_* */

@@ -48,6 +48,14 @@ static int face_is_on(const trb_model *m, const trb_face *f)
   return m->params.with_cage > 0.0 && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
 }
 
+static void measure(trb_pocket_face *f)
+{
+  const trb_polygon *p = &f->surface;
+  f->middle = trb_polygon_middle(p);
+  f->extent = 0.0;
+  for (int i = 0; i < p->n; i++) f->extent = fmax(f->extent, trb_norm(trb_sub(trb_polygon_vertex(p, i), f->middle)));
+}
+
 static trb_polygon surface_of(const trb_face *f)
 {
   trb_polygon p = {.origin = trb_v(f->origin[0], f->origin[1], f->origin[2]),
@@ -57,6 +65,35 @@ static trb_polygon surface_of(const trb_face *f)
   p.normal = trb_cross(p.u, p.v);
   memcpy(p.outline, f->outline, sizeof p.outline);
   return p;
+}
+
+static int has_slot(const trb_model *m, int first, int end, int slot)
+{
+  for (int i = first; i < end; i++)
+    if (m->faces[i].slot == slot) return 1;
+  return 0;
+}
+
+/* Adds the facets of the slot of a face, which is the first one of them. */
+static trb_status add_surface(trb_model *m, const trb_face *faces, int n_faces, int pocket, int first, int *count, trb_message *message)
+{
+  trb_pocket_face *leader = &m->faces[*count];
+  for (int i = first; i < n_faces; i++) {
+    const trb_face *f = &faces[i];
+    if (f->slot[0] != faces[first].slot[0] || !face_in_pocket(f, pocket) || !face_is_on(m, f)) continue;
+    if (f->part[0] != faces[first].part[0])
+      return trb_fail(message, TRB_ERR_INPUT, "pocket face %d: part = %g: must be that of face %d, which has the same slot", i, f->part[0],
+                      first);
+    trb_pocket_face *to = &m->faces[(*count)++];
+    to->surface = surface_of(f);
+    to->stiffness_factor = f->stiffness_factor[0];
+    to->friction_factor = f->friction_factor[0];
+    to->part = (int)f->part[0];
+    to->slot = (int)f->slot[0];
+    measure(to);
+    leader->n_facets++;
+  }
+  return TRB_OK;
 }
 
 trb_status trb_pockets_fill_faces(trb_model *m, const trb_face *faces, int n_faces, trb_message *message)
@@ -76,18 +113,11 @@ trb_status trb_pockets_fill_faces(trb_model *m, const trb_face *faces, int n_fac
   for (int pocket = 0; pocket < m->n_rollers; pocket++) {
     m->first_face[pocket] = count;
     for (int i = 0; i < n_faces; i++) {
-      const trb_face *f = &faces[i];
-      if (!face_in_pocket(f, pocket) || !face_is_on(m, f)) continue;
-      trb_pocket_face *to = &m->faces[count++];
-      to->surface = surface_of(f);
-      to->stiffness_factor = f->stiffness_factor[0];
-      to->friction_factor = f->friction_factor[0];
-      to->part = (int)f->part[0];
-      to->slot = (int)f->slot[0];
+      if (!face_in_pocket(&faces[i], pocket) || !face_is_on(m, &faces[i])) continue;
+      if (has_slot(m, m->first_face[pocket], count, (int)faces[i].slot[0])) continue;
+      const trb_status status = add_surface(m, faces, n_faces, pocket, i, &count, message);
+      if (status != TRB_OK) return status;
     }
-    if (count - m->first_face[pocket] > TRB_MOST_SLOTS)
-      return trb_fail(message, TRB_ERR_INPUT, "pocket %d has %d faces: must have at most %d", pocket, count - m->first_face[pocket],
-                      TRB_MOST_SLOTS);
   }
   m->first_face[m->n_rollers] = count;
   return TRB_OK;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "contact/deformed.h"
+#include "contact/facets.h"
 #include "contact/friction.h"
 #include "contact/pair.h"
 #include "contact/pocket_view.h"
@@ -128,22 +129,27 @@ static void flank_on_face(const trb_model *m, const trb_pocket_face *f, trb_pock
                           trb_load *load, trb_pocket_sums *sums)
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double  stiffness = m->pocket_palmgren * f->stiffness_factor, *weight = m->race[TRB_RACE_OUTER].weight;
+  const double *weight = m->race[TRB_RACE_OUTER].weight;
   const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal), reach = m->pocket_film;
+  trb_facets    near;
+  if (f->n_facets > 1) near = trb_facets_near_flank(m, f, p, roller, exact);
   for (int k = 0; k < m->n_nodes; k++) {
-    const double h = middle + centre[k] * along;
-    if (h >= sphere[k] + reach && !exact) continue;
-    trb_vec3       normal;
-    const trb_vec3 c = trb_axpy(p->x, centre[k], p->a);
-    const double   d = sphere_on_face(m, f, c, h, sphere[k], exact || reach > 0.0, &normal);
+    const double           h = middle + centre[k] * along;
+    const trb_pocket_face *facet = f;
+    trb_vec3               normal;
+    const trb_vec3         c = trb_axpy(p->x, centre[k], p->a);
+    double                 d;
+    if (f->n_facets > 1) d = trb_facets_nearest(&near, c, sphere[k], &facet, &normal);
+    else if (h >= sphere[k] + reach && !exact) continue;
+    else d = sphere_on_face(m, f, c, h, sphere[k], exact || reach > 0.0, &normal);
     sums->deepest = trb_max(sums->deepest, d);
     if (!(d > -reach)) continue;
     trb_pocket_touch touch = {
         trb_axpy(c, trb_sphere_reach(sphere[k], d), normal), normal, d, 0.0, TRB_PALMGREN_EXPONENT, trb_sub(c, p->x), 0};
     if (reach > 0.0) trb_pocket_push_film(m, p, &touch, sphere[k], weight[k], counters, load, sums);
     if (!(d > 0.0)) continue;
-    touch.elastic = stiffness * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
-    push(m, f, p, &touch, counters, load, sums);
+    touch.elastic = m->pocket_palmgren * facet->stiffness_factor * weight[k] * pow(d, TRB_PALMGREN_EXPONENT);
+    push(m, facet, p, &touch, counters, load, sums);
   }
 }
 
@@ -155,51 +161,43 @@ static trb_vec3 end_sphere(const trb_model *m, const trb_pocket_view *p)
 static void large_end_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int exact, trb_counters *counters,
                               trb_load *load, trb_pocket_sums *sums)
 {
-  const trb_geometry *g = &m->geometry;
-  const trb_vec3      c = end_sphere(m, p);
-  trb_vec3            normal;
-  const double        d = sphere_on_face(m, f, c, trb_polygon_height(&f->surface, c), g->sphere_radius, exact, &normal);
+  const trb_geometry    *g = &m->geometry;
+  const trb_vec3         c = end_sphere(m, p);
+  const trb_facets       all = {f, f->n_facets, TRB_ALL_FACETS, {0}};
+  const trb_pocket_face *facet = f;
+  trb_vec3               normal;
+  double                 d;
+  if (f->n_facets > 1) d = trb_facets_nearest(&all, c, g->sphere_radius, &facet, &normal);
+  else d = sphere_on_face(m, f, c, trb_polygon_height(&f->surface, c), g->sphere_radius, exact, &normal);
   sums->deepest = d;
   if (!(d > 0.0)) return;
-  const double           q = m->wall_stiffness * f->stiffness_factor * d * sqrt(d);
+  const double           q = m->wall_stiffness * facet->stiffness_factor * d * sqrt(d);
   const trb_pocket_touch touch = {
       trb_axpy(c, trb_sphere_reach(g->sphere_radius, d), normal), normal, d, q, TRB_POINT_EXPONENT, trb_sub(c, p->x), 0};
-  push(m, f, p, &touch, counters, load, sums);
+  push(m, facet, p, &touch, counters, load, sums);
 }
 
 static trb_vec3 small_end(const trb_model *m, const trb_pocket_view *p) { return trb_axpy(p->x, m->surfaces.small_end, p->a); }
 
-static void small_end_on_face(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, trb_counters *counters, trb_load *load,
-                              trb_pocket_sums *sums)
+/* All vertices of a surface share its stiffness. */
+static void small_end_on_face(const trb_model *m, const trb_pocket_face *surface, trb_pocket_view *p, trb_counters *counters,
+                              trb_load *load, trb_pocket_sums *sums)
 {
   const trb_vec3 end = small_end(m, p), normal = trb_scale(-1.0, p->a);
-  const double   stiffness = m->wall_stiffness * f->stiffness_factor / f->surface.n;
-  for (int i = 0; i < f->surface.n; i++) {
-    const trb_vec3 point = trb_polygon_vertex(&f->surface, i);
-    const double   d = trb_dot(trb_sub(point, end), p->a);
-    sums->deepest = trb_max(sums->deepest, d);
-    if (!(d > 0.0)) continue;
-    const double           q = stiffness * d * sqrt(d);
-    const trb_pocket_touch touch = {point, normal, d, q, TRB_POINT_EXPONENT, {0, 0, 0}, 1};
-    push(m, f, p, &touch, counters, load, sums);
+  int            vertices = 0;
+  for (int j = 0; j < surface->n_facets; j++) vertices += surface[j].surface.n;
+  for (const trb_pocket_face *f = surface; f < surface + surface->n_facets; f++) {
+    const double stiffness = m->wall_stiffness * f->stiffness_factor / vertices;
+    for (int i = 0; i < f->surface.n; i++) {
+      const trb_vec3 point = trb_polygon_vertex(&f->surface, i);
+      const double   d = trb_dot(trb_sub(point, end), p->a);
+      sums->deepest = trb_max(sums->deepest, d);
+      if (!(d > 0.0)) continue;
+      const double           q = stiffness * d * sqrt(d);
+      const trb_pocket_touch touch = {point, normal, d, q, TRB_POINT_EXPONENT, {0, 0, 0}, 1};
+      push(m, f, p, &touch, counters, load, sums);
+    }
   }
-}
-
-/* Lower bound of the gap between the flank and a face, less that in which a film acts. A bounded face is no nearer than its plane. For a cone without profile the height
- * over the plane less the sphere's radius is linear along the axis, so its least value is at one of the ends; a profile only takes
- * material away. Where this bound is not positive, the least value over the nodes is taken. */
-static double flank_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller)
-{
-  const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
-  const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal);
-  double        gap = INFINITY, of_nodes = INFINITY;
-  for (int end = 0; end < 2; end++) {
-    const trb_sphere *last = &m->end_spheres[2 * roller + end];
-    gap = trb_min(gap, middle + last->place * along - last->radius - m->pocket_film);
-  }
-  if (gap > 0.0) return gap;
-  for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k] - m->pocket_film);
-  return of_nodes;
 }
 
 static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p)
@@ -210,12 +208,26 @@ static double small_end_gap(const trb_model *m, const trb_pocket_face *f, const 
   return gap;
 }
 
-/* Lower bound of the gap. */
+/* Lower bound of the gap of a facet. A facet that is one of several may have the roller behind its plane: there the ball around it counts. */
+static double facet_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller, int is_one_of_several)
+{
+  if (f->part == TRB_PART_FLANK) {
+    const double plane = trb_flank_gap(m, f, p, roller);
+    return is_one_of_several && plane <= 0.0 ? trb_max(plane, trb_flank_to_ball(m, f, p, roller)) : plane;
+  }
+  if (f->part == TRB_PART_SMALL_END) return small_end_gap(m, f, p);
+  const trb_vec3 c = end_sphere(m, p);
+  const double   plane = trb_polygon_height(&f->surface, c) - m->geometry.sphere_radius;
+  if (!is_one_of_several || plane > 0.0) return plane;
+  return trb_max(plane, trb_norm(trb_sub(f->middle, c)) - f->extent - m->geometry.sphere_radius);
+}
+
+/* Lower bound of the gap of a surface. */
 static double face_gap(const trb_model *m, const trb_pocket_face *f, const trb_pocket_view *p, int roller)
 {
-  if (f->part == TRB_PART_FLANK) return flank_gap(m, f, p, roller);
-  if (f->part == TRB_PART_LARGE_END) return trb_polygon_height(&f->surface, end_sphere(m, p)) - m->geometry.sphere_radius;
-  return small_end_gap(m, f, p);
+  double gap = INFINITY;
+  for (int j = 0; j < f->n_facets; j++) gap = trb_min(gap, facet_gap(m, f + j, p, roller, f->n_facets > 1));
+  return gap;
 }
 
 static trb_pocket_sums face_forces(const trb_model *m, const trb_pocket_face *f, trb_pocket_view *p, int roller, int exact,
@@ -292,9 +304,10 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
   trb_gaps               gaps = far;
   view_places(m, r, cage, roller, &p);
   counters->pocket_tests += end - first;
-  for (const trb_pocket_face *f = first; f < end; f++) {
-    least[f - first] = gap_of(m, f, &p, deformed, roller, &shifts[f - first]);
-    note_gap(&gaps, f, least[f - first]);
+  int surface = 0;
+  for (const trb_pocket_face *f = first; f < end; f += f->n_facets, surface++) {
+    least[surface] = gap_of(m, f, &p, deformed, roller, &shifts[surface]);
+    note_gap(&gaps, f, least[surface]);
   }
   if (trb_gaps_clear(&gaps) && !exact) {
     counters->pocket_culled += end - first;
@@ -305,14 +318,15 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
   if (slopes != NULL) *slopes = (trb_slopes){.modal = slopes->modal, .axes = p.axes};
   p.slopes = slopes;
   gaps = far;
-  for (const trb_pocket_face *f = first; f < end; f++) {
-    const double gap = least[f - first];
+  surface = 0;
+  for (const trb_pocket_face *f = first; f < end; f += f->n_facets, surface++) {
+    const double gap = least[surface];
     if (gap > 0.0 && !exact) {
-      counters->pocket_culled++;
+      counters->pocket_culled += f->n_facets;
       note_gap(&gaps, f, gap);
       continue;
     }
-    const trb_pocket_sums sums = forces_of(m, f, &p, deformed, roller, exact, counters, load, &shifts[f - first]);
+    const trb_pocket_sums sums = forces_of(m, f, &p, deformed, roller, exact, counters, load, &shifts[surface]);
     note_gap(&gaps, f, f->part == TRB_PART_FLANK ? gap : -sums.deepest);
     if (detail != NULL) add_detail(m, roller, f, &sums, detail);
   }

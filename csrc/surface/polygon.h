@@ -56,6 +56,14 @@ static inline trb_vec3 trb_polygon_vertex(const trb_polygon *p, int i)
   return trb_axpy(trb_axpy(p->origin, vertex[0], p->u), vertex[1], p->v);
 }
 
+/* Mean of the vertices. */
+static inline trb_vec3 trb_polygon_middle(const trb_polygon *p)
+{
+  trb_vec3 sum = {0, 0, 0};
+  for (int i = 0; i < p->n; i++) sum = trb_add(sum, trb_polygon_vertex(p, i));
+  return trb_scale(1.0 / p->n, sum);
+}
+
 /* From a point at a height above the plane to the nearest point of the polygon. Its length, the distance, is continuous with its gradient
  * everywhere off the polygon, as the polygon is convex. */
 static inline trb_vec3 trb_polygon_way(const trb_polygon *p, trb_vec3 point, double height)

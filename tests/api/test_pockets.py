@@ -233,8 +233,10 @@ class TestFace:
             self.make(**{field: value})
         assert caught.value.field.startswith(f"face.{field}")
 
-    def test_pocket_refuses_shared_slots(self) -> None:
-        with pytest.raises(InputError, match=r"pocket\.faces\[1\]\.slot = 0"):
-            Pocket(faces=[self.make(), self.make(name="second")])
+    def test_pocket_refuses_shared_names_and_surfaces_of_two_parts(self) -> None:
+        with pytest.raises(InputError, match=r"pocket\.faces\[1\]\.name = 'bar'"):
+            Pocket(faces=[self.make(name="bar"), self.make(name="bar")])
+        with pytest.raises(InputError, match=r"pocket\.faces\[1\]\.part = 'large_end' : must be 'flank'"):
+            Pocket(faces=[self.make(), self.make(name="second", part="large_end")])
         with pytest.raises(InputError, match="at least 1"):
             Pocket(faces=[])

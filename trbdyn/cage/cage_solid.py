@@ -18,7 +18,7 @@ from trbdyn.cage.wall_mesh import WallMesh, wall_mesh
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.cage_body import Wall
-from trbdyn.model.pocket import Face, every_face
+from trbdyn.model.pocket import Face, every_surface
 
 FloatArray = NDArray[np.float64]
 
@@ -124,7 +124,7 @@ def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[in
     wall = Wall.of(bearing, body)
     mesh = wall_mesh(wall, fineness=parts, cracked_bars=frozenset(cracked_bars))
     solid = Solid.of(mesh.corners, mesh.elements, made)
-    faces = tuple(every_face(bearing))
+    faces = tuple(every_surface(bearing))
     centres, axes = _roots(wall)
     at_roots = _at_roots(solid, mesh, centres, axes)
     names = tuple(

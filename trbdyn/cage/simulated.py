@@ -14,7 +14,7 @@ from trbdyn.cage.cage_solid import CageSolid, cage_solid
 from trbdyn.cage.modes import CageModes
 from trbdyn.errors import InputError
 from trbdyn.model.elastic_cage import ElasticCage, digest_of
-from trbdyn.model.pocket import every_face
+from trbdyn.model.pocket import every_surface
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -141,7 +141,7 @@ def shapes_by_slot(scene: Scene) -> FloatArray:
     InputError
         If the modes do not know a face of a pocket.
     """
-    modes, faces = cage_modes(scene), every_face(scene.bearing)
+    modes, faces = cage_modes(scene), every_surface(scene.bearing)
     places = {key: place for place, key in enumerate(zip(modes.face_pocket, modes.face_name, strict=True))}
     slots = 1 + max(face.slot for _, face in faces)
     shapes = np.zeros((len(modes.frequency), scene.bearing.n_rollers, slots, 6))

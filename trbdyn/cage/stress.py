@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from trbdyn.cage.modes import CageModes
 from trbdyn.cage.simulated import cage_modes, shapes_by_slot, stress_at_rest
 from trbdyn.errors import InputError
-from trbdyn.model.pocket import every_face
+from trbdyn.model.pocket import every_surface
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
@@ -230,7 +230,7 @@ def _at_rest(scene: Scene, modes: CageModes) -> FloatArray:
     """Static stress that the modes carry for a unit force on each face of each pocket, shape (Z S, P)."""
     shapes = shapes_by_slot(scene)
     push = np.zeros((*shapes.shape[1:3], 3))
-    for pocket, face in every_face(scene.bearing):
+    for pocket, face in every_surface(scene.bearing):
         push[pocket, face.slot] = -face.normal  # the roller pushes against the face
     pull = np.einsum("mzsi,zsi->mzs", shapes[..., :3], push).reshape(len(shapes), -1)
     still = pull / (modes.modal_mass * (2.0 * np.pi * modes.frequency) ** 2)[:, None]
@@ -242,6 +242,6 @@ def _whole(scene: Scene, modes: CageModes, slots: int) -> FloatArray:
     assert scene.elastic_cage is not None  # cage_modes has looked
     stress = stress_at_rest(scene.bearing, scene.elastic_cage)
     found = np.zeros((scene.bearing.n_rollers, slots, len(modes.point_name)))
-    for at, (pocket, face) in enumerate(every_face(scene.bearing)):
+    for at, (pocket, face) in enumerate(every_surface(scene.bearing)):
         found[pocket, face.slot] = stress[at]
     return found.reshape(-1, len(modes.point_name))

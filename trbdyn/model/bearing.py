@@ -9,6 +9,7 @@ change it where you know better.
 from __future__ import annotations
 
 import math
+import os
 import pathlib
 from collections.abc import Mapping
 from functools import cached_property
@@ -27,6 +28,7 @@ from trbdyn.model.cage_space import CageSpace
 from trbdyn.model.catalogue import fields_from_catalogue
 from trbdyn.model.core_table import parameter
 from trbdyn.model.designations import designation as row_of
+from trbdyn.model.drawn.read import read_cage
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.flatten import bearing_geometry
 from trbdyn.model.geometry import Geometry
@@ -186,6 +188,54 @@ class Cage(Model):
     other_pockets: tuple[OtherPocket, ...] = ()
     material: Material | None = None
     body: CageBody | None = None
+
+    @classmethod
+    def from_step(
+        cls,
+        path: str | os.PathLike[str],
+        bearing: Bearing,
+        *,
+        material: Material | None = None,
+        tolerance: float = 1e-6,
+        unit: str = "mm",
+        roller_plane: float | None = None,
+    ) -> Cage:
+        """A cage as drawn: its pockets with all faces that a roller can touch, plays, mass, centre and moments of inertia.
+
+        The cage is placed so that bars of both sides have the same gap and the large ends of the rollers just touch their walls.
+        Plane faces are exact, curved faces are facets. It needs the extra ``trbdyn[cad]``
+        (docs/theory/geometry.md#pockets-from-a-drawing).
+
+        Parameters
+        ----------
+        path : path-like
+            STEP file (``.step``, ``.stp``), which tells its unit, or STL file, of one solid.
+        bearing : Bearing
+            The bearing whose cage it is.
+        material : Material, optional
+            What it is made of; that of the bearing by default. Its density gives the mass.
+        tolerance : float
+            Largest distance between a curved face and its facets (m).
+        unit : {'mm', 'm', 'inch'}
+            Unit of an STL file.
+        roller_plane : float, optional
+            Height of the roller-centre plane above the cage's centre of volume, positive towards the large ends (m); needed where
+            no wall faces the large ends.
+
+        Raises
+        ------
+        InputError
+            If an argument is not allowed, or the cage does not belong to the bearing.
+        FileError
+            If the file cannot be read, or what is in it is not understood; the message names the face.
+        ImportError
+            If the extra is not installed.
+        """
+        drawn = read_cage(path, bearing, tolerance=tolerance, unit=unit, roller_plane=roller_plane)
+        density = (material or bearing.material).density
+        if density is None:
+            raise InputError.of(("material", "density"), None, "must be given: the cage's mass follows from it (kg/m3)")
+        return cls(**drawn.fields(density), material=material)
 
     @model_validator(mode="after")
     def _check(self) -> Self:

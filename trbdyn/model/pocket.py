@@ -38,7 +38,7 @@ class Face(Model):
     name : str
         Name in messages and results.
     slot : int
-        Number of the face in its pocket: the column of its forces in results.
+        Number of the surface in its pocket: the column of its forces in results.
     part : {'flank', 'large_end', 'small_end'}
         Part of the roller it meets. A face for the small end acts through its vertices, 1/n of the stiffness each.
     origin : tuple of float, shape (3,)
@@ -129,7 +129,8 @@ class Pocket(Model):
     Parameters
     ----------
     faces : tuple of Face
-        At least one; no two share a slot.
+        At least one. Faces that share a slot are one surface of several facets: each point of the roller meets the nearest of
+        them.
     allow_interference : bool
         Accept faces that the nominal roller already penetrates.
     """
@@ -139,14 +140,26 @@ class Pocket(Model):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        for key in ("slot", "name"):
-            values = [getattr(face, key) for face in self.faces]
-            for place, value in enumerate(values):
-                if value in values[:place]:
-                    raise InputError.of(
-                        ("faces", place, key), value, f"must differ from those of the other faces: {values}"
-                    )
+        names = [face.name for face in self.faces]
+        parts: dict[int, Part] = {}
+        for place, face in enumerate(self.faces):
+            if face.name in names[:place]:
+                limit = f"must differ from those of the other faces: {names}"
+                raise InputError.of(("faces", place, "name"), face.name, limit)
+            if (part := parts.setdefault(face.slot, face.part)) != face.part:
+                limit = (
+                    f"must be '{part}', as that of the other faces with slot {face.slot}: together they are one surface"
+                )
+                raise InputError.of(("faces", place, "part"), face.part, limit)
         return self
+
+    @property
+    def surfaces(self) -> tuple[Face, ...]:
+        """The first face of each slot, whose name is that of the surface."""
+        first: dict[int, Face] = {}
+        for face in self.faces:
+            first.setdefault(face.slot, face)
+        return tuple(first.values())
 
     def face(self, name: str) -> Face:
         """The face of this name.
@@ -217,6 +230,11 @@ class OtherPocket(Model):
 def every_face(bearing: Bearing) -> list[tuple[int, Face]]:
     """Every face of every pocket of a bearing's cage: (pocket, face)."""
     return [(pocket, face) for pocket in range(bearing.n_rollers) for face in bearing.pocket_of(pocket).faces]
+
+
+def every_surface(bearing: Bearing) -> list[tuple[int, Face]]:
+    """The first face of every surface of every pocket of a bearing's cage: (pocket, face)."""
+    return [(pocket, face) for pocket in range(bearing.n_rollers) for face in bearing.pocket_of(pocket).surfaces]
 
 
 def _cross(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ something known and then change it:
 - ``[bearing] case = "30310"``: a bearing that ships with the package; ``named = "32208"``: one of the table of designations;
 - ``[bearing.cage.pocket] shape = "drafted"``: a builder of `trbdyn.pocket_shapes`, its arguments beside it; as well in
   ``[[bearing.cage.other_pockets]]``;
+- ``[bearing.cage] drawing = "cage.step"``: a cage as drawn (`Cage.from_step`); or a table of ``file`` and arguments;
 - ``[lubricant] oil = "vg100"``: an oil of `trbdyn.lubricants.OILS` at ``temperature_c``, or the table of an `Oil`;
 - ``[effects] preset = "paper"``: a preset of `Effects`.
 
@@ -27,7 +28,7 @@ from trbdyn.base.shipped import DATA
 from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
 from trbdyn.errors import Path as FieldPath
-from trbdyn.model.bearing import Bearing
+from trbdyn.model.bearing import Bearing, Cage
 from trbdyn.model.cases import BEARINGS
 from trbdyn.model.effects import PRESETS, Effects, refuse_idle
 from trbdyn.model.lubricants import Lubricant, vg100
@@ -160,6 +161,13 @@ def bearing_from_table(table: Table) -> Bearing:
             base = Bearing.named(table["named"]).inputs()
     values = _merged(base, without(table, "case", "named"))
     cage = values.get("cage")
+    if isinstance(cage, dict) and "drawing" in cage:
+        own = table["cage"]
+        plain = build(Bearing, {**values, "cage": {name: own[name] for name in ("material",) if name in own}}, path)
+        with located((*path, "cage")):
+            drawn = _drawn(plain, cage["drawing"]).replace(**without(own, "drawing", "material"))
+        with located(path):
+            return plain.replace(cage=drawn)
     if not isinstance(cage, dict) or not _has_shapes(cage):
         return build(Bearing, values, path)
     plain = build(Bearing, {**values, "cage": without(cage, "pocket", "other_pockets")}, path)
@@ -168,6 +176,15 @@ def bearing_from_table(table: Table) -> Bearing:
         full = plain.cage.replace(**pockets)
     with located(path):
         return plain.replace(cage=full)
+
+
+def _drawn(bearing: Bearing, given: object) -> Cage:
+    """A cage from a drawing."""
+    table: Table = dict(given) if isinstance(given, Mapping) else {"file": given}
+    if not isinstance(file := table.pop("file", None), str):
+        raise InputError.of(("drawing", "file"), file, "must be the path of a STEP or STL file")
+    check_names(table, ("tolerance", "unit", "roller_plane"), ("drawing",))
+    return Cage.from_step(file, bearing, material=bearing.cage.material, **table)
 
 
 def _has_shapes(cage: Table) -> bool:

@@ -1,0 +1,336 @@
+"""A drawing opened by Gmsh, whose kernel for STEP is Open CASCADE. All lengths that leave this module are in m."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.base.own_files import file_path
+from trbdyn.errors import FileError, InputError
+from trbdyn.model.drawn.stl import faces_of, read_triangles, solid_of
+
+FloatArray = NDArray[np.float64]
+
+MM: Final = 1e-3
+"""Gmsh converts every file to mm, whatever its unit, and this is that in m."""
+STEP_ENDINGS: Final = (".step", ".stp", ".p21")
+UNITS: Final = {"m": 1.0, "mm": 1e-3, "inch": 25.4e-3}
+LARGEST: Final = 1 << 28
+"""Largest drawing (bytes)."""
+_LOCK = threading.RLock()
+"""Gmsh has one state for the whole process."""
+
+
+@dataclass
+class DrawnFace:
+    """A face of the solid, as drawn.
+
+    Attributes
+    ----------
+    number : int
+        Its number in the drawing, from 1.
+    kind : str
+        What it is: Plane, Cylinder, Cone, BSpline surface and so on.
+    area : float
+        Area (m2).
+    centre : ndarray, shape (3,)
+        Centre of the area (m).
+    triangles : ndarray, shape (T, 3, 3)
+        Triangles that cover it roughly (m): their corners lie on the face, counter-clockwise seen from outside the solid.
+    neighbours : tuple of (int, ndarray)
+        Faces that share an edge with it, and a point of that edge.
+    """
+
+    number: int
+    kind: str
+    area: float
+    centre: FloatArray
+    triangles: FloatArray
+    neighbours: tuple[tuple[int, FloatArray], ...] = ()
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether it is plane, as drawn."""
+        return self.kind == "Plane"
+
+
+@dataclass
+class Drawing:
+    """One solid.
+
+    Attributes
+    ----------
+    path : str
+        The file.
+    faces : list of DrawnFace
+        Its faces.
+    volume : float
+        Volume (m3).
+    centre : ndarray, shape (3,)
+        Centre of the volume (m).
+    inertia : ndarray, shape (3, 3)
+        Second moments about the centre, as moments of inertia at a density of 1 (m5).
+    surfaces : object
+        What evaluates faces (`Surfaces`), or None where faces are known by their triangles alone (STL).
+    """
+
+    path: str
+    faces: list[DrawnFace]
+    volume: float
+    centre: FloatArray
+    inertia: FloatArray
+    surfaces: Surfaces | None = None
+
+
+def library() -> ModuleType:
+    """Gmsh.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed, or lacks a library of the system.
+    """
+    try:
+        import gmsh
+    except ImportError as error:
+        raise ImportError("drawings need Gmsh: pip install trbdyn[cad]") from error
+    except OSError as error:
+        raise ImportError(
+            f"Gmsh does not start: {error}; Debian has what it needs as libglu1-mesa libxcursor1 libxft2 libxinerama1 libxrender1"
+        ) from error
+    return gmsh
+
+
+@contextmanager
+def gmsh_model() -> Iterator[Any]:
+    """An empty model of Gmsh, which is alone and silent, in mm."""
+    gmsh = library()
+    with _LOCK:
+        ours = not gmsh.isInitialized()
+        if ours:
+            gmsh.initialize(interruptible=False)
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+            gmsh.option.setNumber("General.NumThreads", 1)
+            gmsh.model.add("drawing")
+            yield gmsh
+        finally:
+            if ours:
+                gmsh.finalize()
+            else:
+                gmsh.model.remove()
+
+
+@dataclass
+class Surfaces:
+    """Evaluates the faces of an opened drawing."""
+
+    gmsh: Any
+    _loops: dict[int, list[list[int]]] = field(default_factory=dict)
+
+    def points(self, face: int, uv: FloatArray) -> FloatArray:
+        """Points of a face at parameters, shapes (..., 2) and (..., 3) (m)."""
+        found = self.gmsh.model.getValue(2, face, uv.reshape(-1).tolist())
+        return MM * np.asarray(found).reshape(*uv.shape[:-1], 3)
+
+    def normals(self, face: int, uv: FloatArray) -> FloatArray:
+        """Normals out of the solid there, shape (..., 3)."""
+        return np.asarray(self.gmsh.model.getNormal(face, uv.reshape(-1).tolist())).reshape(*uv.shape[:-1], 3)
+
+    def normal_at(self, face: int, point: FloatArray) -> FloatArray:
+        """Normal out of the solid at the place of a face next to a point (m)."""
+        uv = self.gmsh.model.getParametrization(2, face, (point / MM).tolist())
+        return np.asarray(self.gmsh.model.getNormal(face, uv))
+
+    def loops(self, face: int) -> list[list[int]]:
+        """Curves of each closed line of a face's border, in turn."""
+        if face not in self._loops:
+            _, curves = self.gmsh.model.occ.getCurveLoops(face)
+            self._loops[face] = [[int(curve) for curve in loop] for loop in curves]
+        return self._loops[face]
+
+    def stations(self, curve: int, tolerance: float) -> FloatArray:
+        """Parameters of points along a curve, between which it leaves the straight line by less than a tolerance (m)."""
+        (low,), (high,) = self.gmsh.model.getParametrizationBounds(1, curve)
+        stations = np.array([low, high])
+        for _ in range(12):
+            between = 0.5 * (stations[1:] + stations[:-1])
+            quarter = stations[:-1] + 0.3 * np.diff(stations)
+            ends, off = self.along(curve, stations), np.zeros(between.size)
+            for at in (between, quarter):
+                off = np.maximum(off, _distance_to_lines(self.along(curve, at), ends[:-1], ends[1:]))
+            wide = off > tolerance
+            if not wide.any():
+                return stations
+            stations = np.sort(np.concatenate([stations, between[wide]]))
+        return stations
+
+    def along(self, curve: int, stations: FloatArray) -> FloatArray:
+        """Points of a curve (m), shape (n, 3)."""
+        return MM * np.asarray(self.gmsh.model.getValue(1, curve, stations.tolist())).reshape(-1, 3)
+
+    def on_face(self, curve: int, stations: FloatArray, face: int, which: int) -> FloatArray:
+        """Parameters of a face along a curve of its border, shape (n, 2)."""
+        found = self.gmsh.model.reparametrizeOnSurface(1, curve, stations.tolist(), face, which)
+        return np.asarray(found).reshape(-1, 2)
+
+
+def _distance_to_lines(points: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
+    way = last - first
+    size = np.sum(way * way, axis=1)
+    share = np.clip(np.sum((points - first) * way, axis=1) / np.where(size > 0.0, size, 1.0), 0.0, 1.0)
+    return np.linalg.norm(points - first - share[:, None] * way, axis=1)
+
+
+@contextmanager
+def opened(path: str | os.PathLike[str], *, mesh_size: float, unit: str = "mm") -> Iterator[Drawing]:
+    """A drawing of one solid, as long as the context lasts.
+
+    Parameters
+    ----------
+    path : path-like
+        A STEP file, or an STL file.
+    mesh_size : float
+        Size of the triangles that cover faces roughly (m).
+    unit : {'mm', 'm', 'inch'}
+        Unit of an STL file, which does not tell its own; that of a STEP file stands in it.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read, or has not one solid.
+    InputError
+        If an argument is not allowed.
+    ImportError
+        If Gmsh is not installed.
+    """
+    file = file_path(path, "drawing")
+    ending = Path(file).suffix.lower()
+    if ending not in (*STEP_ENDINGS, ".stl"):
+        raise InputError.of("drawing", str(path), f"must be a file {', '.join(STEP_ENDINGS)} or .stl")
+    if unit not in UNITS:
+        raise InputError.of("unit", unit, f"must be one of {', '.join(UNITS)}")
+    try:
+        size = Path(file).stat().st_size
+        with Path(file).open("rb") as stream:
+            head = stream.read(512)
+    except OSError as error:
+        raise FileError(f"{file}: {error.strerror or error}") from None
+    if size > LARGEST:
+        raise FileError(f"{file}: has {size / 1e6:.0f} MB; drawings up to {LARGEST / 1e6:.0f} MB are read")
+    if ending == ".stl":
+        yield _stl(Path(file), UNITS[unit])
+        return
+    if b"ISO-10303-21" not in head:
+        raise FileError(f"{file}: is no STEP file: it does not begin with ISO-10303-21")
+    with gmsh_model() as gmsh:
+        yield _step(gmsh, str(file), mesh_size)
+
+
+def _step(gmsh: Any, path: str, mesh_size: float) -> Drawing:
+    try:
+        gmsh.model.occ.importShapes(path)
+        gmsh.model.occ.synchronize()
+    except Exception as error:  # Gmsh raises Exception itself
+        raise FileError(f"{path}: Open CASCADE cannot read it: {error}") from None
+    solids = [tag for _, tag in gmsh.model.getEntities(3)]
+    if len(solids) != 1:
+        raise FileError(f"{path}: has {len(solids)} solids; a cage is one: join its parts, or save it alone")
+    solid, occ = solids[0], gmsh.model.occ
+    tags = [tag for _, tag in gmsh.model.getEntities(2)]
+    triangles = _rough(gmsh, path, tags, mesh_size)
+    faces = [
+        DrawnFace(
+            number=tag,
+            kind=gmsh.model.getType(2, tag),
+            area=MM**2 * occ.getMass(2, tag),
+            centre=MM * np.array(occ.getCenterOfMass(2, tag)),
+            triangles=triangles[tag],
+        )
+        for tag in tags
+    ]
+    surfaces = Surfaces(gmsh)
+    _connect(faces, surfaces)
+    return Drawing(
+        path=path,
+        faces=faces,
+        volume=MM**3 * occ.getMass(3, solid),
+        centre=MM * np.array(occ.getCenterOfMass(3, solid)),
+        inertia=MM**5 * np.array(occ.getMatrixOfInertia(3, solid)).reshape(3, 3),
+        surfaces=surfaces,
+    )
+
+
+def _stl(path: Path, scale: float) -> Drawing:
+    triangles = read_triangles(path, scale)
+    members, planes, edges, corners = faces_of(path, triangles)
+    volume, centre, inertia = solid_of(triangles)
+    if volume <= 0.0:
+        raise FileError(f"{path}: its triangles are seen clockwise from outside; they must be counter-clockwise")
+    owner = np.zeros(len(triangles), dtype=int)
+    faces = []
+    for number, (own, is_plane) in enumerate(zip(members, planes, strict=True), 1):
+        owner[own] = number
+        doubled = np.cross(triangles[own, 1] - triangles[own, 0], triangles[own, 2] - triangles[own, 0])
+        areas = 0.5 * np.linalg.norm(doubled, axis=1)
+        middle = np.average(triangles[own].mean(axis=1), axis=0, weights=areas)
+        faces.append(
+            DrawnFace(number, "Plane" if is_plane else "Triangles", float(areas.sum()), middle, triangles[own])
+        )
+    shared: dict[int, list[tuple[int, FloatArray]]] = {face.number: [] for face in faces}
+    for one, other, start, end in edges:
+        if owner[one] != owner[other]:
+            middle = 0.5 * (corners[start] + corners[end])
+            shared[owner[one]].append((int(owner[other]), middle))
+            shared[owner[other]].append((int(owner[one]), middle))
+    for face in faces:
+        face.neighbours = tuple(shared[face.number])
+    return Drawing(str(path), faces, volume, centre, inertia)
+
+
+def _rough(gmsh: Any, path: str, tags: list[int], mesh_size: float) -> dict[int, FloatArray]:
+    gmsh.option.setNumber("Mesh.MeshSizeMax", mesh_size / MM)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", 0.1 * mesh_size / MM)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 12)
+    try:
+        gmsh.model.mesh.generate(2)
+    except Exception as error:
+        raise FileError(f"{path}: its faces cannot be covered by triangles: {error}") from None
+    numbers, places, _ = gmsh.model.mesh.getNodes()
+    row = np.zeros(int(numbers.max()) + 1, dtype=int)
+    row[numbers.astype(int)] = np.arange(len(numbers))
+    points = MM * places.reshape(-1, 3)
+    found = {}
+    for tag in tags:
+        corners = gmsh.model.mesh.getElementsByType(2, tag)[1]
+        if not len(corners):
+            raise FileError(f"{path}: face {tag} cannot be covered by triangles")
+        found[tag] = points[row[corners.astype(int)].reshape(-1, 3)]
+    return found
+
+
+def _connect(faces: list[DrawnFace], surfaces: Surfaces) -> None:
+    """Find which faces share an edge."""
+    of_curve: dict[int, set[int]] = {}
+    for face in faces:
+        for loop in surfaces.loops(face.number):
+            for curve in loop:
+                of_curve.setdefault(curve, set()).add(face.number)
+    shared: dict[int, list[tuple[int, FloatArray]]] = {face.number: [] for face in faces}
+    for curve, owners in of_curve.items():
+        (low,), (high,) = surfaces.gmsh.model.getParametrizationBounds(1, curve)
+        middle = surfaces.along(curve, np.array([0.5 * (low + high)]))[0]
+        for one in owners:
+            shared[one] += [(other, middle) for other in owners if other != one]
+    for face in faces:
+        face.neighbours = tuple(shared[face.number])

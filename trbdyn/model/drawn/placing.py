@@ -1,0 +1,314 @@
+"""Where a drawn cage lies: its axis, its number of pockets, and its place about the rollers of a bearing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.errors import FileError
+from trbdyn.model.drawn.opened import Drawing, DrawnFace
+
+FloatArray = NDArray[np.float64]
+
+SAME: Final = 2e-3
+"""Faces that a turn by a pitch brings together agree within this share of the cage's radius, and in area within this share."""
+ENOUGH: Final = 0.6
+"""Share of the area that must come together: a broken pocket does not, nor a mark."""
+MOST_POCKETS: Final = 200
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The axis of a cage, as drawn.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (3,)
+        The point of it next to the centre of the volume (m).
+    axes : ndarray, shape (3, 3)
+        Rows: two directions across, and that of the axis.
+    """
+
+    origin: FloatArray
+    axes: FloatArray
+
+    def inside(self, points: FloatArray) -> FloatArray:
+        """Points of the drawing in its axes (m)."""
+        return (points - self.origin) @ self.axes.T
+
+
+def axis_of(drawing: Drawing) -> Axis:
+    """The axis of the cage.
+
+    It is first taken from the moments of inertia: that of the axis differs most from the other two. Then it follows exactly:
+    normals of surfaces of revolution meet it, and normals of end planes run along it.
+
+    Raises
+    ------
+    FileError
+        If the solid is no ring.
+    """
+    values, vectors = np.linalg.eigh(drawing.inertia)
+    alone = int(np.argmax(np.abs(values - np.median(values))))
+    direction, origin = vectors[:, alone], drawing.centre.copy()
+    points = np.concatenate([face.triangles.reshape(-1, 3) for face in drawing.faces])
+    reach = float(np.linalg.norm(np.cross(points - origin, direction), axis=1).max())
+    share = 0.05
+    for _ in range(30):
+        rows, off = _revolved(drawing, origin, direction, reach, share)
+        if len(rows) < 6:
+            break
+        across = _across(direction)
+        # unknowns: shift of the origin across, turn of the direction, over reach
+        system = np.column_stack([rows[:, :3] @ across.T, rows[:, 3:] @ across.T])
+        change, *_ = np.linalg.lstsq(system, off, rcond=1e-10)
+        origin = origin + reach * (change[:2] @ across)
+        direction = direction + change[2:] @ across
+        direction /= np.linalg.norm(direction)
+        share = max(0.2 * share, 1e-6 if drawing.surfaces is not None else 0.02)
+        if np.abs(change).max() < 1e-15:
+            break
+    direction = direction * (1.0 if direction[int(np.argmax(np.abs(direction)))] > 0.0 else -1.0)
+    origin = origin + direction * ((drawing.centre - origin) @ direction)
+    found = Axis(origin, np.array([*_across(direction), direction]))
+    inner = np.linalg.norm(found.inside(points)[:, :2], axis=1).min()
+    if inner < 0.2 * reach:
+        raise FileError(
+            f"{drawing.path}: is no cage: it comes within {1e3 * inner:.3g} mm of its axis, its radius is {1e3 * reach:.3g} mm"
+        )
+    return found
+
+
+def _across(direction: FloatArray) -> FloatArray:
+    """Two unit vectors across a direction, rows; right-handed with it."""
+    start = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    first = start - direction * (start @ direction)
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(direction, first)])
+
+
+def _revolved(
+    drawing: Drawing, origin: FloatArray, direction: FloatArray, reach: float, share: float
+) -> tuple[FloatArray, FloatArray]:
+    """Equations of faces of revolution: for a point p with normal m, m . (d x (p - c)) = 0; and of end planes: m . across = 0."""
+    rows, off = [], []
+    for face in drawing.faces:
+        points, normals = _samples(drawing, face)
+        arms = points - origin
+        lever = np.cross(direction, arms)
+        radius = np.linalg.norm(lever, axis=1)
+        wrong = np.sum(normals * lever, axis=1)
+        if np.any(np.abs(wrong) > share * radius):
+            continue
+        turned = np.arctan2(*(arms @ _across(direction).T).T[::-1])
+        wide = _span(turned)
+        if wide < 0.5 * math.pi:
+            continue
+        if face.is_plane:
+            for across in _across(direction):
+                rows.append(np.concatenate([np.zeros(3), across]))
+                off.append(float(normals[0] @ across) * float(normals[0] @ direction))
+            continue
+        # change of m . (d x (p - c)): by a shift, -m . (d x s) = s . (d x m); by a turn t of d, t . ((p - c) x m)
+        rows += [
+            np.concatenate(pair)
+            for pair in zip(np.cross(direction, normals), np.cross(arms, normals) / reach, strict=True)
+        ]
+        off += list(-wrong / reach)
+    return np.array(rows).reshape(-1, 6), np.array(off)
+
+
+def _span(angles: FloatArray) -> float:
+    """Range that angles cover: the circle less its widest gap (rad)."""
+    ordered = np.sort(np.mod(angles, 2.0 * math.pi))
+    return float(2.0 * math.pi - np.max(np.diff(np.concatenate([ordered, ordered[:1] + 2.0 * math.pi]))))
+
+
+def _samples(drawing: Drawing, face: DrawnFace) -> tuple[FloatArray, FloatArray]:
+    """Points of a face and the normals there; exact where it can be evaluated."""
+    if drawing.surfaces is None:
+        corners = face.triangles
+        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        return corners.mean(axis=1), doubled / np.linalg.norm(doubled, axis=1)[:, None]
+    low, high = (np.array(end) for end in drawing.surfaces.gmsh.model.getParametrizationBounds(2, face.number))
+    shares = np.stack(
+        np.meshgrid(np.linspace(0.02, 0.98, 9), np.linspace(0.1, 0.9, 3), indexing="ij"), axis=-1
+    ).reshape(-1, 2)
+    uv = low + (high - low) * shares
+    return drawing.surfaces.points(face.number, uv), drawing.surfaces.normals(face.number, uv)
+
+
+def pockets_of(drawing: Drawing, axis: Axis) -> int:
+    """Number of pockets: the largest number of pitches by which the turned cage comes together with itself.
+
+    Raises
+    ------
+    FileError
+        If there is none from 3 on.
+    """
+    from scipy.spatial import cKDTree
+
+    centres = np.array([axis.inside(face.centre) for face in drawing.faces])
+    areas = np.array([face.area for face in drawing.faces])
+    radius = np.linalg.norm(centres[:, :2], axis=1)
+    size = float(np.max(radius))
+    apart = radius > 0.2 * size
+    centres, areas = centres[apart], areas[apart]
+    best, share_of_best = 0, 0.0
+    tree = cKDTree(centres)
+    for count in range(min(MOST_POCKETS, len(areas)), 2, -1):
+        near = tree.query_ball_point(centres @ _turn(2.0 * math.pi / count).T, SAME * size)
+        alike = [
+            bool(np.any(np.abs(areas[found] - area) <= SAME * area)) for found, area in zip(near, areas, strict=True)
+        ]
+        together = float(areas[alike].sum() / areas.sum())
+        if together > max(ENOUGH, share_of_best + 0.1):
+            best, share_of_best = count, together
+    if not best:
+        raise FileError(
+            f"{drawing.path}: no pitch is found by which the cage comes together with itself: pockets must be alike"
+        )
+    return best
+
+
+def _turn(angle: float) -> FloatArray:
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the drawing lies in the cage's frame: origin on the axis in the roller-centre plane, x through the middle of pocket
+    0, z towards the large ends.
+
+    Attributes
+    ----------
+    axis : Axis
+        The axis.
+    is_turned : bool
+        Whether z of the cage runs against the direction of the axis.
+    height : float
+        Height of the roller-centre plane above the axis' origin, along z (m).
+    phase : float
+        Angle of pocket 0 about z (rad).
+    """
+
+    axis: Axis
+    is_turned: bool
+    height: float
+    phase: float
+
+    @property
+    def turn(self) -> FloatArray:
+        """Rows: axes of the cage's frame in the drawing."""
+        flip = np.diag([1.0, -1.0, -1.0]) if self.is_turned else np.eye(3)
+        return np.asarray(_turn(-self.phase) @ flip @ self.axis.axes)
+
+    @property
+    def origin(self) -> FloatArray:
+        """Origin of the cage's frame in the drawing (m)."""
+        return np.asarray(self.axis.origin + self.height * self.turn[2])
+
+    def inside(self, points: FloatArray) -> FloatArray:
+        """Points of the drawing in the cage's frame (m)."""
+        return (points - self.origin) @ self.turn.T
+
+
+@dataclass(frozen=True)
+class Frustum:
+    """A roller in numbers: angle of its axis, radius of the pitch circle, ends, radius at mid length and its slope (rad, m)."""
+
+    angle: float
+    pitch_radius: float
+    small: float
+    large: float
+    radius: float
+    slope: float
+
+    def depth(self, points: FloatArray) -> FloatArray:
+        """How far points in the cage's frame, near pocket 0, are outside of the roller; negative inside (m)."""
+        sine, cosine = math.sin(self.angle), math.cos(self.angle)
+        out = points[..., 0] - self.pitch_radius
+        along, outward = sine * out + cosine * points[..., 2], cosine * out - sine * points[..., 2]
+        across = np.hypot(outward, points[..., 1])
+        side = (across - self.radius - self.slope * along) / math.hypot(1.0, self.slope)
+        return np.maximum(side, np.maximum(along - self.large, self.small - along))
+
+
+def place_of(drawing: Drawing, axis: Axis, count: int, roller: Frustum) -> Place:
+    """Where the drawing must lie so that rollers fit into its pockets: by a search over both directions, heights and angles, in
+    which the least distance between roller and cage, the middle one of all pockets, is largest.
+
+    Raises
+    ------
+    FileError
+        If no roller fits.
+    """
+    points = _spread(np.concatenate([face.triangles for face in drawing.faces]), 0.3 * roller.radius)
+    own = axis.inside(points)
+    pitch = 2.0 * math.pi / count
+    spans = (float(own[:, 2].min()), float(own[:, 2].max()))
+    results = []
+    for is_turned in (False, True):
+        flipped = own * np.array([1.0, -1.0, -1.0]) if is_turned else own
+        flipped = np.stack(
+            [np.arctan2(flipped[:, 1], flipped[:, 0]), np.hypot(flipped[:, 0], flipped[:, 1]), flipped[:, 2]], axis=1
+        )
+        low, high = sorted((-spans[0], -spans[1]) if is_turned else spans)
+        heights, phases = np.linspace(low, high, 17), np.arange(16) * pitch / 16
+        grid = [(height, phase) for height in heights for phase in phases]
+        fits = np.array([_clearance(flipped, height, phase, pitch, count, roller) for height, phase in grid])
+        best = grid[int(np.argmax(fits))]
+        step = np.array([heights[1] - heights[0], phases[1]])
+        for _ in range(6):
+            around = [
+                (best[0] + i * step[0], best[1] + j * step[1])
+                for i in (-1.0, -0.5, 0.0, 0.5, 1.0)
+                for j in (-1.0, -0.5, 0.0, 0.5, 1.0)
+            ]
+            values = [_clearance(flipped, height, phase, pitch, count, roller) for height, phase in around]
+            best, fit = around[int(np.argmax(values))], max(values)
+            step = 0.5 * step
+        results.append((fit, is_turned, best))
+    fit, is_turned, (height, phase) = max(results, key=lambda entry: entry[0] - (1e-9 if entry[1] else 0.0))
+    if fit < -0.03 * roller.radius:
+        raise FileError(
+            f"{drawing.path}: rollers of the bearing do not fit into its pockets: they overlap by {-1e3 * fit:.3g} mm at best"
+        )
+    return Place(axis, is_turned, float(height), float(phase))
+
+
+def _clearance(points: FloatArray, height: float, phase: float, pitch: float, count: int, roller: Frustum) -> float:
+    """Least distance between roller and points (angle, radius, height), the middle one of all pockets."""
+    angle = points[:, 0] - phase
+    pocket = np.round(angle / pitch)
+    folded = angle - pitch * pocket
+    close = np.abs(points[:, 1] * folded) < 1.2 * roller.radius
+    folded, pocket, (_, radius, along) = folded[close], pocket[close], points[close].T
+    placed = np.stack([radius * np.cos(folded), radius * np.sin(folded), along - height], axis=1)
+    least = np.full(count, 0.2 * roller.radius)
+    np.minimum.at(least, pocket.astype(int) % count, roller.depth(placed))
+    return float(np.median(least))
+
+
+def _spread(triangles: FloatArray, size: float) -> FloatArray:
+    """Points on triangles no further apart than a size."""
+    found = [triangles.reshape(-1, 3)]
+    longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    for parts in (2, 4, 8, 16, 32, 64):
+        rest = (
+            triangles[(longest / size > 0.5 * parts) & (longest / size <= parts)]
+            if parts < 64
+            else triangles[longest / size > 32]
+        )
+        for i in range(parts + 1):
+            for j in range(parts + 1 - i):
+                if len(rest):
+                    share = np.array([i, j, parts - i - j]) / parts
+                    found.append(np.einsum("tkx,k->tx", rest, share))
+    points = np.concatenate(found)
+    return points[np.unique(np.round(points / (0.05 * size)).astype(int), axis=0, return_index=True)[1]]
