@@ -38,6 +38,8 @@ MEMORY: Final = 5e-3
 """Time over which vibrations add up before the damping of a lightly loaded contact takes them (s)."""
 SIZE: Final = 0.01
 """Energy that is missing in `MEMORY`, over the elastic energy, below which it is too little to change a load."""
+MOST: Final = 1.0
+"""The same from which on vibrations are most of what the contacts hold, so that a probe of one piece scatters with them."""
 SIZE_UNDAMPED: Final = 2e-4
 """The same where nothing damps: vibrations of rollers that carry hardly any load then change how long these roll in contact, and
 with that the rolling resistance, while the elastic energy lies in others."""

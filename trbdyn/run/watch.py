@@ -312,9 +312,10 @@ class Watch:
             account.probe_steps += account.probed.steps if account.probed is not None else most
             account.probed_size = size
         damped = self._damped(now)
-        # with next to no damping large vibrations go on growing: a difference is then said although it is within the scatter
-        growing = share > vibrations.GROWING and size > vibrations.SIZE
-        if account.probed is not None and not account.probed.notable(certain=not growing):
+        # with next to no damping large vibrations go on growing, and where they are most of the elastic energy a probe scatters
+        # with them: a difference is then said although it is within the scatter
+        unclear = size > (vibrations.SIZE if share > vibrations.GROWING else vibrations.MOST)
+        if account.probed is not None and not account.probed.notable(certain=not unclear):
             return
         took = f"takes {100.0 * share:.3g} % of the energy of these vibrations" + (
             " in place of damping" if damped else ""
