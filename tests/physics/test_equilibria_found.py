@@ -35,9 +35,9 @@ LEFT = 1e-5
 MOST = 40
 """Most slopes that one start of the other search takes."""
 FAR = 1.2e-3
-"""Places (m) beyond which nothing holds a ring or shaft; a ring with a spring may travel farther."""
+"""Places (m) beyond which nothing holds a ring or shaft."""
 TRAVEL = 5e-3
-"""Longest way of an outer ring with a spring (m)."""
+"""The same of an outer ring with a spring (m)."""
 SURELY = 0.97
 """Share of the loads below which there is surely no equilibrium: tilt and displacement alter lever arms by less."""
 
@@ -156,7 +156,8 @@ def other_search(forces: Callable[[Array], Array], starts: list[Array], largest:
                     ).x
             except (ValueError, np.linalg.LinAlgError):
                 continue
-            if np.max(np.abs(found[:5])) * LENGTH < FAR and np.max(np.abs(guarded(found))) < max(LEFT, 1e-5 / largest):
+            far = np.array([FAR] * 5 + [TRAVEL] * (found.size - 5))[: found.size]
+            if np.all(np.abs(found) * LENGTH < far) and np.max(np.abs(guarded(found))) < max(LEFT, 1e-5 / largest):
                 return np.asarray(found)
     return None
 

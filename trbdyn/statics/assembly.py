@@ -36,7 +36,9 @@ FIRST_DAMPING: Final = 1e-3
 LONGEST_STEP: Final = 5e-5
 """Longest step (m): the stiffness says nothing about longer ones."""
 FARTHEST: Final = 1.5e-3
-"""Displacement (m) at which nothing holds the shaft any more. A ring that a spring presses may travel farther."""
+"""Displacement (m) at which nothing holds the shaft any more."""
+SPRING_TRAVEL: Final = 5e-3
+"""The same of a ring that a spring presses: a soft spring lets it go farther."""
 CONTACT: Final = 1e9
 """Stiffness of a usual contact (N/m), the unit of the damping."""
 STIFFEST: Final = 1e4
@@ -317,6 +319,7 @@ class _Search:
             0.5 * (max(planes) - min(planes)), 0.5 * max(one.bearing.pitch_diameter for one in assembly.bearings)
         )
         self.lengths = np.array([1.0, 1.0, 1.0, self.arm, self.arm, *[1.0] * (size - 5)])
+        self.farthest = np.array([FARTHEST] * 5 + [SPRING_TRAVEL] * (size - 5))
 
     def _seated(self) -> float:
         """An axial place at which the bearings that hold the shaft's axial load just touch their rollers; 0 with preload (m)."""
@@ -355,7 +358,7 @@ class _Search:
                 break
             balance, off = better, self._off(better)
             damping = 0.0 if damping < 1e-9 else 0.03 * damping
-            if np.max(np.abs(balance.place * self.lengths)[:5]) > FARTHEST:
+            if np.any(np.abs(balance.place * self.lengths) > self.farthest):
                 break
         raise LoadError(self._why_not(balance, off))
 
