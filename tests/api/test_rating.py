@@ -322,7 +322,8 @@ def test_the_sheet_is_a_table_and_plain_data() -> None:
     assert "<table" in found._repr_html_()
     assert json.loads(json.dumps(found.to_dict()))["equivalent_load"] == pytest.approx(5200.0)
     with pytest.raises(
-        trb.InputError, match="must be a Scene, a Result, an Assembly, an AssemblyResult or a ShaftEquilibrium"
+        trb.InputError,
+        match="must be a Scene, a Result, an Assembly, an AssemblyResult, a ShaftEquilibrium or a Spectrum",
     ):
         trb.rating(BEARING)
 
