@@ -38,7 +38,13 @@ HEAVY = (
     "tqdm",
     "xarray",
 )
-LOAD_HEAVY = ("trbdyn.plot", "trbdyn.reporting.page", "trbdyn.results.result", "trbdyn.study.planning.picture")
+LOAD_HEAVY = (
+    "trbdyn.plot",
+    "trbdyn.reporting.page",
+    "trbdyn.results.result",
+    "trbdyn.study.front",
+    "trbdyn.study.planning.picture",
+)
 COMMANDS = ("trbdyn/cli/",)
 MODELS = ("trbdyn/model/",)
 

@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from trbdyn.statics.preload import preload_diagram as preload_diagram
     from trbdyn.study.cage_map import cage_map as cage_map
     from trbdyn.study.least_load import least_load as least_load
+    from trbdyn.study.optimise import optimise as optimise
     from trbdyn.study.planning import plan as plan
     from trbdyn.study.preload_over import preload_over as preload_over
     from trbdyn.study.spectrum import series_table as series_table, spectrum as spectrum

@@ -27,6 +27,7 @@ OF_SCENE: dict[str, Callable[[Any], Any]] = {
 OF_ANY: dict[str, Callable[[Any], Any]] = {
     name: getattr(trb, name) for name in ("Simulation", "stiffness", "uncertainty", "sensitivity")
 } | {
+    "optimise": lambda given: trb.optimise(given, {"scene.axial_load": (1e3, 2e3)}, {"torque": "least"}),
     "whirl_onset": lambda given: trb.whirl_onset(given, [1000.0, 2000.0]),
     "thermal": lambda given: trb.thermal(given, trb.HeatPaths(oil_flow=30.0)),
 }

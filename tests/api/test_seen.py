@@ -39,6 +39,8 @@ from trbdyn.plot.cage_map import draw_map as draw_cage_map
 from trbdyn.plot.heat import draw_balance
 from trbdyn.plot.torque import draw_map
 from trbdyn.results.result import Result
+from trbdyn.study.front import draw_front
+from trbdyn.study.optimise import Design, Optimum
 
 KEPT = Path(__file__).with_name("pictures.json")
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?|nan")
@@ -309,6 +311,22 @@ class Pictures:
         )
         yield "cage_map over speed and load", draw_cage_map(data)
 
+    @staticmethod
+    def of_searches() -> Iterator[tuple[str, Any]]:
+        rows = [(4.0, 2.0), (3.0, 2.5), (2.0, 1.5), (1.0, 3.0)]
+        for name, want in (
+            ("two aims", {"pocket_force_peak": "least", "torque": "least"}),
+            ("one aim", {"torque": "least"}),
+        ):
+            made = []
+            for number, row in enumerate(rows):
+                told = dict(zip(["pocket_force_peak", "torque"], row, strict=True))
+                made.append(Design(number, {}, {key: 1.1 * value for key, value in told.items()}, told))
+            front = tuple(made[2:] if len(want) > 1 else made[2:3])
+            scene = trb.cases.scene_30310(3000.0, 4930.0)
+            found = Optimum(made[0], made[2], front, tuple(made), want, (), None, (scene, scene))
+            yield f"draw_front of {name}", draw_front(found)
+
     def of_assembly(self) -> Iterator[tuple[str, Any]]:
         pair = trb.load_assembly("pair_30310")
         yield "shaft_drawing", plot.shaft_drawing(pair)
@@ -326,7 +344,7 @@ class Pictures:
     def all(self) -> Iterator[tuple[str, Any]]:
         yield from self.of_result()
         yield from self.of_animation(self.result)
-        maps = (self.of_torque_maps, self.of_cage_maps)
+        maps = (self.of_torque_maps, self.of_cage_maps, self.of_searches)
         for more in (self.of_bearings, self.of_elastic_cage, self.of_heat, *maps, self.of_assembly):
             yield from more()
 

@@ -85,6 +85,7 @@ PICTURES = {
     f"{STUDY}torque_map.TorqueMap": ("trbdyn.plot.torque", "draw_map"),
     f"{STUDY}thermal.Thermal": ("trbdyn.plot.heat", "draw_balance"),
     f"{STUDY}thermal.AssemblyThermal": ("trbdyn.plot.heat", "draw_balance"),
+    f"{STUDY}optimise.Optimum": ("trbdyn.study.front", "draw_front"),
     f"{STUDY}planning.proposal.Plan": ("trbdyn.study.planning.picture", "draw"),
 }
 WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
@@ -125,6 +126,7 @@ FOLDERS = {
     for name in (
         "runner.run",
         "cage_map.cage_map",
+        "optimise.optimise",
         "thermal.thermal",
         "torque_map.torque_map",
         "uncertainty.uncertainty",

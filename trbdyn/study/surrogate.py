@@ -197,7 +197,7 @@ def surrogate(found: Uncertainty, quantity: str, *, seed: int = 0) -> Surrogate:
         raise InputError.of("found", f"{len(values)} draws", f"must have at least {FEWEST_DRAWS}")
     if not values.std() > 1e-12 * np.abs(values).max():
         raise InputError.of("quantity", quantity, "must change from draw to draw; it is the same in all of them")
-    fit = _fitted(unit, values, seed)
+    fit = fitted(unit, values, seed)
     errors = _unseen(unit, values, seed, fit.kernel_)
     return Surrogate(
         quantity=quantity,
@@ -221,7 +221,7 @@ def _draws(found: Uncertainty, quantity: str) -> tuple[Array, Array]:
     return np.stack(columns, axis=1), data[quantity].values[ran].astype(float)
 
 
-def _fitted(unit: Array, values: Array, seed: int, start: Kernel | None = None) -> GaussianProcessRegressor:
+def fitted(unit: Array, values: Array, seed: int, start: Kernel | None = None) -> GaussianProcessRegressor:
     """Lengths and noise from the first draws, which fill the bands evenly; then all draws with these.
 
     The search for them begins at `start`.
@@ -251,7 +251,7 @@ def _unseen(unit: Array, values: Array, seed: int, start: Kernel) -> Array:
     errors = np.empty(len(values))
     for fold in range(FOLDS):
         left = part == fold
-        errors[left] = _fitted(unit[~left], values[~left], seed, start).predict(unit[left]) - values[left]
+        errors[left] = fitted(unit[~left], values[~left], seed, start).predict(unit[left]) - values[left]
     return errors
 
 

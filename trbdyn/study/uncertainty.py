@@ -343,7 +343,7 @@ def unit_draws(inputs: int, count: int, seed: int) -> Array:
         return np.asarray(qmc.Sobol(inputs, seed=seed).random(count), dtype=float)
 
 
-def _is_whole(base: Base, band: Band) -> bool:
+def is_whole(base: Base, band: Band) -> bool:
     """Whether an input is drawn in whole numbers: both ends are, and so is what the scene has."""
     value: Any = base.tables
     for name in split_path(band.path):
@@ -356,7 +356,7 @@ def drawn_case(base: Base, options: RunOptions, bands: Sequence[Band], row: Arra
     """The case of a draw; `row` tells how far between the ends of each band."""
     overrides: dict[str, Any] = {}
     for band, share in zip(bands, row, strict=True):
-        if _is_whole(base, band):
+        if is_whole(base, band):
             value: float = int(band.low + share * (band.high - band.low + 1.0))
         else:
             value = float(band.low + share * (band.high - band.low))
