@@ -83,6 +83,8 @@ STUDY = "trbdyn.study."
 PICTURES = {
     f"{STUDY}cage_map.CageMap": ("trbdyn.plot.cage_map", "draw_map"),
     f"{STUDY}torque_map.TorqueMap": ("trbdyn.plot.torque", "draw_map"),
+    f"{STUDY}preload_over.PreloadOver": ("trbdyn.plot.preload", "draw_preload_over"),
+    f"{STUDY}least_load.LeastLoad": ("trbdyn.plot.slip", "draw_least_load"),
     f"{STUDY}thermal.Thermal": ("trbdyn.plot.heat", "draw_balance"),
     f"{STUDY}thermal.AssemblyThermal": ("trbdyn.plot.heat", "draw_balance"),
     f"{STUDY}optimise.Optimum": ("trbdyn.study.front", "draw_front"),
@@ -140,6 +142,9 @@ READERS = {
     "trbdyn.results.assembly.load",
     "trbdyn.results.sources.assembly_in",
     "trbdyn.results.sources.names_in",
+    "trbdyn.model.bearing.Cage.from_step",
+    "trbdyn.model.drawn.opened.opened",
+    "trbdyn.model.drawn.read.read_cage",
     "trbdyn.model.roller.Profile.from_csv",
     "trbdyn.results.result.load",
     "trbdyn.results.sources.FileSource",
@@ -207,6 +212,7 @@ WRITING = {
     "copy2",
 }
 MAY_WRITE = {
+    "app/forms.py": "fills memory",
     "base/own_files.py": "the one way",
     "base/locks.py": "opens what is there",
     "results/hdf5_file.py": "fills a draft",
@@ -351,6 +357,7 @@ COMMANDS: dict[str, tuple[list[str], list[str]]] = {
 """Words of each command, and the files that it would write."""
 WRITE_A_STUDY = {"sweep", "ensemble"}
 ONLY_PRINT = {"info", "cases", "rating"}
+OWNS_A_FOLDER = {"app"}
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
@@ -360,7 +367,7 @@ def commands() -> dict[str, argparse.ArgumentParser]:
 
 def test_every_command_is_known_and_can_be_asked_to_replace() -> None:
     found = commands()
-    assert set(found) == {*COMMANDS, *WRITE_A_STUDY, *ONLY_PRINT}
+    assert set(found) == {*COMMANDS, *WRITE_A_STUDY, *ONLY_PRINT, *OWNS_A_FOLDER}
     for name, parser in found.items():
         options = {text for action in parser._actions for text in action.option_strings}
         assert ("--overwrite" in options) == (name in COMMANDS), name

@@ -174,9 +174,9 @@ class Bench:
             return None
         folder = self._new_folder(title)
         for name, text in texts.items():
-            (folder / name).write_text(text, encoding="utf-8")
+            write_whole(folder / name, text, overwrite=True)
         about = {"title": title, "kind": kind, "when": time.strftime("%Y-%m-%d %H:%M"), "state": "not finished"}
-        (folder / META).write_text(json.dumps(about), encoding="utf-8")
+        write_whole(folder / META, json.dumps(about), overwrite=True)
         self.job = Job(kind, folder, arguments)
         self.version += 1
         return self.job
@@ -204,7 +204,7 @@ class Bench:
         about = json.loads(path.read_text(encoding="utf-8"))
         if self.job.kind != "pdf":
             about |= {"state": self.job.state, "text": self.job.text} | self.job.answer
-            path.write_text(json.dumps(about), encoding="utf-8")
+            write_whole(path, json.dumps(about), overwrite=True)
 
     def kept(self) -> list[Kept]:
         """What was made, the newest first."""

@@ -17,6 +17,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from trbdyn.app.questions import OF_SHAFT, QUESTIONS, SWEPT, want_of
+from trbdyn.base.own_files import write_whole
 from trbdyn.errors import InputError, TrbError
 from trbdyn.reporting import report, save_pdf
 from trbdyn.results.assembly import load
@@ -90,9 +91,8 @@ def _run(
         found = plan(cast(Any, subject), want_of(wants))
         subject = found.scene
         options = RunOptions(accuracy=found.accuracy, duration=found.duration, save_every=found.save_every)
-        (folder / "case.toml").write_text(
-            case_text(found.scene, options, title="found by trbdyn.plan"), encoding="utf-8"
-        )
+        text = case_text(found.scene, options, title="found by trbdyn.plan")
+        write_whole(folder / "case.toml", text, overwrite=True)
         extra["plan"] = str(found)
     say(0.0, "starting")
     simulation = Simulation(subject, **options.of_simulation())
@@ -126,7 +126,7 @@ def _shown(
 
     parts = dict(zip(subject.names, result.parts, strict=True))
     numbers = {name: [list(row) for row in one.summary()._shown().rows] for name, one in parts.items()}
-    (folder / "summary.json").write_text(json.dumps(numbers), encoding="utf-8")
+    write_whole(folder / "summary.json", json.dumps(numbers), overwrite=True)
     chosen = [picture for name in wants for picture in QUESTIONS[name].pictures] or ["torque_split"]
     say(1.0, "drawing")
     of_shaft = OF_SHAFT if len(parts) > 1 else ()
@@ -185,6 +185,7 @@ def _sweep(
     """Run a design for some values of one input; a table and pictures of what follows."""
     import matplotlib.pyplot as plt
 
+    from trbdyn.plot import save
     from trbdyn.plot.style import plain, styled
 
     say(0.0, f"0 of {len(cases)} cases")
@@ -203,8 +204,7 @@ def _sweep(
             ax.plot(labels, data[name].values, marker="o")
             ax.set_title((quantity.words if quantity is not None else name) + unit, fontsize=9)
         axes[-1, 0].set_xlabel(plain(path))
-        figure.savefig(folder / "sweep.png", dpi=110)
-        plt.close(figure)
+        save(figure, folder / "sweep.png", overwrite=True)
     return f"{len(rows)} cases", {"head": [path, "status", *names], "rows": rows}
 
 
