@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
+from trbdyn.model.drawn.opened import library
 from trbdyn.model.drawn.read import read_cage
 
-pytest.importorskip("gmsh", reason="needs the extra trbdyn[cad]", exc_type=ImportError)
+try:
+    library()
+except ImportError as error:
+    pytest.skip(str(error), allow_module_level=True)
 ROOT = Path(__file__).resolve().parents[2]
 
 
