@@ -74,6 +74,8 @@ def test_bars_of_a_pocket_stand_side_by_side_at_its_place(whirling: Result) -> N
     touched = [slot for slot in range(statistics.peak.shape[1]) if statistics.peak[:, slot].max() > 0.0]
     assert len(touched) > 1
     count = statistics.peak.shape[0]
+    for label, angle in zip(ax.get_xticklabels(), ax.get_xticks(), strict=True):
+        assert float(label.get_text()) == pytest.approx(angle * count / (2.0 * np.pi)), "pockets count from 0"
     width = 0.8 * (2.0 * np.pi / count) / len(touched)
     bars: list[Any] = list(ax.patches)
     assert len(bars) == 2 * count * len(touched)
