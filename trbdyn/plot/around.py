@@ -182,9 +182,7 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
             paper.bar(place, peak, bar, color=colour, alpha=0.35, linewidth=0)
             paper.bar(place, p95, bar, color=colour, linewidth=0, label=name)
         every = max(1, count // 24)
-        paper.set_thetagrids(
-            np.degrees(width * np.arange(0, count, every)), [str(k) for k in range(0, count, every)]
-        )
+        paper.set_thetagrids(np.degrees(width * np.arange(0, count, every)), [str(k) for k in range(0, count, every)])
         if touched:
             paper.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)
         else:

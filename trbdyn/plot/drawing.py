@@ -6,6 +6,7 @@ cone, body of the cage) is drawn in usual proportions, dashed.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
@@ -22,6 +23,7 @@ from trbdyn.plot.style import COLOURS, GREY, canvas, plain, styled
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
+    from trbdyn.model.pocket import Face
 
 Array = NDArray[np.float64]
 
@@ -176,12 +178,18 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         radius = 1e3 * (0.5 * roller.diameter + stations * np.tan(geometry.roller_half_angle))
         outline = np.concatenate([np.stack([1e3 * stations, radius], 1), np.stack([1e3 * stations, -radius], 1)[::-1]])
         top.add_patch(Polygon(outline, facecolor=ROLLER, edgecolor="black", linewidth=1.0))
-        for index, face in enumerate(faces):
-            corners = 1e3 * np.vstack([face.vertices, face.vertices[:1]])
-            look = {"color": COLOURS[index % len(COLOURS)], "linewidth": 1.8}
-            label = f"{face.name.replace('_', ' ')}: gap {1e3 * gaps[face.name]:.3g} mm"
-            end.plot(corners[:, 1], corners[:, 0], label=label, **look)
-            top.plot(corners[:, 2], corners[:, 1], **look)
+        surfaces: dict[int, list[Face]] = {}
+        for face in faces:
+            surfaces.setdefault(face.slot, []).append(face)
+        for index, facets in enumerate(surfaces.values()):
+            gap = round(1e3 * min(gaps[face.name] for face in facets), 6)
+            label = f"{facets[0].name.replace('_', ' ')}: gap {gap:.3g} mm"
+            label += f", {len(facets)} facets" if len(facets) > 1 else ""
+            for face in facets:
+                corners = 1e3 * np.vstack([face.vertices, face.vertices[:1]])
+                look = {"color": COLOURS[index % len(COLOURS)], "linewidth": 1.8 / math.sqrt(len(facets))}
+                end.plot(corners[:, 1], corners[:, 0], label=label if face is facets[0] else None, **look)
+                top.plot(corners[:, 2], corners[:, 1], **look)
         end.set(aspect="equal", xlabel="in the direction of rotation, t (mm)", ylabel="outward, n (mm)")
         end.set_title("seen along the roller's axis", pad=8)
         top.set(aspect="equal", xlabel="along the roller, large end to the right (mm)", ylabel="t (mm)")
