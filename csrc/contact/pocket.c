@@ -304,10 +304,10 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
   trb_gaps               gaps = far;
   view_places(m, r, cage, roller, &p);
   counters->pocket_tests += end - first;
-  int surface = 0;
-  for (const trb_pocket_face *f = first; f < end; f += f->n_facets, surface++) {
-    least[surface] = gap_of(m, f, &p, deformed, roller, &shifts[surface]);
-    note_gap(&gaps, f, least[surface]);
+  int surfaces = 0;
+  for (const trb_pocket_face *f = first; f < end; f += f->n_facets, surfaces++) {
+    least[surfaces] = gap_of(m, f, &p, deformed, roller, &shifts[surfaces]);
+    note_gap(&gaps, f, least[surfaces]);
   }
   if (trb_gaps_clear(&gaps) && !exact) {
     counters->pocket_culled += end - first;
@@ -318,8 +318,8 @@ static inline trb_gaps touch(const trb_model *m, const trb_roller_pose *r, const
   if (slopes != NULL) *slopes = (trb_slopes){.modal = slopes->modal, .axes = p.axes};
   p.slopes = slopes;
   gaps = far;
-  surface = 0;
-  for (const trb_pocket_face *f = first; f < end; f += f->n_facets, surface++) {
+  const trb_pocket_face *f = first;
+  for (int surface = 0; surface < surfaces; f += f->n_facets, surface++) {
     const double gap = least[surface];
     if (gap > 0.0 && !exact) {
       counters->pocket_culled += f->n_facets;
