@@ -112,6 +112,7 @@ def test_mass_is_that_of_the_body(drawings: ModuleType, rig: trb.Bearing, tmp_pa
     assert result.success
 
 
+@pytest.mark.slow
 def test_a_broken_pocket_is_told(drawings: ModuleType, rig: trb.Bearing, tmp_path: Path) -> None:
     path = drawings.write("relieved", rig, tmp_path / "broken.step", broken=True)
     found = read_cage(path, rig, tolerance=1e-5)
