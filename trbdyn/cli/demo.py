@@ -29,7 +29,7 @@ DEMO_WORDS: Final = (
 )
 
 
-TURNS: Final = 960.0
+TURNS: Final = 1300.0
 """Turns of the shaft after which the motion is known to have settled."""
 
 
