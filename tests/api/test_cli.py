@@ -18,6 +18,7 @@ import pytest
 import trbdyn
 from trbdyn.cli import main
 from trbdyn.cli.called import command
+from trbdyn.cli.demo import TURNS
 from trbdyn.errors import LoadError, StepError
 from trbdyn.results.result import Result, load
 from trbdyn.results.result_file import Part, ResultWriter
@@ -81,7 +82,7 @@ def test_demo_writes_everything(
     for name in (*promised, "steps", "rhs_evaluations"):
         assert isinstance(values[name], float | int), name
     call = fake.calls[0]
-    assert call["run"]["revolutions"] == 960.0
+    assert call["run"]["revolutions"] == TURNS
     assert call["scene"].start.kind == "whirl"
     assert call["scene"].start.eccentricity == 0.9
     assert call["scene"].speed_rpm == 3000.0
