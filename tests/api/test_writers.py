@@ -13,14 +13,13 @@ import resource
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import matplotlib.pyplot as plt
 import pytest
 
+import trbdyn
 import trbdyn as trb
-import trbdyn.study.planning
 from trbdyn.cage.modes import CageModes
 from trbdyn.cli import main, make_parser
 from trbdyn.model.cases import paper_30310
@@ -30,6 +29,7 @@ from trbdyn.results import summary
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.export import export
 from trbdyn.study import gather
+from trbdyn.study.answer import Answer
 from trbdyn.viewer import View, save_gltf
 
 FOREIGN = b"days of work of somebody else\n"
@@ -46,17 +46,11 @@ def run_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 # ---- functions ----
 
 
-def picture_of(module: str, function: str, owner: str) -> Callable[..., Any]:
-    """The method `picture` of a result of a study, with a figure in place of what it draws."""
+class Drawn(Answer):
+    """An answer of a study with an empty picture."""
 
-    def call(run: trb.Result, path: Path, **how: Any) -> Any:
-        home, name = owner.rsplit(".", 1)
-        method = getattr(importlib.import_module(home), name).picture
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(importlib.import_module(module), function, lambda *rest: plt.figure())
-            return method(SimpleNamespace(data=None, values=tuple), path, **how)
-
-    return call
+    def _draw(self, **how: Any) -> Any:
+        return plt.figure()
 
 
 def dataset() -> Any:
@@ -80,16 +74,6 @@ def moving(run: trb.Result) -> Any:
 
 
 STUDY = "trbdyn.study."
-PICTURES = {
-    f"{STUDY}cage_map.CageMap": ("trbdyn.plot.cage_map", "draw_map"),
-    f"{STUDY}torque_map.TorqueMap": ("trbdyn.plot.torque", "draw_map"),
-    f"{STUDY}preload_over.PreloadOver": ("trbdyn.plot.preload", "draw_preload_over"),
-    f"{STUDY}least_load.LeastLoad": ("trbdyn.plot.slip", "draw_least_load"),
-    f"{STUDY}thermal.Thermal": ("trbdyn.plot.heat", "draw_balance"),
-    f"{STUDY}thermal.AssemblyThermal": ("trbdyn.plot.heat", "draw_balance"),
-    f"{STUDY}optimise.Optimum": ("trbdyn.study.front", "draw_front"),
-    f"{STUDY}planning.proposal.Plan": ("trbdyn.study.planning.picture", "draw"),
-}
 WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
     "trbdyn.reporting.report": ("a.html", lambda run, path, **how: trb.report(run, path, pictures=[], **how)),
     "trbdyn.viewer.view": ("a.html", lambda run, path, **how: trb.view(run, path, max_frames=3, **how)),
@@ -119,7 +103,8 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
         "a.h5",
         lambda run, path, **how: trb.Simulation(paper_30310()).run(output=path, **SPAN, **how),
     ),
-} | {f"{owner}.picture": ("a.png", picture_of(*where, owner)) for owner, where in PICTURES.items()}
+    f"{STUDY}answer.Answer.picture": ("a.png", lambda run, path, **how: Drawn().picture(path, **how)),
+}
 RUNS = {name for name in WRITERS if name.endswith("Simulation.run")}
 """Runs have tests of their own for a full disk: tests/restart and tests/api/test_results.py."""
 NEEDS_A_PROGRAM = {"trbdyn.reporting.save_pdf"}

@@ -107,6 +107,19 @@ class Displayed:
         return self._shown().html()
 
 
+class Tabled(Displayed):
+    """Something that prints as the table it shows."""
+
+    _headed = False
+    """Whether the names of the columns are printed above them."""
+
+    def __str__(self) -> str:
+        return self._shown().text(names=self._headed)
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
 def _style(name: str, cell: str = "") -> str:
     """Numbers stand in line at the right; a sentence in their column wraps, so that it squeezes no other column."""
     if name == "value" and len(cell) <= LONGEST_NUMBER:

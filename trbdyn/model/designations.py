@@ -18,7 +18,7 @@ from typing import Any, Final
 
 from trbdyn.base.own_files import file_path
 from trbdyn.base.shipped import DATA
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.catalogue import fields_from_catalogue
 from trbdyn.model.estimated import Estimated
@@ -47,7 +47,7 @@ _SUFFIX: Final = re.compile(r"(?<=\d{5})(?:-?(?:XU|X|A|JR|J2?|U|Q|P[056]|XL|/Q|/
 
 
 @dataclass(frozen=True)
-class Designation(Displayed):
+class Designation(Tabled):
     """A row of the table.
 
     Attributes
@@ -148,9 +148,6 @@ class Designation(Displayed):
             head=("name", "value", "unit", "fact or estimate"),
             notes=(self.source,),
         )
-
-    def __str__(self) -> str:
-        return self._shown().text()
 
 
 def designations(table: str | Path | None = None) -> dict[str, Designation]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trbdyn import _core
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 
 ROLLER_COORDINATES: Final = 11
 """Coordinates of a roller in the state, without its spin angle."""
@@ -56,8 +56,8 @@ class Pair:
     on: bool
 
 
-@dataclass(frozen=True, eq=False)
-class System(Displayed):
+@dataclass(frozen=True, eq=False, repr=False)
+class System(Tabled):
     """The bodies and pairs of a simulation.
 
     Attributes
@@ -70,9 +70,6 @@ class System(Displayed):
 
     bodies: tuple[Body, ...]
     pairs: tuple[Pair, ...]
-
-    def __repr__(self) -> str:
-        return self._shown().text()
 
     def _shown(self) -> Shown:
         size = sum(body.coordinates for body in self.bodies)

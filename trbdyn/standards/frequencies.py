@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 
 
-@dataclass(frozen=True, eq=False)
-class Frequencies(Displayed):
+@dataclass(frozen=True, eq=False, repr=False)
+class Frequencies(Tabled):
     """Frequencies of a bearing in pure rolling (Hz).
 
     Attributes
@@ -37,9 +37,6 @@ class Frequencies(Displayed):
     def orders(self) -> dict[str, float]:
         """The same over the speed of the shaft, or of the outer ring where the shaft rests (1)."""
         return {name: getattr(self, name) / self.reference for name in _MEANINGS}
-
-    def __repr__(self) -> str:
-        return self._shown().text()
 
     def _shown(self) -> Shown:
         orders = self.orders

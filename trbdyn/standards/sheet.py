@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError
 from trbdyn.model.contact_line import line_length, stations
 from trbdyn.model.motion import value_at
@@ -110,7 +110,7 @@ _ROWS: Final[dict[str, tuple[str, str, str]]] = {
 
 
 @dataclass(frozen=True)
-class Rating(Displayed):
+class Rating(Tabled):
     """The sheet. Numbers that cannot be told are None; `notes` says why, and where the others come from.
 
     Attributes
@@ -218,9 +218,6 @@ class Rating(Displayed):
             head=("name", "value", "unit", "where it comes from"),
             notes=(*self.warnings, WHICH_LIFE),
         )
-
-    def __str__(self) -> str:
-        return self._shown().text()
 
 
 LONGEST_LIFE: Final = 1e6

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError
 from trbdyn.model.scene import Scene
 from trbdyn.standards import iso281, lamina
@@ -37,7 +37,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SpectrumRating(Displayed):
+class SpectrumRating(Tabled):
     """Lives of a bearing over a spectrum.
 
     Attributes
@@ -75,9 +75,6 @@ class SpectrumRating(Displayed):
     reference_life_hours: float | None
     modified_reference_life_hours: float | None
     warnings: tuple[str, ...]
-
-    def __str__(self) -> str:
-        return self._shown().text()
 
     def _shown(self) -> Shown:
         lives = ("life_hours", "modified_life_hours", "reference_life_hours", "modified_reference_life_hours")

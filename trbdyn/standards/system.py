@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.standards.sheet import WHICH_LIFE, Loading, Rating, at_equilibrium, life_text, sheet
 from trbdyn.standards.spectrum import SpectrumRating
 from trbdyn.statics.assembly import BearingOnShaft, ShaftEquilibrium
@@ -18,7 +18,7 @@ _LIVES: Final = ("life_hours", "modified_life_hours", "reference_life_hours", "m
 
 
 @dataclass(frozen=True)
-class SystemRating(Displayed):
+class SystemRating(Tabled):
     """Sheets of the bearings of an assembly, and the lives of the whole: none of its bearings has failed.
 
     Attributes
@@ -36,9 +36,6 @@ class SystemRating(Displayed):
     modified_life_hours: float | None
     reference_life_hours: float | None
     modified_reference_life_hours: float | None
-
-    def __str__(self) -> str:
-        return self._shown().text()
 
     def _shown(self) -> Shown:
         def row(name: str, one: Rating | SpectrumRating | SystemRating, *loads: str) -> tuple[str, ...]:

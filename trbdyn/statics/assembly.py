@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from trbdyn import _core
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError, LoadError
 from trbdyn.model.assembly import Assembly
@@ -98,8 +98,8 @@ class BearingOnShaft:
         return not bool(np.any(self.inner_load > 0.0))
 
 
-@dataclass(frozen=True, eq=False)
-class ShaftEquilibrium(Displayed):
+@dataclass(frozen=True, eq=False, repr=False)
+class ShaftEquilibrium(Tabled):
     """A shaft in static equilibrium on its bearings at speed, without friction.
 
     Attributes
@@ -226,9 +226,6 @@ class ShaftEquilibrium(Displayed):
         axis, _ = axis_of(place[3:5])
         place[:3] += arm * (axis - np.array([0.0, 0.0, 1.0]))
         return self._system.at(place, position, self._balance.answers)
-
-    def __repr__(self) -> str:
-        return self._shown().text()
 
     def _shown(self) -> Shown:
         rows = []

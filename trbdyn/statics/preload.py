@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.base.validation import number_of
 from trbdyn.model.assembly import Assembly
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
@@ -22,8 +22,8 @@ BEYOND: Final = 10e-6
 """How far the diagram goes beyond half of the preload on either side (m)."""
 
 
-@dataclass(frozen=True, eq=False)
-class PreloadDiagram(Displayed):
+@dataclass(frozen=True, eq=False, repr=False)
+class PreloadDiagram(Tabled):
     """Axial loads over the axial displacement of the shaft.
 
     Attributes
@@ -45,9 +45,6 @@ class PreloadDiagram(Displayed):
     loads: dict[str, Array]
     axial_force: Array
     preload: ShaftEquilibrium
-
-    def __repr__(self) -> str:
-        return self._shown().text()
 
     def _shown(self) -> Shown:
         rows = tuple(

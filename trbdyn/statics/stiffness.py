@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from trbdyn import _core
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError, LoadError, RunWarning
 from trbdyn.model.assembly import Assembly
 from trbdyn.model.flatten import ring_load
@@ -52,8 +52,8 @@ class Modes:
     shapes: NDArray[np.complex128]
 
 
-@dataclass(frozen=True, eq=False)
-class Stiffness(Displayed):
+@dataclass(frozen=True, eq=False, repr=False)
+class Stiffness(Tabled):
     """Stiffness of the inner ring, or of a shaft, about an equilibrium, with outer rings at rest and rollers in equilibrium at
     speed.
 
@@ -80,9 +80,6 @@ class Stiffness(Displayed):
     roller_mass: Array
     pitch_diameter: float
     speed_rpm: float
-
-    def __repr__(self) -> str:
-        return self._shown().text()
 
     def _shown(self) -> Shown:
         names = ("force_x", "force_y", "force_z", "moment_x", "moment_y")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Unpack
@@ -10,11 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal, Unpack
 import numpy as np
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
+from trbdyn.study.answer import Answer
 from trbdyn.study.runner import Running
 from trbdyn.study.whirl import TURNS, CageRuns, speeds_of, variables_of
 
@@ -23,8 +23,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class CageMap(Displayed):
+class CageMap(Answer):
     """What a cage does over speed and load; print it for a table.
+
+    Its picture has a field for each point, coloured by class, with the orbit over the radial play; one map for each start.
 
     Attributes
     ----------
@@ -35,31 +37,10 @@ class CageMap(Displayed):
 
     data: xarray.Dataset
 
-    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
-        """Draw the map: a field for each point, coloured by class, with the orbit over the radial play.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Where to save the picture.
-        overwrite : bool
-            Replace a file that is there.
-
-        Returns
-        -------
-        Figure
-            The matplotlib figure, one map for each start.
-        """
+    def _draw(self) -> Any:
         from trbdyn.plot.cage_map import draw_map
-        from trbdyn.plot.style import kept
 
-        return kept(draw_map(self.data), path, overwrite=overwrite)
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
+        return draw_map(self.data)
 
     def _shown(self) -> Shown:
         speeds = [f"{speed:g} rpm" for speed in self.data["speed_rpm"].values]

@@ -5,7 +5,6 @@ rollers that enter the load zone, and the load from which on they roll (docs/the
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Unpack
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Subject
@@ -24,6 +23,7 @@ from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.replay import Replay
 from trbdyn.standards.iso281 import SMALLEST_LOAD_SHARE
+from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base, Case
 from trbdyn.study.runner import Running
 from trbdyn.study.settled import TURNS, failure, run_until_settled
@@ -53,8 +53,10 @@ NUMBERS: Final = {
 
 
 @dataclass(frozen=True, repr=False)
-class LeastLoad(Displayed):
+class LeastLoad(Answer):
     """Slip over load, speed and temperature; print it for a table.
+
+    Its picture shows slip and power per area over the load, a line for each speed and temperature.
 
     Attributes
     ----------
@@ -72,30 +74,10 @@ class LeastLoad(Displayed):
     slip: float
     by_rule: float
 
-    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
-        """Draw slip and power per area over the load, a line for each speed and temperature.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Where to save the picture.
-        overwrite : bool
-            Replace a file that is there.
-
-        Returns
-        -------
-        Figure
-            The matplotlib figure.
-        """
+    def _draw(self) -> Any:
         from trbdyn.plot.slip import draw_least_load
-        from trbdyn.plot.style import kept
 
-        return kept(draw_least_load(self), path, overwrite=overwrite)
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    __repr__ = __str__
+        return draw_least_load(self)
 
     def _shown(self) -> Shown:
         rows, least = [], []

@@ -5,7 +5,6 @@ tolerances, and what was learned from all runs tells which designs come next (`t
 from __future__ import annotations
 
 import inspect
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
@@ -14,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, Subject
@@ -25,6 +24,7 @@ from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.result import Result
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
+from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base, Case, Study, split_path
 from trbdyn.study.drawn_bearing import belongs_together
 from trbdyn.study.guide import Aims, Fits, next_designs
@@ -72,8 +72,11 @@ class Design:
 
 
 @dataclass(frozen=True, repr=False)
-class Optimum(Displayed):
+class Optimum(Answer):
     """Designs that were run, and the best of them; print it for a table.
+
+    Its picture shows the designs over the first two aims, or one aim over the order of the runs; the front, the chosen and the
+    first.
 
     Attributes
     ----------
@@ -116,31 +119,10 @@ class Optimum(Displayed):
         first, chosen = (Simulation(subject).run(**(how | length)) for subject in self.subjects)
         return first, chosen
 
-    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
-        """Draw the designs over the first two aims, or one aim over the order of the runs; the front, the chosen and the first.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Where to save the picture.
-        overwrite : bool
-            Replace a file that is there.
-
-        Returns
-        -------
-        Figure
-            The matplotlib figure.
-        """
-        from trbdyn.plot.style import kept
+    def _draw(self) -> Any:
         from trbdyn.study.front import draw_front
 
-        return kept(draw_front(self), path, overwrite=overwrite)
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
+        return draw_front(self)
 
     def _shown(self) -> Shown:
         inputs, values = list(self.chosen.inputs), list(self.chosen.values)

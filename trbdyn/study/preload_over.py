@@ -4,7 +4,6 @@ and preload drive each other up (docs/theory/fits.md#preload-over-temperature).
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError, TrbError
 from trbdyn.model.assembly import Assembly, Subject, assembly_of
@@ -27,6 +26,7 @@ from trbdyn.run.simulation import Simulation
 from trbdyn.standards.sheet import Rating, life_text
 from trbdyn.statics.assembly import equilibrium, stiffness
 from trbdyn.statics.fit import WAY, Fit, fit
+from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base
 from trbdyn.study.heat_network import film_temperature, heat_of, network
 from trbdyn.study.thermal import HOTTEST, own_paths
@@ -99,9 +99,11 @@ class AtTemperature:
         return {name: play["operating"].mean for name, play in self.fit.plays.items()}
 
 
-@dataclass(frozen=True)
-class PreloadOver(Displayed):
+@dataclass(frozen=True, repr=False)
+class PreloadOver(Answer):
     """Play, preload and what follows over temperature; print it for a table.
+
+    Its picture shows play, preload, torque and life over the temperature.
 
     Attributes
     ----------
@@ -128,25 +130,10 @@ class PreloadOver(Displayed):
     outside: bool
     title: str
 
-    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
-        """Draw play, preload, torque and life over the temperature.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Where to save the picture.
-        overwrite : bool
-            Replace a file that is there.
-
-        Returns
-        -------
-        Figure
-            The matplotlib figure.
-        """
+    def _draw(self) -> Any:
         from trbdyn.plot.preload import draw_preload_over
-        from trbdyn.plot.style import kept
 
-        return kept(draw_preload_over(self), path, overwrite=overwrite)
+        return draw_preload_over(self)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -183,11 +170,6 @@ class PreloadOver(Displayed):
                         loose.setdefault(f"{name} {seat.name} {seat.tolerance}".strip(), row.temperature_c)
         seats = (f"{seat} has lost its interference at {t:.4g} C: the ring may creep" for seat, t in loose.items())
         return (*said, *seats)
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    __repr__ = __str__
 
     def _shown(self) -> Shown:
         first = self.rows[0]

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError, unknown_name
 from trbdyn.results.quantities import QUANTITIES
 from trbdyn.study.uncertainty import Band, Uncertainty
@@ -59,7 +59,7 @@ class Index:
 
 
 @dataclass(frozen=True, repr=False)
-class Surrogate(Displayed):
+class Surrogate(Tabled):
     """A fast stand-in for runs; print it for a table, call it for a prediction.
 
     Attributes
@@ -89,6 +89,7 @@ class Surrogate(Displayed):
     explained: float
     indices: dict[str, Index]
     _fit: GaussianProcessRegressor
+    _headed = True
 
     def __call__(self, inputs: Mapping[str, ArrayLike]) -> Array:
         """The prediction for designs.
@@ -125,12 +126,6 @@ class Surrogate(Displayed):
         shaped = np.broadcast_arrays(*columns)
         unit = np.stack([column.ravel() for column in shaped], axis=1)
         return np.asarray(self._fit.predict(unit)).reshape(shaped[0].shape)
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
 
     def _shown(self) -> Shown:
         ordered = sorted(self.indices.items(), key=lambda entry: -entry[1].total)

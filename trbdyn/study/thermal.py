@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, Unpack, overload
@@ -13,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.stats import qmc
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown
 from trbdyn.errors import InputError, TrbError
 from trbdyn.model.assembly import Assembly, ShaftBearing, Subject
 from trbdyn.model.growth import Growth
@@ -22,6 +21,7 @@ from trbdyn.model.lubricants import LOWEST_MEASURED_C, LOWEST_TEMPERATURE_C
 from trbdyn.model.motion import is_constant, value_at
 from trbdyn.model.scene import Scene
 from trbdyn.run.options import RunOptions
+from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base, Case
 from trbdyn.study.heat_network import LossCurves, film_temperature, heat_of, network, rise
 from trbdyn.study.runner import Running
@@ -51,8 +51,10 @@ DRAWS: Final = 512
 
 
 @dataclass(frozen=True, repr=False)
-class Thermal(Displayed):
+class Thermal(Answer):
     """A bearing in thermal balance; print it for a table.
+
+    Its picture shows the balance of heat made and given off, and the temperatures with their bands.
 
     Attributes
     ----------
@@ -125,31 +127,10 @@ class Thermal(Displayed):
         ribs = self.scene.bearing.ribs
         return rise(self.paths, LossCurves(self.known), heat_capacities, duration, points, ribs=ribs)
 
-    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
-        """Draw the balance of heat made and given off, and the temperatures with their bands.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Where to save the picture.
-        overwrite : bool
-            Replace a file that is there.
-
-        Returns
-        -------
-        Figure
-            The matplotlib figure.
-        """
+    def _draw(self) -> Any:
         from trbdyn.plot.heat import draw_balance
-        from trbdyn.plot.style import kept
 
-        return kept(draw_balance([self]), path, overwrite=overwrite)
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
+        return draw_balance([self])
 
     def _shown(self) -> Shown:
         rows = []
@@ -174,8 +155,10 @@ class Thermal(Displayed):
         )
 
 
-class AssemblyThermal(Mapping[str, Thermal], Displayed):
+class AssemblyThermal(Mapping[str, Thermal], Answer):
     """Bearings on a shaft in thermal balance: a `Thermal` of each by its name; print it for a table.
+
+    Its picture shows the balance of each bearing, one below the other.
 
     Parameters
     ----------
@@ -195,17 +178,13 @@ class AssemblyThermal(Mapping[str, Thermal], Displayed):
     def __len__(self) -> int:
         return len(self._bearings)
 
-    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
-        """Draw the balance of each bearing, one below the other; see `Thermal.picture`."""
+    def _draw(self) -> Any:
         from trbdyn.plot.heat import draw_balance
-        from trbdyn.plot.style import kept
 
-        return kept(draw_balance(list(self.values())), path, overwrite=overwrite)
+        return draw_balance(list(self.values()))
 
     def __str__(self) -> str:
         return "\n\n".join(map(str, self.values()))
-
-    __repr__ = __str__
 
     def _shown(self) -> Shown:
         return Shown("Thermal balance", parts=tuple(one._shown() for one in self.values()))

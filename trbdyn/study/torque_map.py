@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Unpack
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly, Subject
@@ -20,6 +19,7 @@ from trbdyn.model.scene import Scene
 from trbdyn.results.fields import table
 from trbdyn.run.options import RunOptions
 from trbdyn.run.torque_laws import torque_laws
+from trbdyn.study.answer import Answer
 from trbdyn.study.definition import Base, Case
 from trbdyn.study.runner import Running
 from trbdyn.study.settled import JUDGED, TURNS, failure, run_until_settled, short_run
@@ -50,8 +50,11 @@ FILMS: Final = ("film_parameter_inner", "film_parameter_rib")
 
 
 @dataclass(frozen=True, repr=False)
-class TorqueMap(Displayed):
+class TorqueMap(Answer):
     """Torques by temperature, speed and load; print it for a table.
+
+    Its picture shows torque over speed, a line for each load or temperature, and its sources; `temperature` is the place of the
+    one temperature to draw, all by default.
 
     Attributes
     ----------
@@ -93,35 +96,10 @@ class TorqueMap(Displayed):
         place = int(np.argmin(torque))
         return float(line["speed_rpm"][place]), float(torque[place])
 
-    def picture(
-        self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False, temperature: int | None = None
-    ) -> Any:
-        """Draw torque over speed, a line for each load or temperature, and its sources.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Where to save the picture.
-        overwrite : bool
-            Replace a file that is there.
-        temperature : int, optional
-            The one temperature to draw, by its place; all by default.
-
-        Returns
-        -------
-        Figure
-            The matplotlib figure.
-        """
-        from trbdyn.plot.style import kept
+    def _draw(self, temperature: int | None = None) -> Any:
         from trbdyn.plot.torque import draw_map
 
-        return kept(draw_map(self.data, temperature), path, overwrite=overwrite)
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
+        return draw_map(self.data, temperature)
 
     def _shown(self) -> Shown:
         data = self.data

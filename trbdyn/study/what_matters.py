@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.errors import InputError, LoadError, StepError, unknown_name
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.estimated import Estimated
@@ -72,7 +72,7 @@ class Influence:
 
 
 @dataclass(frozen=True, repr=False)
-class Sensitivity(Displayed):
+class Sensitivity(Tabled):
     """Influence of each estimated input on a result, the largest first.
 
     Attributes
@@ -91,11 +91,6 @@ class Sensitivity(Displayed):
     value: float
     scatter: float
     influences: tuple[Influence, ...]
-
-    def __str__(self) -> str:
-        return self._shown().text()
-
-    __repr__ = __str__
 
     def _shown(self) -> Shown:
         rows: list[tuple[str, ...]] = []

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 import numpy as np
 
 from trbdyn.base.expected import expect
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly, Subject
@@ -89,7 +89,7 @@ OBSERVED: Final = {function.__name__: function for function in (kind_before, kin
 
 
 @dataclass(frozen=True, repr=False)
-class WhirlOnset(Displayed):
+class WhirlOnset(Tabled):
     """What a cage does over speed; print it for a table.
 
     Attributes
@@ -100,6 +100,7 @@ class WhirlOnset(Displayed):
     """
 
     data: xarray.Dataset
+    _headed = True
 
     def onset(self, start: Literal["equal", "whirl"] = "equal") -> tuple[float, float]:
         """Between which speeds (rpm) the cage begins to whirl: the fastest one below the whirl, and the slowest with it.
@@ -131,12 +132,6 @@ class WhirlOnset(Displayed):
         # of a run that failed nothing is known
         below = speeds[:first][line["kind"].values[:first] != "unknown"]
         return (float(below[-1]) if below.size else 0.0, float(speeds[first]))
-
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
 
     def _shown(self) -> Shown:
         rows = []

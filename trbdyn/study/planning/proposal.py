@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-import os
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown
 from trbdyn.model import contact_line
 from trbdyn.results.summary import averages
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
+from trbdyn.study.answer import Answer
 from trbdyn.study.planning.probes import Influence
 
 if TYPE_CHECKING:
@@ -53,8 +53,10 @@ class Row:
 
 
 @dataclass(frozen=True, repr=False)
-class Plan(Displayed):
+class Plan(Answer):
     """The cheapest simulation of a scene that is as exact as was wanted, as made by `trbdyn.plan`.
+
+    Its picture shows what each effect gives and costs.
 
     Attributes
     ----------
@@ -152,28 +154,10 @@ class Plan(Displayed):
         found = averages(result.window(float(time[0]) + self.settle))
         return {name: float(found[name]) for name in self.want}
 
-    def picture(self, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> Any:
-        """Draw what each effect gives and costs.
-
-        Parameters
-        ----------
-        path : path-like, optional
-            Where to save the picture.
-        overwrite : bool
-            Replace a file that is there.
-
-        Returns
-        -------
-        Figure
-            The matplotlib figure.
-        """
-        from trbdyn.plot.style import kept
+    def _draw(self) -> Any:
         from trbdyn.study.planning.picture import draw
 
-        return kept(draw(self), path, overwrite=overwrite)
-
-    def __repr__(self) -> str:
-        return str(self)
+        return draw(self)
 
     def _shown(self) -> Shown:
         head, *rows = _cells(self)
