@@ -41,7 +41,10 @@ HEAVY = (
 LOAD_HEAVY = (
     "trbdyn.plot",
     "trbdyn.reporting.page",
+    "trbdyn.results.export",
+    "trbdyn.results.file_source",
     "trbdyn.results.result",
+    "trbdyn.results.result_file",
     "trbdyn.study.front",
     "trbdyn.study.planning.picture",
 )

@@ -27,7 +27,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
-from trbdyn.results import hdf5_file, result_file, sources
+from trbdyn.results import hdf5_file, result_file
 from trbdyn.results.file_format import BLOCK_ROWS, SCHEMA_VERSION, SINGLE
 from trbdyn.results.file_format import as_kept as kept_in_a_file
 from trbdyn.results.result import Result, load
@@ -790,7 +790,7 @@ def test_a_summary_opens_the_file_once(tmp_path: Path, monkeypatch: pytest.Monke
     assert len(opens) == 1
     for name in ("torque", "axis_distance_over_cpr", "cage_speed_ratio"):
         assert found[name] == pytest.approx(wanted[name], rel=1e-6)
-    with pytest.raises(KeyError, match="mine"), sources.held_open(result._source):
+    with pytest.raises(KeyError, match="mine"), result._source.held_open():
         raise KeyError("mine")
     again = trb.load(path)
     path.unlink()

@@ -16,7 +16,6 @@ import trbdyn as trb
 from trbdyn import study
 from trbdyn.errors import FileError
 from trbdyn.model.cases import scene_30310
-from trbdyn.results.sources import held_open
 from trbdyn.run import checkpoint
 from trbdyn.run.options import RunOptions
 from trbdyn.study import gather
@@ -26,7 +25,7 @@ Reader = Callable[[Path], dict[str, Any]]
 
 def read_result(path: Path) -> dict[str, Any]:
     result = trb.load(path)
-    with held_open(result._source):
+    with result._source.held_open():
         values: dict[str, Any] = {field.name: result[field.name] for field in result.fields}
     values |= {f"whole run: {name}": result.peaks[name] for name in result.peaks}
     values |= {name: getattr(result, name) for name in ("success", "message", "stats", "counters", "geometry", "meta")}

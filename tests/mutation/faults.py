@@ -56,7 +56,12 @@ AREAS: dict[str, tuple[float, list[str]]] = {
     ),
     "runs": (
         0.06,
-        ["trbdyn/run/running.py", "trbdyn/run/checkpoint.py", "trbdyn/results/sources.py", "trbdyn/run/simulation.py"],
+        [
+            "trbdyn/run/running.py",
+            "trbdyn/run/checkpoint.py",
+            "trbdyn/results/file_source.py",
+            "trbdyn/run/simulation.py",
+        ],
     ),
 }
 """Share of the faults, and sources, of each area."""

@@ -18,7 +18,7 @@ import pytest
 import trbdyn as trb
 from trbdyn import study
 from trbdyn.errors import FileError
-from trbdyn.results.sources import FileSource
+from trbdyn.results.file_source import FileSource
 from trbdyn.run import checkpoint
 from trbdyn.run.options import RunOptions
 

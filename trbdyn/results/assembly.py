@@ -14,11 +14,9 @@ from trbdyn.base.shown import Displayed, Shown
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
-from trbdyn.results.export import export
 from trbdyn.results.observables.energy import EnergyAudit, energy_audit
 from trbdyn.results.result import Result
 from trbdyn.results.result import load as load_bearing
-from trbdyn.results.sources import assembly_in
 from trbdyn.results.summary import Summary
 
 Array = NDArray[np.float64]
@@ -166,6 +164,8 @@ class AssemblyResult(Mapping[str, Result], Displayed):
         overwrite : bool
             Replace a file that is there; never the file of this result.
         """
+        from trbdyn.results.export import export
+
         return export(self, path, assembly=self.assembly, overwrite=overwrite)
 
     def loads(self, name: str) -> dict[str, Array]:
@@ -295,6 +295,8 @@ def load(path: str | os.PathLike[str], *, bearing: str = "") -> Any:
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
+    from trbdyn.results.file_source import assembly_in
+
     table = None if bearing else assembly_in(path)
     if table is None:
         return load_bearing(path, bearing=bearing)

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.results.fields import Field
+from trbdyn.results.sources import WithoutFile
 
 Array = NDArray[np.float64]
 
 
-class RecordsSource:
+class RecordsSource(WithoutFile):
     """Fields within pieces of records; the array of a field is put together when it is first read.
 
     Most results are asked for a few of their hundred quantities. To put all of them together at the end of a run would cost a

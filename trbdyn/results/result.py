@@ -18,11 +18,10 @@ from trbdyn.model.scene import Scene
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.derived import Derived
-from trbdyn.results.export import export
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
-from trbdyn.results.sources import FileSource, MemorySource, Source, WindowSource, held_open
+from trbdyn.results.sources import MemorySource, Source, WindowSource
 from trbdyn.results.summary import Summary, summary
 
 if TYPE_CHECKING:
@@ -377,7 +376,7 @@ class Result(Derived, Displayed):
 
     def summary(self) -> Summary:
         """The numbers an engineer asks for first: a dictionary that prints as a table (see `trbdyn.results.summary`)."""
-        with held_open(self._source):
+        with self._source.held_open():
             return summary(self)
 
     def numbers(self) -> dict[str, Any]:
@@ -403,8 +402,7 @@ class Result(Derived, Displayed):
 
     def moved(self, path: Path) -> Self:
         """The result, whose file has another name now; nothing is read again."""
-        if isinstance(self._source, FileSource):
-            self._source.path = path
+        self._source.moved(path)
         return self
 
     def to_xarray(self) -> xarray.Dataset:
@@ -419,7 +417,7 @@ class Result(Derived, Displayed):
         import xarray
 
         labels = {dim: list(dim) for dim in ("xyz", "xy", "wxyz")}
-        with held_open(self._source):
+        with self._source.held_open():
             variables = {
                 name: (("time", *field.dims), self[name], {"units": field.unit, "long_name": field.text})
                 for name, field in self._fields.items()
@@ -463,6 +461,8 @@ class Result(Derived, Displayed):
         >>> path.read_text().startswith("time [s],")
         True
         """
+        from trbdyn.results.export import export
+
         return export(self, path, overwrite=overwrite)
 
 
@@ -487,5 +487,7 @@ def load(path: str | os.PathLike[str], *, bearing: str = "") -> Result:
     FileError
         If the file is missing, damaged, of another kind or of a later version.
     """
+    from trbdyn.results.file_source import FileSource
+
     source = FileSource(path, bearing)
     return Result(source, source.info)

@@ -28,7 +28,7 @@ from trbdyn.results import fields as field_table
 from trbdyn.results import hdf5_file
 from trbdyn.results.fields import Field, Layout
 from trbdyn.results.file_format import PEAKS, as_kept, block_rows, json_text, reason, stored_type
-from trbdyn.results.sources import FileSource
+from trbdyn.results.file_source import FileSource
 from trbdyn.results.waiting_rows import WaitingRows
 
 Array = NDArray[np.float64]

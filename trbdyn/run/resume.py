@@ -14,8 +14,8 @@ from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import subject_from_dict
 from trbdyn.results.assembly import AssemblyResult, load
 from trbdyn.results.file_format import reason
+from trbdyn.results.file_source import FileSource, names_in
 from trbdyn.results.result import Result
-from trbdyn.results.sources import FileSource, names_in
 from trbdyn.run import checkpoint
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.keeping import groups_of, kept_by_default

@@ -25,8 +25,6 @@ from trbdyn.results import peaks as peak_table
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.file_format import RunInfo, reason
 from trbdyn.results.result import Result, load
-from trbdyn.results.result_file import Part, ResultWriter
-from trbdyn.results.sources import FileSource, run_id_in
 from trbdyn.run import bias, checkpoint, keeping
 from trbdyn.run.checkpoint import Checkpoint
 from trbdyn.run.faults import check_apart, culprit
@@ -41,6 +39,8 @@ from trbdyn.statics.seat import Layout, SeatedBearing, Seating
 if TYPE_CHECKING:
     from trbdyn.model.assembly import Assembly
     from trbdyn.model.scene import Scene
+    from trbdyn.results.file_source import FileSource
+    from trbdyn.results.result_file import Part, ResultWriter
     from trbdyn.run.simulation import Simulation
 
 Array = NDArray[np.float64]
@@ -177,6 +177,9 @@ class Run:
         A run without a name is a new one. If it replaces the file of an older run, it removes that run's checkpoints. A run that
         goes on takes over the records that it has made from its older file.
         """
+        from trbdyn.results.file_source import run_id_in
+        from trbdyn.results.result_file import ResultWriter
+
         sim, done = self.sim, self.done
         replaced = run_id_in(output) if run_id is None and overwrite else None
         scheduled = self.options.checkpoint_every is not None
@@ -214,6 +217,8 @@ class Run:
             raise error if isinstance(error, FileError) else FileError(f"{output}: {reason(error)}") from error
 
     def _in_file(self, bearing: RunningBearing) -> Part:
+        from trbdyn.results.result_file import Part
+
         layout = [(name, at + bearing.part.start, shape) for name, at, shape in bearing.layout]
         scene = bearing.of.scene
         geometry = asdict(scene.bearing.geometry)
@@ -409,6 +414,8 @@ class Run:
 
     def _written(self, bearing: RunningBearing) -> Result:
         """The result as it is in the file."""
+        from trbdyn.results.file_source import run_id_in
+
         assert self.output is not None
         assert self.writer is not None
         result = load(self.output, bearing=bearing.of.name)
