@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -287,3 +289,15 @@ def test_animation_draws_the_cage_as_a_circle_and_marks_on_the_rollers(whirling:
                 )
                 assert (x1 - x0) * roller.center[0] + (y1 - y0) * roller.center[1] > 0.0
     plt.close(moving._fig)
+
+
+def test_descriptions_of_pictures_are_complete() -> None:
+    """Each argument stands in the description once, in the order of the call; and so does what is returned."""
+    for name in plot.GROUPS:
+        draw = getattr(plot, name)
+        text = inspect.getdoc(draw) or ""
+        if name not in ("pressure_map", "film_map"):  # these name `contact_map`
+            told = [line.partition(" : ")[0] for line in text.splitlines() if re.match(r"\w+ : ", line)]
+            assert told == list(inspect.signature(draw).parameters), name
+        assert all(group in text for group in plot.GROUPS[name]), name
+        assert text.count("Returns\n-------\n") == 1, name

@@ -9,15 +9,14 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Callable, Iterable
-from functools import partial, wraps
+from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trbdyn.base.expected import expect
 from trbdyn.base.own_files import folder_path, output_path
 from trbdyn.errors import FileError, InputError, unknown_name
 from trbdyn.plot.around import attitude, contact_map, film_map, load_zone, pocket_polar, pressure_map
@@ -32,6 +31,7 @@ from trbdyn.plot.assembly import (
 from trbdyn.plot.assembly import of_result as of_assembly
 from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map
 from trbdyn.plot.contact_line import contact_line
+from trbdyn.plot.described import describe, of_its_kind
 from trbdyn.plot.drawing import bearing_drawing, pocket_drawing
 from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
@@ -98,53 +98,48 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
-def _of_its_kind(draw: Callable[..., Any], kind: type) -> Callable[..., Any]:
-    """A picture that refuses anything but the kind of result that it shows."""
+GROUPS: Final[dict[str, tuple[str, ...]]] = {
+    "cage_locus": ("cage",),
+    "orbit_radius": ("cage", "rollers"),
+    "axial_motion": ("cage",),
+    "tilt": ("cage",),
+    "spectrum": ("cage",),
+    "spacing_angles": ("rollers",),
+    "pocket_forces": ("pocket",),
+    "pocket_statistics": ("pocket",),
+    "contact_loads": ("rollers", "contacts"),
+    "film_parameter": ("rollers", "contacts"),
+    "torque_split": ("torque",),
+    "power_split": ("power",),
+    "energy_audit": ("energy",),
+    "load_zone": ("rollers", "contacts"),
+    "pressure_map": ("cage", "rollers"),
+    "film_map": ("cage", "rollers"),
+    "attitude": ("rollers",),
+    "pocket_polar": ("pocket",),
+    "poincare": ("cage",),
+    "torque_sources": ("torque",),
+    "ring_orbit": ("ring",),
+    "ring_motion": ("ring",),
+}
+"""Groups that the pictures of one result need; those of the group ring are of a ring that moves by itself."""
 
-    @wraps(draw)
-    def checked(result: Any, *given: Any, **named: Any) -> Any:
-        expect("result", result, kind)
-        return draw(result, *given, **named)
-
-    return checked
-
-
+_KINDS: Final = {"Result": Result, "AssemblyResult": AssemblyResult}
 for _name in __all__:
     _draw = globals().get(_name)
-    _first = next(iter(inspect.signature(_draw).parameters.values()), None) if inspect.isfunction(_draw) else None
-    if _first is not None and _first.annotation in ("Result", "AssemblyResult"):
-        globals()[_name] = _of_its_kind(globals()[_name], Result if _first.annotation == "Result" else AssemblyResult)
-
+    if inspect.isfunction(_draw) and _draw.__module__ != __name__:
+        describe(_draw, GROUPS.get(_name, ()))
+        _kind = _KINDS.get(next(iter(inspect.signature(_draw).parameters.values())).annotation)
+        globals()[_name] = _draw if _kind is None else of_its_kind(_draw, _kind)
 
 Picture = Callable[["Result"], Axes | Figure]
 
 PICTURES: Final[dict[str, tuple[Picture, tuple[str, ...]]]] = {
-    "cage_locus": (cage_locus, ("cage",)),
-    "orbit_radius": (orbit_radius, ("cage", "rollers")),
-    "axial_motion": (axial_motion, ("cage",)),
-    "tilt": (tilt, ("cage",)),
-    "spectrum": (spectrum, ("cage",)),
-    "spacing_angles": (spacing_angles, ("rollers",)),
-    "pocket_forces": (pocket_forces, ("pocket",)),
-    "pocket_statistics": (pocket_statistics, ("pocket",)),
-    "contact_loads": (contact_loads, ("rollers", "contacts")),
-    "film_parameter": (film_parameter, ("rollers", "contacts")),
-    "torque_split": (torque_split, ("torque",)),
-    "power_split": (power_split, ("power",)),
-    "energy_audit": (energy_audit, ("energy",)),
-    "load_zone": (load_zone, ("rollers", "contacts")),
-    "pressure_map": (pressure_map, ("cage", "rollers")),
-    "film_map": (film_map, ("cage", "rollers")),
-    "attitude": (attitude, ("rollers",)),
-    "pocket_polar": (pocket_polar, ("pocket",)),
-    "poincare": (poincare, ("cage",)),
-    "torque_sources": (torque_sources, ("torque",)),
-    "ring_orbit": (ring_orbit, ("ring",)),
-    "ring_motion": (ring_motion, ("ring",)),
+    **{name: (globals()[name], groups) for name, groups in GROUPS.items()},
     "housing_orbit": (partial(ring_orbit, ring="outer"), ("housing",)),
     "housing_motion": (partial(ring_motion, ring="outer"), ("housing",)),
 }
-"""Pictures of one result, by name, and the groups that each needs; those of the group ring, a ring that moves by itself."""
+"""Pictures of one result, by name, and the groups that each needs."""
 
 _OF_ROLLERS: Final = ("pressure_map", "film_map")
 """Pictures that need the group cage where there is a cage, and are of the rollers."""

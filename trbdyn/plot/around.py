@@ -70,18 +70,12 @@ def load_zone(result: Result, ax: Axes | None = None, last: float | None = None,
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time, rollers and contacts.
     ax : Axes, optional
         Polar axes to draw into.
     last : float, optional
         Number of last shaft revolutions to use; all by default.
     bins : int
         Number of places around the bearing.
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -119,16 +113,10 @@ def attitude(result: Result, last: float | None = None, bins: int = 72) -> Figur
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and rollers.
     last : float, optional
         Number of last shaft revolutions to use; all by default.
     bins : int
         Number of places around the bearing.
-
-    Returns
-    -------
-    Figure
     """
     shown = last_turns(result, last)
     orbit = shown["roller_orbit_angle"]
@@ -155,16 +143,10 @@ def pocket_polar(result: Result, ax: Axes | None = None, threshold: float = 0.0)
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and pocket.
     ax : Axes, optional
         Polar axes to draw into.
     threshold : float
         Force above which a face counts as touched (N).
-
-    Returns
-    -------
-    Axes
     """
     statistics = result.pocket_statistics(threshold)
     count = statistics.peak.shape[0]
@@ -224,10 +206,6 @@ def contact_map(
         Number of records to use, spread over the run.
     bins : int
         Number of places around the bearing.
-
-    Returns
-    -------
-    Figure
 
     Raises
     ------

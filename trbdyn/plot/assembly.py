@@ -199,12 +199,6 @@ def bearing_loads(result: AssemblyResult, ax: Axes | None = None) -> Axes:
     ----------
     result : AssemblyResult
         Needs the group ring.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     with canvas(ax, title="Loads of the bearings") as ax:
         for index, (name, one) in enumerate(result.items()):
@@ -223,10 +217,6 @@ def shaft_orbits(result: AssemblyResult) -> Figure:
     ----------
     result : AssemblyResult
         Needs the group ring, and the assembly.
-
-    Returns
-    -------
-    Figure
 
     Raises
     ------
@@ -262,10 +252,6 @@ def shaft_motion(result: AssemblyResult) -> Figure:
     ----------
     result : AssemblyResult
         Needs the group ring.
-
-    Returns
-    -------
-    Figure
     """
     one = next(iter(result.values()))
     turned, place, axis = revolutions(one), 1e6 * result.shaft_position, 1e3 * result.shaft_axis

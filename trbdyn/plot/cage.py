@@ -67,20 +67,12 @@ def cage_locus(
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and cage.
-    ax : Axes, optional
-        Axes to draw into.
     plane : {"centre", "rail"}
         Roller-centre plane, or plane of the large-end rail.
     colour_by_time : bool
         Colour the path by the turns of the shaft, dark to light; else one colour.
     circles : mapping of str to float, optional
         Labels and radii (in units of Cpr) of circles to draw; by default Cpr and Cpc with their sizes.
-
-    Returns
-    -------
-    Axes
     """
     need_cage(result)
     path = result.cage_locus(plane)
@@ -131,17 +123,6 @@ def orbit_radius(result: Result, ax: Axes | None = None) -> Axes:
 
     Both in units of the radial play Cpr. The mean place is that of the part after the transient, whose start is marked; the
     legend says whether the motion has settled there.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time, cage and rollers.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     need_cage(result)
     turned, settling, play = revolutions(result), result.settling(), result.clearances.radial
@@ -167,19 +148,7 @@ def orbit_radius(result: Result, ax: Axes | None = None) -> Axes:
 
 
 def axial_motion(result: Result, ax: Axes | None = None) -> Axes:
-    """Axial motion of the cage as a share of its axial play; zero is contact at the large ends.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time and cage.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
-    """
+    """Axial motion of the cage as a share of its axial play; zero is contact at the large ends."""
     need_cage(result)
     with canvas(ax, (6.4, 3.2), "Axial position of the cage; zero: rollers' large ends touch") as ax:
         turned = revolutions(result)
@@ -194,16 +163,8 @@ def tilt(result: Result, ax: Axes | None = None, last: float | None = 12.0) -> A
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and cage.
-    ax : Axes, optional
-        Axes to draw into.
     last : float or None
         Number of last shaft revolutions to show; None shows all.
-
-    Returns
-    -------
-    Axes
     """
     need_cage(result)
     shown = last_turns(result, last)
@@ -231,16 +192,10 @@ def spectrum(result: Result, ax: Axes | None = None, orders: float = 4.0, segmen
     ----------
     result : Result
         Needs the groups time and cage; best after settling.
-    ax : Axes, optional
-        Axes to draw into.
     orders : float
         Highest order to show; negative orders are backward whirl.
     segments : int
         Number of segments to average.
-
-    Returns
-    -------
-    Axes
     """
     need_cage(result)
     path = result.cage_locus()
@@ -269,12 +224,6 @@ def whirl_map(results: Iterable[Result], ax: Axes | None = None) -> Axes:
     ----------
     results : iterable of Result
         Runs at several operating points, with the groups time, cage, rollers and ring.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     results = list(results)
     for result in results:

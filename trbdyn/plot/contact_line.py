@@ -33,10 +33,6 @@ def contact_line(scene: Scene) -> Figure:
     scene : Scene
         The scene; its contact line is drawn with 64 nodes.
 
-    Returns
-    -------
-    Figure
-
     Examples
     --------
     >>> import trbdyn as trb

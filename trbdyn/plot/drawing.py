@@ -37,12 +37,6 @@ def bearing_drawing(bearing: Bearing, ax: Axes | None = None) -> Axes:
     ----------
     bearing : Bearing
         The bearing.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -153,10 +147,6 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
         The bearing.
     pocket : int
         Number of the pocket, 0 to Z - 1.
-
-    Returns
-    -------
-    Figure
 
     Raises
     ------

@@ -92,8 +92,6 @@ def cage_stress(result: Result, ax: Axes | None = None, *, points: int = 3, notc
     ----------
     result : Result
         Of a scene with an elastic cage; needs the groups cage and pocket.
-    ax : Axes, optional
-        Axes to draw into.
     points : int
         How many points are drawn.
     notch_factor : float

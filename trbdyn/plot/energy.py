@@ -50,12 +50,6 @@ def torque_split(result: Result, ax: Axes | None = None) -> Axes:
     ----------
     result : Result
         Needs the group torque; energy or power for the losses.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     total, forces = float(result["inner_torque"].mean()), result.torque_split
     if {"power", "energy"} & set(result.groups):
@@ -77,12 +71,6 @@ def power_split(result: Result, ax: Axes | None = None) -> Axes:
     ----------
     result : Result
         Needs the group energy or power.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     split = result.power_split
     total = sum(split.values())
@@ -97,17 +85,6 @@ def energy_audit(result: Result, ax: Axes | None = None) -> Axes:
 
     Sizes in a logarithmic scale. Of stored energy and residual, which go up and down, the largest size within each of some
     stretches of time is drawn.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time and energy.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
     """
     balance = result.energy_balance
     work = np.sum([values for name, values in balance.items() if name.startswith("work_")], axis=0)

@@ -46,16 +46,10 @@ def ring_orbit(result: Result, ax: Axes | None = None, last: float | None = 12.0
     ----------
     result : Result
         Needs the groups time and ring, or housing for the outer ring.
-    ax : Axes, optional
-        Axes to draw into.
     last : float or None
         Number of last shaft revolutions to show; None shows all.
     ring : {'inner', 'outer'}
         Which ring: the outer one where it moves with a housing.
-
-    Returns
-    -------
-    Axes
     """
     group, name = _ring_of(ring)
     shown = last_turns(result, last)
@@ -88,10 +82,6 @@ def ring_motion(result: Result, last: float | None = None, *, ring: Ring = "inne
         Number of last shaft revolutions to show; None shows all.
     ring : {'inner', 'outer'}
         Which ring: the outer one where it moves with a housing.
-
-    Returns
-    -------
-    Figure
     """
     group, title = _ring_of(ring)
     shown = last_turns(result, last)
@@ -156,8 +146,6 @@ def ring_spectrum(
     result : Result
         Needs the groups time and ring, or housing for the outer ring; best after settling, at constant speed. Vibrations
         faster than half of the records are folded to lower orders: save often enough.
-    ax : Axes, optional
-        Axes to draw into.
     of : {'displacement', 'velocity', 'acceleration'}
         What of the vibration.
     along : {'x', 'y', 'z'}
@@ -168,10 +156,6 @@ def ring_spectrum(
         Number of segments to average.
     ring : {'inner', 'outer'}
         Which ring: the outer one where it moves with a housing.
-
-    Returns
-    -------
-    Axes
 
     Raises
     ------

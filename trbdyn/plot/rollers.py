@@ -31,18 +31,10 @@ def spacing_angles(result: Result, ax: Axes | None = None, n: int = 1, rollers: 
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and rollers.
-    ax : Axes, optional
-        Axes to draw into.
     n : int
         Number of adjacent gaps to add up.
     rollers : sequence of int, optional
         Rollers to name, the first five by default; the others are drawn in light grey.
-
-    Returns
-    -------
-    Axes
     """
     angles = np.degrees(result.spacing_angles(n))
     count = angles.shape[1]
@@ -79,16 +71,10 @@ def pocket_forces(result: Result, pockets: Sequence[int] | None = None, last: fl
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and pocket.
     pockets : sequence of int, optional
         Pockets to show, from 0; all by default.
     last : float or None
         Number of last shaft revolutions to show; None shows all.
-
-    Returns
-    -------
-    Figure
     """
     need_cage(result)
     shown = last_turns(result, last)
@@ -141,16 +127,8 @@ def pocket_statistics(result: Result, ax: Axes | None = None, threshold: float =
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and pocket.
-    ax : Axes, optional
-        Axes to draw into.
     threshold : float
         Force above which a face counts as touched, N.
-
-    Returns
-    -------
-    Axes
     """
     need_cage(result)
     stats = result.pocket_statistics(threshold)
@@ -213,19 +191,7 @@ def _draw_around(result: Result, ax: Axes, quantity: str, unit: str = "") -> Non
 
 
 def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
-    """Contact loads around the bearing: mean, and the range from 5 to 95 %.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time, rollers and contacts.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
-    """
+    """Contact loads around the bearing: mean, and the range from 5 to 95 %."""
     with canvas(ax, title="Contact loads of the rollers around the bearing") as ax:
         _draw_around(result, ax, "load", " N")
         ax.set_ylabel("normal load (N)")
@@ -235,19 +201,7 @@ def contact_loads(result: Result, ax: Axes | None = None) -> Axes:
 
 
 def film_parameter(result: Result, ax: Axes | None = None) -> Axes:
-    """Film parameter Lambda of the rollers that carry, around the bearing: mean weighted by load, and the range from 5 to 95 %.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time, rollers and contacts.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
-    """
+    """Film parameter Lambda of the loaded rollers, around the bearing: mean weighted by load, and the range from 5 to 95 %."""
     with canvas(ax, title="Film parameter of loaded rollers around the bearing") as ax:
         _draw_around(result, ax, "film_parameter")
         full = result.scene.effects.friction.lambda_full

@@ -56,16 +56,8 @@ def poincare(result: Result, ax: Axes | None = None, once_per: Literal["cage", "
 
     Parameters
     ----------
-    result : Result
-        Needs the groups time and cage.
-    ax : Axes, optional
-        Axes to draw into.
     once_per : {'cage', 'shaft', 'roller'}
         See `section_points`.
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -103,16 +95,10 @@ def waterfall(results: Sequence[Result], ax: Axes | None = None, reach: float = 
     ----------
     results : sequence of Result
         Runs at different speeds; need the groups time and cage.
-    ax : Axes, optional
-        Axes to draw into.
     reach : float
         Frequencies from minus to plus this many times the shaft's frequency; negative ones whirl backwards.
     decades : float
         Height of a line: decades of the spectral density below its peak.
-
-    Returns
-    -------
-    Axes
 
     Raises
     ------
@@ -165,19 +151,7 @@ def _speed(result: Result) -> float:
 
 
 def torque_sources(result: Result, ax: Axes | None = None) -> Axes:
-    """Friction torque of the shaft by its sources, over the turns of the shaft.
-
-    Parameters
-    ----------
-    result : Result
-        Needs the groups time and torque.
-    ax : Axes, optional
-        Axes to draw into.
-
-    Returns
-    -------
-    Axes
-    """
+    """Friction torque of the shaft by its sources, over the turns of the shaft."""
     turned = revolutions(result)
     shares = {
         field.name.removeprefix("inner_torque_").replace("_", " "): result[field.name]
