@@ -92,6 +92,34 @@ def test_a_ring_that_does_not_fit_its_seat_is_refused() -> None:
         trb.fit(trb.cases.rig_30310(), trb.Mounting(**SEAT, accuracy="6"))
 
 
+@pytest.mark.parametrize(
+    ("field", "own", "other"), [("bore", 0.040, 0.045), ("outside", 0.080, 0.085), ("width", 0.02475, 0.02)]
+)
+def test_a_mounting_for_another_size_is_refused_wherever_it_meets_the_bearing(
+    field: str, own: float, other: float
+) -> None:
+    bearing, size = trb.Bearing.named("32208"), {"bore": 0.040, "outside": 0.080, "width": 0.02475}
+    said = rf"mounting\.{field} = {other:g} : must be {own:g}, that of the bearing 32208"
+    wrong = trb.Mounting(**{**SEAT, **size, field: other})
+    with pytest.raises(trb.InputError, match=said):
+        trb.fit(bearing, wrong)
+    with pytest.raises(trb.InputError, match=said):
+        trb.preload_over(trb.Scene(bearing, speed_rpm=1000, axial_load=2e3), wrong, [20.0])
+    on_shaft = {"left": trb.Mounting(**{**SEAT, **size}), "right": wrong}
+    shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.04, length=0.3)
+    two = trb.Assembly.pair(bearing, "back to back", spread=0.15, end_play=-40e-6, shaft=shaft, speed_rpm=1000)
+    with pytest.raises(trb.InputError, match=said.replace("mounting", r"mounting\.right")):
+        trb.fit(two, on_shaft)
+    rounded = trb.Mounting(**{**SEAT, **size, field: own + 4e-6})
+    assert trb.fit(bearing, rounded)[""].seats[0].mean > 0.0
+
+
+@pytest.mark.parametrize(("field", "wrong"), [("bore", 0.07), ("outside", 0.08), ("width", 0.015)])
+def test_boundary_dimensions_within_rollers_and_raceways_are_refused(field: str, wrong: float) -> None:
+    with pytest.raises(trb.InputError, match=f"{field} = {wrong:g} : must be (below|above) the"):
+        trb.cases.rig_30310().replace(**{field: wrong})
+
+
 def lame(fit: PressFit, interference: float) -> tuple[float, float, float]:
     """Pressure (Pa), growth of the outside and shrinkage of the bore (m, diameters): u = A r + B/r of both rings, and the four
     conditions at their surfaces, as a system of equations.
@@ -247,7 +275,7 @@ def test_bearings_with_one_apex_keep_their_play() -> None:
 
 def test_one_material_at_one_temperature_changes_nothing() -> None:
     for subject in (pair(), trb.cases.bearing_nj210()):
-        seat = SEAT if isinstance(subject, trb.Assembly) else {**SEAT, "outside": 0.090}
+        seat = SEAT if isinstance(subject, trb.Assembly) else {**SEAT, "outside": 0.090, "width": 0.020}
         found = trb.fit(subject, trb.Mounting(**seat), temperatures=trb.Temperatures.uniform(120.0))
         for plays in found.plays.values():
             change = plays["operating"].mean - plays["mounted"].mean

@@ -280,6 +280,9 @@ class Bearing(Model):
         Radial internal clearance of a cylindrical bearing in operation (m); 0 by default: rollers and rings just touch.
     name : str
         Name in titles and files.
+    bore, outside, width : float, optional
+        d, D and T (B of a cylindrical bearing), where they are known (m); the simulation does not use them, and a `Mounting` with
+        other ones is refused. `from_catalogue` and `named` keep them.
     ratings : Ratings
         Load ratings and factors of the catalogue, where they are known; the simulation does not use them.
     estimates : sequence of Estimated
@@ -316,6 +319,9 @@ class Bearing(Model):
     cup_profile: Profile | None = None
     cone_profile: Profile | None = None
     name: Annotated[str, Field(min_length=1)] = "bearing"
+    bore: Length | None = None
+    outside: Length | None = None
+    width: Length | None = None
     ratings: Ratings = Ratings()
     estimates: tuple[Estimated, ...] = ()
 
@@ -687,7 +693,40 @@ class Bearing(Model):
         if impossible := CageSpace.of(self).problems(self.cage, self.cage_material):
             raise InputError(impossible)
         self._check_pockets(self.geometry)
+        self.check_boundary(bore=self.bore, outside=self.outside, width=self.width)
         return self
+
+    def check_boundary(
+        self, *, bore: float | None, outside: float | None, width: float | None, path: Path = ()
+    ) -> None:
+        """Refuse boundary dimensions (m) that this bearing cannot have: rollers and raceways lie between them, and those that it
+        has are its own. What is None is not looked at.
+
+        Raises
+        ------
+        InputError
+            With the field and what is allowed; its path begins with `path`.
+        """
+        geometry = self.geometry
+        long = self.roller.effective_length * math.cos(geometry.roller_axis_angle)
+        for field, given, own, sense, least, what in (
+            ("bore", bore, self.bore, -1.0, 2.0 * geometry.inner_race_radius, "below the diameter of the raceway"),
+            (
+                "outside",
+                outside,
+                self.outside,
+                1.0,
+                2.0 * geometry.outer_race_radius,
+                "above the diameter of the raceway",
+            ),
+            ("width", width, self.width, 1.0, long, "above the length of the rollers along the axis"),
+        ):
+            if given is None:
+                continue
+            if own is not None and abs(given - own) > SAME_SIZE:
+                raise InputError.of((*path, field), given, f"must be {own:g}, that of the bearing {self.name} (m)")
+            if not sense * (given - least) > 0.0:
+                raise InputError.of((*path, field), given, f"must be {what}, {least:.4g} (m)")
 
     def _check_pockets(self, geometry: Geometry) -> None:
         try:
@@ -721,6 +760,8 @@ _OF_CONES: Final = (
     ("roller", "sphere_ratio"),
 )
 """Numbers of the plane front rib and of an end whose sphere the apex scales: only tapered bearings have them."""
+SAME_SIZE: Final = 1e-5
+"""Difference by which two statements of one boundary dimension differ by rounding (m)."""
 LEAST_CONE_DEG: Final = 0.6
 """Smallest half angle of the cup of a tapered bearing (deg)."""
 

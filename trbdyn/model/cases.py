@@ -126,6 +126,9 @@ def bearing_32216() -> Bearing:
     mass = (pitch_diameter / rig.pitch_diameter) ** 2 * length / rig.roller.effective_length
     return Bearing(
         name="32216",
+        bore=80e-3,
+        outside=140e-3,
+        width=35.25e-3,
         n_rollers=16,
         cup_half_angle_deg=15.0 + 38.0 / 60.0 + 32.0 / 3600.0,
         pitch_diameter=pitch_diameter,
@@ -220,6 +223,9 @@ def bearing_nj210() -> Bearing:
     """
     return Bearing(
         name="NJ 210",
+        bore=50e-3,
+        outside=90e-3,
+        width=20e-3,
         n_rollers=16,
         cup_half_angle_deg=0.0,
         pitch_diameter=70.5e-3,

@@ -173,7 +173,8 @@ def fields_from_catalogue(
             radial_clearance = estimates[-1].value
         cylinder = {"flanges": flanges, "radial_clearance": radial_clearance}
     made = _fields(found, cage_mass, estimates, cylinder)
-    return made | {"name": name, "ratings": ratings}
+    sizes = {"bore": float(bore), "outside": float(outside), "width": float(width)}
+    return made | {"name": name, **sizes, "ratings": ratings}
 
 
 def _check_tapered(others: Mapping[str, float | None]) -> None:

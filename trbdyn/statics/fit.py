@@ -273,7 +273,8 @@ def fit(
     operating: dict[str, Array] = {}
     means: dict[str, float] = {}
     for k, (name, bearing) in enumerate(bearings.items()):
-        one = _Mounted(bearing, mountings[name], warm[name], places.get(name))
+        path = ("mounting", name) if isinstance(mounting, Mapping) else ("mounting",)
+        one = _Mounted(bearing, mountings[name], warm[name], places.get(name), path)
         draws = one.draws(shares[:, 5 * k : 5 * k + 5])
         middle = one.draws(np.zeros((1, 5)))
         found[name] = BearingFit(name, one.seats(middle), one.changes(middle), mountings[name], warm[name])
@@ -307,16 +308,18 @@ class _Mounted:
     """A bearing as it is mounted: its seats, strains of its parts and what they make of its play."""
 
     def __init__(
-        self, bearing: Bearing, mounting: Mounting, warm: Temperatures, place: tuple[ShaftBearing, float] | None
+        self,
+        bearing: Bearing,
+        mounting: Mounting,
+        warm: Temperatures,
+        place: tuple[ShaftBearing, float] | None,
+        path: tuple[str, ...] = ("mounting",),
     ) -> None:
         self.bearing, self.mounting, self.place = bearing, mounting, place
         geometry, reference = bearing.geometry, mounting.reference_c
+        sizes = {"bore": mounting.bore, "outside": mounting.outside, "width": mounting.width}
+        bearing.check_boundary(**sizes, path=path)
         inner, outer = 2.0 * geometry.inner_race_radius, 2.0 * geometry.outer_race_radius
-        for field, value, race in (("bore", mounting.bore, inner), ("outside", -mounting.outside, -outer)):
-            if not value < race:
-                way = "below" if field == "bore" else "above"
-                limit = f"must be {way} the diameter of the raceway, {abs(race):.4g} (m)"
-                raise InputError.of(("mounting", field), abs(value), limit)
         steel = bearing.material
         self.on_shaft = PressFit(mounting.shaft_bore, mounting.bore, inner, mounting.shaft_material, steel)
         self.in_housing = PressFit(outer, mounting.outside, mounting.outer_housing, steel, mounting.housing_material)
