@@ -151,7 +151,11 @@ class TestMistakes:
                 "",
                 "bearing.roller.diamter = 3 : unknown name; did you mean 'diameter'? allowed: density,",
             ),
-            ("n_roller = 3", "", "bearing.n_roller = 3 : unknown name; did you mean 'n_rollers'? allowed: bore, cage, case,"),
+            (
+                "n_roller = 3",
+                "",
+                "bearing.n_roller = 3 : unknown name; did you mean 'n_rollers'? allowed: bore, cage, case,",
+            ),
             ("n_rollers = 30", "", "bearing.n_rollers = 30 : must be <= 18"),
             ("roller.diameter = -1e-3", "", "bearing.roller.diameter = -0.001 : must be >= 0.0001 (m)"),
             ("cage = 3", "", "bearing.cage = 3 : must be a table of named values"),

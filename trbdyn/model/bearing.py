@@ -693,40 +693,8 @@ class Bearing(Model):
         if impossible := CageSpace.of(self).problems(self.cage, self.cage_material):
             raise InputError(impossible)
         self._check_pockets(self.geometry)
-        self.check_boundary(bore=self.bore, outside=self.outside, width=self.width)
+        check_boundary(self, bore=self.bore, outside=self.outside, width=self.width)
         return self
-
-    def check_boundary(
-        self, *, bore: float | None, outside: float | None, width: float | None, path: Path = ()
-    ) -> None:
-        """Refuse boundary dimensions (m) that this bearing cannot have: rollers and raceways lie between them, and those that it
-        has are its own. What is None is not looked at.
-
-        Raises
-        ------
-        InputError
-            With the field and what is allowed; its path begins with `path`.
-        """
-        geometry = self.geometry
-        long = self.roller.effective_length * math.cos(geometry.roller_axis_angle)
-        for field, given, own, sense, least, what in (
-            ("bore", bore, self.bore, -1.0, 2.0 * geometry.inner_race_radius, "below the diameter of the raceway"),
-            (
-                "outside",
-                outside,
-                self.outside,
-                1.0,
-                2.0 * geometry.outer_race_radius,
-                "above the diameter of the raceway",
-            ),
-            ("width", width, self.width, 1.0, long, "above the length of the rollers along the axis"),
-        ):
-            if given is None:
-                continue
-            if own is not None and abs(given - own) > SAME_SIZE:
-                raise InputError.of((*path, field), given, f"must be {own:g}, that of the bearing {self.name} (m)")
-            if not sense * (given - least) > 0.0:
-                raise InputError.of((*path, field), given, f"must be {what}, {least:.4g} (m)")
 
     def _check_pockets(self, geometry: Geometry) -> None:
         try:
@@ -782,3 +750,29 @@ _SECTIONS: Final[dict[str, type[Model]]] = {
 
 def _under(path: Path, problems: list[Problem]) -> list[Problem]:
     return [Problem(path + problem.path, problem.value, problem.allowed) for problem in problems]
+
+
+def check_boundary(
+    bearing: Bearing, *, bore: float | None, outside: float | None, width: float | None, path: Path = ()
+) -> None:
+    """Refuse boundary dimensions (m) that a bearing cannot have: rollers and raceways lie between them, and those that it has are
+    its own. What is None is not looked at.
+
+    Raises
+    ------
+    InputError
+        With the field and what is allowed; its path begins with `path`.
+    """
+    geometry = bearing.geometry
+    length = bearing.roller.effective_length * math.cos(geometry.roller_axis_angle)
+    for field, given, sense, least, what in (
+        ("bore", bore, -1.0, 2.0 * geometry.inner_race_radius, "below the diameter of the raceway"),
+        ("outside", outside, 1.0, 2.0 * geometry.outer_race_radius, "above the diameter of the raceway"),
+        ("width", width, 1.0, length, "above the length of the rollers along the axis"),
+    ):
+        if given is None:
+            continue
+        if (own := getattr(bearing, field)) is not None and abs(given - own) > SAME_SIZE:
+            raise InputError.of((*path, field), given, f"must be {own:g}, that of the bearing {bearing.name} (m)")
+        if not sense * (given - least) > 0.0:
+            raise InputError.of((*path, field), given, f"must be {what}, {least:.4g} (m)")

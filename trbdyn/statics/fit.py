@@ -18,7 +18,7 @@ from trbdyn.base.expected import expect
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly, ShaftBearing, Subject, assembly_of
-from trbdyn.model.bearing import Bearing
+from trbdyn.model.bearing import Bearing, check_boundary
 from trbdyn.model.growth import apex_slide, material_strain, part_strain
 from trbdyn.model.mounting import Mounting, Temperatures
 from trbdyn.model.scene import Scene
@@ -318,7 +318,7 @@ class _Mounted:
         self.bearing, self.mounting, self.place = bearing, mounting, place
         geometry, reference = bearing.geometry, mounting.reference_c
         sizes = {"bore": mounting.bore, "outside": mounting.outside, "width": mounting.width}
-        bearing.check_boundary(**sizes, path=path)
+        check_boundary(bearing, **sizes, path=path)
         inner, outer = 2.0 * geometry.inner_race_radius, 2.0 * geometry.outer_race_radius
         steel = bearing.material
         self.on_shaft = PressFit(mounting.shaft_bore, mounting.bore, inner, mounting.shaft_material, steel)
