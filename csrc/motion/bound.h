@@ -7,8 +7,8 @@
  * - A roller that was clear of its pocket is not evaluated as long as the sum is smaller than the gap.
  * - A tangent is wrong as soon as a contact begins or ends. It is followed as long as the sum is smaller than a share of the interference, or
  *   of the gap, at its origin.
- * - A load that peaks have looked at stands for itself as long as its interference has hardly changed; by damping and by the film it depends
- *   on velocities too, which have a bound of their own. */
+ * - Peaks do not evaluate a load again as long as its interference has hardly changed; by damping and by the film it depends on velocities
+ *   too, which have a bound of their own. */
 #ifndef TRB_MOTION_BOUND_H
 #define TRB_MOTION_BOUND_H
 

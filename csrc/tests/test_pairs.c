@@ -413,7 +413,7 @@ static void test_refused(void)
   /* surfaces */
   system->pairs[TRB_PAIR_rib].surface[1] = system->pairs[TRB_PAIR_outer].surface[1];
   CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);
-  CHECK_SAYS(message.text, "is none that a pair of the kind 'spherical end on a conical rib' takes there");
+  CHECK_SAYS(message.text, "does not have the shape that a pair of the kind 'spherical end on a conical rib' needs there");
   *system = good;
   system->surfaces[system->pairs[TRB_PAIR_pocket].surface[1]].body = TRB_N_BODIES;
   CHECK(trb_system_finish(system, &message) == TRB_ERR_INPUT);

@@ -84,7 +84,7 @@ def test_completion_shows_what_users_need(module: ModuleType) -> None:
 
 
 def test_modules_have_one_name() -> None:
-    """Nothing has been released, so no name of before leads anywhere."""
+    """Nothing has been released, so no former name leads anywhere."""
     for name in ("plotting", "cases", "bearing"):
         with pytest.raises(ModuleNotFoundError):
             importlib.import_module(f"trbdyn.{name}")

@@ -27,7 +27,7 @@ import pytest
 import trbdyn as trb
 from trbdyn.errors import FileError, InputError
 from trbdyn.results import fields as field_table
-from trbdyn.results import hdf5_file, result_file
+from trbdyn.results import file_source, hdf5_file, result_file
 from trbdyn.results.file_format import BLOCK_ROWS, SCHEMA_VERSION, SINGLE
 from trbdyn.results.file_format import as_kept as kept_in_a_file
 from trbdyn.results.result import Result, load
@@ -685,6 +685,21 @@ def test_truncated_files_raise_file_errors(tmp_path: Path, synthetic: Any, stub_
         path = tmp_path / f"cut{share}.h5"
         path.write_bytes(data[: int(share * len(data))])
         assert "cut short" in refusal(path) or "not an HDF5 file" in refusal(path)
+
+
+def test_an_open_file_is_checked_once_for_all_fields(
+    tmp_path: Path, synthetic: Any, stub_scene: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the file says of itself is read once for each time it is opened, not for each field."""
+    result = load(write(tmp_path / "run.h5", synthetic, stub_scene))
+    read, heads = file_source._read_head, []
+    monkeypatch.setattr(file_source, "_read_head", lambda *given: heads.append(1) or read(*given))
+    with result._source.held_open():
+        for entry in result.fields[:5]:
+            result._source.read(entry.name)
+    assert len(heads) == 1
+    result._source.read(result.fields[5].name)
+    assert len(heads) == 2
 
 
 def test_a_file_replaced_behind_its_result_is_noticed(tmp_path: Path, synthetic: Any, stub_scene: Any) -> None:

@@ -67,7 +67,7 @@ def form_rows(scene: Scene) -> Array:
     Raises
     ------
     InputError
-        If a defect lies beside the contact line or between its nodes, or is none that a roller can follow.
+        If a defect lies beside the contact line or between its nodes, or is one that no roller can follow.
     """
     patches = [
         patch for place, defect in enumerate(scene.defects) for patch in _patches(scene, ("defects", place), defect)

@@ -135,7 +135,7 @@ def limits(code: str, size: float, *, field: str = "tolerance") -> Limits:
     Raises
     ------
     InputError
-        If the class is none that is known, or the size lies outside of the table.
+        If the class is unknown, or the size lies outside of the table.
 
     Notes
     -----
@@ -211,7 +211,7 @@ def clearance_limits(group: str, bore: float) -> Limits:
     Raises
     ------
     InputError
-        If the group is none that is known, or the bore lies outside of the table.
+        If the group is unknown, or the bore lies outside of the table.
     """
     if group not in CLEARANCES:
         raise InputError.of("clearance", group, f"must be one of {', '.join(CLEARANCES)}, or two limits (m)")

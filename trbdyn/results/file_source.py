@@ -220,6 +220,7 @@ class FileSource:
         self.path, self.bearing = file_path(path, "path"), bearing
         self._cache: dict[str, Array] = {}
         self._held: dict[int, h5py.Group] = {}
+        self._checked: set[int] = set()
         with opened(self.path, bearing) as file:
             self._head = _read_head(self.path, file)
             head = _table_of_head(self.path, self._head)
@@ -317,24 +318,30 @@ class FileSource:
             If the file is damaged, or has been replaced since it was opened first.
         """
         if name not in self._cache:
-            held = self._held.get(threading.get_ident())
-            if held is not None:
+            me = threading.get_ident()
+            if me in self._held:
                 with _said(self.path):
-                    values = self._values(held, name)
+                    if me not in self._checked:
+                        self._check_run(self._held[me])
+                        self._checked.add(me)
+                    values = self._values(self._held[me], name)
             else:
                 with opened(self.path, self.bearing) as file:
+                    self._check_run(file)
                     values = self._values(file, name)
             values.flags.writeable = False
             self._cache[name] = values
         return self._cache[name]
 
-    def _values(self, file: h5py.Group, name: str) -> Array:
+    def _check_run(self, file: h5py.Group) -> None:
+        """Refuse a file that holds another run by now; a run that was resumed has a new file with the same records."""
         head = _read_head(self.path, file)
         if head != self._head:
-            # a run that was resumed has a new file with the same records
             table = _table_of_head(self.path, head)
             if (table["run_id"], table["first_record"]) != (self.run_id, self.first_record):
                 raise FileError(f"{self.path}: the file has been replaced since it was loaded; load it again")
+
+    def _values(self, file: h5py.Group, name: str) -> Array:
         entry = next(entry for entry in self.fields if entry.name == name)
         values = read_own(file, name, self.n_records)
         if values.dtype != stored_type(entry) or values.ndim != 1 + len(entry.dims):
@@ -355,6 +362,7 @@ class FileSource:
             yield
         finally:
             self._held.pop(me, None)
+            self._checked.discard(me)
             file.close()
 
 

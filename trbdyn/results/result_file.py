@@ -49,7 +49,7 @@ COPIED_ROWS = 4096
 """Records that are copied at a time."""
 
 SPARE_BYTES = 1 << 20
-"""Room for HDF5's own bookkeeping that is made sure of before a write."""
+"""Room for HDF5's own bookkeeping that must be free before a write."""
 
 
 @dataclass(frozen=True)
