@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from trbdyn.model.ring_body import Housing as Housing, RingBody as RingBody
     from trbdyn.model.scene import RotatingLoad as RotatingLoad, Scene as Scene, Start as Start
     from trbdyn.model.spectrum import LoadCase as LoadCase, Spectrum as Spectrum
+    from trbdyn.model.trace import Trace as Trace, read_trace as read_trace
     from trbdyn.plot import animation as animation
     from trbdyn.reporting import report as report
     from trbdyn.results import observables as observables

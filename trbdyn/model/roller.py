@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from os import PathLike
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from trbdyn.errors import InputError
 from trbdyn.model.assumed import ISO_SHORT, RIG
 from trbdyn.model.core_table import parameter
 from trbdyn.model.material import Material
+from trbdyn.model.trace import read_trace
 
 
 class Profile(Model):
@@ -131,6 +132,29 @@ class Profile(Model):
                 raise InputError.of("path", str(path), f"must have a column {' or '.join(names)}")
             columns.append((names[name] * found[name]).tolist())
         return cls.table(*columns)
+
+    @classmethod
+    def from_trace(cls, path: str | PathLike[str], effective_length: float, **how: Any) -> Self:
+        """The profile of a measured trace (CSV) or of a drawn line (DXF), by `trbdyn.read_trace`, whose arguments it takes.
+
+        Parameters
+        ----------
+        path : path-like
+            CSV or DXF file.
+        effective_length : float
+            Effective length of the contact line (m).
+        **how
+            Units, levelling, filter and direction, as in `trbdyn.read_trace`.
+
+        Raises
+        ------
+        InputError
+            If an argument is not allowed, or does not fit to the file.
+        FileError
+            If the file cannot be read or used.
+        """
+        trace = read_trace(path, effective_length, **how)
+        return cls.table(trace.stations.tolist(), trace.drops.tolist())
 
 
 class Scatter(Model):

@@ -24,6 +24,7 @@ from trbdyn.plot.style import COLOURS, GREY, canvas, plain, styled
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
     from trbdyn.model.pocket import Face
+    from trbdyn.model.trace import Trace
 
 Array = NDArray[np.float64]
 
@@ -192,3 +193,36 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
             fontsize=10,
         )
     return figure
+
+
+def profile_trace(trace: Trace, ax: Axes | None = None) -> Axes:
+    """A measured or drawn profile: the levelled points, those that were left out, and the profile that is used.
+
+    Parameters
+    ----------
+    trace : Trace
+        What `trbdyn.read_trace` gave.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    Axes
+    """
+    with canvas(ax, (7.2, 4.2), "Profile: levelled trace and the profile used") as ax:
+        points, heights, out = 1e3 * trace.points, 1e6 * trace.heights, trace.outlier
+        word = f"trace, {trace.angle_deg:.3g}° taken out" if trace.cutoff else "drawn line"
+        look = {"linewidth": 0.6} if trace.cutoff else {"linewidth": 0, "marker": "o", "markersize": 4}
+        ax.plot(points[~out], heights[~out], color="#9AA5B1", label=word, **look)
+        used = "profile used" + (f", cut-off {1e3 * trace.cutoff:.3g} mm" if trace.cutoff else "")
+        ax.plot(1e3 * trace.stations, -1e6 * trace.drops, color=COLOURS[0], linewidth=1.8, label=used)
+        low, high = np.min(heights[~out]), np.max(heights[~out])
+        room = 0.15 * (high - low)
+        if out.any():
+            shown = np.clip(heights[out], low - 0.6 * room, high + 0.6 * room)
+            label = f"{np.count_nonzero(out)} outliers, left out; far ones at the edge"
+            ax.plot(points[out], shown, "x", color=COLOURS[1], markersize=5, label=label, zorder=3)
+        ax.set(ylim=(low - room, high + room), xlabel="from mid length towards the large end (mm)")
+        ax.set_ylabel("height, away from the material (µm)")
+        ax.legend(loc="center", bbox_to_anchor=(0.5, 0.35))
+    return ax

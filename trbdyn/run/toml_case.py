@@ -8,6 +8,8 @@ something known and then change it:
 - ``[bearing.cage.pocket] shape = "drafted"``: a builder of `trbdyn.pocket_shapes`, its arguments beside it; as well in
   ``[[bearing.cage.other_pockets]]``;
 - ``[bearing.cage] drawing = "cage.step"``: a cage as drawn (`Cage.from_step`); or a table of ``file`` and arguments;
+- ``[bearing.roller.profile] trace = "roller.csv"``: a measured trace or a drawn line (`trbdyn.read_trace`), its
+  arguments beside it; as well in ``[bearing.cup_profile]`` and ``[bearing.cone_profile]``;
 - ``[lubricant] oil = "vg100"``: an oil of `trbdyn.lubricants.OILS` at ``temperature_c``, or the table of an `Oil`;
 - ``[effects] preset = "paper"``: a preset of `Effects`.
 
@@ -34,7 +36,9 @@ from trbdyn.model.effects import PRESETS, Effects, refuse_idle
 from trbdyn.model.lubricants import Lubricant, vg100
 from trbdyn.model.pocket import Pocket
 from trbdyn.model.pocket_shapes import SHAPES
+from trbdyn.model.roller import Profile
 from trbdyn.model.scene import Scene, Start
+from trbdyn.model.trace import read_trace
 from trbdyn.run.options import RunOptions
 
 Table = dict[str, Any]
@@ -45,6 +49,8 @@ TABLES: Final = ("bearing", "lubricant", "effects", "scene", "start", "run")
 DEEPEST: Final = 40
 """Most levels of tables and lists in a file; a case has eight."""
 _OWN_TABLES: Final = ("bearing", "lubricant", "effects", "start")
+
+_TRACE: Final = tuple(inspect.signature(read_trace).parameters)[2:]
 
 
 def shipped_cases() -> tuple[str, ...]:
@@ -160,6 +166,7 @@ def bearing_from_table(table: Table) -> Bearing:
         with located(path):
             base = Bearing.named(table["named"]).inputs()
     values = _merged(base, without(table, "case", "named"))
+    values = _with_traces(values, table, path)
     cage = values.get("cage")
     if isinstance(cage, dict) and "drawing" in cage:
         own = table["cage"]
@@ -176,6 +183,37 @@ def bearing_from_table(table: Table) -> Bearing:
         full = plain.cage.replace(**pockets)
     with located(path):
         return plain.replace(cage=full)
+
+
+def _with_traces(values: Table, table: Table, path: FieldPath) -> Table:
+    """The values of a bearing, profiles read where a trace is named; they need the effective length alone."""
+    places = [
+        (inside, name)
+        for inside, name in ((("roller",), "profile"), ((), "cup_profile"), ((), "cone_profile"))
+        if isinstance(found := _at(values, *inside).get(name), dict) and "trace" in found
+    ]
+    if not places:
+        return values
+    plain = {
+        **without(values, "cage", "cup_profile", "cone_profile"),
+        "roller": without(_at(values, "roller"), "profile"),
+    }
+    length = build(Bearing, plain, path).roller.effective_length
+    for inside, name in places:
+        own = _at(table, *inside)[name]
+        check_names(own, {"trace", *_TRACE}, (*path, *inside, name))
+        with located((*path, *inside, name)):
+            profile = Profile.from_trace(own["trace"], length, **without(own, "trace"))
+        values = _merged(values, {"roller": {name: profile}} if inside else {name: profile})
+    return values
+
+
+def _at(table: Table, *inside: str) -> Table:
+    """A table in a table; an empty one where there is none."""
+    for name in inside:
+        found = table.get(name)
+        table = found if isinstance(found, dict) else {}
+    return table
 
 
 def _drawn(bearing: Bearing, given: object) -> Cage:

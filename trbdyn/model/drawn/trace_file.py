@@ -1,0 +1,193 @@
+"""Points of a measured trace (CSV), or of a drawn line (DXF), in metres."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trbdyn.base.own_files import file_path, read_whole
+from trbdyn.errors import FileError, InputError
+
+Array = NDArray[np.float64]
+
+UNITS: Final = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
+LARGEST: Final = 64 << 20
+"""Most bytes of a file; a trace of 100 000 points has 2 MB."""
+FLATTENING: Final = 1e-9
+"""Largest distance of a drawn curve from its polyline (m)."""
+JOINED: Final = 1e-6
+"""Largest gap between ends of drawn lines that belong together (m)."""
+_WRITTEN_UNIT: Final = re.compile(r"(?:[\[(]|_|\s)\s*(nm|um|µm|μm|mm|cm|m|inch|in)\s*(?:[\])]|$)", re.IGNORECASE)
+_LINES: Final = ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "SPLINE", "ELLIPSE")
+_DRAWN_UNITS: Final = {1: "inch", 4: "mm", 5: "cm", 6: "m", 13: "um"}
+"""Units of a DXF file ($INSUNITS)."""
+
+
+def points_of(
+    path: str | os.PathLike[str],
+    *,
+    position_unit: str | None,
+    height_unit: str | None,
+    layer: str | None,
+) -> tuple[Array, Array]:
+    """Positions and heights (m) in the order of the file, each of shape (n,).
+
+    Raises
+    ------
+    InputError
+        If an argument is not allowed, or a unit is not known.
+    FileError
+        If the file cannot be read; the message names the line.
+    ImportError
+        If a DXF file is given and ezdxf is not installed.
+    """
+    file = file_path(path, "path")
+    for name, unit in (("position_unit", position_unit), ("height_unit", height_unit)):
+        if unit is not None and unit not in UNITS:
+            raise InputError.of(name, unit, f"must be one of {', '.join(UNITS)}")
+    if file.suffix.lower() == ".dxf":
+        if height_unit is not None and height_unit != position_unit:
+            raise InputError.of("height_unit", height_unit, "must be position_unit: a drawing has one unit")
+        return _drawn(file, position_unit, layer)
+    if layer is not None:
+        raise InputError.of("layer", layer, "must not be given: only a DXF file has layers")
+    return _measured(file, position_unit, height_unit)
+
+
+def _measured(file: Path, position_unit: str | None, height_unit: str | None) -> tuple[Array, Array]:
+    try:
+        data = read_whole(file, LARGEST)
+    except OSError as error:
+        raise FileError(f"{file}: {error.strerror or error}") from None
+    except ValueError as error:
+        raise FileError(f"{file}: cannot be read: {error}") from None
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    head: list[str] = []
+    rows: list[tuple[float, float]] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip():
+            continue
+        cells = _cells(line)
+        try:
+            values = [float(cell) for cell in cells]
+        except ValueError:
+            values = []
+        if not values and not rows:
+            head = cells
+        elif len(values) != 2 or not np.isfinite(values).all():
+            raise FileError(
+                f"{file}, line {number}: must be two finite numbers, position and height: {line.strip()[:60]!r}"
+            )
+        else:
+            rows.append((values[0], values[1]))
+    if not rows:
+        raise FileError(f"{file}: holds no line of two numbers, position and height")
+    written = [_unit_in(cell) for cell in head] if len(head) == 2 else [None, None]
+    scales = []
+    for name, given, found in zip(("position_unit", "height_unit"), (position_unit, height_unit), written, strict=True):
+        if given is not None and found is not None and given != found:
+            raise InputError.of(name, given, f"must be the unit in the head of {file.name}, {found}, or left out")
+        unit = given or found
+        if unit is None:
+            raise InputError.of(
+                name, None, f"must be given, one of {', '.join(UNITS)}: the head of {file.name} names no unit"
+            )
+        scales.append(UNITS[unit])
+    points = np.array(rows) * scales
+    return points[:, 0], points[:, 1]
+
+
+def _cells(line: str) -> list[str]:
+    """Cells of a line; commas are decimal points where something else separates the cells."""
+    for separator in (";", "\t"):
+        if separator in line:
+            return [cell.strip().replace(",", ".") for cell in line.strip().strip(separator).split(separator)]
+    if "," in line:
+        return [cell.strip() for cell in line.split(",")]
+    return line.split()
+
+
+def _unit_in(cell: str) -> str | None:
+    found = _WRITTEN_UNIT.search(cell.strip().strip('"'))
+    if found is None:
+        return None
+    unit = found[1].lower().replace("µ", "u").replace("μ", "u")
+    return "inch" if unit == "in" else unit
+
+
+def _drawn(file: Path, unit: str | None, layer: str | None) -> tuple[Array, Array]:
+    """Points of the one line in a DXF file, or on one of its layers."""
+    ezdxf = _library()
+    try:
+        document = ezdxf.readfile(file)
+    except OSError as error:
+        raise FileError(f"{file}: {error.strerror or 'not a DXF file'}") from None
+    except (ezdxf.DXFError, ValueError) as error:
+        raise FileError(f"{file}: not a DXF file that can be used: {error}") from None
+    lines = [entity for entity in document.modelspace() if entity.dxftype() in _LINES]
+    layers = sorted({entity.dxf.layer for entity in lines})
+    if layer is not None and layer not in layers:
+        raise InputError.of(
+            "layer", layer, f"must be a layer with lines; those of {file.name}: {', '.join(layers) or 'none'}"
+        )
+    lines = [entity for entity in lines if layer is None or entity.dxf.layer == layer]
+    if not lines:
+        raise FileError(f"{file}: holds no line, polyline, arc, ellipse or spline")
+    told = _DRAWN_UNITS.get(document.units)
+    if told is None and unit is None:
+        raise InputError.of(
+            "position_unit", None, f"must be given, one of {', '.join(UNITS)}: {file.name} tells no unit"
+        )
+    if told is not None and unit is not None and told != unit:
+        raise InputError.of("position_unit", unit, f"must be the unit of {file.name}, {told}, or left out")
+    scale = UNITS[told or str(unit)]
+    from ezdxf.path import make_path
+
+    pieces = [
+        scale * np.array([(point.x, point.y) for point in make_path(entity).flattening(FLATTENING / scale, segments=8)])
+        for entity in lines
+    ]
+    points = _joined([piece for piece in pieces if len(piece) > 1], file, layers)
+    return points[:, 0], points[:, 1]
+
+
+def _library() -> Any:
+    try:
+        import ezdxf
+    except ImportError as error:
+        raise ImportError("drawn lines need ezdxf: pip install trbdyn[cad]") from error
+    return ezdxf
+
+
+def _joined(pieces: list[Array], file: Path, layers: list[str]) -> Array:
+    """One line of pieces that meet at their ends, whichever way and in whatever order each was drawn."""
+    line = pieces.pop(0)
+    while pieces:
+        for place, piece in enumerate(pieces):
+            fits = [(turned, at) for turned in (piece, piece[::-1]) for at in (0, -1) if _meet(line, turned, at)]
+            if fits:
+                turned, at = fits[0]
+                line = np.vstack([turned, line[1:]] if at == 0 else [line, turned[1:]])
+                del pieces[place]
+                break
+        else:
+            raise FileError(
+                f"{file}: lines do not join to one: {len(pieces)} of them meet no end of the others within "
+                f"{1e6 * JOINED:g} µm; give the layer that holds the profile alone; layers: {', '.join(layers)}"
+            )
+    if np.hypot(*(line[0] - line[-1])) < JOINED:
+        raise FileError(f"{file}: the line is closed: the profile alone must be drawn, from end to end")
+    return line
+
+
+def _meet(line: Array, piece: Array, at: int) -> bool:
+    other = piece[-1] if at == 0 else piece[0]
+    return bool(np.hypot(*(line[at] - other)) < JOINED)
