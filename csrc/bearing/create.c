@@ -238,7 +238,7 @@ static trb_status check_ring(const trb_params *p, trb_message *message)
 static trb_status check_elastic(const trb_params *p, trb_message *message)
 {
   if (p->cage_modes <= 0.0) return TRB_OK;
-  if (p->with_cage <= 0.0 || p->planar > 0.0 || p->guidance != TRB_GUIDANCE_ROLLERS)
+  if (p->with_cage != 1.0 || p->planar > 0.0 || p->guidance != TRB_GUIDANCE_ROLLERS)
     return trb_fail(message, TRB_ERR_INPUT, "cage_modes = %g: must be 0 without a cage, in planar motion, and where a land guides the cage",
                     p->cage_modes);
   return TRB_OK;

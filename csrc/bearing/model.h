@@ -143,6 +143,9 @@ typedef struct trb_model {
 /* Whether rollers and raceways are cylinders. */
 static inline int trb_has_cylinders(const trb_model *model) { return model->params.cup_half_angle == 0.0; }
 
+/* Whether there is a cage with pockets: not where rollers are alone, or a spacer holds them. */
+static inline int trb_has_cage(const trb_model *model) { return model->params.with_cage == 1.0; }
+
 /* Coefficient of the normal damping of a contact with a ring at an interference, s/m (docs/theory/contacts.md#normal-damping). */
 static inline double trb_contact_damping(const trb_model *model, double interference)
 {

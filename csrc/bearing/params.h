@@ -146,7 +146,7 @@
   X(effects,    film_damping_depth,        "m",         1e-9,   1,      "d0 of the damping by films: interference at which the coefficient has fallen to half") \
   X(effects,    damping_cage,              "s/m",       0,      1e4,    "Hunt-Crossley damping of pocket contacts") \
   /* effects */ \
-  X(effects,    with_cage,                 "choice",    0,      1,      "0 rollers only, 1 rollers and cage") \
+  X(effects,    with_cage,                 "choice",    0,      2,      "0 rollers only, 1 rollers and cage, 2 rollers that a spacer holds") \
   X(effects,    planar,                    "choice",    0,      1,      "1: axial positions and tilts are frozen") \
   X(effects,    lubrication,               "choice",    0,      3,      "0 dry, 1 boundary, 2 mixed, 3 full film") \
   X(effects,    traction,                  "choice",    0,      2,      "film traction: 0 none, 1 Coulomb, 2 Muraki-Kimura") \

@@ -45,7 +45,7 @@ static int face_in_pocket(const trb_face *f, int pocket) { return f->pocket[0] <
 /* Faces that the scene's effects leave out are not in the model, so no loop sees them. */
 static int face_is_on(const trb_model *m, const trb_face *f)
 {
-  return m->params.with_cage > 0.0 && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
+  return trb_has_cage(m) && (f->part[0] == TRB_PART_FLANK ? m->params.pocket_bars > 0.0 : m->params.pocket_ends > 0.0);
 }
 
 static void measure(trb_pocket_face *f)

@@ -59,6 +59,10 @@ typedef struct trb_body_kind {
   trb_rigid (*motion)(const trb_rigid_pose *pose, int coordinate); /* what a coordinate does to its place, or to its velocity, in R */
   double (*mass)(const trb_model *m, const trb_body *body);        /* on which gravity acts, kg */
   double (*kinetic)(const trb_model *m, const trb_body *body, const trb_rigid_pose *pose); /* energy, J */
+  /* of a body that holds all rollers at even spacing on one orbit (motion/spacer.h): its moment of inertia about the bearing's axis; NULL: it does
+   * not; its turn about that axis, minus the kinematic one, and its angular velocity are these coordinates */
+  double (*spacing)(const trb_model *m);
+  int turn, turning;
   /* of bodies that deform: amplitudes and their rates out of the coordinates; what forces on the modes add to the rates of the coordinates; the
    * coordinate that goes with the amplitude of a mode (that of its rate is the next one), and amplitude and rate for a unit of both; slopes of the
    * rates with one of these coordinates, added: loads apart, no others of the body's rates depend on it than those of the modes */

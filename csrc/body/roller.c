@@ -39,6 +39,14 @@ static double orbit_inertia(const trb_geometry *g, const trb_roller_pose *r)
   return g->roller_inertia_transverse * r->frame.n.z * r->frame.n.z / (r->radius * r->radius);
 }
 
+double trb_roller_orbit_mass(const trb_model *m, const trb_drive *drive, int roller, const double *y)
+{
+  trb_roller_pose pose;
+  if (m->params.planar <= 0.0) return m->geometry.roller_mass;
+  trb_roller_pose_unpack(m, drive, roller, y, &pose);
+  return m->geometry.roller_mass + orbit_inertia(&m->geometry, &pose);
+}
+
 static void freeze_roller(const trb_geometry *g, const trb_roller_pose *r, double v_t_reference_rate, double gravity_t, double *rates)
 {
   const double inertia = orbit_inertia(g, r), coriolis = r->v.x * r->v.y / r->radius;

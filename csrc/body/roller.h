@@ -63,6 +63,8 @@ void trb_roller_pose_unpack_centre(const trb_model *m, const trb_drive *drive, i
 double trb_roller_inertia(const trb_model *m, const trb_drive *drive, const trb_roller_pose *r, double *rates, double *spin);
 /* Added to the rates: what a wrench does. */
 void trb_roller_response(const trb_model *m, const trb_roller_pose *r, const trb_wrench *load, double *rates);
+/* What stands against a roller's tangential acceleration, kg: its mass, with what frozen tilts add to it in planar motion. */
+double trb_roller_orbit_mass(const trb_model *m, const trb_drive *drive, int roller, const double *y);
 /* What a coordinate does to a roller's place, or to its velocity, in its cylindrical frame. */
 trb_rigid trb_roller_motion(const trb_roller_pose *r, int coordinate);
 

@@ -33,6 +33,7 @@ enum { TRB_MOST_PAIRS = 16, TRB_MOST_BODIES = 6, TRB_MOST_MOVING_RINGS = 2 };
   X(pressure_force_nodes, "nodes whose rolling pressure force was evaluated") \
   X(damping_nodes,        "nodes whose normal damping was evaluated") \
   X(uneven_contacts,      "raceway contacts with a surface off its true form") \
+  X(spacers,              "evaluations of what a spacer in place of the cage does to all rollers") \
   X(rib_contacts,         "large ends in contact with the back-face rib") \
   X(rib_tests,            "large ends tested against the back-face rib") \
   X(front_rib_contacts,   "edges of the front rib in contact with a small end") \

@@ -80,9 +80,10 @@ trb_status trb_dynamics_create(const trb_system *system, const trb_motion *motio
   d->exact = calloc(n, sizeof *d->exact);
   d->near = calloc(n, sizeof *d->near);
   d->uneven = calloc(n, sizeof *d->uneven);
+  if (system->spacer >= 0) d->held = calloc((size_t)trb_state_size(system), sizeof *d->held);
   trb_status status = TRB_OK;
   if (!make_bodies(d) || d->rollers == NULL || d->loads == NULL || d->everyone == NULL || d->flows == NULL || d->exact == NULL ||
-      d->near == NULL || d->uneven == NULL || d->reactions == NULL) {
+      d->near == NULL || d->uneven == NULL || d->reactions == NULL || (system->spacer >= 0 && d->held == NULL)) {
     status = trb_fail(message, TRB_ERR_MEMORY, "out of memory for dynamics");
   } else {
     for (int j = 0; j < m->n_rollers; j++) d->everyone[j] = j;
@@ -117,5 +118,6 @@ void trb_dynamics_free(trb_dynamics *d)
   free(d->spin);
   free(d->near);
   free(d->uneven);
+  free(d->held);
   free(d);
 }

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "contact/kernels.h"
 #include "contact/uneven.h"
+#include "motion/spacer.h"
 
 void trb_dynamics_place(trb_dynamics *d)
 {
@@ -91,9 +92,19 @@ void trb_dynamics_pose_hub(trb_dynamics *d, const double *y)
     if (d->system->bodies[b].size > 0) trb_dynamics_pose_body(d, b, y + d->system->bodies[b].first);
 }
 
+const double *trb_dynamics_held(trb_dynamics *d, double time, const double *y)
+{
+  if (d->held == NULL) return y;
+  memcpy(d->held, y, (size_t)trb_state_size(d->system) * sizeof *y);
+  trb_dynamics_drive(d, time);
+  trb_spacer_hold(d->system, &d->drive, d->held);
+  return d->held;
+}
+
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y)
 {
   trb_dynamics_drive(d, time);
+  y = trb_dynamics_held(d, time, y);
   trb_dynamics_pose_hub(d, y);
   for (int j = 0; j < d->model->n_rollers; j++) {
     trb_dynamics_pose_roller(d, j, y + trb_state_roller(d->system, j));

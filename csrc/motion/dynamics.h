@@ -51,6 +51,7 @@ typedef struct trb_dynamics {
   int        *uneven;             /* of every roller: 1: surfaces may be off their true form where it is */
   double     *spin;               /* angle that each roller has turned by, rad; NULL: all surfaces have their true form */
   unsigned   *near;               /* of every roller: bit by fast pair, those that may touch */
+  double     *held;               /* scratch: a state whose rollers a spacer holds; NULL: there is none */
 } trb_dynamics;
 
 /* motion may be NULL where only poses that the caller places are used. */
@@ -62,6 +63,8 @@ void       trb_dynamics_free(trb_dynamics *dynamics);
 void trb_dynamics_drive(trb_dynamics *d, double time);
 /* Bodies without coordinates where the drive that is kept puts them. */
 void trb_dynamics_place(trb_dynamics *d);
+/* A state with its rollers where a spacer holds them, and the drive of its time kept; the state itself where there is none. */
+const double *trb_dynamics_held(trb_dynamics *d, double time, const double *y);
 /* Poses at (t, y), kept in the dynamics. */
 void trb_dynamics_pose(trb_dynamics *d, double time, const double *y);
 /* Poses of the bodies of the hub only. */

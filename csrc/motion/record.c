@@ -51,7 +51,7 @@ static void put_contact(const trb_seen *seen, const trb_field_info *field, doubl
 
 void trb_record_fill(trb_dynamics *d, const unsigned *apart, double time, const double *y, trb_detail *detail, double *record)
 {
-  trb_seen           seen = {.d = d, .detail = *detail, .time = time, .y = y};
+  trb_seen           seen = {.d = d, .detail = *detail, .time = time, .y = trb_dynamics_held(d, time, y)};
   const trb_counters keep = d->work->counters;
   double            *at[TRB_N_FIELDS];
   seen.detail.lanes = seen.detail.pocket_interference = NULL;

@@ -1,5 +1,6 @@
 #include "motion/rhs.h"
 #include "motion/fast_pairs.h"
+#include "motion/spacer.h"
 
 /* What approximates a roller's forces knows surfaces of true form: it stands aside where a roller may be on one that is not, and learns
  * nothing there. */
@@ -88,7 +89,11 @@ void trb_rhs_alone(trb_dynamics *d, const trb_approximation *instead, double tim
 void trb_rhs(trb_dynamics *d, const trb_approximation *instead, double time, const double *y, double *rates)
 {
   const int n = d->model->n_rollers;
+  y = trb_dynamics_held(d, time, y);
   trb_rhs_rollers(d, instead, time, y, d->everyone, n, rates);
   for (int j = 0; j < n; j++) trb_dynamics_put(d, j, d->flows[j], rates);
   trb_rhs_hub(d, y, rates);
+  if (d->held == NULL) return;
+  trb_spacer_join(d->system, &d->drive, y, rates);
+  d->work->counters.spacers++;
 }

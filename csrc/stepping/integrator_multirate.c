@@ -254,6 +254,7 @@ static const char *refused(const trb_integrator *it)
   for (int b = 0; b < system->n_bodies; b++)
     if (system->bodies[b].modes != NULL) return "the cage deforms";
   if (system->layout.hub_width != TRB_HUB_USUAL) return "other bodies than a rigid cage have coordinates";
+  if (d->held != NULL) return "a spacer joins all rollers";
   if (d->spin != NULL) return "surfaces are off their true form";
   if (it->settings.max_order != 2.0) return "max_order is not 2";
   for (int i = 0; i < d->work->n_batches; i++)

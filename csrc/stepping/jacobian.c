@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "stepping/coupling.h"
+#include "stepping/spacer_blocks.h"
 
 trb_status trb_jacobian_create(const trb_system *system, const trb_motion *motion, const char *variant, trb_jacobian **jacobian,
                                trb_message *message)
@@ -310,6 +311,7 @@ void trb_jacobian_fill_of(trb_jacobian *jac, double time, const double *y, int f
   trb_dynamics    *d = jac->d;
   double          *still = jac->rates + 2 * arrow->width;
   const trb_wrench none = {{0, 0, 0}, {0, 0, 0}};
+  y = trb_dynamics_held(d, time, y);
   place(jac, time, y, chosen, n);
   take_slopes(jac, y, fresh, chosen, n);
   for (int k = 0; k < n; k++)
@@ -331,4 +333,5 @@ void trb_jacobian_fill_of(trb_jacobian *jac, double time, const double *y, int f
   for (int b = 0; b < d->system->n_bodies; b++)
     if (jac->modal[b] != NULL)
       trb_modal_finish(jac->modal[b], &d->system->bodies[b], d->system->bodies[b].first - trb_state_hub(d->system), arrow);
+  trb_spacer_blocks(d, y, arrow);
 }

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "stepping/vectors.h"
 #include "motion/fast_pairs.h"
+#include "motion/spacer.h"
 
 static trb_status check_settings(const trb_settings *settings, trb_message *message)
 {
@@ -116,6 +117,25 @@ static trb_status open_parts(trb_simulation *s, const trb_motion *const *motions
   return status;
 }
 
+/* Rollers of all bearings where spacers hold them. */
+static void hold(const trb_simulation *s, double time, double *y)
+{
+  for (int k = 0; k < s->assembly.n; k++) {
+    const trb_system *system = &s->assembly.members[k];
+    trb_drive         drive;
+    if (system->spacer < 0) continue;
+    trb_motion_at(s->integrator.members[k].motion, system->model, time, &drive);
+    trb_spacer_hold(system, &drive, y);
+  }
+}
+
+static trb_status interpolate(trb_simulation *s, double time, double *y, trb_message *message)
+{
+  const trb_status status = s->integrator.kind->interpolate(&s->integrator, time, y, message);
+  if (status == TRB_OK) hold(s, time, y);
+  return status;
+}
+
 static trb_status open_all(trb_simulation *s, const trb_system *const *systems, const trb_motion *const *motions, int n,
                            const char *variant, double time, const double *state, int n_state, trb_message *message)
 {
@@ -127,6 +147,7 @@ static trb_status open_all(trb_simulation *s, const trb_system *const *systems, 
   if (status == TRB_OK) status = open_parts(s, motions, variant, message);
   if (status != TRB_OK) return status;
   memcpy(it->y, state, (size_t)it->n * sizeof *state);
+  hold(s, time, it->y);
   trb_integrator_set_tolerances(it);
   return it->kind->create(it, message);
 }
@@ -195,6 +216,7 @@ trb_status trb_simulation_set_state(trb_simulation *s, double time, const double
   const trb_status status = check_state(&s->assembly, time, state, message);
   if (status != TRB_OK) return status;
   memmove(it->y, state, (size_t)it->n * sizeof *state);
+  hold(s, time, it->y);
   it->time = s->previous = time;
   trb_integrator_set_tolerances(it);
   for (int k = 0; k < s->assembly.n; k++) {
@@ -222,6 +244,7 @@ trb_status trb_simulation_step(trb_simulation *s, trb_message *message)
   const trb_status status = it->kind->step(it, message);
   if (status == TRB_OK) {
     s->previous = from;
+    hold(s, it->time, it->y);
     if (!s->with_peaks) return TRB_OK;
     if (s->recorder != NULL) trb_recorder_step(s->recorder, it->time, it->y);
     for (int k = 0; k < s->assembly.n && s->recorder == NULL; k++) trb_peaks_step(s->parts[k].peaks, it->time, it->y);
@@ -239,7 +262,7 @@ trb_status trb_simulation_state_at(trb_simulation *s, double time, double *y, tr
   trb_integrator *it = &s->integrator;
   if (!(time >= s->previous && time <= it->time))
     return trb_fail(message, TRB_ERR_INPUT, "time = %.9g s: must lie in the last step, from %.9g to %.9g s", time, s->previous, it->time);
-  if (time < it->time) return it->kind->interpolate(it, time, y, message);
+  if (time < it->time) return interpolate(s, time, y, message);
   memcpy(y, it->y, (size_t)it->n * sizeof *y);
   return TRB_OK;
 }
@@ -323,7 +346,7 @@ static trb_status output(trb_simulation *s, double time, double *record, trb_mes
   trb_integrator *it = &s->integrator;
   const double   *y = it->y;
   if (time != it->time) {
-    const trb_status status = it->kind->interpolate(it, time, s->between, message);
+    const trb_status status = interpolate(s, time, s->between, message);
     if (status != TRB_OK) return status;
     y = s->between;
   }

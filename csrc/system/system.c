@@ -134,6 +134,7 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
 {
   int contacts = 0, n_rollers = s->model->n_rollers;
   s->n_moving = 0;
+  s->spacer = -1;
   s->layout = (trb_layout){.n_rollers = n_rollers, .hub = n_rollers * TRB_ROLLER_SIZE};
   for (int b = 0; b < s->n_bodies; b++) {
     trb_body *body = &s->bodies[b];
@@ -141,6 +142,7 @@ trb_status trb_system_finish(trb_system *s, trb_message *message)
     if (body->size == 0) body->size = body->kind->size, body->coordinates = body->kind->coordinates;
     body->first = body->size > 0 ? trb_state_main_size(s) : -1;
     s->layout.hub_width += body->size;
+    if (body->kind->spacing != NULL) s->spacer = b;
     if (body->size > 0 && body->kind->ring != NULL) {
       if (s->n_moving == TRB_MOST_MOVING_RINGS)
         return trb_fail(message, TRB_ERR_INPUT, "body %s: at most %d rings may have coordinates", body->name, TRB_MOST_MOVING_RINGS);

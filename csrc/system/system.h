@@ -43,6 +43,7 @@ typedef struct trb_system {
   int              driven;                        /* number of the body that its drive places and turns, and that loads act on */
   int              moving[TRB_MOST_MOVING_RINGS]; /* numbers of the rings with coordinates */
   int              n_moving;
+  int              spacer; /* number of the body that holds all rollers at even spacing, or -1 */
   trb_layout       layout;
 } trb_system;
 

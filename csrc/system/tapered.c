@@ -6,6 +6,7 @@
 #include "body/elastic_cage.h"
 #include "body/free_ring.h"
 #include "body/ring.h"
+#include "body/spacer.h"
 
 enum {
   FLANK,
@@ -49,7 +50,8 @@ static void add_bodies(trb_system *s)
                                                 .own = &s->model->ring[TRB_RACE_INNER],
                                                 .loss = TRB_BOOK(TRB_LOSS_support),
                                                 .carried = s->model->params.ring_carried > 0.0};
-  s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = &trb_body_cage, .name = "cage"};
+  const trb_body_kind *cage = s->model->params.with_cage > 1.0 ? &trb_body_spacer : &trb_body_cage;
+  s->bodies[TRB_BODY_CAGE] = (trb_body){.kind = cage, .name = "cage"};
   if (s->model->modes.n > 0) {
     s->bodies[TRB_BODY_CAGE] = trb_elastic_cage_of(&s->model->modes, "cage");
     s->bodies[TRB_BODY_CAGE].loss = TRB_BOOK(TRB_LOSS_vibration);
@@ -159,8 +161,8 @@ static int is_on(const trb_model *m, int pair)
   case TRB_PAIR_outer_front_rib: return p->outer_front_rib > 0.0;
   case TRB_PAIR_drag: return p->oil_fill > 0.0 && p->drag_coefficient > 0.0;
   case TRB_PAIR_pocket: return m->first_face[m->n_rollers] > 0;
-  case TRB_PAIR_inner_land: return p->with_cage > 0.0 && p->guidance == TRB_GUIDANCE_INNER_LAND;
-  case TRB_PAIR_outer_land: return p->with_cage > 0.0 && p->guidance == TRB_GUIDANCE_OUTER_LAND;
+  case TRB_PAIR_inner_land: return trb_has_cage(m) && p->guidance == TRB_GUIDANCE_INNER_LAND;
+  case TRB_PAIR_outer_land: return trb_has_cage(m) && p->guidance == TRB_GUIDANCE_OUTER_LAND;
   case TRB_PAIR_cage_drag: return p->with_cage > 0.0 && p->oil_fill > 0.0 && p->cage_face_outer > p->cage_face_inner;
   default: return 1;
   }

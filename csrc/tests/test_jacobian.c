@@ -140,5 +140,11 @@ int main(void)
   for (int i = 0; i < 3; i++) check_both(&p, 4930.0);
   p = rig_cylinder();
   for (int i = 0; i < 3; i++) check_both(&p, 4930.0);
+  p = rig_params(), p.with_cage = 2;
+  check_scene(&p, 4930.0, INFINITY, 0, 2e-3);
+  p.oil_fill = 0.1, p.drag_coefficient = 1.0, p.cage_face_outer = 0.05, p.cage_face_inner = 0.04;
+  check_scene(&p, 4930.0, INFINITY, 0, 2e-3);
+  p = rig_params(), p.planar = 1, p.with_cage = 2;
+  check_scene(&p, 4930.0, INFINITY, 0, 2e-3);
   return check_report();
 }

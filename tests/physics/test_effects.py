@@ -19,6 +19,7 @@ FILMS = ("film_nodes", "thermal_nodes", "traction_nodes", "rolling_nodes")
 SWITCHES: dict[str, tuple[dict[str, Any], dict[str, Any], tuple[str, ...]]] = {
     "gravity": ({"gravity": True}, {"gravity": False}, ("gravity_bodies",)),
     "cage": ({"bodies": "rollers_and_cage"}, {"bodies": "rollers"}, ("pocket_tests", "pocket_nodes")),
+    "spacer": ({"bodies": "rollers_and_spacer"}, {"bodies": "rollers_and_cage"}, ("spacers",)),
     "pocket_faces": (
         {"pocket_bars": True, "pocket_ends": True},
         {"pocket_bars": False, "pocket_ends": False},

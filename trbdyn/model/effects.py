@@ -104,8 +104,11 @@ class Effects(Model):
     ----------
     gravity : bool
         Gravity acts.
-    bodies : {'rollers_and_cage', 'rollers'}
-        Rollers with their cage, or without one; rollers without a cage must not touch each other.
+    bodies : {'rollers_and_cage', 'rollers_and_spacer', 'rollers'}
+        Rollers with their cage, or without one; rollers without a cage must not touch each other. With a spacer in its place they
+        orbit at even spacing, at the speed that their tangential forces together give: an ideal cage without play and friction,
+        centred in the bearing, with the moment of inertia and the drag of the real one. It costs a small part of the time, for
+        torque, loads, films and life; what concerns the cage itself is not known (docs/theory/motion.md#cage-as-a-spacer).
     planar : bool
         Axial positions and tilts of rollers and cage are frozen.
     lubrication : {'mixed', 'full_film', 'boundary', 'dry'}
@@ -192,7 +195,7 @@ class Effects(Model):
     """
 
     gravity: Flag = True
-    bodies: Literal["rollers_and_cage", "rollers"] = "rollers_and_cage"
+    bodies: Literal["rollers_and_cage", "rollers_and_spacer", "rollers"] = "rollers_and_cage"
     planar: Flag = False
     lubrication: Literal["mixed", "full_film", "boundary", "dry"] = "mixed"
     traction: Literal["muraki_kimura", "coulomb", "none"] = "muraki_kimura"
@@ -259,7 +262,7 @@ class Effects(Model):
     def _check(self) -> Self:
         if self.rolling_pressure_force and not self.rolling_resistance:
             raise InputError.of("rolling_pressure_force", True, "needs rolling_resistance = True")
-        if self.guidance != "rollers" and self.bodies == "rollers":
+        if self.guidance != "rollers" and not self.has_cage:
             raise InputError.of("guidance", self.guidance, "needs a cage: bodies = 'rollers_and_cage'")
         if self.n_slices == 1 and not self.back_rib:
             raise InputError.of("n_slices", 1, "must be >= 2 without back_rib: one slice lets rollers tilt freely")
@@ -270,6 +273,11 @@ class Effects(Model):
         fields = {**(self._changed(split_paths(changes)) if changes is not None else {}), **fields}
         refuse_idle(fields.get("damping", self.damping), fields.get("lubrication", self.lubrication), fields)
         return super().replace(**fields)
+
+    @property
+    def has_cage(self) -> bool:
+        """Whether there is a cage with pockets: not where rollers are alone, or a spacer holds them."""
+        return self.bodies == "rollers_and_cage"
 
     @property
     def films(self) -> bool:

@@ -44,6 +44,7 @@ RIB_FILMS = {"max": 0, "pe": 1, "needle": 2}
 THERMAL_LAWS = {"gupta": 1, "aihara": 2}
 MIXED_LAWS = {"power": 0, "exponential": 1}
 DAMPING = {"off": 0, "hunt_crossley": 1, "film": 2}
+BODIES = {"rollers": 0, "rollers_and_cage": 1, "rollers_and_spacer": 2}
 GUIDANCE = {"rollers": 0, "inner_land": 1, "outer_land": 2}
 PARTS = {"flank": 0, "large_end": 1, "small_end": 2}
 
@@ -134,7 +135,7 @@ def effects_entries(effects: Effects) -> Entries:
         "quadrature": Entry(("quadrature",), QUADRATURES[effects.quadrature]),
         "damping": Entry(("damping",), DAMPING[effects.damping if effects.films else without_films]),
         "guidance": Entry(("guidance",), GUIDANCE[effects.guidance]),
-        "with_cage": Entry(("bodies",), float(effects.bodies == "rollers_and_cage")),
+        "with_cage": Entry(("bodies",), BODIES[effects.bodies]),
         "planar": Entry(("planar",), float(effects.planar)),
         "lubrication": Entry(("lubrication",), LUBRICATION[effects.lubrication]),
         "traction": Entry(("traction",), TRACTION[effects.traction]),

@@ -560,7 +560,10 @@ class Scene(TurningRings, Model):
             raise InputError.of(name, axial, limit)
 
     def _check_start(self) -> None:
-        if self.start.kind == "whirl" and self.effects.bodies == "rollers":
+        if self.start.kind == "unequal" and self.effects.bodies == "rollers_and_spacer":
+            limit = "must be 'equal' or 'state' with effects.bodies = 'rollers_and_spacer', which holds rollers at even spacing"
+            raise InputError.of(("start", "kind"), "unequal", limit)
+        if self.start.kind == "whirl" and not self.effects.has_cage:
             path: Path = ("start", "kind")
             raise InputError.of(path, "whirl", "needs a cage: effects.bodies = 'rollers_and_cage'")
         land, play = self.bearing.land, self.bearing.cage.play_radial

@@ -114,7 +114,7 @@ class Derived(ABC):
     @property
     def has_cage(self) -> bool:
         """Whether the scene has a cage; without one, what is recorded of it means nothing."""
-        return self.scene.effects.bodies == "rollers_and_cage"
+        return self.scene.effects.has_cage
 
     def _of_cage(self, name: str) -> Array:
         """A recorded field of the cage; an error if the scene has none."""

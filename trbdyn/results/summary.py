@@ -94,7 +94,7 @@ def summary(result: Result) -> Summary:
 
 def _running_plays(scene: Scene) -> dict[str, Any]:
     """Plays of the pockets where they are not those of the drawing."""
-    if scene.growth is None or scene.effects.bodies == "rollers":
+    if scene.growth is None or not scene.effects.has_cage:
         return {}
     radial, circumferential = scene.running_plays
     return {"running_play_radial": radial, "running_play_circumferential": circumferential}

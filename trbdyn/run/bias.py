@@ -156,7 +156,7 @@ def note(sim: Simulation) -> str:
     said = []
     for name, (words, of_cage) in READ.items():
         value, half = values.get(f"bias_{name}"), values.get(f"bias_{name}_half_width")
-        if value is None or half is None or (of_cage and scene.effects.bodies == "rollers"):
+        if value is None or half is None or (of_cage and not scene.effects.has_cage):
             continue
         if abs(value) > max(LEAST, half):
             said.append(

@@ -301,12 +301,7 @@ def _errors(sim: Simulation) -> dict[str, Any]:
     window = float(np.median(measured["windows_s"][case]))
     place = {"window": window, "case": case} | dict.fromkeys(_BIASES, math.nan)
     standard = options.max_order == 2 and options.rings_share is None and options.impact_share is None
-    known = (
-        len(sim.bearings) == 1
-        and options.integrator == "bdf"
-        and standard
-        and sim.scene.effects.bodies == "rollers_and_cage"
-    )
+    known = len(sim.bearings) == 1 and options.integrator == "bdf" and standard and sim.scene.effects.has_cage
     if not known:
         return place | dict.fromkeys(_ERRORS, math.nan) | {"extrapolated": True}
     tolerances = options.tolerances.model_dump()
@@ -328,7 +323,7 @@ def _number(value: float | None) -> float:
 
 def case_like(sim: Simulation, scenes: Mapping[str, Mapping[str, Any]]) -> str:
     """The measured scene that a simulation is most like."""
-    colliding = sim.scene.effects.bodies != "rollers" and whirls(sim)
+    colliding = sim.scene.effects.has_cage and whirls(sim)
     return most_like(sim.scene, axial_of(sim), colliding, scenes)
 
 

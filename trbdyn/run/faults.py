@@ -35,7 +35,7 @@ def check_apart(sim: Simulation, bearing: SeatedBearing, layout: Layout, records
     if float(nearest.min()) < sizes.roller.diameter:
         raise StepError(
             f"{bearing.said}two rollers touch before {sim.time:.6g} s: without a cage nothing in the model keeps them apart; "
-            "shorten the run or give effects.bodies = 'rollers_and_cage'",
+            "shorten the run or give effects.bodies = 'rollers_and_spacer' or 'rollers_and_cage'",
             time=sim.time,
             body="rollers",
             quantity="spacing",

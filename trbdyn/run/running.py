@@ -145,7 +145,7 @@ class Run:
     def _add(self, bearing: SeatedBearing) -> None:
         options, model, fields = self.options, bearing.model, field_table.table()
         layout, length = list(model.record_layout()), model.record_length
-        has_cage = bearing.scene.effects.bodies == "rollers_and_cage"
+        has_cage = bearing.scene.effects.has_cage
         check_wanted(options.until, options.save_groups, {name for name, _, _ in layout}, has_cage)
         if self.with_peaks:
             fields += peak_table.table()

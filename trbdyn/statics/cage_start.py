@@ -88,7 +88,7 @@ def pressed_rollers(model: _core.Model, scene: Scene, motion: RingMotion, vector
     """A sentence if the start presses rollers into their pockets, or the cage into its land, as they were moved further than
     the play allows; or nothing.
     """
-    if scene.effects.bodies != "rollers_and_cage" or scene.start.kind == "state":
+    if not scene.effects.has_cage or scene.start.kind == "state":
         return ""
     onlooker = motion.open(model, motion.start, vector, {})
     depth = _interference(onlooker, motion.start, vector)

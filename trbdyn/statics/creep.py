@@ -248,7 +248,7 @@ def creep_time(scene: Scene) -> float:
         Time (s); nan where this law of creep does not hold (other friction, no cage, standstill).
     """
     effects = scene.effects
-    if effects.bodies != "rollers_and_cage" or not effects.films or effects.traction != "muraki_kimura":
+    if not effects.has_cage or not effects.films or effects.traction != "muraki_kimura":
         return math.nan
     try:
         with np.errstate(all="ignore"):  # rollers without load creep without bound

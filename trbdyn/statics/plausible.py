@@ -142,7 +142,7 @@ def dented(peaks: Mapping[str, Any]) -> str:
 
 def _cage(scene: Scene) -> list[str]:
     """Mass and inertia that a cage can have, but that can hardly be meant."""
-    if scene.effects.bodies == "rollers":
+    if not scene.effects.has_cage:
         return []
     return CageSpace.of(scene.bearing).unusual(scene.bearing.cage, scene.bearing.cage_material) + _body(scene)
 
@@ -184,7 +184,7 @@ def _fill(scene: Scene) -> str:
 
 def _plays(scene: Scene) -> list[str]:
     cage, most = scene.bearing.cage, LARGEST_PLAY_SHARE * scene.bearing.roller.diameter
-    if scene.effects.bodies == "rollers":
+    if not scene.effects.has_cage:
         return []
     return [
         f"bearing.cage.{name} = {getattr(cage, name):g} m is more than a tenth of the roller's diameter "
@@ -200,7 +200,7 @@ def _pocket_film(scene: Scene) -> list[str]:
     most = LARGEST_PLAY_SHARE * scene.bearing.roller.diameter
     if not film:
         return []
-    if not scene.effects.films or scene.effects.bodies == "rollers" or not scene.effects.pocket_bars:
+    if not scene.effects.films or not scene.effects.has_cage or not scene.effects.pocket_bars:
         return [f"effects.pocket_film = {film:g} m makes no film: it needs lubricant films, a cage and its bars"]
     found = []
     if film > most:

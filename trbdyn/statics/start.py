@@ -39,14 +39,13 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
             raise InputError.of(
                 ("start", "state_vector"), f"{vector.size} numbers", f"must have {model.n_state} for this bearing"
             )
+        if scene.effects.bodies == "rollers_and_spacer":
+            _join_orbits(StateView(model.state_layout(), vector), scene)
         return vector
     vector = np.zeros(model.n_state)
     state = StateView(model.state_layout(), vector)
     geometry = scene.bearing.geometry
-    inner, outer = (
-        value_at(speed, scene.start.time) * math.pi / 30.0 for speed in (scene.speed_rpm, scene.outer_speed_rpm)
-    )
-    orbit = geometry.cage_speed_ratio * (inner - outer) + outer
+    orbit = _orbit(scene)
     radius, axial, tilt, skew = equilibrium.rollers.T
     angle = geometry.roller_axis_angle
     state["roller_r"], state["roller_z"], state["roller_tilt"], state["roller_skew"] = radius, axial, tilt, skew
@@ -60,9 +59,32 @@ def start_state(model: _core.Model, scene: Scene, motion: RingMotion, equilibriu
         state["roller_omega_n"] = 0.0
     if scene.ring_body is not None:
         place_ring(state, equilibrium.displacement, scene.ring_body.mass_offset)
-    if scene.effects.bodies == "rollers_and_cage":
+    if scene.effects.bodies == "rollers_and_spacer":
+        state["cage_psi"] = float(np.mean(state["roller_psi"]))
+    if scene.effects.has_cage:
         place_cage(model, scene, motion, vector)
     return vector
+
+
+def _orbit(scene: Scene) -> float:
+    """Speed of the rollers' orbit in pure rolling at the start (rad/s)."""
+    inner, outer = (
+        value_at(speed, scene.start.time) * math.pi / 30.0 for speed in (scene.speed_rpm, scene.outer_speed_rpm)
+    )
+    return scene.bearing.geometry.cage_speed_ratio * (inner - outer) + outer
+
+
+def _join_orbits(state: StateView, scene: Scene) -> None:
+    """The spacer takes the mean place and all angular momentum of the orbits of a state in which rollers orbit alone."""
+    if np.all(state["roller_psi"] == state["cage_psi"]):
+        return
+    geometry, cage = scene.bearing.geometry, scene.bearing.cage
+    radius = geometry.roller_centre_radius + state["roller_r"]
+    # offsets from pure rolling: of the tangential velocity against the nominal radius, of the spacer against its speed
+    faster = state["roller_v_t"] - _orbit(scene) * state["roller_r"]
+    momentum = geometry.roller_mass * np.sum(radius * faster) + cage.inertia_axial * state["cage_omega_a"]
+    state["cage_omega_a"] = float(momentum) / (geometry.roller_mass * np.sum(radius**2) + cage.inertia_axial)
+    state["cage_psi"] = float(np.mean(state["roller_psi"]))
 
 
 def contacts_at_start(scene: Scene) -> dict[str, Array]:

@@ -241,8 +241,9 @@ class CageRuns:
         for name in starts:
             if name not in STARTS:
                 raise InputError.of("starts", name, f"must be one of {', '.join(STARTS)}")
-        if any(part.effects.bodies == "rollers" for part in subject.parts.values()):
-            raise InputError.of(("effects", "bodies"), "rollers", "must be 'rollers_and_cage'")
+        for part in subject.parts.values():
+            if not part.effects.has_cage:
+                raise InputError.of(("effects", "bodies"), part.effects.bodies, "must be 'rollers_and_cage'")
         if not TURNS[0] <= number_of("longest", longest):
             raise InputError.of("longest", longest, f"must be >= {TURNS[0]:g} (1)")
         self.subject, self.longest, self.how = subject, float(longest), how

@@ -48,7 +48,7 @@ class Switch:
 
 
 SWITCHES: Final = (
-    Switch("cage", {"bodies": "rollers", "guidance": "rollers"}, {"bodies": "rollers_and_cage"}),
+    Switch("cage", {"bodies": "rollers_and_spacer", "guidance": "rollers"}, {"bodies": "rollers_and_cage"}),
     Switch("tilt and axial motion", {"planar": True}, {"planar": False}),
     Switch("gravity", {"gravity": False}, {"gravity": True}),
     Switch("front rib", {"front_rib": False}, {"front_rib": True}),
@@ -125,9 +125,10 @@ def candidates(scene: Scene, *, wants_cage: bool) -> list[Candidate]:
 
 def _of_switch(switch: Switch, effects: Effects) -> Candidate | None:
     """Without an effect that is on, or with one that is off; None where it cannot act, or its numbers are not known."""
-    if (switch.needs_films and not effects.films) or (switch.needs_cage and effects.bodies == "rollers"):
+    if (switch.needs_films and not effects.films) or (switch.needs_cage and not effects.has_cage):
         return None
     is_off = all(getattr(effects, name) == value for name, value in switch.without.items())
+    is_off |= "bodies" in switch.without and not effects.has_cage
     if not is_off:
         return None if _same(effects, switch.without) else Candidate(switch.name, "effect", switch.without)
     return Candidate(switch.name, "off", switch.with_it) if switch.with_it else None

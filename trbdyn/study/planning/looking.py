@@ -199,10 +199,12 @@ class Looker:
 
     def _other_start(self) -> Row | None:
         wishes, start = self.wishes, self.wishes.scene.start
+        if self.usual.effects.bodies == "rollers_and_spacer":
+            return None  # rollers at even spacing have one start
         if start.kind == "state" or wishes.effort * OF_OTHER_START / self.ground.rate < LEAST_AVERAGING * wishes.period:
             self.notes.append("no other start was tried: whether the motion depends on its start is not known")
             return None
-        whirls = start.kind == "whirl" or self.usual.effects.bodies == "rollers"
+        whirls = start.kind == "whirl" or not self.usual.effects.has_cage
         try:
             other = self.usual.replace(start=Start.unequal(start.seed + 1) if whirls else self._thrown())
             found = run_ground(other, wishes.want, wishes.period, self._share(OF_OTHER_START), wishes.effort)

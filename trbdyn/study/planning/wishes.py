@@ -85,7 +85,7 @@ def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effor
         check_average(name, "want")
         if not 0.0 < number_of(f"want.{name}", wish) < 1.0:
             raise InputError.of(("want", name), wish, "must be a number above 0 and below 1: error over average (1)")
-        if of_cage(name) and scene.effects.bodies == "rollers":
+        if of_cage(name) and not scene.effects.has_cage:
             raise InputError.of("want", name, "needs a cage: effects.bodies = 'rollers_and_cage'")
     for field, value in (("budget", budget), ("effort", effort)):
         if value is not None and not 0.0 < number_of(field, value) < 1e7:
@@ -134,5 +134,6 @@ def changed(scene: Scene, effects: Mapping[str, Any], start: Start) -> Scene:
     new = scene.effects.replace(**effects)
     if start.kind == "state":
         return carried_over(scene.replace(effects=new, start=Start.equal()), start, scene)
-    own = Start.equal() if start.kind == "whirl" and new.bodies == "rollers" else start
+    spaced = new.bodies == "rollers_and_spacer" and start.kind == "unequal"
+    own = Start.equal() if spaced or (start.kind == "whirl" and not new.has_cage) else start
     return scene.replace(effects=new, start=own)
