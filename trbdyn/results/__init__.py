@@ -13,7 +13,7 @@ __all__ = ["Result", "load"]
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module 'trbdyn.results' has no attribute {name!r}")
-    from trbdyn.results import result  # HDF5 is loaded when it is needed
+    from trbdyn.results import result  # loaded when it is needed
 
     globals().update({known: getattr(result, known) for known in __all__})
     return globals()[name]
