@@ -174,7 +174,7 @@ def _judge_scene(table: Table) -> Verdict:
         verdict.status, verdict.broken = "refused", [f"{type(error).__name__}: {str(error).splitlines()[0][:200]}"]
         return verdict
     whole = ORDINARY | table
-    duration = whole["duration_s"] or _duration(scene)
+    duration = whole["duration_s"] or scene_duration(scene)
     most_steps = math.inf if whole["duration_s"] else MOST_STEPS
     verdict.run = run = bounded_run(sim, duration, most_steps, pieces=whole["pieces"])
     if run.status == "error":
@@ -318,7 +318,7 @@ def _look(watch: Watch | None, run: Run, *, final: bool = False) -> bool:
     return reason is not None
 
 
-def _duration(scene: trb.Scene) -> float:
+def scene_duration(scene: trb.Scene) -> float:
     """A turn of the shaft, between 4 ms and 0.3 s; histories to their end, those that repeat at least for a period."""
     speed = scene.turning_rpm
     histories = [q for q in (scene.speed_rpm, scene.axial_load, scene.radial_load) if isinstance(q, trb.History)]

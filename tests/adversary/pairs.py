@@ -175,9 +175,12 @@ def duration_of(table: Table) -> float:
 def run(assembly: trb.Assembly, duration: float, **options: Any) -> tuple[dict[str, Any], trb.AssemblyResult]:
     """What a run gave: loss (J), mean speeds of the rollers over pure rolling, closure, warnings, how it ended."""
     began = clock.process_time()
+    with warnings.catch_warnings(record=True) as of_input:
+        warnings.simplefilter("always")
+        sim = trb.Simulation(assembly, **options)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        result = trb.Simulation(assembly, **options).run(duration=duration, save_every=duration / 100)
+        result = sim.run(duration=duration, save_every=duration / 100)
     audit, stored = result.energy, sum(float(one["kinetic_energy"].max()) for one in result.values())
     lost = sum(
         float(one[entry.name][-1] - one[entry.name][0])
@@ -202,7 +205,7 @@ def run(assembly: trb.Assembly, duration: float, **options: Any) -> tuple[dict[s
         "closure": abs(audit.residual) / scale,
         "stored": stored,
         "speeds": speeds,
-        "warnings": list(result.warnings),
+        "warnings": [text for text in result.warnings if text not in {str(one.message) for one in of_input}],
     }
     return found, result
 

@@ -12,8 +12,8 @@ import pytest
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-from judge import bounded_run, judge  # noqa: E402
-from random_scenes import KINDS, draw, make  # noqa: E402
+from judge import MOST_STEPS, bounded_run, judge, scene_duration  # noqa: E402
+from random_scenes import KINDS, ORDINARY, draw, make  # noqa: E402
 
 FINE = ("right", "warned", "stopped", "refused", "unjudged")
 FOUND = sorted((HERE / "found").glob("*.json"))
@@ -62,6 +62,17 @@ def test_found_failures_stay_mended(path):
     if "says" in found:
         assert verdict.run is not None
         assert any(found["says"] in text for text in verdict.run.warnings), verdict.run.warnings
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("cylindrical", 97000007), ("usual", 97000013)])
+def test_a_difference_by_chance_gives_no_warning(kind, seed):
+    """A piece of 20 ms shows a difference in these right runs, a longer one shows that there is none."""
+    import trbdyn as trb
+
+    table = ORDINARY | draw(kind, seed)
+    scene = make(table)
+    run = bounded_run(trb.Simulation(scene, accuracy=table["accuracy"]), scene_duration(scene), MOST_STEPS)
+    assert run.warnings == ()
 
 
 def test_the_judge_sees_a_run_that_is_wrong():

@@ -6,7 +6,8 @@ it, too (BDF damps what it does not follow); the vibrations are then smaller tha
 rolling resistance and slip. What is left of them does not show this, but what was taken does: the residual of the energy audit
 stands beside the energy that damping took, and both together are what fed the vibrations. Where the integration's share is more
 than `SHARE`, and large enough beside the elastic energy to matter, a piece of the run is repeated with much tighter tolerances,
-and losses and loads of both are compared (docs/theory/numerics.md#vibrations-that-steps-do-not-resolve).
+and losses and loads of both are compared. Where they differ, a longer piece is repeated, which tells a difference from chance
+(docs/theory/numerics.md#vibrations-that-steps-do-not-resolve).
 """
 
 from __future__ import annotations
@@ -45,19 +46,29 @@ SIZE_UNDAMPED: Final = 2e-4
 with that the rolling resistance, while the elastic energy lies in others."""
 LENGTH: Final = 20e-3
 """Bearing time of a probe at most (s)."""
+LONGER: Final = 80e-3
+"""The same of the one that repeats a difference."""
+GROWTH: Final = 10e-3
+"""Time at the beginning of a probe that is left to vibrations to grow to their size (s); half of a shorter one."""
 SHORTEST: Final = 1e-3
 """Bearing time below which a comparison says nothing (s)."""
 STEPS: Final = 20_000
-"""Steps with tighter tolerances in all probes of a simulation, at most; or `STEPS_SHARE` of its own steps if that is more."""
+"""Steps of a probe with tighter tolerances at most, or `STEPS_SHARE` of the simulation's own steps if that is more."""
+STEPS_LONGER: Final = 60_000
+"""The same of the longer one."""
+STEPS_IN_ALL: Final = 80_000
+"""The same of all probes of a simulation."""
 STEPS_SHARE: Final = 0.05
 LEAST_STEPS: Final = 2000
 """Steps below which no further probe is begun."""
-ROWS: Final = 200
-"""Instants at which a probe looks at the loads."""
+INTERVAL: Final = 1e-4
+"""Time between the instants at which a probe compares the loads (s)."""
 BLOCKS: Final = 8
-"""Pieces of the second half of a probe, whose scatter says how well its difference is known."""
-NOTABLE: Final = 0.01
+"""Pieces of a probe after its beginning, whose scatter says how well its difference is known."""
+NOTABLE: Final = 0.02
 """Difference of the loss, or of the mean load of the rollers, from which on a run warns."""
+OPEN: Final = 0.05
+"""Difference that a longer probe must exclude where vibrations grow or are most of the loads."""
 FINER: Final = 0.1
 """Factor of the tolerances where they are those of 'reference' already, or smaller."""
 
@@ -108,6 +119,11 @@ class Probe:
     def notable(self, *, certain: bool) -> bool:
         """Whether a difference is said, see `Difference.notable`."""
         return self.loss.notable(certain=certain) or self.load.notable(certain=certain)
+
+    @property
+    def open(self) -> bool:
+        """Whether it leaves more than `OPEN` possible."""
+        return not max(self.loss.within, self.load.within) <= OPEN
 
     def said(self) -> str:
         return (
@@ -163,14 +179,14 @@ def probe(
     most_steps : int
         Steps with the tighter tolerances.
     length : float
-        Bearing time of the piece at most (s); never more than `LENGTH`.
+        Bearing time of the piece (s).
 
     Returns
     -------
     Probe or None
         None where that many steps lead nowhere, or the tighter run fails.
     """
-    times = time + min(length, LENGTH) * np.arange(ROWS + 1) / ROWS
+    times = np.linspace(time, time + length, max(round(length / INTERVAL), 4 * BLOCKS) + 1)
     fine, steps = _run(sim, tighter(sim.options), times, vector, most_steps)
     rows = len(fine)
     if rows < 2 * BLOCKS + 1 or times[rows - 1] - time < SHORTEST:
@@ -196,14 +212,15 @@ def _run(sim: Simulation, options: RunOptions, times: Array, vector: Array, most
 
 
 def _compared(bearing: SeatedBearing, times: Array, own: Array, fine: Array) -> tuple[Difference, Difference]:
-    """Differences of loss and load over the second half of a piece: the first one is where vibrations grow to their size."""
+    """Differences of loss and load over a piece without its beginning, where vibrations grow to their size."""
     losses, load = [], slice(0, 0)
     for name, at, shape in bearing.record_layout:
         if name.startswith("loss_"):
             losses.append(at)
         if name == "outer_load":
             load = slice(at, at + math.prod(shape))
-    ends = np.linspace((len(times) - 1) // 2, len(times) - 1, BLOCKS + 1).astype(int)
+    begin = min(int(np.searchsorted(times, times[0] + (1.0 - 1e-9) * GROWTH)), (len(times) - 1) // 2)
+    ends = np.linspace(begin, len(times) - 1, BLOCKS + 1).astype(int)
 
     def means(rows: Array) -> tuple[Array, Array]:
         lost = np.diff(rows[ends][:, losses].sum(axis=1)) / np.diff(times[ends])

@@ -115,6 +115,7 @@ class Account:
     suspect: tuple[float, Span, float] | None = None
     """The span in which the integration took most from vibrations: how much, and its end (s)."""
     probed: Probe | None = None
+    notable: bool = True
     probe_steps: int = 0
     probed_size: float = 0.0
 
@@ -272,12 +273,13 @@ class Watch:
         _, _, lost = _missing(whole.first, now)
         kinetic = abs(now["kinetic_energy"])
         least = max(LEAST_STORED_SHARE * kinetic, LEAST_ENERGY)
-        most = vibrations.STEPS - account.probe_steps
+        most = min(vibrations.STEPS, vibrations.STEPS_IN_ALL - account.probe_steps)
         if not least < lost < LEFT_OPEN * self._sim.options.tolerances.rtol * kinetic or whole.state is None:
             return
         if time - whole.since < vibrations.SHORTEST or most < vibrations.LEAST_STEPS:
             return
-        probe = vibrations.probe(self._sim, self._bearing, whole.since, whole.state, most, length=time - whole.since)
+        length = min(time - whole.since, vibrations.LENGTH)
+        probe = vibrations.probe(self._sim, self._bearing, whole.since, whole.state, most, length=length)
         account.probe_steps += most if probe is None else probe.steps
         if probe is not None and not probe.notable(certain=False):
             return
@@ -306,17 +308,18 @@ class Watch:
         if account.suspect is None:
             return
         size, span, share = account.suspect
-        most = max(vibrations.STEPS, int(vibrations.STEPS_SHARE * self._sim.statistics["steps"])) - account.probe_steps
-        if size > account.probed_size and most >= vibrations.LEAST_STEPS and span.state is not None:
-            account.probed = vibrations.probe(self._sim, self._bearing, span.since, span.state, most)
-            account.probe_steps += account.probed.steps if account.probed is not None else most
-            account.probed_size = size
-        damped = self._damped(now)
         # with next to no damping large vibrations go on growing, and where they are most of the elastic energy a probe scatters
-        # with them: a difference is then said although it is within the scatter
+        # with them: a difference within the scatter is then no proof that there is none
         unclear = size > (vibrations.SIZE if share > vibrations.GROWING else vibrations.MOST)
-        if account.probed is not None and not account.probed.notable(certain=not unclear):
+        if size > account.probed_size and self._probe(span, vibrations.LENGTH, vibrations.STEPS):
+            account.probed_size = size
+            account.notable = account.probed is None or account.probed.notable(certain=not unclear)
+            if account.notable and account.probed is not None:
+                self._probe(span, vibrations.LONGER, vibrations.STEPS_LONGER)
+                account.notable = account.probed.notable(certain=True) or (unclear and account.probed.open)
+        if not account.notable:
             return
+        damped = self._damped(now)
         took = f"takes {100.0 * share:.3g} % of the energy of these vibrations" + (
             " in place of damping" if damped else ""
         )
@@ -328,6 +331,17 @@ class Watch:
             f"near {span.since:.6g} s rollers vibrate on their raceways, and the integration {took}: {measured}; {advice}",
             "vibrations",
         )
+
+    def _probe(self, span: Span, length: float, most: int) -> bool:
+        """Repeat a piece with tighter tolerances, if there are steps left for it; what was measured before stays if it fails."""
+        account, own = self._account, int(vibrations.STEPS_SHARE * self._sim.statistics["steps"])
+        most = min(max(most, own), max(vibrations.STEPS_IN_ALL, own) - account.probe_steps)
+        if most < vibrations.LEAST_STEPS or span.state is None:
+            return False
+        found = vibrations.probe(self._sim, self._bearing, span.since, span.state, most, length)
+        account.probe_steps += most if found is None else found.steps
+        account.probed = found or account.probed
+        return True
 
     def _damped(self, now: dict[str, float]) -> bool:
         """Whether contacts have damped anything since the simulation began."""
