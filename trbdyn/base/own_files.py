@@ -8,6 +8,7 @@ only where the caller says so.
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
 import re
 import shutil
@@ -16,10 +17,13 @@ import uuid
 from collections.abc import Collection, Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Final
 
 from trbdyn.base.locks import OPEN_FILES_MOVE, LockedFile, flags, take_lock
 from trbdyn.errors import FileError, InputError
+
+LARGEST_HASHED: Final = 1 << 28
+"""Largest file whose sum is taken (bytes)."""
 
 LONGEST_NAME = 200
 """Most bytes of a file's name: file systems allow 255, and drafts and checkpoints have the name of the result in
@@ -351,3 +355,19 @@ def copy_content(stream: BinaryIO, path: Path) -> None:
         shutil.copyfileobj(stream, target, 1 << 22)
         target.flush()
         os.fsync(target.fileno())
+
+
+def digest_of(path: str) -> str:
+    """SHA-256 of a file, as 64 hexadecimal digits.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read.
+    """
+    try:
+        return hashlib.sha256(read_whole(file_path(path, "file"), LARGEST_HASHED)).hexdigest()
+    except ValueError as error:
+        raise FileError(f"{path}: cannot be read: {error}") from error
+    except OSError as error:
+        raise FileError(f"{path}: cannot be read: {error.strerror or error}") from error

@@ -51,9 +51,12 @@ class CageSolid:
         Where they are (m).
     at_roots : sparse array, shape (12 Z, 3 N)
         Force (N) and moment (N m) on each bar at its small and its large end, along, across and through the bar, from the
-        displacements. Bar k lies behind pocket k in the direction of rotation.
+        displacements. Bar k lies behind pocket k in the direction of rotation. None of a cage as drawn.
     stress_of : sparse array, shape (P, 3 N)
-        Nominal stress along the bar at the corners of its roots (Pa) from the displacements: tension and bending about both axes.
+        Stress at the corners (Pa) from the displacements: nominal along the bar, tension and bending about both axes; of a cage
+        as drawn the normal stress of the solid in the notch.
+    directions : ndarray, shape (P, 3), optional
+        Directions of the stress at the corners of a cage as drawn.
     """
 
     solid: Solid
@@ -61,8 +64,9 @@ class CageSolid:
     at_faces: Any
     corners: tuple[str, ...]
     corner_places: FloatArray
-    at_roots: Any
     stress_of: Any
+    at_roots: Any = None
+    directions: FloatArray | None = None
 
     def coriolis(self, shapes: FloatArray) -> FloatArray:
         """Coriolis forces between motions, shape (M, M): on the first one, over the rate of the second one and the cage's angular
@@ -114,13 +118,11 @@ def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[in
         raise InputError.of("fineness", fineness, str(error)) from None
     if not 1 <= parts <= 3:
         raise InputError.of("fineness", fineness, "must be 1 to 3")
-    body, material = bearing.cage.body, bearing.cage_material
+    body = bearing.cage.body
     if body is None:
         limit = "must be given: a finite-element model needs rims and bars (trb.CageBody)"
         raise InputError.of(("bearing", "cage", "body"), None, limit)
-    if material.density is None:
-        raise InputError.of(("bearing", "cage", "material", "density"), None, "must be given (kg/m3)")
-    made = Elasticity(material.youngs_modulus, material.poisson_ratio, material.density)
+    made = elasticity(bearing)
     wall = Wall.of(bearing, body)
     mesh = wall_mesh(wall, fineness=parts, cracked_bars=frozenset(cracked_bars))
     solid = Solid.of(mesh.corners, mesh.elements, made)
@@ -147,6 +149,20 @@ def cage_solid(bearing: Bearing, *, fineness: int = 1, cracked_bars: Iterable[in
     )
 
 
+def elasticity(bearing: Bearing) -> Elasticity:
+    """What the cage of a bearing is made of.
+
+    Raises
+    ------
+    InputError
+        If its material has no density.
+    """
+    material = bearing.cage_material
+    if material.density is None:
+        raise InputError.of(("bearing", "cage", "material", "density"), None, "must be given (kg/m3)")
+    return Elasticity(material.youngs_modulus, material.poisson_ratio, material.density)
+
+
 def at_faces(bearing: Bearing, faces: tuple[tuple[int, Face], ...], solid: Solid) -> Any:
     """From the displacements of a solid to the displacement of each face's middle and the rotation of the face, sparse, shape
     (6 F, 3 N): those of the rigid body that is nearest, by least squares, to the surface around the face's middle.
@@ -168,9 +184,11 @@ def at_faces(bearing: Bearing, faces: tuple[tuple[int, Face], ...], solid: Solid
         outline = face.vertices
         origin = 0.5 * bearing.pitch_diameter * np.array([math.cos(angle), math.sin(angle), 0.0])
         place = origin + outline.mean(axis=0) @ axes
+        facets = [one.vertices for one in bearing.pocket_of(pocket).faces if one.slot == face.slot]
+        extent = np.ptp(np.concatenate(facets), axis=0).max()
         far = np.linalg.norm(middles - place, axis=1)
         far[normals @ (face.normal @ axes) < ALONG] = math.inf
-        near = surface[far <= far.min() + PATCH * float(np.ptp(outline, axis=0).max())]
+        near = surface[far <= far.min() + PATCH * float(extent)]
         found = solid.basis.get_dofs(facets=near).flatten()
         arms = solid.nodes[found] - place
         motions = np.concatenate([np.hstack([np.eye(3), -crossed(arm)]) for arm in arms])

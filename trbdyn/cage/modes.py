@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.own_files import write_whole
-from trbdyn.cage.cage_solid import CageSolid, cage_solid
+from trbdyn.cage.cage_solid import CageSolid
+from trbdyn.cage.drawn_solid import solid_of_cage
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.bearing import Bearing
 
@@ -123,16 +124,16 @@ class CageModes:
 
     @classmethod
     def of_body(cls, bearing: Bearing, count: int = 20, **elements: Any) -> CageModes:
-        """Modes of the finite-element model of a bearing's cage (`trbdyn.cage.cage_solid.cage_solid`).
+        """Modes of the finite-element model of a bearing's cage (`trbdyn.cage.drawn_solid.solid_of_cage`).
 
         Parameters
         ----------
         bearing : Bearing
-            A bearing whose cage has a `body`; its material must have density and damping ratio.
+            A bearing whose cage has a `drawing` or a `body`; its material must have density and damping ratio.
         count : int
             Number of modes.
         **elements
-            Further arguments of `cage_solid`.
+            Further arguments of `solid_of_cage`.
 
         Raises
         ------
@@ -144,7 +145,7 @@ class CageModes:
             raise InputError.of(("bearing", "cage", "material", "damping_ratio"), None, "must be given (1)")
         if not 1 <= count <= MOST:
             raise InputError.of("count", count, f"must be from 1 to {MOST}")
-        built = cage_solid(bearing, **elements)
+        built = solid_of_cage(bearing, **elements)
         frequency, shapes = built.solid.natural(count)
         return cls.of_shapes(built, frequency, shapes, damping, f"finite elements, cage of {bearing.name}")
 

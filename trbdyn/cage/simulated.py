@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trbdyn.cage.cage_solid import CageSolid, cage_solid
+from trbdyn.base.own_files import digest_of
+from trbdyn.cage.cage_solid import CageSolid
+from trbdyn.cage.drawn_solid import drawn_solid, solid_of_cage
 from trbdyn.cage.modes import CageModes
 from trbdyn.errors import InputError
-from trbdyn.model.elastic_cage import ElasticCage, digest_of
+from trbdyn.model.elastic_cage import ElasticCage
 from trbdyn.model.pocket import every_surface
 
 if TYPE_CHECKING:
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
 
 FloatArray = NDArray[np.float64]
+COARSER: Final = 1.4
+"""Edges of the mesh that a drawn cage is compared with, over those of its own."""
 AT_ONCE: Final = 20
 """Modes are found in groups of so many, so that scenes with a few more or less share them."""
 
@@ -82,7 +86,7 @@ def _natural(bearing: Bearing, elastic: ElasticCage) -> tuple[CageSolid, FloatAr
 def _at_once(
     bearing: Bearing, fineness: int, cracked_bars: tuple[int, ...], count: int
 ) -> tuple[CageSolid, FloatArray, FloatArray]:
-    built = cage_solid(bearing, fineness=fineness, cracked_bars=cracked_bars)
+    built = solid_of_cage(bearing, fineness=fineness, cracked_bars=cracked_bars)
     return built, *built.solid.natural(count)
 
 
@@ -93,6 +97,19 @@ def stress_at_rest(bearing: Bearing, elastic: ElasticCage) -> FloatArray:
     """
     built, _, _ = _natural(bearing, elastic)
     return np.asarray((built.stress_of @ built.solid.static(built.pushes())).T)
+
+
+@lru_cache(maxsize=8)
+def mesh_difference(bearing: Bearing, elastic: ElasticCage) -> tuple[float, float]:
+    """What a mesh with edges `COARSER` times as long changes of a drawn cage: largest relative difference of the frequencies, and
+    largest difference of the static stress at the corners under a push on any face, over the largest stress.
+    """
+    _, frequency, _ = _natural(bearing, elastic)
+    coarse = drawn_solid(bearing, fineness=elastic.fineness / COARSER)
+    other, _ = coarse.solid.natural(elastic.n_modes)
+    stress = stress_at_rest(bearing, elastic)
+    changed = np.asarray((coarse.stress_of @ coarse.solid.static(coarse.pushes())).T) - stress
+    return float(np.abs(other / frequency - 1.0).max()), float(np.abs(changed).max() / np.abs(stress).max())
 
 
 def displacements(scene: Scene, amplitude: FloatArray) -> tuple[CageSolid, FloatArray]:

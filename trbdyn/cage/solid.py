@@ -2,7 +2,7 @@
 (docs/theory/cage.md#a-cage-of-finite-elements).
 
 Shape functions, their gradients and the quadrature come from scikit-fem; the mesh may be one of hexahedra or of tetrahedra and
-come from anywhere. Displacements are quadratic: 20 nodes in a hexahedron, 10 in a tetrahedron.
+come from anywhere. Displacements are quadratic: 20 nodes in a hexahedron, 10 in a tetrahedron, whose edges may be curved.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from trbdyn.errors import InputError
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+EDGES: Final = ((0, 1), (1, 2), (0, 2), (0, 3), (2, 3), (1, 3))
+"""Corners of a tetrahedron between which its nodes 4 to 9 lie, in the order of Gmsh."""
 SPARE: Final = 4
 """Modes that are computed beyond those that are asked for, so that none of a group of equal frequency is missing."""
 SAME: Final = 1e-6
@@ -44,6 +46,12 @@ class Elasticity:
     youngs_modulus: float
     poisson_ratio: float
     density: float
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lame's two constants; the second one is the shear modulus (Pa)."""
+        young, ratio = self.youngs_modulus, self.poisson_ratio
+        return young * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio)), young / (2.0 * (1.0 + ratio))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,9 +84,9 @@ class Solid:
         ----------
         corners : ndarray, shape (V, 3)
             Corners of the elements (m).
-        elements : ndarray, shape (E, 8) or (E, 4)
+        elements : ndarray, shape (E, 8), (E, 4) or (E, 10)
             Corners of each hexahedron, in the order 000, 001, 010, 100, 011, 101, 110, 111 of its three directions, or of each
-            tetrahedron.
+            tetrahedron; or corners of each tetrahedron and the middles of its edges `EDGES`.
         made : Elasticity
             What it is made of.
 
@@ -90,9 +98,12 @@ class Solid:
         import skfem
 
         hexahedra = elements.shape[1] == 8
-        mesh = (skfem.MeshHex if hexahedra else skfem.MeshTet)(
-            np.ascontiguousarray(corners.T), np.ascontiguousarray(elements.T)
-        )
+        if elements.shape[1] == 4 + len(EDGES):
+            mesh = _curved(corners, elements)
+        else:
+            mesh = (skfem.MeshHex if hexahedra else skfem.MeshTet)(
+                np.ascontiguousarray(corners.T), np.ascontiguousarray(elements.T)
+            )
         element = skfem.ElementHexS2() if hexahedra else skfem.ElementTetP2()
         basis = skfem.CellBasis(mesh, element, intorder=5 if hexahedra else 4)
         determinants = basis.mapping.detDF(basis.X)
@@ -161,7 +172,7 @@ class Solid:
         balanced = loads - heavy @ (weights @ (rigid.T @ loads))
         found, rest = np.zeros_like(balanced), balanced
         for _ in range(REPEATS):  # each leaves the shift over the lowest square of what was left
-            found += self._shifted.solve(rest)
+            found += np.stack([self._shifted.solve(load) for load in rest.T], axis=1)  # faster than all at once
             found -= rigid @ (weights @ (heavy.T @ found))
             rest = balanced - self.stiffness @ found
             if np.abs(rest).max() <= PRECISE * np.abs(balanced).max():
@@ -169,10 +180,27 @@ class Solid:
         return found
 
 
+def _curved(nodes: FloatArray, elements: IntArray) -> Any:
+    """Mesh of scikit-fem of tetrahedra with curved edges."""
+    import skfem
+
+    used, corners = np.unique(elements[:, :4], return_inverse=True)
+    corners = corners.reshape(-1, 4)
+    flat = skfem.MeshTet(np.ascontiguousarray(nodes[used].T), np.ascontiguousarray(corners.T))
+    middles = elements[:, 4:].ravel()
+    ends = np.sort(corners[:, np.array(EDGES)].reshape(-1, 2), axis=1)
+    key = len(used) * flat.edges[0].astype(np.int64) + flat.edges[1]  # ends of scikit-fem's edges rise
+    order = np.argsort(key)
+    of_edge = order[np.searchsorted(key[order], len(used) * ends[:, 0].astype(np.int64) + ends[:, 1])]
+    places = np.empty((3, len(used) + len(key)))
+    places[:, : len(used)] = nodes[used].T
+    places[:, len(used) + of_edge] = nodes[middles].T
+    return skfem.MeshTet2(places, flat.t)
+
+
 def stiffness_of(basis: Any, made: Elasticity) -> Any:
     """Stiffness of isotropic elasticity (N/m), sparse, shape (3 N, 3 N); of the elements of the basis alone."""
-    young, ratio = made.youngs_modulus, made.poisson_ratio
-    lame, shear = young * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio)), young / (2.0 * (1.0 + ratio))
+    lame, shear = made.lame
     slopes = np.stack([one[0].grad for one in basis.basis])  # node, direction, element, point
     slopes = slopes.transpose(2, 0, 1, 3)
     count = slopes.shape[1]

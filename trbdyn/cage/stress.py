@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.cage.modes import CageModes
-from trbdyn.cage.simulated import cage_modes, shapes_by_slot, stress_at_rest
+from trbdyn.cage.simulated import COARSER, cage_modes, mesh_difference, shapes_by_slot, stress_at_rest
 from trbdyn.errors import InputError
 from trbdyn.model.pocket import every_surface
 
@@ -54,6 +54,9 @@ class CageStress:
         Stress at rest for a unit force on each face (Pa/N), times the notch factor.
     period : float
         Period of the lowest mode (s).
+    mesh_difference : tuple of float, optional
+        Of a cage as drawn: what a coarser mesh changes (`trbdyn.cage.simulated.mesh_difference`): frequencies, and stress over
+        the largest one.
     """
 
     time: FloatArray
@@ -65,11 +68,16 @@ class CageStress:
     face_name: tuple[str, ...]
     influence: FloatArray
     period: float
+    mesh_difference: tuple[float, float] | None = None
 
     def __repr__(self) -> str:
         name, time, stress = self.worst
         size = f"{len(self.time)} records at {len(self.point_name)} points"
-        return f"<CageStress: {size}; largest {stress / 1e6:.4g} MPa at {time:g} s: {name}>"
+        said = ""
+        if self.mesh_difference is not None:
+            of_frequency, of_stress = (100.0 * value for value in self.mesh_difference)
+            said = f"; a mesh with edges {COARSER:g} times as long: frequencies {of_frequency:.2g} %, stress {of_stress:.2g} %"
+        return f"<CageStress: {size}; largest {stress / 1e6:.4g} MPa at {time:g} s: {name}{said}>"
 
     @property
     def worst(self) -> tuple[str, float, float]:
@@ -208,7 +216,11 @@ def cage_stress(
     stress, influence = amplitude @ modes.stress, _at_rest(scene, modes)
     elastic = scene.elastic_cage
     assert elastic is not None  # cage_modes has looked
-    is_complete = elastic.file is None
+    is_complete, is_drawn = elastic.file is None, scene.bearing.cage.drawing is not None
+    if is_complete and is_drawn and notch_factor != 1.0:
+        raise InputError.of(
+            "notch_factor", notch_factor, "must be 1 for a cage as drawn: its stress is that in the notch (1)"
+        )
     if is_complete:
         whole = _whole(scene, modes, slots)
         stress += force.reshape(len(force), -1) @ (whole - influence)
@@ -223,6 +235,7 @@ def cage_stress(
         face_name=scene.bearing.slot_names,
         influence=notch_factor * influence,
         period=1.0 / float(modes.frequency[0]),
+        mesh_difference=mesh_difference(scene.bearing, elastic) if is_complete and is_drawn else None,
     )
 
 

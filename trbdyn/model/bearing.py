@@ -24,6 +24,7 @@ from trbdyn.base.validation import Gap, Length, Model, Number, Whole, unit
 from trbdyn.errors import MISSING, InputError, Path, Problem
 from trbdyn.model.assumed import RIG, assumed_inputs, with_assumed
 from trbdyn.model.cage_body import CageBody, Wall, cage_mass
+from trbdyn.model.cage_drawing import CageDrawing
 from trbdyn.model.cage_space import CageSpace
 from trbdyn.model.catalogue import fields_from_catalogue
 from trbdyn.model.core_table import parameter
@@ -166,6 +167,8 @@ class Cage(Model):
         What it is made of; that of the bearing by default.
     body : CageBody, optional
         Its rims and bars, from which mass, centre and moments of inertia follow.
+    drawing : CageDrawing, optional
+        The drawing it was read from (`from_step`); not together with a `body`.
     """
 
     _assumed: ClassVar[bool] = True
@@ -188,6 +191,7 @@ class Cage(Model):
     other_pockets: tuple[OtherPocket, ...] = ()
     material: Material | None = None
     body: CageBody | None = None
+    drawing: CageDrawing | None = None
 
     @classmethod
     def from_step(
@@ -243,6 +247,10 @@ class Cage(Model):
         if {"inertia_axial", "inertia_transverse"} <= given and self.inertia_axial > 2.0 * self.inertia_transverse:
             limit = f"must be <= 2 inertia_transverse, {2 * self.inertia_transverse:g} (kg m2): no body has more"
             raise InputError.of("inertia_axial", self.inertia_axial, limit)
+        if self.body is not None and self.drawing is not None:
+            raise InputError.of(
+                "body", "given", "must not be given together with a drawing, which has rims and bars of its own"
+            )
         if {"wall_inner", "wall_outer"} <= given and self.wall_outer <= self.wall_inner:
             raise InputError.of("wall_outer", self.wall_outer, f"must be > wall_inner, {self.wall_inner:g} (m)")
         indices = [other.index for other in self.other_pockets]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Self
 
 from pydantic import Field, model_validator
 
-from trbdyn.base.own_files import file_path, read_whole
+from trbdyn.base.own_files import digest_of
 from trbdyn.base.validation import Model, Number, Whole, unit
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.core_table import parameter
@@ -18,9 +17,6 @@ if TYPE_CHECKING:
 
 LEAST_WHOLE_BARS: Final = 3
 """Bars that hold both rims of a cracked cage together."""
-
-LARGEST_FILE: Final = 1 << 28
-"""Largest file of modes (bytes)."""
 
 
 class ElasticCage(Model):
@@ -40,7 +36,8 @@ class ElasticCage(Model):
         the direction of rotation. The surfaces of a crack pass through each other.
     file : str, optional
         File of modes that `trbdyn.cage.modes.CageModes.save`, or a finite-element program's script, has written. Without it the
-        modes are those of a finite-element model, made from ``bearing.cage.body`` and the cage's material.
+        modes are those of a finite-element model, made from ``bearing.cage.body``, or meshed from ``bearing.cage.drawing``, and
+        the cage's material.
     file_sha256 : str, optional
         SHA-256 of that file, by which another file of the same name is found out; by default it is taken from the file.
 
@@ -83,22 +80,6 @@ class ElasticCage(Model):
         return self
 
 
-def digest_of(path: str) -> str:
-    """SHA-256 of a file, as 64 hexadecimal digits.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read.
-    """
-    try:
-        return hashlib.sha256(read_whole(file_path(path, "file"), LARGEST_FILE)).hexdigest()
-    except ValueError as error:
-        raise FileError(f"{path}: cannot be read: {error}") from error
-    except OSError as error:
-        raise FileError(f"{path}: cannot be read: {error.strerror or error}") from error
-
-
 def check_elastic_cage(scene: Scene) -> None:
     """Refuse what does not go together with an elastic cage.
 
@@ -115,10 +96,11 @@ def check_elastic_cage(scene: Scene) -> None:
             raise InputError.of(("effects", name), given, f"must be {allowed!r} with an elastic_cage")
     if elastic.file is not None:
         return
-    if cage.body is None:
-        limit = (
-            "must be given where elastic_cage has no file: a finite-element model needs rims and bars (trb.CageBody)"
-        )
+    if cage.drawing is not None and elastic.cracked_bars:
+        limit = "must not be given with a cage from a drawing: draw the crack"
+        raise InputError.of(("elastic_cage", "cracked_bars"), elastic.cracked_bars, limit)
+    if cage.body is None and cage.drawing is None:
+        limit = "must be given where elastic_cage has no file: elements need rims and bars (trb.CageBody), or a drawing"
         raise InputError.of(("bearing", "cage", "body"), None, limit)
     whole = scene.bearing.n_rollers - len(set(elastic.cracked_bars))
     if any(bar >= scene.bearing.n_rollers for bar in elastic.cracked_bars) or whole < LEAST_WHOLE_BARS:

@@ -103,7 +103,8 @@ def _running_plays(scene: Scene) -> dict[str, Any]:
 def _deflection(result: Result) -> dict[str, Any]:
     """Largest displacement of the middle of a face by the modes of an elastic cage's finite-element model, at any record."""
     elastic = result.scene.elastic_cage
-    if elastic is None or elastic.file is not None or "cage" not in result.groups:
+    is_file = elastic is not None and (elastic.file or result.scene.bearing.cage.drawing) is not None
+    if elastic is None or is_file or "cage" not in result.groups:
         return {}  # a summary opens no file whose name stands in a result
     shape, largest = cage_modes(result.scene).shape[:, :, :3], 0.0
     for first in range(0, len(result), RECORDS_AT_ONCE):

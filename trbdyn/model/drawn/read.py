@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from trbdyn.base.own_files import digest_of
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.drawn.facets import Facet, convex_pieces, facets_of
 from trbdyn.model.drawn.opened import Drawing, DrawnFace, opened
@@ -136,6 +137,12 @@ class DrawnCage:
             "inertia_axial": density * float(self.inertia[2, 2]),
             "inertia_transverse": float(across),
             "offset": self.offset,
+            "drawing": {
+                "file": self.path,
+                "sha256": digest_of(self.path),
+                "origin": tuple(self.place.origin.tolist()),
+                "axes": tuple(tuple(row) for row in self.place.turn.tolist()),
+            },
             "pocket": self.pockets[most],
             "other_pockets": tuple(
                 OtherPocket(index=index, pocket=self.pockets[kind])
