@@ -231,6 +231,13 @@ class Pictures:
             bearing = getattr(trb.cases, f"bearing_{name}", trb.cases.rig_30310)()
             yield f"bearing_drawing of {name}", plot.bearing_drawing(bearing)
             yield f"pocket_drawing of {name}", plot.pocket_drawing(bearing)
+        place = np.linspace(-10e-3, 10e-3, 201)
+        height = -2e-6 * (place / 10e-3) ** 2 + 1e-7 * np.sin(40.0 * np.arange(201.0))
+        out = np.arange(201) % 50 == 7
+        height[out] += 4e-6
+        drops = 2e-6 * (place[::10] / 10e-3) ** 2
+        trace = trb.Trace(place[::10], drops, place, height, out, 1.25, 7e-8, "roller.csv", 0.25e-3, 12)
+        yield "profile_trace", plot.profile_trace(trace)
 
     @staticmethod
     def of_elastic_cage() -> Iterator[tuple[str, Any]]:
@@ -304,6 +311,7 @@ class Pictures:
             {
                 "kind": (order, np.array([kinds[k % 5] for k in range(12)], dtype=object).reshape(2, 2, 3)),
                 "orbit": (order, orbit),
+                "hits": (order, 1500.0 * orbit),
                 "decided": (order, orbit < 0.7),
             },
             {"start": ["equal", "whirl"], "axial_load": [1e3, 4e3], "speed_rpm": [500.0, 1000.0, 2000.0]},

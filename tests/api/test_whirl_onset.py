@@ -70,6 +70,9 @@ def test_a_map_over_speed_and_load(found: WhirlOnset) -> None:
     assert (data.kind.sel(axial_load=-10.0).values == "unknown").all()
     text = str(chart)
     assert f"{one.kind.values} 0." in text
+    assert float(one.hits) > 0.0
+    assert 0.0 < float(one.impulse) < 0.1
+    assert f", {float(one.hits):.0f}/s" in text
     assert "failed" in text
     assert "axial_load" in text
     with pytest.raises(InputError, match="axial_loads"):

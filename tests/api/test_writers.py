@@ -25,7 +25,7 @@ from trbdyn.cli import main, make_parser
 from trbdyn.model.cases import paper_30310
 from trbdyn.plot import animation
 from trbdyn.reporting import save_pdf
-from trbdyn.results import summary
+from trbdyn.results import forces, summary
 from trbdyn.results.assembly import AssemblyResult
 from trbdyn.results.export import export
 from trbdyn.study import gather
@@ -92,6 +92,11 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
         "a.h5",
         lambda run, path, **how: CageModes.of_body(caged(), 2).save(path, **how),
     ),
+    "trbdyn.results.forces.sound": (
+        "a.wav",
+        lambda run, path, **how: forces.sound(run, path, "cage", "x", None, 1.0, **how),
+    ),
+    "trbdyn.results.derived.Derived.sound": ("a.wav", lambda run, path, **how: run.sound(path, **how)),
     "trbdyn.results.export.export": ("a.csv", lambda run, path, **how: export(run, path, **how)),
     "trbdyn.results.result.Result.export": ("a.mat", lambda run, path, **how: run.export(path, **how)),
     "trbdyn.results.assembly.AssemblyResult.export": (

@@ -37,6 +37,7 @@ from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
 from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
 from trbdyn.plot.rollers import contact_loads, film_parameter, pocket_forces, pocket_statistics, spacing_angles
+from trbdyn.plot.sound import force_spectrum, octave_levels
 from trbdyn.plot.style import STYLE, plain, styled, write
 from trbdyn.plot.wearing import wear_map
 from trbdyn.plot.whirling import poincare, torque_sources, waterfall
@@ -63,9 +64,11 @@ __all__ = [
     "energy_audit",
     "film_map",
     "film_parameter",
+    "force_spectrum",
     "load_zone",
     "load_zones",
     "make_folder",
+    "octave_levels",
     "orbit_radius",
     "pocket_drawing",
     "pocket_forces",

@@ -25,7 +25,8 @@ STARTED: Final = {"equal": "from rest in the middle", "whirl": "from a large whi
 
 
 def draw_map(data: xarray.Dataset) -> Any:
-    """Draw a map for each start: a field for each speed and load, coloured by class, with the orbit over the radial play.
+    """Draw a map for each start: a field for each speed and load, coloured by class, with the orbit over the radial play and the
+    hits in a second.
 
     Fields of runs that were not decided are hatched.
 
@@ -38,7 +39,7 @@ def draw_map(data: xarray.Dataset) -> Any:
     width = 1.6 + 0.75 * len(speeds)
     with styled():
         figure, axes = plt.subplots(
-            1, len(starts), figsize=(max(width, 3.6) * len(starts), 2.0 + 0.5 * len(loads)), squeeze=False, sharey=True
+            1, len(starts), figsize=(max(width, 3.6) * len(starts), 2.2 + 0.5 * len(loads)), squeeze=False, sharey=True
         )
         for ax, start in zip(axes[0], starts, strict=True):
             _fields(ax, data.sel(start=start))
@@ -54,7 +55,10 @@ def draw_map(data: xarray.Dataset) -> Any:
         keys = [Patch(facecolor=SHADES[kind], edgecolor="0.4", label=kind) for kind in there]
         if not bool(data["decided"].all()):
             keys.append(Patch(facecolor="white", edgecolor="0.4", hatch="///", label="not decided"))
-        figure.suptitle(f"Motion of the cage of {plain(data.attrs['bearing'])}, with its orbit over the radial play")
+        name = plain(data.attrs["bearing"])
+        figure.suptitle(
+            f"Motion of the cage of {name}, its orbit over the radial play\nand hits of rollers on it in a second"
+        )
         figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
     return figure
 
@@ -67,6 +71,5 @@ def _fields(ax: Any, data: xarray.Dataset) -> None:
             place = (column - 0.5, row - 0.5)
             ax.add_patch(Rectangle(place, 1.0, 1.0, facecolor=SHADES[str(kind)], edgecolor="0.4", hatch=hatch, lw=0.6))
             orbit = float(at["orbit"])
-            ax.text(
-                column, row, "failed" if np.isnan(orbit) else f"{orbit:.2f}", ha="center", va="center", fontsize=8.0
-            )
+            words = "failed" if np.isnan(orbit) else f"{orbit:.2f}\n{float(at['hits']):.0f}/s"
+            ax.text(column, row, words, ha="center", va="center", fontsize=8.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
@@ -13,7 +14,7 @@ from trbdyn.cage.stress import CageStress, cage_stress
 from trbdyn.errors import InputError
 from trbdyn.model.motion import History
 from trbdyn.model.shaft import angle_turned
-from trbdyn.results import observables
+from trbdyn.results import forces, observables
 from trbdyn.results.fields import Field
 from trbdyn.results.peaks import Peaks
 from trbdyn.statics.creep import creep_time
@@ -306,6 +307,87 @@ class Derived(ABC):
         else:
             amplitude = np.zeros((0, 0))
         return cage_stress(self.scene, self["time"], amplitude, self["pocket_force"], notch_factor=notch_factor)
+
+    def force_spectrum(
+        self, on: forces.On = "cage", along: forces.Along = "x", *, segments: int = 1
+    ) -> forces.ForceSpectrum:
+        """Spectrum of the force on the cage, the sum of all, or on the outer ring, that of the rollers' normal loads; one-sided.
+
+        Parameters
+        ----------
+        on : {'cage', 'outer_ring'}
+            The body; needs the group cage, or rollers and peaks.
+        along : {'x', 'y', 'z'}
+            Direction; z is the axis of the bearing.
+        segments : int
+            Number of segments, overlapping by half, that are averaged.
+
+        Raises
+        ------
+        InputError
+            If an argument is not allowed, a group was not saved, or records are uneven or too far apart for the force.
+        """
+        return forces.force_spectrum(self, on, along, segments)
+
+    def octave_levels(
+        self, on: forces.On = "cage", along: forces.Along = "x", *, fraction: Literal[1, 3] = 3
+    ) -> forces.OctaveLevels:
+        """Levels of a force by octaves or third octaves of IEC 61260-1 (dB re 1 µN), by PyOctaveBand (extra ``trbdyn[sound]``).
+
+        Parameters
+        ----------
+        on, along
+            As in `force_spectrum`.
+        fraction : {1, 3}
+            1: octaves; 3: third octaves.
+
+        Raises
+        ------
+        InputError
+            As in `force_spectrum`, or if the run is too short for any band.
+        ImportError
+            If the extra is not installed.
+        """
+        return forces.octave_levels(self, on, along, fraction)
+
+    def sound(
+        self,
+        path: str | os.PathLike[str],
+        on: forces.On = "cage",
+        along: forces.Along = "x",
+        *,
+        full_scale: float | None = None,
+        slower: float = 1.0,
+        overwrite: bool = False,
+    ) -> forces.Sound:
+        """Write a force as a sound file: a force and no pressure of sound, which the machine around the bearing makes of it.
+
+        Parameters
+        ----------
+        path : path-like
+            File to write (``.wav``, 16 bits).
+        on, along
+            As in `force_spectrum`.
+        full_scale : float, optional
+            Force of the largest sample (N), the same one for files to be compared; by default the largest force.
+        slower : float
+            How many times slower it is played (1).
+        overwrite : bool
+            Replace a file that is there.
+
+        Raises
+        ------
+        InputError
+            As in `force_spectrum`, or if the force does not fit into the scale.
+        FileError
+            If the file is there and shall not be replaced, or cannot be written.
+        """
+        return forces.sound(self, path, on, along, full_scale, slower, overwrite)
+
+    @property
+    def rattle(self) -> forces.Rattle:
+        """How often rollers hit the cage and how hard, between the records too; needs the group peaks."""
+        return forces.rattle(self)
 
     def _starting(self, prefix: str) -> dict[str, Array]:
         return {field.name: self[field.name] for field in self.fields if field.name.startswith(prefix)}

@@ -32,7 +32,8 @@ class CageMap(Answer):
     ----------
     data : xarray.Dataset
         Dimensions start, axial_load and speed_rpm, loads ascending, speeds ascending in size. Variables: kind (text), orbit
-        (over the radial play), decided, turns (of the cage), message.
+        (over the radial play), hits (of rollers on the cage, 1/s), impulse (mean of a hit, N s), decided, turns (of the cage),
+        message.
     """
 
     data: xarray.Dataset
@@ -49,9 +50,9 @@ class CageMap(Answer):
             for load in self.data["axial_load"].values:
                 line = self.data.sel(start=start, axial_load=load)
                 told = [
-                    _told(str(kind), float(orbit), bool(decided))
-                    for kind, orbit, decided in zip(
-                        line["kind"].values, line["orbit"].values, line["decided"].values, strict=True
+                    _told(str(kind), float(orbit), bool(decided), float(hits))
+                    for kind, orbit, decided, hits in zip(
+                        *(line[name].values for name in ("kind", "orbit", "decided", "hits")), strict=True
                     )
                 ]
                 rows.append((str(start), f"{load:g}", *told))
@@ -59,7 +60,7 @@ class CageMap(Answer):
         open_runs = int(np.count_nonzero(~self.data["decided"].values)) - int(
             np.count_nonzero(self.data["message"].values)
         )
-        notes = ["motion of the cage and its orbit over the radial play"]
+        notes = ["motion of the cage, its orbit over the radial play, and hits of rollers on it in a second"]
         if open_runs:
             notes.append(f"?: not decided in {float(self.data['turns'].max()):g} turns of the cage ({open_runs} runs)")
         return Shown(
@@ -70,8 +71,8 @@ class CageMap(Answer):
         )
 
 
-def _told(kind: str, orbit: float, decided: bool) -> str:
-    return "failed" if np.isnan(orbit) else f"{kind} {orbit:.2f}{'' if decided else '?'}"
+def _told(kind: str, orbit: float, decided: bool, hits: float) -> str:
+    return "failed" if np.isnan(orbit) else f"{kind} {orbit:.2f}{'' if decided else '?'}, {hits:.0f}/s"
 
 
 def cage_map(

@@ -38,7 +38,7 @@ TURNS: Final = (40.0, 160.0, 640.0)
 STEADY: Final = 0.1
 """Largest change of the orbit between the last two quarters of a decided run, over the radial play."""
 RECORDS_A_TURN: Final = 32
-GROUPS: Final = ("cage", "rollers")
+GROUPS: Final = ("cage", "rollers", "peaks")
 STARTS: Final = {"equal": Start.equal(), "whirl": Start.whirl(0.9)}
 WHIRLS: Final = "circling"
 
@@ -85,7 +85,21 @@ def orbit_at_end(result: Result | AssemblyResult) -> float:
     return _orbit(result, 3)
 
 
-OBSERVED: Final = {function.__name__: function for function in (kind_before, kind_at_end, orbit_before, orbit_at_end)}
+def hits_at_end(result: Result | AssemblyResult) -> float:
+    """Hits of rollers on their cages in a second of the last quarter (1/s), all bearings together."""
+    return sum(_quarter(one, 3).rattle.per_second for one in result.parts)
+
+
+def impulse_at_end(result: Result | AssemblyResult) -> float:
+    """Mean impulse of a hit in the last quarter (N s), all bearings together; 0 without hits."""
+    found = [_quarter(one, 3).rattle for one in result.parts]
+    return sum(one.hits * one.impulse_per_hit for one in found) / max(1, sum(one.hits for one in found))
+
+
+OBSERVED: Final = {
+    function.__name__: function
+    for function in (kind_before, kind_at_end, orbit_before, orbit_at_end, hits_at_end, impulse_at_end)
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -304,6 +318,8 @@ def variables_of(rows: Sequence[Any], dims: tuple[str, ...]) -> dict[str, Any]:
     return {
         "kind": (dims, column("kind", object), {"long_name": "class of the cage's motion"}),
         "orbit": (dims, column("orbit"), {"long_name": "orbit of the cage over the radial play", "units": "1"}),
+        "hits": (dims, column("hits"), {"long_name": "hits of rollers on the cage in a second", "units": "1/s"}),
+        "impulse": (dims, column("impulse"), {"long_name": "mean impulse of a hit", "units": "N s"}),
         "decided": (dims, column("settled", bool)),
         "turns": (dims, column("turns"), {"long_name": "turns of the cage", "units": "1"}),
         "message": (dims, column("message", object)),
@@ -313,8 +329,10 @@ def variables_of(rows: Sequence[Any], dims: tuple[str, ...]) -> dict[str, Any]:
 def _row(found: xarray.Dataset, turns: float) -> dict[str, Any]:
     """What is kept of a run."""
     if message := failure(found):
-        return {"kind": "unknown", "orbit": np.nan, "settled": False, "turns": turns, "message": message}
+        unknown = {"kind": "unknown", "orbit": np.nan, "hits": np.nan, "impulse": np.nan}
+        return {**unknown, "settled": False, "turns": turns, "message": message}
     before, last = (KINDS[int(found[name])] for name in ("kind_before", "kind_at_end"))
     orbits = [float(found[name]) for name in ("orbit_before", "orbit_at_end")]
     settled = before == last != "unknown" and abs(orbits[1] - orbits[0]) <= STEADY
-    return {"kind": last, "orbit": orbits[1], "settled": settled, "turns": turns, "message": ""}
+    rattle = {"hits": float(found["hits_at_end"]), "impulse": float(found["impulse_at_end"])}
+    return {"kind": last, "orbit": orbits[1], **rattle, "settled": settled, "turns": turns, "message": ""}
