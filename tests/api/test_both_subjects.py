@@ -284,6 +284,7 @@ def test_whirl_onset(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert float(found.data["orbit"].values[0, 0]) >= 0.0
 
 
+@pytest.mark.parametrize("name", ["scene", pytest.param("pair", marks=pytest.mark.slow)])
 def test_thermal(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each bearing gives off the heat that it makes, at temperatures that a run of its own confirms. Runs are short."""
     for setting, value in {"CURVE": 3, "TURNS": (1.0,), "SETTLED": 1.0, "CLOSE": 0.1}.items():

@@ -429,7 +429,7 @@ class TestResume:
         return study.run(study.cases(scene, list(cls.OVERRIDES), OPTIONS), folder, executor="serial"), folder
 
     @given(order=st.permutations(range(4)))
-    @settings(max_examples=2, deadline=None)
+    @settings(max_examples=1, deadline=None)
     def test_the_order_of_cases_does_not_matter(
         self, in_order: tuple[Any, Path], tmp_path_factory: pytest.TempPathFactory, order: list[int]
     ) -> None:

@@ -12,6 +12,7 @@ import pkgutil
 import resource
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +64,11 @@ def caged() -> trb.Bearing:
     return trb.cases.rig_30310().replace({"cage.body": trb.cases.cage_body_30310()})
 
 
+@cache
+def cage_modes() -> CageModes:
+    return CageModes.of_body(caged(), 2)
+
+
 class Named(dict[str, trb.Result]):
     """Results by names, as those of an assembly are."""
 
@@ -90,7 +96,7 @@ WRITERS: dict[str, tuple[str, Callable[..., Any]]] = {
     ),
     "trbdyn.cage.modes.CageModes.save": (
         "a.h5",
-        lambda run, path, **how: CageModes.of_body(caged(), 2).save(path, **how),
+        lambda run, path, **how: cage_modes().save(path, **how),
     ),
     "trbdyn.results.forces.sound": (
         "a.wav",
