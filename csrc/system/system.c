@@ -72,8 +72,8 @@ static trb_status join(const trb_system *s, trb_pair *pair, trb_message *message
   for (int side = 0; side < 2; side++) {
     const int at = pair->surface[side];
     if (at < 0 || at >= s->n_surfaces || s->surfaces[at].shape != pair->kind->shape[side])
-      return trb_fail(message, TRB_ERR_INPUT, "pair %s: surface %d does not have the shape that a pair of the kind '%s' needs there", pair->name, at,
-                      pair->kind->name);
+      return trb_fail(message, TRB_ERR_INPUT, "pair %s: surface %d does not have the shape that a pair of the kind '%s' needs there",
+                      pair->name, at, pair->kind->name);
     if (s->surfaces[at].name == NULL)
       return trb_fail(message, TRB_ERR_INPUT, "pair %s: surface %d has no row in this system", pair->name, at);
     if (s->surfaces[at].body < TRB_ROLLERS || s->surfaces[at].body >= s->n_bodies)

@@ -15,9 +15,11 @@ import trbdyn as trb
 from trbdyn.cli import main
 from trbdyn.errors import InputError, StepError
 from trbdyn.run import memory, running
+from trbdyn.run.case_text import case_text
 from trbdyn.run.checkpoint import checkpoint_path
 from trbdyn.study import thermal, whirl
 from trbdyn.study.definition import Base
+from trbdyn.study.planning import candidates, ground, looking
 
 SCENE = trb.cases.scene_30310(3000.0, 4930.0)
 PAIR = trb.load_assembly("pair_30310")
@@ -309,6 +311,33 @@ def test_thermal(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
         trb.thermal(SUBJECTS[name], {"nothing": paths})  # type: ignore[arg-type]
 
 
+def test_a_plan(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few candidates, so that it takes seconds; what is proposed runs, and has the averages that were promised."""
+    chosen = tuple(
+        switch for switch in candidates.SWITCHES if switch.name in ("front rib", "thermal reduction of films")
+    )
+    for module, setting, value in (
+        (candidates, "SWITCHES", chosen),
+        (candidates, "NODES", (8,)),
+        (ground, "LEAST_RECORDS", 60),
+        (looking, "PATIENCE", 40.0),
+    ):
+        monkeypatch.setattr(module, setting, value)
+    slip = "cage_slip" if name == "scene" else "left_cage_slip"
+    found = trb.plan(SUBJECTS[name], {"torque": 0.05, slip: 0.5}, effort=1.5 if name == "scene" else 3.0)
+    assert {row.name for row in found.rows} >= {"front rib", "thermal reduction of films", "8 nodes"}
+    assert all(part.effects.thermal for part in found.scene.parts.values())
+    values = found.averages(found.run(duration=found.settle + 5e-3))
+    assert values["torque"] == pytest.approx(found.value["torque"], rel=0.2)
+    assert str(found).count("promised within") == 2
+    text = case_text(found.scene, found.options)
+    (tmp_path / "case.toml").write_text(text)
+    read = trb.load_case if name == "scene" else trb.load_assembly
+    read(tmp_path / "case.toml")
+    with pytest.raises(InputError, match="want"):
+        trb.plan(SUBJECTS[name], {"middle_torque": 0.1})
+
+
 def test_a_study_over_workers(name: str, tmp_path: Path) -> None:
     speed = "scene.speed_rpm" if name == "scene" else "assembly.speed_rpm"
     warm = f"{PREFIX[name]}lubricant.temperature_c"
@@ -342,6 +371,8 @@ def test_the_command_line_report_and_view(
     assert main(["info", "run.h5"]) == 0
     assert "orbit radius" in capsys.readouterr().out.lower()
     assert main(["info", case]) == 0
+    assert main(["new", "mine.toml", "--case", case]) == 0
+    assert main(["info", "mine.toml"]) == 0
     assert main(["report", "run.h5", "-o", "run.html"]) == 0
     assert "<h1>" in Path("run.html").read_text()
     assert main(["view", "run.h5", "-o", "view.html", "--no-open"]) == 0

@@ -20,9 +20,10 @@ from trbdyn.model.motion import History
 from trbdyn.results.confidence import AVERAGES
 from trbdyn.results.summary import averages
 from trbdyn.study.planning import ground
+from trbdyn.study.planning.averaged import Records, check_names, joined
 from trbdyn.study.planning.candidates import SWITCHES, candidates
 from trbdyn.study.planning.deciding import unseen_of
-from trbdyn.study.planning.looking import Looker, Seen
+from trbdyn.study.planning.looking import Looker, Seen, thrown
 from trbdyn.study.planning.probes import (
     TOO_LONG,
     Influence,
@@ -35,7 +36,7 @@ from trbdyn.study.planning.probes import (
 )
 from trbdyn.study.planning.proposal import Plan, words
 from trbdyn.study.planning.sizes import LEAST, least_size, size_of
-from trbdyn.study.planning.wishes import changed, checked
+from trbdyn.study.planning.wishes import changed, checked, with_effects
 
 WANT = {"torque": 0.05}
 
@@ -129,7 +130,7 @@ def test_the_promise_holds(proposal: Plan) -> None:
     result = trb.Simulation(truth, accuracy="reference").run(duration=0.4, save_every=5e-4)
     window = result.window(0.1)
     true = float(window["inner_torque"].mean())
-    own = observables.half_width(in_batches(window, ["torque"], 0.0)["torque"]) / true
+    own = observables.half_width(in_batches(Records({"": window}), ["torque"], 0.0)["torque"]) / true
     assert abs(found / true - 1.0) <= proposal.promised["torque"] + own
     assert abs(proposal.value["torque"] / true - 1.0) < 0.02
 
@@ -287,16 +288,16 @@ def test_a_proposed_scene_that_starts_from_a_state_can_be_simulated() -> None:
         np.testing.assert_array_equal(other.view()["roller_r"], simulation.view()["roller_r"])
         other.run(duration=1e-4)
     whirling = scene.replace(start=trb.Start.whirl(0.9))
-    assert changed(whirling, {"bodies": "rollers"}, whirling.start).start.kind == "equal"
+    assert with_effects(whirling, {"bodies": "rollers"}).part.start.kind == "equal"
 
 
 def test_a_probe_that_takes_too_long_is_told_from_one_that_failed() -> None:
     hurried = Length(1.0, 1e-3, ("cage", "rollers", "torque"), patience=1e-3)
-    result, rate, failure = run_quietly(rolling(), "standard", hurried)
-    assert failure == TOO_LONG
-    assert result is not None
-    assert 0.0 < rate < 1e3
-    assert 0.0 < result.duration < 1.0
+    ran = run_quietly(rolling(), "standard", hurried)
+    assert ran.failure == TOO_LONG
+    assert ran.records is not None
+    assert 0.0 < ran.rate < 1e3
+    assert 0.0 < ran.records.time[-1] < 1.0
 
 
 def test_an_average_is_wanted_once_and_the_folder_is_there(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -352,7 +353,42 @@ class TestPromise:
         """With a clearance of its own, a start thrown to 0.9 of Cpr was refused, and the plan with it."""
         scene = rolling(guidance="outer_land")
         looker = Looker(checked(scene, WANT, None, 5.0))
-        assert trb.Simulation(scene.replace(start=looker._thrown())).scene.start.kind == "whirl"
+        assert trb.Simulation(scene.replace(start=thrown(looker.usual.part))).scene.start.kind == "whirl"
+
+
+def test_averages_of_several_bearings_have_their_names() -> None:
+    pair = trb.load_assembly("pair_30310")
+    found = joined({"left_": {"torque": 1.0, "cage_slip": 0.1}, "right_": {"torque": 2.0, "cage_slip": None}})
+    assert found == {
+        "left_torque": 1.0,
+        "left_cage_slip": 0.1,
+        "right_torque": 2.0,
+        "right_cage_slip": None,
+        "torque": 3.0,
+    }
+    assert joined({"": {"torque": 1.0}}) == {"torque": 1.0}
+    check_names(pair, ["torque", "power_loss", "left_torque_outer", "right_cage_slip"])
+    for name, said in (
+        ("cage_slip", "begin with the name of a bearing"),
+        ("middle_torque", "left_"),
+        ("left_torqe", "must name"),
+    ):
+        with pytest.raises(trb.InputError, match=said):
+            check_names(pair, [name])
+    with pytest.raises(trb.InputError, match="there is one bearing"):
+        check_names(rolling(), ["left_torque"])
+
+
+def test_a_state_of_a_pair_is_carried_over_to_other_switches() -> None:
+    pair = with_effects(trb.load_assembly("pair_30310"), {"oil_fill": 0.1})
+    simulation = trb.Simulation(pair)
+    simulation.run(duration=2e-4)
+    start = trb.Start.state(simulation.state).replace(displacement=None, housing_load=None)
+    other = trb.Simulation(changed(pair, {"oil_fill": 0.0, "gravity": False}, start))
+    assert other.time == simulation.time
+    for name, view in simulation.view().items():
+        for part in ("roller_r", "roller_z", "cage_x"):
+            np.testing.assert_array_equal(other.view()[name][part], view[part])
 
 
 @pytest.mark.parametrize("kind", ["steady", "creeping"])

@@ -31,13 +31,6 @@ def add_set(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def case_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene, RunOptions]:
-    """A case of one bearing, with ``table.key=value`` changes put in."""
-    from trbdyn.run.toml_case import case_from_dict
-
-    return case_from_dict(_tables(name, changes))
-
-
 def subject_with_changes(name: str, changes: Sequence[str]) -> tuple[Scene | Assembly, RunOptions]:
     """A case of one bearing or of several on a shaft, with ``table.key=value`` changes put in."""
     from trbdyn.run.toml_assembly import subject_from_dict

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.base.own_files import output_path, write_whole
 from trbdyn.cli.called import command
-from trbdyn.cli.case import case_with_changes
+from trbdyn.cli.case import subject_with_changes
 from trbdyn.cli.outcome import DONE, say
 from trbdyn.errors import InputError
 
 if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
+    from trbdyn.model.assembly import Subject
     from trbdyn.run.options import RunOptions
 
 SHIPPED: Final = "rig_30310"
@@ -66,7 +66,7 @@ def _new(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _first_case(options: argparse.Namespace) -> tuple[Scene, RunOptions]:
+def _first_case(options: argparse.Namespace) -> tuple[Subject, RunOptions]:
     from trbdyn.model.bearing import Bearing
     from trbdyn.model.catalogue import NAMES_OF_CATALOGUES
     from trbdyn.model.scene import Scene
@@ -74,7 +74,7 @@ def _first_case(options: argparse.Namespace) -> tuple[Scene, RunOptions]:
     from trbdyn.run.options import RunOptions
 
     if options.catalogue is None:
-        return case_with_changes(options.case or SHIPPED, ())
+        return subject_with_changes(options.case or SHIPPED, ())
     numbers = dict(map(_number, options.catalogue))
     known = inspect.signature(Bearing.from_catalogue).parameters.values()
     allowed = [entry.name for entry in known if entry.kind is not inspect.Parameter.VAR_KEYWORD]
@@ -126,7 +126,7 @@ def _cases(options: argparse.Namespace) -> int:
         return DONE
     if options.name is not None:
         first = find_case(options.name).read_text(encoding="utf-8").partition("\n")[0].lstrip("# ")
-        say(case_text(*case_with_changes(options.name, ()), title=first), end="")
+        say(case_text(*subject_with_changes(options.name, ()), title=first), end="")
         return DONE
     for path in map(find_subject, (*shipped_cases(), *shipped_assemblies())):
         first = path.read_text(encoding="utf-8").partition("\n")[0]

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from trbdyn.cli.called import command
-from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.case import add_set, subject_with_changes
 from trbdyn.cli.outcome import DONE, FAILED, INTERRUPTED, say
 from trbdyn.errors import InputError, unknown_name
 
@@ -56,7 +56,7 @@ def _ensemble(options: argparse.Namespace) -> int:
     from trbdyn.study.surrogate import FEWEST_DRAWS, surrogate
     from trbdyn.study.uncertainty import Band, checked_bands, uncertainty
 
-    scene, run = case_with_changes(options.case, options.changes)
+    scene, run = subject_with_changes(options.case, options.changes)
     bands = checked_bands([Band(path=path, low=low, high=high) for path, low, high in map(_band, options.band)])
     if options.designs < FEWEST_DRAWS:
         raise InputError.of("--designs", options.designs, f"must be at least {FEWEST_DRAWS}")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from trbdyn.cli.called import command
-from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.case import add_set, subject_with_changes
 from trbdyn.cli.outcome import DONE, FAILED, say
 from trbdyn.errors import InputError
 
@@ -48,7 +48,7 @@ def _plan(options: argparse.Namespace) -> int:
     from trbdyn.study.planning import plan
 
     want = _wishes(options.want)
-    scene, _ = case_with_changes(options.case, options.changes)
+    scene, _ = subject_with_changes(options.case, options.changes)
     name = options.output or f"{Path(options.case).stem}_plan"
     again = {"overwrite": options.overwrite}
     files = [output_path(f"{name}{ending}", reads=[options.case], **again) for ending in (".toml", ".png")]

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from trbdyn.cli.case import add_set, case_with_changes
+from trbdyn.cli.case import add_set, subject_with_changes
 from trbdyn.cli.outcome import DONE, FAILED, say
-from trbdyn.errors import InputError
+from trbdyn.errors import MISSING, InputError
 
 
 def add_torque_parser(commands: Any, parents: Sequence[argparse.ArgumentParser]) -> None:
@@ -28,7 +28,7 @@ def add_torque_parser(commands: Any, parents: Sequence[argparse.ArgumentParser])
         "--loads",
         nargs="+",
         metavar="FA[:FR]",
-        help="axial loads (N), with a radial one behind a colon (default: those of the case)",
+        help="axial loads (N), with a radial one behind a colon (default: those of the case of one bearing)",
     )
     torque.add_argument(
         "--temperatures", type=float, nargs="+", metavar="C", help="temperatures of the oil (default: that of the case)"
@@ -51,12 +51,18 @@ def add_torque_parser(commands: Any, parents: Sequence[argparse.ArgumentParser])
 def _torque(options: argparse.Namespace) -> int:
     from trbdyn.base.own_files import output_path
     from trbdyn.model.motion import value_at
+    from trbdyn.model.scene import Scene
     from trbdyn.study.gather import save
     from trbdyn.study.torque_map import torque_map
 
-    scene, run = case_with_changes(options.case, options.changes)
-    own: list[float | tuple[float, float]] = [(value_at(scene.axial_load, 0.0), value_at(scene.radial_load, 0.0))]
-    loads = own if options.loads is None else [_load(text) for text in options.loads]
+    scene, run = subject_with_changes(options.case, options.changes)
+    loads: list[float | tuple[float, float]] = [_load(text) for text in options.loads or ()]
+    if not loads and not isinstance(scene, Scene):
+        raise InputError.of(
+            "--loads", MISSING, "must be given for bearings on a shaft: forces on the centre of mass (N)"
+        )
+    if isinstance(scene, Scene) and not loads:
+        loads = [(value_at(scene.axial_load, 0.0), value_at(scene.radial_load, 0.0))]
     name = options.output or f"{Path(options.case).stem}_torque"
     again = {"overwrite": options.overwrite}
     numbers, picture = (output_path(f"{name}{ending}", **again) for ending in (".nc", ".png"))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from trbdyn.model.assembly import ShaftBearing
     from trbdyn.model.roller import Profile
     from trbdyn.model.scene import Scene
 
@@ -21,7 +22,7 @@ STRAIGHT_MIDDLE: Final = 0.5
 """Largest share of half the length over which a logarithmic profile drops, `k2`, with which the middle counts as straight."""
 
 
-def nodes(scene: Scene) -> int:
+def nodes(scene: Scene | ShaftBearing) -> int:
     """Number of nodes along a contact: that of the effects, or as many as the profiles need."""
     bearing = scene.bearing
     if scene.effects.n_slices > 0:

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from trbdyn.base.validation import Model
 from trbdyn.model.lubricants import OILS
+from trbdyn.model.scene import Scene
 from trbdyn.run.options import GROUPS
 
 if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
+    from trbdyn.model.assembly import Subject
     from trbdyn.run.options import RunOptions
 
 WIDTH: Final = 118
@@ -29,13 +30,13 @@ _HEADS: Final = {
 _TABLES: Final = tuple(_HEADS)
 
 
-def case_text(scene: Scene, run: RunOptions, *, title: str = "") -> str:
-    """A complete, commented TOML case.
+def case_text(scene: Subject, run: RunOptions, *, title: str = "") -> str:
+    """A complete TOML case, with comments where it is one of one bearing.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    scene : Scene or Assembly
+        The scene or the assembly.
     run : RunOptions
         How it is run.
     title : str
@@ -44,8 +45,10 @@ def case_text(scene: Scene, run: RunOptions, *, title: str = "") -> str:
     Returns
     -------
     str
-        Text that `load_case` reads back to the same scene and run options.
+        Text that `load_case`, or `load_assembly`, reads back to the same scene and run options.
     """
+    if not isinstance(scene, Scene):
+        return tables_text(scene.tables() | {"run": run.to_dict()}, title=title)
     lines = [f"# {title}"] if title else []
     lines += ["# Units: m, kg, s, N, Pa; angles in keys ..._deg in degrees.", ""]
     for name in _TABLES:

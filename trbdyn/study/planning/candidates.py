@@ -10,8 +10,8 @@ from trbdyn.errors import InputError
 from trbdyn.model import contact_line
 
 if TYPE_CHECKING:
+    from trbdyn.model.assembly import Subject
     from trbdyn.model.effects import Effects
-    from trbdyn.model.scene import Scene
 
 Kind = Literal["effect", "off", "nodes", "tolerances", "as given"]
 
@@ -103,22 +103,26 @@ def numerics(nodes: int) -> dict[str, Any]:
     return {"quadrature": "gauss", "n_slices": nodes}
 
 
-def candidates(scene: Scene, *, wants_cage: bool) -> list[Candidate]:
-    """All candidates of a scene.
+def candidates(scene: Subject, *, wants_cage: bool) -> list[Candidate]:
+    """All candidates of a scene or an assembly, whose bearings are simplified together.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    scene : Scene or Assembly
+        What is simulated.
     wants_cage : bool
         Whether a wanted average is one of the cage, so that it cannot be left out.
     """
-    found = [_of_switch(switch, scene.effects) for switch in SWITCHES if not (switch.name == "cage" and wants_cage)]
-    chosen = [one for one in found if one is not None]
+    parts: list[Any] = list(scene.parts.values())
+    chosen = []
+    for switch in SWITCHES:
+        each = [one for one in (_of_switch(switch, part.effects) for part in parts) if one is not None]
+        if each and not (switch.name == "cage" and wants_cage):
+            chosen.append(next((one for one in each if one.kind == "effect"), each[0]))
     chosen += [Candidate(f"{nodes} nodes", "nodes", numerics(nodes)) for nodes in NODES]
     chosen.append(Candidate("tolerances 'fast'", "tolerances", accuracy="fast"))
-    given = {"quadrature": scene.effects.quadrature, "n_slices": contact_line.nodes(scene)}
-    if given != numerics(USUAL_NODES):
+    given, *others = [{"quadrature": one.effects.quadrature, "n_slices": contact_line.nodes(one)} for one in parts]
+    if given != numerics(USUAL_NODES) and all(other == given for other in others):
         chosen.append(Candidate(f"{given['n_slices']} {given['quadrature']} nodes, as given", "as given", given))
     return chosen
 

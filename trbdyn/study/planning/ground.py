@@ -8,24 +8,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from trbdyn.errors import InputError, StepError
-from trbdyn.model.ring_body import counts_from_the_start
-from trbdyn.model.scene import Scene, Start
-from trbdyn.results.confidence import confidence
-from trbdyn.results.summary import averages
-from trbdyn.statics.core_model import build_model
-from trbdyn.statics.ring_motion import ring_motion
+from trbdyn.study.planning.averaged import Records, of_bearing
 from trbdyn.study.planning.candidates import USUAL_ACCURACY
-from trbdyn.study.planning.probes import BATCHES, TOO_LONG, Array, Length, in_batches, run_quietly
+from trbdyn.study.planning.probes import BATCHES, TOO_LONG, Array, Length, in_batches, number_in, run_quietly
 from trbdyn.study.planning.sizes import least_size, size_of
 
 if TYPE_CHECKING:
+    from trbdyn.model.assembly import Subject
+    from trbdyn.model.scene import Start
     from trbdyn.results.observables import MotionSettling
-    from trbdyn.results.result import Result
 
 LEAST_TURNS: Final = 20.0
 """Turns of the shaft below which a note says so."""
@@ -78,13 +74,13 @@ class Ground:
     notes: tuple[str, ...]
 
 
-def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: Length, effort: float) -> Ground:
-    """Run a scene as long as its share of the time allows.
+def run_ground(subject: Subject, want: Mapping[str, float], period: float, length: Length, effort: float) -> Ground:
+    """Run a scene or an assembly as long as its share of the time allows.
 
     Parameters
     ----------
-    scene : Scene
-        The scene with everything on.
+    subject : Scene or Assembly
+        What is run, with everything on.
     want : mapping of str to float
         Wanted relative error by the name of the average.
     period : float
@@ -102,51 +98,41 @@ def run_ground(scene: Scene, want: Mapping[str, float], period: float, length: L
     StepError
         If the run fails.
     """
-    result, spent, failure = run_quietly(scene, USUAL_ACCURACY, replace(length, duration=MOST_TURNS * period))
-    if result is None or failure not in ("", TOO_LONG):
-        raise StepError(f"the scene cannot be run: {failure}", time=scene.start.time)
-    if len(result) < LEAST_RECORDS:
-        turns = float(result["time"][-1] - result["time"][0]) / period
+    ran = run_quietly(subject, USUAL_ACCURACY, replace(length, duration=MOST_TURNS * period))
+    if ran.records is None or ran.end is None or ran.failure not in ("", TOO_LONG):
+        raise StepError(f"the scene cannot be run: {ran.failure}", time=(subject.start or subject.part.start).time)
+    records = ran.records
+    began, end = float(records.time[0]), float(records.time[-1])
+    if records.time.size < LEAST_RECORDS:
         share = f"{length.patience:.2g} s, the share of one run,"
-        allowed = f"is not enough: {share} bring {turns:.2g} turns of the {scene.turning_ring} (s)"
+        allowed = f"is not enough: {share} bring {(end - began) / period:.2g} turns of the {subject.turning_ring} (s)"
         raise InputError.of("effort", effort, allowed)
-    names, settling = list(want), result.settling()
-    began, end = float(result["time"][0]), float(result["time"][-1])
+    names, settling = list(want), records.settling()
     settled_from = settling.time if settling.settled else 0.5 * (began + end)
-    window = result.window(settled_from)
-    found = averages(window)
-    value = {name: _value(found, name) for name in names}
-    if found.get("orbit_rms_over_cpr", 1.0) < least_size("orbit_rms_over_cpr"):
-        value |= {name: math.nan for name in names if name.startswith("whirl_")}
+    window = records.window(settled_from)
+    found = window.averages()
+    value = {name: number_in(found, name) for name in names}
+    for name in names:
+        bearing, own = of_bearing(name)
+        orbit = found.get(f"{bearing}orbit_rms_over_cpr", 1.0)
+        if own.startswith("whirl_") and orbit < least_size("orbit_rms_over_cpr"):
+            value[name] = math.nan
     size = {name: size_of(name, value[name]) for name in names}
     scatter, notes = _scatter(window, names, size)
     notes += [f"the motion is not known to have settled after {end - began:.3g} s: {settling.reason}"] * (
         not settling.settled
     )
-    notes += [f"in the run that it stands on: {text}" for text in result.warnings]
+    notes += [f"in the run that it stands on: {text}" for text in records.warnings]
     turns = (end - began) / period
     if turns < LEAST_TURNS:
-        notes.append(f"only {turns:.2g} turns of the {scene.turning_ring} could be looked at; allow more effort")
-    drift = np.zeros(len(names)) if settling.settled else _drift(result, names, size, settling)
-    assert result.final_state is not None
-    angle = scene.start_shaft_angle + scene.shaft_turn(result.final_time)
-    state = Start.state(result.final_state, time=result.final_time, shaft_angle=angle)
-    if counts_from_the_start(scene):
-        motion, _ = ring_motion(build_model(scene), scene)
-        held = None if scene.housing is None else tuple(motion.housing_load.tolist())
-        state = state.replace(displacement=tuple(motion.displacement(result.final_time).tolist()), housing_load=held)
-    return Ground(state, value, size, scatter, drift, end - settled_from, settling.creep_time, spent, tuple(notes))
+        notes.append(f"only {turns:.2g} turns of the {subject.turning_ring} could be looked at; allow more effort")
+    drift = np.zeros(len(names)) if settling.settled else _drift(records, names, size, settling)
+    return Ground(ran.end, value, size, scatter, drift, end - settled_from, settling.creep_time, ran.rate, tuple(notes))
 
 
-def _value(found: dict[str, Any], name: str) -> float:
-    value = found.get(name)
-    return math.nan if value is None else float(value)
-
-
-def _scatter(window: Result, names: Sequence[str], size: Mapping[str, float]) -> tuple[Array, list[str]]:
+def _scatter(window: Records, names: Sequence[str], size: Mapping[str, float]) -> tuple[Array, list[str]]:
     """Half widths over the sizes: those of the summary, else guessed from batches and said so."""
-    widths, _ = confidence(window, averages)
-    known = widths or {}
+    known = window.half_widths()
     parts = in_batches(window, names, 0.0)
     notes, found = [], []
     for name in names:
@@ -159,24 +145,23 @@ def _scatter(window: Result, names: Sequence[str], size: Mapping[str, float]) ->
     return np.array(found), notes
 
 
-def _drift(result: Result, names: Sequence[str], size: Mapping[str, float], settling: MotionSettling) -> Array:
+def _drift(records: Records, names: Sequence[str], size: Mapping[str, float], settling: MotionSettling) -> Array:
     """What the averages may still change by: their change from the third to the last quarter of the run. Where it stands out of
     the scatter and the motion drifts, it goes on at this rate for the time scale of the drift; where the whirl grows, up to the
     play of the cage (`_left_to_grow`).
     """
-    time = result["time"]
+    time = records.time
     quarter = 0.25 * float(time[-1] - time[0])
     longer = max(1.0, settling.time_scale / quarter) if math.isfinite(settling.time_scale) else 1.0
-    last, grown = result.window(time[-1] - quarter), settling.growth_rate * quarter
-    sides = [result.window(time[-1] - 2.0 * quarter, time[-1] - quarter), result.window(time[-1] - quarter)]
+    last, grown = records.window(time[-1] - quarter), settling.growth_rate * quarter
+    sides = [records.window(time[-1] - 2.0 * quarter, time[-1] - quarter), last]
     batches = [in_batches(side, names, 0.0, 5) for side in sides]
     found = []
     for name in names:
         before, after = (part[name] for part in batches)
         change = abs(float(after.mean() - before.mean()))
-        goes_on = (
-            max(longer, _left_to_grow(last, grown, 1.0 if name in SIZES_OF_WHIRL else 2.0)) if grown > 0.0 else longer
-        )
+        power = 1.0 if of_bearing(name)[1] in SIZES_OF_WHIRL else 2.0
+        goes_on = max(longer, _left_to_grow(last, grown, power)) if grown > 0.0 else longer
         noise = TOLD_FROM_SCATTER * math.hypot(
             *(float(part.std(ddof=1)) / math.sqrt(part.size) for part in (before, after))
         )
@@ -184,19 +169,20 @@ def _drift(result: Result, names: Sequence[str], size: Mapping[str, float], sett
     return np.array(found)
 
 
-def _left_to_grow(last: Result, grown: float, power: float) -> float:
+def _left_to_grow(last: Records, grown: float, power: float) -> float:
     """What is still to come of a change, over what a growing whirl brought it from the quarter before to the last one.
 
-    The whirl cannot become larger than the play of the cage.
+    The whirl cannot become larger than the play of the cage; of several cages the one that moves most counts.
 
     Parameters
     ----------
-    last : Result
+    last : Records
         The last quarter.
     grown : float
         Growth of the whirl (ln of its size) in a quarter.
     power : float
         Power of the whirl's size with which the average changes.
     """
-    size = max(float(averages(last)["orbit_rms_over_cpr"]), 1e-6)
+    sizes = [float(value) for name, value in last.averages().items() if name.endswith("orbit_rms_over_cpr")]
+    size = max(*sizes, 1e-6)
     return max(size**-power - 1.0, 0.0) / -math.expm1(-power * grown)

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from trbdyn.errors import InputError, LoadError, StepError
-from trbdyn.model.scene import Start
-from trbdyn.run.until import groups_for
+from trbdyn.model.assembly import ShaftBearing
+from trbdyn.model.scene import Scene, Start
+from trbdyn.study.planning.averaged import groups_of
 from trbdyn.study.planning.candidates import (
     TRUE_ACCURACY,
     TRUE_NODES,
@@ -23,7 +24,7 @@ from trbdyn.study.planning.ground import LEAST_RECORDS, Ground, run_ground
 from trbdyn.study.planning.probes import PATIENCE, TRANSIENT, Influence, Length, Probe, influence, probe
 from trbdyn.study.planning.proposal import Row, words
 from trbdyn.study.planning.sizes import least_size
-from trbdyn.study.planning.wishes import Wishes, changed
+from trbdyn.study.planning.wishes import Wishes, changed, with_effects
 
 OF_GROUND: Final = 0.25
 OF_OTHER_START: Final = 0.15
@@ -121,11 +122,18 @@ class Looker:
 
     def __init__(self, wishes: Wishes) -> None:
         self.wishes, scene, period = wishes, wishes.scene, wishes.period
-        groups = sorted({"cage", "rollers", "energy", *(group for name in wishes.names for group in groups_for(name))})
-        pockets = any("pocket" in groups_for(name) for name in wishes.names)
+        groups = sorted(
+            {
+                "cage",
+                "rollers",
+                "energy",
+                *(group for name in wishes.names for group in groups_of(name)),
+            }
+        )
+        pockets = any("pocket" in groups_of(name) for name in wishes.names)
         every = period / (RECORDS_OF_POCKETS if pockets else RECORDS)
         self.keep = Length(period, max(every, 1e-6), tuple(groups), wishes.effort)
-        self.usual = scene.replace(effects=scene.effects.replace(**numerics(USUAL_NODES)))
+        self.usual = with_effects(scene, numerics(USUAL_NODES))
         self.notes: list[str] = []
 
     def look(self) -> Seen:
@@ -198,20 +206,22 @@ class Looker:
         return replace(self.keep, duration=duration, save_every=every, patience=PATIENCE * seconds)
 
     def _other_start(self) -> Row | None:
-        wishes, start = self.wishes, self.wishes.scene.start
-        if self.usual.effects.bodies == "rollers_and_spacer":
+        wishes, other = self.wishes, self.usual
+        start = other.start or other.part.start
+        if other.part.effects.bodies == "rollers_and_spacer":
             return None  # rollers at even spacing have one start
         if start.kind == "state" or wishes.effort * OF_OTHER_START / self.ground.rate < LEAST_AVERAGING * wishes.period:
             self.notes.append("no other start was tried: whether the motion depends on its start is not known")
             return None
-        whirls = start.kind == "whirl" or not self.usual.effects.has_cage
         try:
-            other = self.usual.replace(start=Start.unequal(start.seed + 1) if whirls else self._thrown())
+            for place, part in self.usual.parts.items():
+                whirls = start.kind == "whirl" or not part.effects.has_cage
+                other = other.with_part(place, start=Start.unequal(start.seed + 1) if whirls else thrown(part))
             found = run_ground(other, wishes.want, wishes.period, self._share(OF_OTHER_START), wishes.effort)
         except (InputError, LoadError, StepError) as error:
             self.notes.append(f"a run from another start failed: {str(error).splitlines()[0]}")
             return None
-        influences = {}
+        influences, kind = {}, other.part.start.kind
         for k, name in enumerate(wishes.names):
             own = self.ground.value[name]
             change = (found.value[name] - own) / self.ground.size[name]
@@ -219,18 +229,10 @@ class Looker:
             influences[name] = Influence(change, half)
             if abs(change) > max(half + self.ground.drift[k] + found.drift[k], 0.5 * wishes.size[k]):
                 self.notes.append(
-                    f"another start ({other.start.kind}) leads to a {name} that differs by {words(influences[name])}: "
+                    f"another start ({kind}) leads to a {name} that differs by {words(influences[name])}: "
                     "there may be two motions, or it takes longer to settle; the promise is for the start of the scene"
                 )
-        return Row(
-            f"another start ({other.start.kind})", "start", influences, math.nan, "shown; the start stays as given"
-        )
-
-    def _thrown(self) -> Start:
-        """A cage thrown sideways, as far as a land that guides it allows."""
-        bearing, guided = self.usual.bearing, self.usual.effects.guidance != "rollers"
-        free = bearing.land.clearance - bearing.land.contact_film if guided else math.inf
-        return Start.whirl(min(0.9, 0.9 * free / bearing.cage.play_radial))
+        return Row(f"another start ({kind})", "start", influences, math.nan, "shown; the start stays as given")
 
     def _probe_all(self, found: list[Candidate]) -> Seen:
         """The usual and the most exact choice, and each candidate alone."""
@@ -261,3 +263,10 @@ class Looker:
             alone={name: self.influences(one, base) for name, one in probes.items()},
             least_saving=max(LEAST_SAVING, abs(rates[AGAIN] / rates[BASE] - 1.0)),
         )
+
+
+def thrown(part: Scene | ShaftBearing) -> Start:
+    """A start with the cage of a bearing thrown sideways, as far as a land that guides it allows."""
+    bearing, guided = part.bearing, part.effects.guidance != "rollers"
+    free = bearing.land.clearance - bearing.land.contact_film if guided else math.inf
+    return Start.whirl(min(0.9, 0.9 * free / bearing.cage.play_radial))

@@ -21,6 +21,7 @@ from typing import Final
 import numpy as np
 
 from trbdyn.base.expected import expect
+from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.scene import Scene
 from trbdyn.study.planning.candidates import TRUE_ACCURACY, TRUE_NODES, Candidate
 from trbdyn.study.planning.choice import Option, choose
@@ -33,7 +34,7 @@ EFFORT: Final = 15.0
 """Computing time for the probes (s)."""
 
 
-def plan(scene: Scene, want: Mapping[str, float], *, budget: float | None = None, effort: float = EFFORT) -> Plan:
+def plan(scene: Subject, want: Mapping[str, float], *, budget: float | None = None, effort: float = EFFORT) -> Plan:
     """The cheapest simulation of a scene that gives some averages as exactly as is wanted.
 
     The scene with all effects that it has switched on is the truth that errors are counted from. The error is split over effects
@@ -42,10 +43,11 @@ def plan(scene: Scene, want: Mapping[str, float], *, budget: float | None = None
 
     Parameters
     ----------
-    scene : Scene
-        What is simulated; with constant speed and loads.
+    scene : Scene or Assembly
+        What is simulated; with constant speed and loads. Bearings on a shaft are simplified together.
     want : mapping of str to float
-        Wanted relative error by the name of an average of the summary, for instance ``{"torque": 0.02}`` for 2 %.
+        Wanted relative error by the name of an average of the summary, for instance ``{"torque": 0.02}`` for 2 %. Of bearings
+        on a shaft, torque and power_loss are sums; others have the name of their bearing before them: ``left_cage_slip``.
     budget : float, optional
         Most computing time of the run (processor time, s): the most exact choice within it is made, errors weighed by `want`.
     effort : float
@@ -73,7 +75,7 @@ def plan(scene: Scene, want: Mapping[str, float], *, budget: float | None = None
     >>> proposal.reached
     True
     """
-    expect("scene", scene, Scene)
+    expect("scene", scene, Scene, Assembly)
     began = clock.process_time()
     wishes = checked(scene, want, budget, effort)
     looker = Looker(wishes)

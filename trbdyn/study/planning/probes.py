@@ -13,6 +13,7 @@ import time as clock
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache, singledispatch
 from itertools import pairwise
 from typing import Any, Final
 
@@ -20,14 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import InputError, LoadError, StepError
+from trbdyn.model.assembly import Assembly, Subject
+from trbdyn.model.ring_body import counts_from_the_start
 from trbdyn.model.scene import Scene, Start
 from trbdyn.results import observables
-from trbdyn.results.result import Result
-from trbdyn.results.summary import averages
 from trbdyn.run.running import STOPPED
 from trbdyn.run.simulation import Simulation
 from trbdyn.statics.core_model import build_model
+from trbdyn.statics.seating import seated
 from trbdyn.statics.state_view import StateView
+from trbdyn.study.planning.averaged import Records
 
 Array = NDArray[np.float64]
 
@@ -85,8 +88,31 @@ TOO_LONG: Final = "it took much longer than was expected"
 """Failure of a run whose patience was at its end."""
 
 
-def run_quietly(scene: Scene, accuracy: str, length: Length) -> tuple[Result | None, float, str]:
-    """A run with its processor time for a second of bearing time, and why it cannot be used."""
+@dataclass(frozen=True)
+class Ran:
+    """A run of a scene or an assembly.
+
+    Attributes
+    ----------
+    rate : float
+        Processor time for a second of bearing time (s).
+    failure : str
+        Why it cannot be used; empty if it can.
+    records : Records or None
+        Its records; None where there are none.
+    end : Start or None
+        The state at its end. What is held begins at its place there only where the model counts displacements from the start:
+        another model places it again.
+    """
+
+    rate: float
+    failure: str
+    records: Records | None = None
+    end: Start | None = None
+
+
+def run_quietly(subject: Subject, accuracy: str, length: Length) -> Ran:
+    """Run a scene or an assembly as long as patience lasts, without warnings."""
     impatient = False
 
     def look(_: Simulation) -> bool:
@@ -97,7 +123,7 @@ def run_quietly(scene: Scene, accuracy: str, length: Length) -> tuple[Result | N
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         try:
-            simulation = Simulation(scene, accuracy=accuracy)
+            simulation = Simulation(subject, accuracy=accuracy)
             began = clock.process_time()
             result = simulation.run(
                 duration=length.duration,
@@ -107,23 +133,26 @@ def run_quietly(scene: Scene, accuracy: str, length: Length) -> tuple[Result | N
             )
             spent = clock.process_time() - began
         except (InputError, LoadError, StepError) as error:
-            return None, math.nan, str(error).splitlines()[0]
+            return Ran(math.nan, str(error).splitlines()[0])
     if result.message.startswith(
         STOPPED
     ):  # a run keeps what it has; a plan has nothing to keep, and ends as a study does
         raise KeyboardInterrupt
-    bearing = max(float(result["time"][-1] - result["time"][0]), 1e-300)
+    records, end = Records.of(subject, result), Start.state(simulation.state)
+    if len(records.parts) > 1 or not counts_from_the_start(simulation.scene):
+        end = end.replace(displacement=None, housing_load=None)
+    bearing = max(float(records.time[-1] - records.time[0]), 1e-300)
     failure = "" if result.success else TOO_LONG if impatient else result.message
-    return result, spent / bearing, failure
+    return Ran(spent / bearing, failure, records, end)
 
 
-def probe(scene: Scene, accuracy: str, length: Length, names: Sequence[str]) -> Probe:
-    """Run a scene from a state and average it in batches.
+def probe(subject: Subject, accuracy: str, length: Length, names: Sequence[str]) -> Probe:
+    """Run a scene or an assembly from a state and average it in batches.
 
     Parameters
     ----------
-    scene : Scene
-        The scene, with the state that it starts from.
+    subject : Scene or Assembly
+        What is run, with the state that it starts from.
     accuracy : str
         Preset of the tolerances.
     length : Length
@@ -131,52 +160,77 @@ def probe(scene: Scene, accuracy: str, length: Length, names: Sequence[str]) -> 
     names : sequence of str
         Averages of the summary.
     """
-    result, rate, failure = run_quietly(scene, accuracy, length)
-    if result is None or failure:
-        return Probe({}, rate, failure)
-    return Probe(in_batches(result, names, TRANSIENT), rate, warned=tuple(result.warnings))
+    ran = run_quietly(subject, accuracy, length)
+    if ran.records is None or ran.failure:
+        return Probe({}, ran.rate, ran.failure)
+    return Probe(in_batches(ran.records, names, TRANSIENT), ran.rate, warned=ran.records.warnings)
 
 
-def carried_over(scene: Scene, state: Start, of: Scene) -> Scene:
-    """A scene that starts from a state of another one, whose switches differ.
+@singledispatch
+def _layouts(subject: Any) -> tuple[int, list[Any]]:
+    """Length of the state of a subject, and the layout of the part of each bearing."""
+    raise NotImplementedError
 
-    Places and velocities are the same; integrals of losses begin at zero where the two scenes do not have the same losses.
+
+@_layouts.register(Scene)
+def _of_scene(scene: Scene) -> tuple[int, list[Any]]:
+    model = build_model(scene.replace(start=Start.equal()), "")
+    return model.n_state, [model.state_layout()]
+
+
+@_layouts.register(Assembly)
+def _of_assembly(assembly: Assembly) -> tuple[int, list[Any]]:
+    return _seated(assembly.replace(start=None))
+
+
+@lru_cache(maxsize=4)
+def _seated(assembly: Assembly) -> tuple[int, list[Any]]:
+    found = seated(assembly)
+    return found.vector.size, [one.layout for one in found.bearings]
+
+
+def carried_over(subject: Subject, state: Start, of: Subject) -> Subject:
+    """A subject that starts from a state of another one, whose switches differ.
+
+    Places and velocities are the same; integrals of losses begin at zero where the two do not have the same losses.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    subject : Scene or Assembly
+        What starts.
     state : Start
         The state.
-    of : Scene
-        The scene it is a state of.
+    of : Scene or Assembly
+        What it is a state of.
 
     Raises
     ------
     InputError
-        If the scene cannot be used.
+        If the subject cannot be used.
     """
-    old_model, model = build_model(of, ""), build_model(scene.replace(start=Start.equal()), "")
-    old, vector = StateView(old_model.state_layout(), np.array(state.state_vector)), np.zeros(model.n_state)
-    new = StateView(model.state_layout(), vector)
-    for name in set(old.names) & set(new.names):
-        if old[name].shape == new[name].shape:
-            new[name] = old[name]
-    start = state.replace(state_vector=tuple(vector.tolist()))
-    return scene.replace(start=start)
+    (_, befores), (size, layouts) = _layouts(of), _layouts(subject)
+    given, vector = np.array(state.state_vector), np.zeros(size)
+    for before, layout in zip(befores, layouts, strict=True):
+        old, new = StateView(before, given), StateView(layout, vector)
+        for name in set(old.names) & set(new.names):
+            if old[name].shape == new[name].shape:
+                new[name] = old[name]
+    return subject.replace(start=state.replace(state_vector=tuple(vector.tolist())))
 
 
-def in_batches(result: Result, names: Sequence[str], transient: float, number: int = BATCHES) -> dict[str, Array]:
+def in_batches(records: Records, names: Sequence[str], transient: float, number: int = BATCHES) -> dict[str, Array]:
     """Averages in batches of equal length after a share of the records; nan where there is none."""
-    time = result["time"]
+    time = records.time
     edges = np.linspace(transient * (time.size - 1), time.size - 1, number + 1).astype(int)
     if np.diff(edges).min() < 3:
         return {name: np.full(number, math.nan) for name in names}
-    parts = [averages(result.window(time[a + 1], time[b])) for a, b in pairwise(edges)]
-    return {name: np.array([_number(part.get(name)) for part in parts]) for name in names}
+    parts = [records.window(time[a + 1], time[b]).averages() for a, b in pairwise(edges)]
+    return {name: np.array([number_in(part, name) for part in parts]) for name in names}
 
 
-def _number(value: Any) -> float:
+def number_in(averages: Mapping[str, Any], name: str) -> float:
+    """An average; nan where there is none."""
+    value = averages.get(name)
     return math.nan if value is None else float(value)
 
 

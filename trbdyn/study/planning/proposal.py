@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from trbdyn.base.shown import Shown
 from trbdyn.model import contact_line
-from trbdyn.results.summary import averages
 from trbdyn.run.options import RunOptions
 from trbdyn.run.simulation import Simulation
 from trbdyn.study.answer import Answer
+from trbdyn.study.planning.averaged import Records
 from trbdyn.study.planning.probes import Influence
 
 if TYPE_CHECKING:
-    from trbdyn.model.scene import Scene
+    from trbdyn.model.assembly import Subject
+    from trbdyn.results.assembly import AssemblyResult
     from trbdyn.results.result import Result
 
 PRINTED = 118
@@ -60,7 +61,7 @@ class Plan(Answer):
 
     Attributes
     ----------
-    scene : Scene
+    scene : Scene or Assembly
         What to simulate: the scene with the chosen effects and nodes. It starts from the state that a run with everything on has
         reached from the start that was given, as the probes did: what they have shown holds from there.
     accuracy : str
@@ -99,7 +100,7 @@ class Plan(Answer):
         Where the answer could be wrong.
     """
 
-    scene: Scene
+    scene: Subject
     accuracy: str
     duration: float
     settle: float
@@ -131,7 +132,7 @@ class Plan(Answer):
         """Effects that the plan leaves out."""
         return tuple(row.name for row in self.rows if row.chosen and row.kind == "effect")
 
-    def run(self, **arguments: Any) -> Result:
+    def run(self, **arguments: Any) -> Any:
         """Run it; average over the records after `settle`.
 
         Parameters
@@ -142,16 +143,16 @@ class Plan(Answer):
         kept = {name: getattr(self, name) for name in ("duration", "save_every", "save_groups")}
         return Simulation(self.scene, accuracy=self.accuracy).run(**kept | arguments)
 
-    def averages(self, result: Result) -> dict[str, float]:
+    def averages(self, result: Result | AssemblyResult) -> dict[str, float]:
         """The wanted averages of a run of this plan, over the part that it was made for.
 
         Parameters
         ----------
-        result : Result
+        result : Result or AssemblyResult
             What `run` gave.
         """
-        time = result["time"]
-        found = averages(result.window(float(time[0]) + self.settle))
+        records = Records.of(self.scene, result)
+        found = records.window(float(records.time[0]) + self.settle).averages()
         return {name: float(found[name]) for name in self.want}
 
     def _draw(self) -> Any:
@@ -203,10 +204,11 @@ class Plan(Answer):
 
 
 def _run_lines(plan: Plan) -> list[str]:
-    nodes, kind = contact_line.nodes(plan.scene), plan.scene.effects.quadrature
+    nodes, kind = contact_line.nodes(plan.scene.part), plan.scene.part.effects.quadrature
+    began = (plan.scene.start or plan.scene.part.start).time
     said = ", ".join(plan.left_out) or "nothing"
     return [
-        f"run: {plan.duration:.3g} s of bearing time from the state that the first run reached at {plan.scene.start.time:.3g} s, "
+        f"run: {plan.duration:.3g} s of bearing time from the state that the first run reached at {began:.3g} s, "
         f"averages after {plan.settle:.3g} s",
         f"effects left out: {said}; {nodes} {kind} nodes, tolerances '{plan.accuracy}'",
         f"computing time: about {plan.computing_s:.2g} s; as long with the scene as given {plan.computing_s_given:.2g} s; "

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Final
 
 from trbdyn.results.fields import contacts
+from trbdyn.study.planning.averaged import of_bearing
 
 LEAST: Final = {
     "cage_slip": 1e-4,
@@ -31,7 +32,8 @@ LEAST: Final = {
 
 def least_size(name: str) -> float:
     """The least value of an average that means anything; 0 where each does."""
-    return next((size for start, size in LEAST.items() if name.startswith(start)), 0.0)
+    own = of_bearing(name)[1]
+    return next((size for start, size in LEAST.items() if own.startswith(start)), 0.0)
 
 
 def size_of(name: str, value: float) -> float:
@@ -40,7 +42,7 @@ def size_of(name: str, value: float) -> float:
     Parameters
     ----------
     name : str
-        One of `trbdyn.results.confidence.AVERAGES`.
+        One of `trbdyn.results.confidence.AVERAGES`, of several bearings with the name of its bearing before it.
     value : float
         Its value.
     """

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.model.motion import History
-from trbdyn.model.scene import Scene, Start
-from trbdyn.run.until import check_average, groups_for
+from trbdyn.model.scene import Start
+from trbdyn.study.planning.averaged import check_names, groups_of, of_bearing, prefixes
 from trbdyn.study.planning.probes import Array, carried_over
+
+if TYPE_CHECKING:
+    from trbdyn.model.assembly import Subject
 
 TOLD_APART: Final = 0.3
 """Half width of an influence over the wish, up to which it counts as told apart from chance."""
@@ -25,7 +28,7 @@ class Wishes:
 
     Attributes
     ----------
-    scene : Scene
+    scene : Scene or Assembly
         What is simulated.
     want : dict of str to float
         Wanted relative error by the name of the average.
@@ -35,7 +38,7 @@ class Wishes:
         Computing time for the probes, about (s).
     """
 
-    scene: Scene
+    scene: Subject
     want: dict[str, float]
     budget: float | None
     effort: float
@@ -62,12 +65,12 @@ class Wishes:
         return any(map(of_cage, self.want))
 
 
-def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effort: float) -> Wishes:
+def checked(scene: Subject, want: Mapping[str, float], budget: float | None, effort: float) -> Wishes:
     """What is asked for, if it can be planned.
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene or Assembly
         What is simulated.
     want : mapping of str to float
         Wanted relative error by the name of the average.
@@ -81,19 +84,19 @@ def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effor
     """
     if not want:
         raise InputError.of("want", dict(want), "must name an average with its error, for instance torque = 0.02")
+    check_names(scene, want)
+    parts: list[Any] = list(scene.parts.values())
+    bare = [name for name, one in zip(prefixes(scene), parts, strict=True) if not one.effects.has_cage]
     for name, wish in want.items():
-        check_average(name, "want")
         if not 0.0 < number_of(f"want.{name}", wish) < 1.0:
             raise InputError.of(("want", name), wish, "must be a number above 0 and below 1: error over average (1)")
-        if of_cage(name) and not scene.effects.has_cage:
+        if of_cage(name) and of_bearing(name)[0] in bare:
             raise InputError.of("want", name, "needs a cage: effects.bodies = 'rollers_and_cage'")
     for field, value in (("budget", budget), ("effort", effort)):
         if value is not None and not 0.0 < number_of(field, value) < 1e7:
             raise InputError.of(field, value, "must be > 0 and < 1e7 (s)")
-    for field in type(scene).model_fields:
-        quantity = getattr(scene, field)
-        parts = quantity if isinstance(quantity, tuple) else (quantity,)
-        if any(isinstance(part, History) for part in parts):
+    for field, quantity in scene.quantities().items():
+        if isinstance(quantity, History):
             raise InputError.of(field, "a history", "must be constant: averages of a changing motion cannot be planned")
     if scene.torque is not None:
         limit = (
@@ -108,32 +111,36 @@ def checked(scene: Scene, want: Mapping[str, float], budget: float | None, effor
 
 def of_cage(name: str) -> bool:
     """Whether an average is one of the cage."""
-    return groups_for(name)[-1] in ("cage", "pocket")
+    return groups_of(name)[-1] in ("cage", "pocket")
 
 
-def changed(scene: Scene, effects: Mapping[str, Any], start: Start) -> Scene:
-    """A scene with other effects that starts as is given.
+def with_effects(scene: Subject, effects: Mapping[str, Any]) -> Subject:
+    """A scene, or an assembly in all its bearings, with other effects. Without a cage none starts with a whirl of the cage, and
+    none is spaced unevenly by an even spacer: the rollers are then equally spaced.
+    """
+    for place, part in scene.parts.items():
+        new = part.effects.replace(**effects)
+        spaced = new.bodies == "rollers_and_spacer" and part.start.kind == "unequal"
+        other = spaced or (part.start.kind == "whirl" and not new.has_cage)
+        scene = scene.with_part(place, effects=new, **({"start": Start.equal()} if other else {}))
+    return scene
 
-    Without a cage it cannot start with a whirl of the cage: the rollers are then equally spaced. A state is carried over to the
-    other effects.
+
+def changed(scene: Subject, effects: Mapping[str, Any], start: Start) -> Subject:
+    """A scene or an assembly with other effects that starts in a state, which is carried over to the other effects.
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene or Assembly
         The scene; `start` fits to it.
     effects : mapping
         Fields of `Effects` that are changed.
     start : Start
-        How it starts.
+        The state in which it starts.
 
     Raises
     ------
     InputError
         If the effects cannot be used.
     """
-    new = scene.effects.replace(**effects)
-    if start.kind == "state":
-        return carried_over(scene.replace(effects=new, start=Start.equal()), start, scene)
-    spaced = new.bodies == "rollers_and_spacer" and start.kind == "unequal"
-    own = Start.equal() if spaced or (start.kind == "whirl" and not new.has_cage) else start
-    return scene.replace(effects=new, start=own)
+    return carried_over(with_effects(scene, effects), start, scene)

@@ -1,0 +1,118 @@
+"""Averages of a run of one bearing, or of several on a shaft.
+
+Averages of several bearings have the names of their bearings before them: ``left_cage_slip``. Torque and power loss without such
+a name are the sums over all bearings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from trbdyn.errors import InputError
+from trbdyn.results.confidence import AVERAGES, confidence
+from trbdyn.results.summary import averages
+from trbdyn.run.until import check_average, groups_for
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from trbdyn.model.assembly import Subject
+    from trbdyn.results.assembly import AssemblyResult
+    from trbdyn.results.observables import MotionSettling
+    from trbdyn.results.result import Result
+
+SUMS: Final = ("torque", "power_loss")
+"""Averages of several bearings that can be added up."""
+
+
+def prefixes(subject: Subject) -> tuple[str, ...]:
+    """What the names of the averages of each bearing begin with: nothing where it is the only one."""
+    return tuple(f"{name}_" if name else "" for name in subject.names)
+
+
+def of_bearing(name: str) -> tuple[str, str]:
+    """The beginning of a name, which says the bearing, and the average of `trbdyn.results.confidence.AVERAGES`."""
+    own = max((one for one in AVERAGES if name == one or name.endswith(f"_{one}")), key=len, default=name)
+    return name.removesuffix(own), own
+
+
+def groups_of(name: str) -> tuple[str, ...]:
+    """Groups of records that an average needs, see `trbdyn.run.until.groups_for`."""
+    return groups_for(of_bearing(name)[1])
+
+
+def check_names(subject: Subject, names: Iterable[str]) -> None:
+    """Refuse names that are no averages of the subject.
+
+    Raises
+    ------
+    InputError
+        If there is one.
+    """
+    bearings = prefixes(subject)
+    for name in names:
+        bearing, own = of_bearing(name)
+        check_average(own, "want")
+        if bearing not in bearings and not (name in SUMS and len(bearings) > 1):
+            limit = f"must begin with the name of a bearing ({', '.join(bearings)}), or be one of the sums {', '.join(SUMS)}"
+            raise InputError.of("want", name, limit if len(bearings) > 1 else f"must be {own}: there is one bearing")
+
+
+def joined(each: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Numbers of all bearings in one table, with the sums of several."""
+    found = {f"{bearing}{name}": value for bearing, values in each.items() for name, value in values.items()}
+    for name in SUMS if len(each) > 1 else ():
+        values = [numbers.get(name) for numbers in each.values()]
+        if None not in values:
+            found[name] = sum(values)
+    return found
+
+
+@dataclass(frozen=True)
+class Records:
+    """The records of a run.
+
+    Attributes
+    ----------
+    parts : mapping of str to Result
+        Of each bearing, by what the names of its averages begin with.
+    """
+
+    parts: Mapping[str, Result]
+
+    @classmethod
+    def of(cls, subject: Subject, result: Result | AssemblyResult) -> Records:
+        """The records of a result of a scene or an assembly."""
+        return cls(dict(zip(prefixes(subject), result.parts, strict=True)))
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Times of the records (s), shape (T,)."""
+        return next(iter(self.parts.values())).time
+
+    def window(self, start: float = -math.inf, stop: float = math.inf) -> Records:
+        """The records between two times (s), both included."""
+        return Records({bearing: part.window(start, stop) for bearing, part in self.parts.items()})
+
+    def averages(self) -> dict[str, Any]:
+        """The averages over the records."""
+        return joined({bearing: averages(part) for bearing, part in self.parts.items()})
+
+    def half_widths(self) -> dict[str, float]:
+        """Half widths of their 95 % confidence intervals, as far as they are known; of a sum the sum of those of its parts."""
+        return joined({bearing: confidence(part, averages)[0] or {} for bearing, part in self.parts.items()})
+
+    def settling(self) -> MotionSettling:
+        """Whether the motion has settled; of several bearings of the one that has not, or that took longest."""
+        found = [part.settling() for part in self.parts.values()]
+        return max(found, key=lambda one: (not one.settled, one.time))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the watch over the run said."""
+        return tuple(text for part in self.parts.values() for text in part.warnings)
