@@ -201,3 +201,12 @@ def test_what_needs_a_cage_is_refused_by_name() -> None:
     assert result.summary()["orbit_rms_over_cpr"] is None
     with pytest.raises(InputError, match="has no cage"):
         trb.plot.cage_locus(result)
+
+
+def test_rollers_that_slide_are_said() -> None:
+    """Below the least load a cage's pockets make most of the loss: a run without them says what it leaves out."""
+    with pytest.warns(trb.RunWarning, match="a spacer leaves out"):
+        Simulation(scene_of(speed_rpm=3000.0, axial_load=400.0)).run(revolutions=4)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Simulation(scene_of(speed_rpm=3000.0)).run(revolutions=1)

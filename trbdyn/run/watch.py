@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import RunWarning
+from trbdyn.model.motion import value_at
 from trbdyn.run import vibrations
 from trbdyn.run.vibrations import Probe
 
@@ -65,6 +66,8 @@ REPEATED_SHARE: Final = 0.5
 """Share of steps that had to be repeated above which a run warns."""
 MOST_WARNINGS: Final = 8
 TIGHTER: Final = "try accuracy='reference', or smaller tolerances"
+SLIDING: Final = 3e-3
+"""Slip of rollers that a spacer holds from which on a cage may matter (1)."""
 
 
 @dataclass
@@ -191,6 +194,7 @@ class Watch:
             self._judge_vibrations(now, time)
             if not self._noted & {"energy", "losses", "vibrations"}:
                 self._judge_small_losses(now, time)
+            self._judge_slip(time)
         return None if self._going_on else reason
 
     def renew(self) -> None:
@@ -403,6 +407,25 @@ class Watch:
             return None
         body = "ring_body" if ring == "inner" else "housing"
         return f"ended: {text}. Look for an axial load that holds it, a support of {body}, or effects.back_rib"
+
+    def _judge_slip(self, time: float) -> None:
+        """A spacer holds rollers that slide or float as gently as no cage does: what they lose by its pockets is left out."""
+        scene = self._bearing.scene
+        if scene.effects.bodies != "rollers_and_spacer":
+            return
+        row = self._sim._core.observe(time, self._sim._core.state())
+        at = {name: offset for name, offset, _ in self._bearing.record_layout}
+        outer = value_at(scene.outer_speed_rpm, time) * math.pi / 30.0
+        rolling = scene.bearing.geometry.cage_speed_ratio * (row[at["shaft_speed"]] - outer) + outer
+        slip = 1.0 - row[at["roller_orbit_speed"]] / rolling if rolling else 0.0
+        if abs(slip) > SLIDING:
+            sense = "slower" if slip > 0.0 else "faster"
+            self._say(
+                f"at {time:.6g} s the rollers orbit {100.0 * abs(slip):.2g} % {sense} than in pure rolling: they slide, and what "
+                "a cage then does to them, which a spacer leaves out, may be most of the loss; compare with "
+                "effects.bodies = 'rollers_and_cage'",
+                "slip",
+            )
 
     def _look_at_shaft(self) -> str | None:
         """The same of a ring on a shaft with other bearings."""
