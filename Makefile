@@ -38,8 +38,9 @@ SOURCES := $(shell find csrc -type f)
 TIDY    := $(wildcard $(patsubst %,csrc/%/*.c,base laws surface bearing body contact system motion stepping python))
 STYLED  := $(wildcard csrc/*/*.[ch])
 # Python tests that together run nearly every line of the C sources; the leak tests count a memory that sanitizers keep
-SANITIZED := $(addprefix tests/,laws/test_in_contacts.py laws/test_extremes.py laws/test_oracles.py api/test_laws_api.py geometry \
-  api/test_simulation.py api/test_pockets.py physics/test_looking.py physics/test_contacts.py physics/test_effects.py \
+SANITIZED := $(addprefix tests/,laws/test_in_contacts.py laws/test_extremes.py laws/test_oracles.py api/test_laws_api.py \
+  $(addprefix geometry/test_,derived.py equilibrium.py interference.py pocket.py) api/test_simulation.py api/test_pockets.py \
+  $(addprefix physics/test_,looking.py contacts.py effects.py spacer.py) \
   fuzz/test_bad_input.py restart/test_checkpoints.py convergence/test_determinism.py)
 PACKAGES := 'import sysconfig; print(sysconfig.get_path("platlib"))'
 DEFINES := -C cmake.define.TRB_WERROR=$(WERROR) -C cmake.define.TRB_BUILD_TESTS=ON
