@@ -100,6 +100,7 @@ def test_bearings_alone_are_refused() -> None:
         assembly_from_dict(tables)
 
 
+@pytest.mark.slow
 def test_from_the_shell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """Run, look, draw: with a value of the second bearing changed."""
     monkeypatch.chdir(tmp_path)

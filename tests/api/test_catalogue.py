@@ -393,6 +393,7 @@ def test_a_maker_whose_rating_is_above_the_standard_is_said() -> None:
     assert any(f"{190e3 / rating(bearing):.3f} times" in entry.source for entry in bearing.estimated)
 
 
+@pytest.mark.slow
 def test_sensitivity_finds_what_matters() -> None:
     bearing = trb.Bearing.from_catalogue(**page("30310"))
     scene = trb.Scene(bearing, speed_rpm=2000.0, axial_load=3000.0)

@@ -205,6 +205,7 @@ class MadeUp:
         return {name: float(self.of[name].mean()) for name in ("torque", "power_loss")}
 
 
+@pytest.mark.slow
 def test_the_summary_of_a_run_has_error_bars_that_later_windows_keep() -> None:
     """A whirl at 1230 N: averages of one half of two seconds agree with those of the other half.
 
@@ -336,6 +337,7 @@ def test_each_average_is_judged_by_itself(settling: str) -> None:
         assert any(ended) == known, name
 
 
+@pytest.mark.slow
 def test_creep_that_a_run_is_short_against_leaves_the_cage_no_interval() -> None:
     """Combined load: the rollers creep within 1.3 s, so that half a second tells nothing of the cage, and the run goes on."""
     scene = paper_30310(3000.0, 4930.0, 5530.0, effects=trb.Effects.standard(), start=trb.Start.unequal(1))

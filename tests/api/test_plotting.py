@@ -201,6 +201,7 @@ def test_whirl_map_marks_every_run(build: Callable[..., tuple[Any, Result]]) -> 
     assert np.ptp(ax.get_xlim()) >= 0.2 * 3000.0
 
 
+@pytest.mark.slow
 def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
     drawn = [name for name in plot.PICTURES if name not in NEED_A_SCENE]
     files = plot.all(whirling, tmp_path / "new" / "pictures", only=drawn)

@@ -306,6 +306,7 @@ def test_a_file_describes_itself(tmp_path: Path, synthetic: Any, stub_scene: Any
         assert [axis[0].name for axis in file["cage_position"].dims] == ["/time", "/xyz"]
 
 
+@pytest.mark.slow
 def test_xarray_opens_a_file(tmp_path: Path, synthetic: Any, stub_scene: Any, whirling: Result) -> None:
     """One variable of each kind and dimensions and all coordinates: units, names of dimensions, numbers as `load` gives them."""
     xarray, path = pytest.importorskip("xarray"), tmp_path / "run.h5"
@@ -502,7 +503,10 @@ def test_records_wait_in_memory_only_until_flushed(tmp_path: Path, synthetic: An
     np.testing.assert_array_equal(load(tmp_path / "run.h5").time, synthetic.column("time")[:11])
 
 
-@pytest.mark.parametrize("expected", [None, 7, 100, 4001, 100_000])
+@pytest.mark.parametrize(
+    "expected",
+    [None, pytest.param(7, marks=pytest.mark.slow), 100, pytest.param(4001, marks=pytest.mark.slow), 100_000],
+)
 @pytest.mark.parametrize("beside", [False, True])
 def test_what_is_written_is_what_was_recorded(
     tmp_path: Path,

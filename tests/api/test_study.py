@@ -197,13 +197,13 @@ class TestDefinition:
 
 
 class TestExecutors:
-    def test_threads_and_processes_equal_serial(self, serial: tuple[Any, Path], tmp_path: Path) -> None:
+    @pytest.mark.parametrize("kind", ["threads", pytest.param("processes", marks=pytest.mark.slow)])
+    def test_threads_and_processes_equal_serial(self, serial: tuple[Any, Path], tmp_path: Path, kind: str) -> None:
         data, folder = serial
-        for kind in ("threads", "processes"):
-            other = study.run(small(), tmp_path / kind, executor=kind)
-            assert same(records(folder), records(tmp_path / kind))
-            deterministic = [name for name in data.data_vars if not str(name).startswith("wall")]
-            assert other[deterministic].identical(data[deterministic])
+        other = study.run(small(), tmp_path, executor=kind)
+        assert same(records(folder), records(tmp_path))
+        deterministic = [name for name in data.data_vars if not str(name).startswith("wall")]
+        assert other[deterministic].identical(data[deterministic])
 
     @pytest.mark.slow
     def test_a_dask_cluster_equals_serial(self, serial: tuple[Any, Path], tmp_path: Path) -> None:
@@ -220,6 +220,7 @@ class TestExecutors:
         assert np.all(data.records == 21)
         assert np.all(data["last"] == OPTIONS.duration)
 
+    @pytest.mark.slow
     def test_any_executor(self, serial: tuple[Any, Path], tmp_path: Path) -> None:
         with ThreadPoolExecutor(2) as pool:
             study.run(small(), tmp_path, executor=pool)
@@ -543,6 +544,7 @@ class TestCommand:
             made = study.load_study(name)
             assert all(case.scene is not None for case in made.cases)
 
+    @pytest.mark.slow
     @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
     def test_ctrl_c_ends_cleanly_and_resume_goes_on(self, tmp_path: Path) -> None:
         kind = '[study.grid]\n"scene.speed_rpm" = [1000.0, 2000.0, 3000.0]\n"bearing.cage.mass" = [0.1, 0.2]'

@@ -22,6 +22,7 @@ def found() -> WhirlOnset:
     return whirl_onset(SCENE, [4000.0, 1000.0], resolution=1500.0, longest=40.0)
 
 
+@pytest.mark.slow
 def test_what_a_cage_does_depends_on_speed_and_start(found: WhirlOnset) -> None:
     data = found.data
     assert list(data.speed_rpm.values) == [1000.0, 2500.0, 4000.0]

@@ -123,6 +123,7 @@ def test_short_table_has_every_scene_and_preset(work_precision: dict[str, Any]) 
     assert found == {(case, preset) for case in work_precision["summary"]["scenes"] for preset in ACCURACY}
 
 
+@pytest.mark.slow
 def test_a_users_run_is_measured_beside_its_steps(tmp_path: Path) -> None:
     found = smoke("user_run", tmp_path, "--turns", "0.2", least="--quick")
     assert [row["preset"] for row in found["results"]] == list(ACCURACY)
@@ -182,6 +183,7 @@ def test_makes_the_table_of_estimates(
         module.table.cache_clear()
 
 
+@pytest.mark.slow
 def test_scaling(tmp_path: Path) -> None:
     found = smoke("scaling", tmp_path)
     sweeps = {row["sweep"] for row in found["results"]}

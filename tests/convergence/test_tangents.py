@@ -50,7 +50,7 @@ def truth(states: list[tuple[NDArray[np.float64], float]]) -> list[NDArray[np.fl
     return [cage_path(sim, place) for place in states]
 
 
-@pytest.mark.parametrize("accuracy", ["standard", "reference"])
+@pytest.mark.parametrize("accuracy", [pytest.param("standard", marks=pytest.mark.slow), "reference"])
 def test_tangents_cost_no_accuracy(
     accuracy: str, states: list[tuple[NDArray[np.float64], float]], truth: list[NDArray[np.float64]]
 ) -> None:

@@ -44,7 +44,7 @@ def test_runs_are_what_they_are_called(truth: tuple[str, Result]) -> None:
     assert (result.pocket_force.max() > 100.0) == (case == "colliding")
 
 
-@pytest.mark.parametrize("integrator", ["bdf", "multirate"])
+@pytest.mark.parametrize("integrator", ["bdf", pytest.param("multirate", marks=pytest.mark.slow)])
 def test_implicit_method_converges_to_the_explicit_one(
     kit: SimpleNamespace, truth: tuple[str, Result], integrator: str
 ) -> None:

@@ -211,7 +211,7 @@ def test_any_value_in_any_field_of_a_scene(where: tuple[str, tuple[str | int, ..
         assert trb.Scene.from_json(scene.to_json()) == scene
 
 
-@settings(parent=COMMON, max_examples=120)
+@settings(parent=COMMON, max_examples=60)
 @given(
     st.one_of(st.tuples(st.just("plain"), st.sampled_from(PLACES)), full_places()),
     st.floats(0.2, 5.0),

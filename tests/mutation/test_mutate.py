@@ -176,6 +176,7 @@ def failures(copy: Path) -> list[list[str]]:
     return json.loads(found)
 
 
+@pytest.mark.slow
 def test_a_process_of_a_test_meets_the_fault(copy: Path) -> None:
     """One planted in the command line: tests that start a process notice it, the others do not."""
     assert failures(copy) == []

@@ -192,6 +192,7 @@ def test_a_free_ring_that_no_rib_holds() -> None:
     assert trb.Simulation(scene("NJ", axial_load=load, ring="free", ring_body=body)).run(duration=8e-3).success
 
 
+@pytest.mark.slow
 def test_the_floating_side_of_a_shaft() -> None:
     """A pair of tapered bearings carries all of the axial load; the shaft is in balance, and runs."""
     shaft = trb.Shaft.hollow_cylinder(mass=8.0, outer_diameter=0.05, length=0.4)

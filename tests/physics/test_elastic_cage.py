@@ -143,7 +143,7 @@ def test_coriolis_forces_part_the_frequencies_of_a_cage_that_turns() -> None:
 # ---- static bending, action and reaction ----
 
 
-@pytest.mark.parametrize("lubrication", ["mixed", "dry"])
+@pytest.mark.parametrize("lubrication", [pytest.param("mixed", marks=pytest.mark.slow), "dry"])
 def test_rollers_push_the_modes_with_what_pushes_them(lubrication: str, built: CageSolid) -> None:
     """Generalised forces from the wrench of each roller on the cage, and its face's shape; the amplitudes at which the modes
     would rest bend the cage as its stiffness does under the same wrenches, but for the modes that are left out.

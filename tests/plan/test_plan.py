@@ -243,6 +243,7 @@ def test_scenes_that_cannot_be_planned() -> None:
         trb.plan(rolling(bodies="rollers"), {"pocket_duty": 0.1})
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_case_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     name = str(tmp_path / "mine")
     call = ["plan", "rig_30310", "--want", "torque=0.05", "--effort", "2", "-o", name]

@@ -86,7 +86,9 @@ def test_output_times_change_no_bit(reference: trb.Result, save_every: float) ->
         np.testing.assert_array_equal(other.peaks[name], reference.peaks[name], err_msg=name)
 
 
-@pytest.mark.parametrize(("integrator", "share"), [("bdf", 1.0), ("erk", 0.125), ("multirate", 1.0)])
+@pytest.mark.parametrize(
+    ("integrator", "share"), [("bdf", 1.0), pytest.param("erk", 0.125, marks=pytest.mark.slow), ("multirate", 1.0)]
+)
 def test_runs_in_pieces_follow_one_schedule(integrator: str, share: float, tmp_path: Path) -> None:
     """Progress, callbacks, files and the borders between runs change nothing."""
     every, second, end = share * EVERY, share * 0.003, share * 0.008
