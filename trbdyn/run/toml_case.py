@@ -167,9 +167,8 @@ def bearing_from_table(table: Table) -> Bearing:
             base = Bearing.named(table["named"]).inputs()
     values = _merged(base, without(table, "case", "named"))
     values = _with_traces(values, table, path)
-    cage = values.get("cage")
-    if isinstance(cage, dict) and "drawing" in cage:
-        own = table["cage"]
+    cage, own = values.get("cage"), _at(table, "cage")
+    if isinstance(cage, dict) and own.get("drawing") is not None:
         plain = build(Bearing, {**values, "cage": {name: own[name] for name in ("material",) if name in own}}, path)
         with located((*path, "cage")):
             drawn = _drawn(plain, cage["drawing"]).replace(**without(own, "drawing", "material"))
