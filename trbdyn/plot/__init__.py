@@ -32,7 +32,7 @@ from trbdyn.plot.assembly import of_result as of_assembly
 from trbdyn.plot.cage import axial_motion, cage_locus, orbit_radius, spectrum, tilt, whirl_map
 from trbdyn.plot.contact_line import contact_line
 from trbdyn.plot.described import describe, of_its_kind
-from trbdyn.plot.drawing import bearing_drawing, pocket_drawing, profile_trace
+from trbdyn.plot.drawing import bearing_drawing, cage_drawing, pocket_drawing, profile_trace
 from trbdyn.plot.elastic import cage_shape, cage_stress
 from trbdyn.plot.energy import energy_audit, power_split, torque_split
 from trbdyn.plot.ring import ring_motion, ring_orbit, ring_orders, ring_spectrum
@@ -53,6 +53,7 @@ __all__ = [
     "axial_motion",
     "bearing_drawing",
     "bearing_loads",
+    "cage_drawing",
     "cage_locus",
     "cage_shape",
     "cage_stress",

@@ -7,16 +7,23 @@ cone, body of the cage) is drawn in usual proportions, dashed.
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LightSource
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
+from trbdyn.base.own_files import digest_of
+from trbdyn.cage.cage_solid import pocket_axes
 from trbdyn.errors import InputError
+from trbdyn.model.drawn.opened import STEP_ENDINGS, opened
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
 from trbdyn.model.profiles import profile_drop
 from trbdyn.plot.style import COLOURS, GREY, canvas, plain, styled
@@ -154,8 +161,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
     InputError
         If there is no such pocket.
     """
-    if not isinstance(pocket, int) or not 0 <= pocket < bearing.n_rollers:
-        raise InputError.of("pocket", pocket, f"must be a whole number from 0 to {bearing.n_rollers - 1}")
+    _check_pocket(bearing, pocket)
     geometry, roller = bearing.geometry, bearing.roller
     faces, gaps = bearing.pocket_of(pocket).faces, bearing.pocket_of(pocket).gaps(bearing.geometry)
     around = np.linspace(0.0, 2.0 * np.pi, 121)
@@ -193,6 +199,88 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
             fontsize=10,
         )
     return figure
+
+
+def cage_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
+    """A pocket in the drawing that its cage comes from, and beside it the surfaces that were recognised in it.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Its cage comes from a STEP file (`Cage.from_step`).
+    pocket : int
+        Number of the pocket, 0 to Z - 1.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        If the cage comes from no STEP file, or from one that has changed, or there is no such pocket.
+    FileError
+        If the file cannot be read.
+    ImportError
+        If the extra ``trbdyn[cad]`` is not installed.
+    """
+    _check_pocket(bearing, pocket)
+    drawn = triangles_in_pocket(bearing, pocket)
+    facets: dict[int, list[Face]] = {}
+    for face in bearing.pocket_of(pocket).faces:
+        facets.setdefault(face.slot, []).append(face)
+    with styled():
+        figure, light = plt.figure(figsize=(10.5, 5.0)), LightSource(azdeg=225.0, altdeg=45.0)
+        for place, title in enumerate(("as drawn", "recognised: what a roller can touch")):
+            ax = figure.add_subplot(1, 2, place + 1, projection="3d")
+            grey = Poly3DCollection(
+                drawn, facecolors="#D9DEE3", shade=True, lightsource=light, alpha=0.35 if place else 1.0
+            )
+            ax.add_collection3d(grey, autolim=False)
+            for index, surface in enumerate(facets.values() if place else ()):
+                corners = [1e3 * np.asarray(face.vertices)[:, [1, 2, 0]] for face in surface]
+                label = surface[0].name.replace("_", " ") + (f", {len(surface)} facets" if len(surface) > 1 else "")
+                colour = COLOURS[index % len(COLOURS)]
+                ax.add_collection3d(
+                    Poly3DCollection(corners, facecolor=colour, edgecolor=colour, linewidth=0.3, label=label),
+                    autolim=False,
+                )
+            points = drawn.reshape(-1, 3)
+            low, high = points.min(axis=0), points.max(axis=0)
+            ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+            ax.set_box_aspect(high - low)
+            ax.view_init(elev=42.0, azim=-28.0)
+            ax.zaxis.set_major_locator(MaxNLocator(3))
+            ax.set(xlabel="t (mm)", ylabel="a (mm)", zlabel="n (mm)")
+            ax.set_title(title)
+        figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
+        figure.suptitle(f"{plain(bearing.name)}, pocket {pocket} of {plain(Path(bearing.cage.drawing.file).name)}")  # type: ignore[union-attr]
+    return figure
+
+
+def _check_pocket(bearing: Bearing, pocket: object) -> None:
+    if not isinstance(pocket, int) or not 0 <= pocket < bearing.n_rollers:
+        raise InputError.of("pocket", pocket, f"must be a whole number from 0 to {bearing.n_rollers - 1}")
+
+
+def triangles_in_pocket(bearing: Bearing, pocket: int) -> Array:
+    """Triangles of a drawn cage around a pocket, in the frame of the pocket as (t, a, n), shape (T, 3, 3) (mm)."""
+    drawing = bearing.cage.drawing
+    if drawing is None or Path(drawing.file).suffix.lower() not in STEP_ENDINGS:
+        raise InputError.of(("cage", "drawing"), drawing, "must be a STEP file (Cage.from_step)")
+    if digest_of(drawing.file) != drawing.sha256:
+        limit = f"must be that of {drawing.file}, which has changed since"
+        raise InputError.of(("cage", "drawing", "sha256"), drawing.sha256, limit)
+    size = bearing.roller.diameter
+    with opened(drawing.file, mesh_size=0.2 * size, unit="mm") as solid:
+        triangles = np.concatenate([face.triangles for face in solid.faces])
+    in_cage = (triangles - np.array(drawing.origin)) @ np.array(drawing.axes).T
+    angle = 2.0 * np.pi * pocket / bearing.n_rollers
+    middle = 0.5 * bearing.pitch_diameter * np.array([np.cos(angle), np.sin(angle), 0.0])
+    found = ((in_cage - middle) @ pocket_axes(bearing, pocket).T)[..., [1, 2, 0]]
+    centres = found.mean(axis=1)
+    near = (np.abs(centres[:, 0]) < 0.75 * size) & (np.abs(centres[:, 2]) < size)
+    return np.asarray(1e3 * found[near])
 
 
 def profile_trace(trace: Trace, ax: Axes | None = None) -> Axes:
