@@ -29,13 +29,7 @@ if TYPE_CHECKING:
         TrbError as TrbError,
     )
     from trbdyn.model import cases as cases, lubricants as lubricants, pocket_shapes as pocket_shapes
-    from trbdyn.model.assembly import (
-        Assembly as Assembly,
-        PreloadSpring as PreloadSpring,
-        Shaft as Shaft,
-        ShaftBearing as ShaftBearing,
-        ShaftLoad as ShaftLoad,
-    )
+    from trbdyn.model.assembly import Assembly as Assembly
     from trbdyn.model.bearing import (
         Bearing as Bearing,
         Cage as Cage,
@@ -57,6 +51,12 @@ if TYPE_CHECKING:
     from trbdyn.model.lubricants import Lubricant as Lubricant, Oil as Oil
     from trbdyn.model.motion import History as History
     from trbdyn.model.mounting import Mounting as Mounting, Temperatures as Temperatures
+    from trbdyn.model.on_shaft import (
+        PreloadSpring as PreloadSpring,
+        Shaft as Shaft,
+        ShaftBearing as ShaftBearing,
+        ShaftLoad as ShaftLoad,
+    )
     from trbdyn.model.planet import planet as planet
     from trbdyn.model.pocket import Face as Face, OtherPocket as OtherPocket, Pocket as Pocket
     from trbdyn.model.ring_body import Housing as Housing, RingBody as RingBody

@@ -417,34 +417,8 @@ class Bearing(Model):
         >>> print(cylindrical.n_rollers, round(1e3 * cylindrical.roller.diameter, 2))
         16 11.2
         """
-        fields = fields_from_catalogue(
-            bore=bore,
-            outside=outside,
-            width=width,
-            C=C,
-            e=e,
-            Y=Y,
-            C0=C0,
-            Y0=Y0,
-            Cu=Cu,
-            cup_width=cup_width,
-            n_rollers=n_rollers,
-            roller_diameter=roller_diameter,
-            roller_length=roller_length,
-            pitch_diameter=pitch_diameter,
-            contact_angle_deg=contact_angle_deg,
-            cage_mass=cage_mass,
-            maker_factor=maker_factor,
-            reference_speed_rpm=reference_speed_rpm,
-            limiting_speed_rpm=limiting_speed_rpm,
-            flanges=flanges,
-            F=F,
-            E=E,
-            radial_clearance=radial_clearance,
-            name=name,
-            others=others,
-        )
-        return cls(**fields)
+        given = {name: value for name, value in locals().items() if name not in ("cls", "others")}
+        return cls(**fields_from_catalogue(**given, others=others))
 
     @classmethod
     def named(cls, designation: str, *, table: str | pathlib.Path | None = None, **known: Any) -> Bearing:
