@@ -157,15 +157,21 @@ def value_text(value: Any) -> str:
     return "free" if value is None else str(value)
 
 
-@cache
-def field_texts(kind: type) -> Mapping[str, str]:
+def field_texts(kind: type) -> dict[str, str]:
     """What each field of a model is, from the part "Parameters" of its docstring."""
+    return {name: text for name, (_, text) in described_fields(kind).items()}
+
+
+@cache
+def described_fields(kind: type) -> Mapping[str, tuple[str, str]]:
+    """What stands in the part "Parameters" of a docstring: of each field what values it has, and what it is."""
     text = inspect.cleandoc(kind.__doc__ or "")
     found = re.search(r"^Parameters\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", text, re.MULTILINE | re.DOTALL)
-    out: dict[str, str] = {}
+    out: dict[str, tuple[str, str]] = {}
     for entry in re.split(r"\n(?=\w)", found[1]) if found else ():
         head, _, body = entry.partition("\n")
-        out |= {name.strip(): " ".join(body.split()) for name in head.partition(" : ")[0].split(",")}
+        names, _, values = head.partition(" : ")
+        out |= {name.strip(): (values, " ".join(body.split())) for name in names.split(",")}
     return out
 
 

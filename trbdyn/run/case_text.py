@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import re
 import textwrap
 from typing import TYPE_CHECKING, Any, Final
 
+from trbdyn.base.shown import described_fields
 from trbdyn.base.validation import Model
 from trbdyn.model.lubricants import OILS
 from trbdyn.model.scene import Scene
@@ -161,18 +161,9 @@ def _toml(value: Any) -> str:
 
 
 def _meanings(model: type[Model]) -> dict[str, str]:
-    """What each field means, from the numpydoc docstring of its model."""
-    text = inspect.cleandoc(model.__doc__ or "")
-    part = re.search(r"Parameters\n-+\n(.*?)(?:\n\n[A-Z]\w+\n-+\n|\Z)", text, re.DOTALL)
-    found: dict[str, str] = {}
-    names: list[str] = []
-    for line in part[1].splitlines() if part else []:
-        head = re.match(r"(\w[\w, ]*) : (.*)", line)
-        if head and not line.startswith(" "):
-            names = [name.strip() for name in head[1].split(",")]
-            kinds = re.search(r"\{.*\}", head[2])
-            choices = f"One of {kinds[0][1:-1]}." if kinds else ""
-            found |= dict.fromkeys(names, choices)
-        else:
-            found |= {name: f"{found[name]} {line.strip()}".strip() for name in names}
+    """What each field means and, where it is one of some words, which."""
+    found = {}
+    for name, (values, text) in described_fields(model).items():
+        choices = re.search(r"\{(.*)\}", values)
+        found[name] = f"One of {choices[1]}. {text}".strip() if choices else text
     return found
