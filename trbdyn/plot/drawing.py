@@ -251,7 +251,8 @@ def cage_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
             ax.set_box_aspect(high - low)
             ax.view_init(elev=42.0, azim=-28.0)
             ax.zaxis.set_major_locator(MaxNLocator(3))
-            ax.set(xlabel="t (mm)", ylabel="a (mm)", zlabel="n (mm)")
+            ax.set(xlabel="t (mm)", ylabel="a (mm)")
+            ax.set_zlabel("n (mm)", labelpad=-0.5)
             ax.set_title(title)
         figure.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
         figure.suptitle(f"{plain(bearing.name)}, pocket {pocket} of {plain(Path(bearing.cage.drawing.file).name)}")  # type: ignore[union-attr]
