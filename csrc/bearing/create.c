@@ -231,6 +231,12 @@ static trb_status check_ring(const trb_params *p, trb_message *message)
   if (p->ring_turned > 0.0 && !(p->ring_carried > 0.0))
     return trb_fail(message, TRB_ERR_INPUT,
                     "ring_turned = %g: only a ring that is carried can be turned: the first bearing has the shaft's axes", p->ring_turned);
+  if (p->outer_carried > 0.0 && !(p->outer_free > 0.0))
+    return trb_fail(message, TRB_ERR_INPUT, "outer_carried = %g: only an outer ring that moves can be part of a housing", p->outer_carried);
+  if (p->outer_turned > 0.0 && !(p->outer_carried > 0.0))
+    return trb_fail(message, TRB_ERR_INPUT,
+                    "outer_turned = %g: only a ring that is carried can be turned: the first bearing has the housing's axes",
+                    p->outer_turned);
   return TRB_OK;
 }
 
@@ -274,7 +280,7 @@ static void make_rings(trb_model *m)
                                             .support_axial = p->outer_support_axial,
                                             .support_tilt = p->outer_support_tilt,
                                             .support_position = plane + p->outer_support_position,
-                                            .sense = 1.0,
+                                            .sense = p->outer_turned > 0.0 ? -1.0 : 1.0,
                                             .keeps_speed = 1,
                                             .is_outer = 1};
 }

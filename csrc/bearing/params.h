@@ -84,6 +84,8 @@
   X(outer_ring, outer_support_tilt,        "N m",       0,      1e12,   "stiffness of the support against tilt, per radian") \
   X(outer_ring, outer_support_position,    "m",         -100,   100,    "axial position of the support from the roller-centre plane") \
   X(outer_ring, outer_turns,               "choice",    0,      1,      "1: the outer ring turns at a prescribed speed") \
+  X(outer_ring, outer_carried,             "choice",    0,      1,      "1: the outer ring is part of the body of the first bearing's outer ring: one housing is around both") \
+  X(outer_ring, outer_turned,              "choice",    0,      1,      "1: the bearing sits in that housing the other way round: its axes are the housing's, turned by half a turn about x") \
   /* inner ring, where it is free to move */ \
   X(inner_ring, ring_free,                 "choice",    0,      2,      "inner ring: 0 as prescribed, 1 free at a prescribed speed, 2 free, turned by a torque") \
   X(inner_ring, ring_mass,                 "kg",        0,      1e5,    "mass of the inner ring and what turns with it") \

@@ -12,12 +12,13 @@ typedef struct turning {
 
 static turning turning_of(const trb_ring_body *own, const trb_drive *drive)
 {
-  if (own->is_outer) return (turning){drive->carried_angle, drive->carried_speed, drive->carried_rate};
+  if (own->is_outer)
+    return (turning){own->sense * drive->carried_angle, own->sense * drive->carried_speed, own->sense * drive->carried_rate};
   return (turning){own->sense * drive->shaft_angle, own->sense * drive->shaft_speed, own->sense * drive->shaft_rate};
 }
 
-/* Coordinates of the inner ring are those of the shaft, in its axes. A bearing that sits on it the other way round has axes that are turned
- * by half a turn about x. A vector from the axes of the coordinates into the bearing's, or back. */
+/* Coordinates of the inner ring are those of the shaft, in its axes, and those of the outer ring are its housing's. A bearing that sits there
+ * the other way round has axes that are turned by half a turn about x. A vector from the axes of the coordinates into the bearing's, or back. */
 static trb_vec3 other_axes(const trb_ring_body *own, trb_vec3 v) { return trb_v(v.x, own->sense * v.y, own->sense * v.z); }
 
 /* The centre of mass from its nominal place, in the bearing's axes. */

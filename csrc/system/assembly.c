@@ -1,10 +1,10 @@
 #include "system/assembly.h"
 
-/* The body of the first system that a carried body is part of. */
-static trb_status share(const trb_assembly *a, int member, trb_body *body, trb_message *message)
+/* The body of the first system that a carried body is part of: the one with the same number. */
+static trb_status share(trb_assembly *a, int member, int number, trb_message *message)
 {
-  const trb_system *first = &a->members[0];
-  const trb_body   *carrier = &first->bodies[first->driven];
+  trb_body       *body = &a->members[member].bodies[number];
+  const trb_body *carrier = &a->members[0].bodies[number];
   if (member == 0)
     return trb_fail(message, TRB_ERR_INPUT, "bearing 1, %s: carried by a body of another bearing: only bearings after the first can be",
                     body->name);
@@ -32,7 +32,7 @@ trb_status trb_assembly_make(const trb_system *const *systems, int n, trb_assemb
       trb_body *body = &a->members[k].bodies[b];
       if (body->size == 0) continue;
       if (body->carried) {
-        const trb_status status = share(a, k, body, message);
+        const trb_status status = share(a, k, b, message);
         if (status != TRB_OK) return status;
         continue;
       }

@@ -2,10 +2,10 @@
  *
  * Their state is one vector: the coordinates of all rollers, bearing after bearing, then those of the bodies of the hub, then spin angles,
  * then quadratures. Every system knows where its own entries lie (trb_layout), so that what evaluates a system reads and writes the vector
- * of the whole. Bearings on one shaft share a body. The first system has it: it gives its rates without loads, its energies and its work.
- * In the other systems the inner ring is a part of the shaft: its coordinates follow from those of the shaft and its place on it, and the
- * forces of its contacts act on the shaft. The work that passes between them is booked in both, so that the energy of each adds up by
- * itself. One bearing is an assembly of one. */
+ * of the whole. Bearings on one shaft share a body, and so do those in one housing. The first system has it: it gives its rates without
+ * loads, its energies and its work. In the other systems the ring is a part of shaft or housing: its coordinates follow from those of that
+ * body and its place there, and the forces of its contacts act on it. The work that passes between them is booked in both, so that the
+ * energy of each adds up by itself. One bearing is an assembly of one. */
 #ifndef TRB_SYSTEM_ASSEMBLY_H
 #define TRB_SYSTEM_ASSEMBLY_H
 

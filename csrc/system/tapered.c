@@ -41,8 +41,11 @@ static void add_bodies(trb_system *s)
   const trb_body_kind *outer = s->model->params.outer_turns > 0.0 ? &trb_ring_turning : &trb_ring_at_rest;
   s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = outer, .name = "outer ring"};
   if (s->model->params.outer_free > 0.0)
-    s->bodies[TRB_BODY_OUTER_RING] = (trb_body){
-        .kind = &trb_ring_housed, .name = "outer ring", .own = &s->model->ring[TRB_RACE_OUTER], .loss = TRB_BOOK(TRB_LOSS_support)};
+    s->bodies[TRB_BODY_OUTER_RING] = (trb_body){.kind = &trb_ring_housed,
+                                                .name = "outer ring",
+                                                .own = &s->model->ring[TRB_RACE_OUTER],
+                                                .loss = TRB_BOOK(TRB_LOSS_support),
+                                                .carried = s->model->params.outer_carried > 0.0};
   s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_prescribed, .name = "inner ring"};
   if (s->model->params.ring_free > 0.0)
     s->bodies[TRB_BODY_INNER_RING] = (trb_body){.kind = &trb_ring_free,
