@@ -56,6 +56,7 @@ if TYPE_CHECKING:
         Shaft as Shaft,
         ShaftBearing as ShaftBearing,
         ShaftLoad as ShaftLoad,
+        SharedHousing as SharedHousing,
     )
     from trbdyn.model.planet import planet as planet
     from trbdyn.model.pocket import Face as Face, OtherPocket as OtherPocket, Pocket as Pocket

@@ -436,6 +436,8 @@ OF_FREE_RINGS |= {f"ring_support_{name}" for name in ("radial", "axial", "tilt",
 OF_FREE_RINGS |= {
     f"outer_{name}" for name in ("mass", "inertia_axial", "inertia_transverse", "offset", "damping", "damping_turns")
 }
+# of bearings in one housing: tests/physics/test_shared_housing.py, csrc/tests/test_assembly.c
+OF_FREE_RINGS |= {"outer_carried", "outer_turned"}
 OF_FREE_RINGS |= {f"outer_support_{name}" for name in ("radial", "axial", "tilt", "position")}
 """Numbers of free rings: tests/physics/test_free_ring.py, tests/physics/test_housing.py."""
 

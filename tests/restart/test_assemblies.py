@@ -19,18 +19,29 @@ from trbdyn.run import running
 from trbdyn.run.checkpoint import checkpoint_path
 from trbdyn.run.running import Run
 
+HOUSING = trb.SharedHousing.hollow_cylinder(
+    mass=12.0, inner_diameter=0.11, outer_diameter=0.16, length=0.25
+).on_supports((-0.1, 0.1), radial=1e8, axial=5e7)
 
-def simulation(**options: object) -> trb.Simulation:
-    return trb.Simulation(trb.load_assembly("pair_30310"), accuracy="fast", **options)
+
+def simulation(housing: trb.SharedHousing | None = None, **options: object) -> trb.Simulation:
+    subject = trb.load_assembly("pair_30310").replace(shared_housing=housing)
+    return trb.Simulation(subject, accuracy="fast", **options)
 
 
 class Cut(BaseException):
     """In place of a kill."""
 
 
-def cut_off(path: Path, after: float, monkeypatch: pytest.MonkeyPatch, **how: object) -> None:
+def cut_off(
+    path: Path,
+    after: float,
+    monkeypatch: pytest.MonkeyPatch,
+    housing: trb.SharedHousing | None = None,
+    **how: object,
+) -> None:
     """A run of 0.5 turns that ends at a time as if it were killed: nothing is written after that."""
-    sim = simulation(checkpoint_every=2e-3)
+    sim = simulation(housing, checkpoint_every=2e-3)
     keep = Run._keep
 
     def watched(self: Run, records: np.ndarray) -> None:
@@ -51,10 +62,14 @@ def cut_off(path: Path, after: float, monkeypatch: pytest.MonkeyPatch, **how: ob
             sim.run(revolutions=0.5, save_every=1e-4, output=path, **how)
 
 
-def test_a_pair_goes_on_to_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = simulation(checkpoint_every=2e-3).run(revolutions=0.5, save_every=1e-4, output=tmp_path / "whole.h5")
+@pytest.mark.parametrize("housing", [None, HOUSING], ids=["held", "in one housing"])
+def test_a_pair_goes_on_to_the_same_bits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, housing: trb.SharedHousing | None
+) -> None:
+    sim = simulation(housing, checkpoint_every=2e-3)
+    whole = sim.run(revolutions=0.5, save_every=1e-4, output=tmp_path / "whole.h5")
     path = tmp_path / "pair.h5"
-    cut_off(path, 7e-3, monkeypatch)
+    cut_off(path, 7e-3, monkeypatch, housing)
     assert not trb.load(path).success
     assert checkpoint_path(path).exists()
     resumed = trb.resume(path)

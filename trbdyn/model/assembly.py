@@ -15,7 +15,7 @@ from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.flatten import scaled
 from trbdyn.model.motion import History, Quantity, is_constant, value_at, values_of
-from trbdyn.model.on_shaft import PreloadSpring, Shaft, ShaftBearing, ShaftLoad, load_centre_offset
+from trbdyn.model.on_shaft import PreloadSpring, Shaft, ShaftBearing, ShaftLoad, SharedHousing, load_centre_offset
 from trbdyn.model.scene import Scene
 from trbdyn.model.start import Start
 from trbdyn.model.turning import TurningRings
@@ -26,6 +26,7 @@ __all__ = [
     "Shaft",
     "ShaftBearing",
     "ShaftLoad",
+    "SharedHousing",
     "Subject",
     "assembly_of",
     "load_centre_offset",
@@ -40,12 +41,12 @@ ROWS: Final[dict[str, tuple[Literal["left", "right"], ...]]] = {
 }
 """Where the small ends of the rows point, from left to right. TDO: one double outer ring and two inner rings; TDI: one double
 inner ring and two outer rings; TQO and TQI: four rows, two TDI or two TDO."""
-OWN_FIELDS: Final = ("outer_speed_rpm", "torque", "gravity")
+OWN_FIELDS: Final = ("outer_speed_rpm", "torque", "gravity", "shared_housing")
 """Fields of an `Assembly` beside those that its makers name."""
 
 
 class Assembly(TurningRings, Model):
-    """Bearings on a rigid shaft. Their outer rings stand, or turn, in a rigid housing.
+    """Bearings on a rigid shaft. Their outer rings stand, or turn, in a rigid housing, which may move.
 
     Frame: z along the shaft, to the right in words; the origin anywhere on its axis. Speeds are positive about +z, loads act on
     the shaft.
@@ -67,6 +68,9 @@ class Assembly(TurningRings, Model):
     gravity : tuple of float or History, shape (3,)
         Acceleration of gravity (m/s2), for the weight of the shaft; that of rollers and cages is a choice of each bearing's
         effects.
+    shared_housing : SharedHousing, optional
+        One housing around all bearings, which moves in runs; without it the outer rings are held in space, or each has a
+        `ShaftBearing.housing` of its own.
     start : Start, optional
         A state of a simulation of this assembly from which runs go on: ``Start.state(simulation.state)``. The starts of the
         bearings stay those of the simulation that the state is from, as housings and springs count from its equilibrium.
@@ -92,6 +96,7 @@ class Assembly(TurningRings, Model):
     outer_speed_rpm: Annotated[Quantity, unit("rpm")] = 0.0
     torque: Annotated[Quantity | None, unit("N m")] = None
     gravity: tuple[Quantity, Quantity, Quantity] = (0.0, -9.80665, 0.0)
+    shared_housing: SharedHousing | None = None
     start: Start | None = None
 
     @classmethod
@@ -272,7 +277,7 @@ class Assembly(TurningRings, Model):
             start=one.start,
             growth=one.growth,
             elastic_cage=one.elastic_cage,
-            housing=one.housing,
+            housing=one.housing if self.shared_housing is None else self.shared_housing.seen_from(one),
             defects=one.defects,
             gravity=(x, scaled(y, turned), scaled(z, turned)),
         )
@@ -317,6 +322,9 @@ class Assembly(TurningRings, Model):
 
     def _check_housings(self) -> None:
         """One outer ring at least has a place along and across the shaft, or all that moves would leave it."""
+        if self.shared_housing is not None:
+            self._check_shared_housing(self.shared_housing)
+            return
         for name in ("support_radial", "support_axial"):
             stiffnesses = [math.inf if one.housing is None else getattr(one.housing, name) for one in self.bearings]
             if not max(stiffnesses) > 0.0:
@@ -324,6 +332,22 @@ class Assembly(TurningRings, Model):
                     "must be > 0 in one bearing at least: nothing else holds shaft and housings in their place (N/m)"
                 )
                 raise InputError.of(("bearings", 0, "housing", name), 0.0, limit)
+
+    def _check_shared_housing(self, housing: SharedHousing) -> None:
+        for index, one in enumerate(self.bearings):
+            if one.housing is not None:
+                limit = "must not be given with a shared_housing, in which all outer rings sit"
+                raise InputError.of(("bearings", index, "housing"), one.housing, limit)
+            if one.spring is not None:
+                limit = (
+                    "must not be given with a shared_housing: an outer ring that slides in a housing that moves is a body of its "
+                    "own, which is not simulated; give an end_play"
+                )
+                raise InputError.of(("bearings", index, "spring"), one.spring, limit)
+        for name, of in (("support_radial", "N/m"), ("support_axial", "N/m"), ("support_tilt", "N m/rad")):
+            if not getattr(housing, name) > 0.0:
+                limit = f"must be > 0: nothing else holds shaft and housing in their place ({of})"
+                raise InputError.of(("shared_housing", name), getattr(housing, name), limit)
 
     def _check_held(self) -> None:
         """Axial forces that never hold the shaft, as far as it can be told without an equilibrium."""
@@ -425,6 +449,9 @@ class Assembly(TurningRings, Model):
             rows.append(
                 (f"{name}, load centre", f"{1e3 * one.position:.4g}", "mm", f"small ends {one.small_ends}, {set_by}")
             )
+        if (around := self.shared_housing) is not None:
+            row = ("mass of the housing", f"{around.mass:g}", "kg", f"centre at {1e3 * around.mass_position:.4g} mm")
+            rows.insert(1, row)
         for index, load in enumerate(self.loads):
             force = ", ".join(f"{part:.5g}" if isinstance(part, int | float) else "changes" for part in load.force)
             rows.append((f"load {index + 1}", force, "N", f"at {1e3 * load.position:.4g} mm"))

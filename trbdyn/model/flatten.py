@@ -278,6 +278,8 @@ def housing_entries(scene: Scene) -> Entries:
     body = scene.housing
     return {
         "outer_free": Entry(("housing",), float(body is not None)),
+        "outer_carried": Entry(("housing",), 0.0),
+        "outer_turned": Entry(("housing",), 0.0),
         **{key: Entry(("housing", name), 0.0 if body is None else getattr(body, name)) for key, name in names.items()},
     }
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import field_validator, model_validator
 
-from trbdyn.base.validation import Model, Number, unit
+from trbdyn.base.validation import Model, Number, number_of, unit
 from trbdyn.errors import InputError
 from trbdyn.model.bearing import Bearing
 from trbdyn.model.core_table import parameter
@@ -26,47 +27,13 @@ MAX_END_PLAY: Final = 3e-4
 have no equilibrium in the wide gap."""
 
 
-class Shaft(Model):
-    """The rigid shaft, with everything that turns with it: inner rings, gears, rotor.
-
-    Parameters
-    ----------
-    mass : float
-        Mass (kg).
-    inertia_axial, inertia_transverse : float
-        Moments of inertia about the axis, and about a transverse axis through the centre of mass (kg m2).
-    mass_position : float
-        Position of the centre of mass along the shaft (m).
-    unbalance : float
-        Mass times radius (kg m), in the plane of the centre of mass. It acts in runs; the drive keeps the speed against it, so it
-        is refused together with a torque.
-    unbalance_angle_deg : float
-        Angle of the unbalance from +x towards +y where the shaft's angle is zero (deg).
-    damping : float
-        Damping between the shaft and the surroundings, of translations of its centre of mass (N s/m). It stands for whatever else
-        takes energy from the shaft's vibrations; none by default.
-    damping_turns : float
-        The same of turns about transverse axes (N m s).
-
-    Raises
-    ------
-    InputError
-        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
-
-    Examples
-    --------
-    >>> import trbdyn as trb
-    >>> shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
-    >>> round(1e4 * shaft.inertia_axial, 3)
-    18.75
-    """
+class OnAxis(Model):
+    """A rigid body of revolution about the axis of an assembly: what `Shaft` and `SharedHousing` have in common."""
 
     mass: Annotated[Number, parameter("ring_mass", gt=0.0)]
     inertia_axial: Annotated[Number, parameter("ring_inertia_axial", gt=0.0)]
     inertia_transverse: Annotated[Number, parameter("ring_inertia_transverse", gt=0.0)]
     mass_position: Annotated[Number, unit("m", ge=-100.0, le=100.0)] = 0.0
-    unbalance: Annotated[Number, parameter("ring_unbalance")] = 0.0
-    unbalance_angle_deg: Annotated[Number, unit("deg", ge=-360.0, le=360.0)] = 0.0
     damping: Annotated[Number, parameter("ring_damping")] = 0.0
     damping_turns: Annotated[Number, parameter("ring_damping_turns")] = 0.0
 
@@ -112,6 +79,135 @@ class Shaft(Model):
             inertia_transverse=body.inertia_transverse,
             mass_position=mass_position,
         )
+
+
+class Shaft(OnAxis):
+    """The rigid shaft, with everything that turns with it: inner rings, gears, rotor.
+
+    Parameters
+    ----------
+    mass : float
+        Mass (kg).
+    inertia_axial, inertia_transverse : float
+        Moments of inertia about the axis, and about a transverse axis through the centre of mass (kg m2).
+    mass_position : float
+        Position of the centre of mass along the shaft (m).
+    unbalance : float
+        Mass times radius (kg m), in the plane of the centre of mass. It acts in runs; the drive keeps the speed against it, so it
+        is refused together with a torque.
+    unbalance_angle_deg : float
+        Angle of the unbalance from +x towards +y where the shaft's angle is zero (deg).
+    damping : float
+        Damping between the shaft and the surroundings, of translations of its centre of mass (N s/m). It stands for whatever else
+        takes energy from the shaft's vibrations; none by default.
+    damping_turns : float
+        The same of turns about transverse axes (N m s).
+
+    Raises
+    ------
+    InputError
+        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> shaft = trb.Shaft.hollow_cylinder(mass=6.0, outer_diameter=0.05, length=0.3)
+    >>> round(1e4 * shaft.inertia_axial, 3)
+    18.75
+    """
+
+    unbalance: Annotated[Number, parameter("ring_unbalance")] = 0.0
+    unbalance_angle_deg: Annotated[Number, unit("deg", ge=-360.0, le=360.0)] = 0.0
+
+
+class SharedHousing(OnAxis):
+    """One rigid housing around all bearings of an assembly, with their outer rings (``Assembly(shared_housing=...)``).
+
+    At the start the outer rings stand at their nominal places, and the support carries what all bearings do to the housing, and
+    its weight. From there on the springs act on what moves the housing, and the dampers on its velocity.
+
+    Parameters
+    ----------
+    mass : float
+        Mass (kg).
+    inertia_axial, inertia_transverse : float
+        Moments of inertia about the axis, and about a transverse axis through the centre of mass (kg m2).
+    mass_position : float
+        Position of the centre of mass along the shaft (m).
+    damping : float
+        Damping between the housing and the surroundings, of translations of its centre of mass (N s/m).
+    damping_turns : float
+        The same of turns about transverse axes (N m s).
+    support_radial, support_axial : float
+        Stiffness of the support across and along the axis (N/m).
+    support_tilt : float
+        Its stiffness against tilt (N m/rad).
+    support_position : float
+        Position of the support along the shaft (m). Several supports on the axis, k_i at the places z_i, are one: the sum of k_i
+        at z = sum(k_i z_i)/sum(k_i), with sum(k_i (z_i - z)^2) in addition against tilt (`on_supports`).
+
+    Raises
+    ------
+    InputError
+        If no body can have these moments of inertia: the axial one is at most twice the transverse one.
+
+    Examples
+    --------
+    >>> import trbdyn as trb
+    >>> housing = trb.SharedHousing.hollow_cylinder(mass=12.0, inner_diameter=0.11, outer_diameter=0.16, length=0.25)
+    >>> housing = housing.on_supports((-0.1, 0.1), radial=1e8, axial=5e7)
+    >>> round(housing.support_radial / 1e6), round(housing.support_tilt / 1e6, 3)
+    (200, 2.0)
+    """
+
+    support_radial: Annotated[Number, parameter("ring_support_radial")] = 0.0
+    support_axial: Annotated[Number, parameter("ring_support_axial")] = 0.0
+    support_tilt: Annotated[Number, parameter("ring_support_tilt")] = 0.0
+    support_position: Annotated[Number, unit("m", ge=-100.0, le=100.0)] = 0.0
+
+    def on_supports(self, positions: Sequence[float], *, radial: Any, axial: Any = 0.0, tilt: Any = 0.0) -> Self:
+        """The housing on several supports in place of its own.
+
+        Parameters
+        ----------
+        positions : sequence of float
+            Their places along the shaft (m).
+        radial, axial : float or sequence of float
+            Stiffness of each across and along the axis (N/m); one number is that of all.
+        tilt : float or sequence of float
+            Its stiffness against tilt (N m/rad).
+
+        Raises
+        ------
+        InputError
+            If a number is not allowed.
+        """
+        places = [number_of(f"positions[{index}]", one) for index, one in enumerate(positions)]
+        sums = {}
+        for name, given in (("radial", radial), ("axial", axial), ("tilt", tilt)):
+            each = [given] * len(places) if isinstance(given, int | float) else list(given)
+            if len(each) != len(places):
+                raise InputError.of(name, len(each), f"must be one number, or {len(places)} for {len(places)} supports")
+            sums[name] = [number_of(name, one) for one in each]
+            if not all(0.0 <= one < math.inf for one in sums[name]):
+                raise InputError.of(name, given, f"must be >= 0 ({'N m/rad' if name == 'tilt' else 'N/m'})")
+        if not sum(sums["radial"]) > 0.0:
+            raise InputError.of("radial", radial, "must be > 0 in one support at least (N/m)")
+        whole = math.fsum(sums["radial"])
+        middle = math.fsum(k * place for k, place in zip(sums["radial"], places, strict=True)) / whole
+        apart = math.fsum(k * (place - middle) ** 2 for k, place in zip(sums["radial"], places, strict=True))
+        return self.replace(
+            support_radial=whole,
+            support_axial=math.fsum(sums["axial"]),
+            support_tilt=math.fsum(sums["tilt"]) + apart,
+            support_position=middle,
+        )
+
+    def seen_from(self, one: ShaftBearing) -> Housing:
+        """The housing as the outer ring of a bearing sees it: places from its roller-centre plane, towards its large ends."""
+        own = {name: getattr(self, name) for name in Housing.model_fields if name in type(self).model_fields}
+        places = {"mass_offset": self.mass_position, "support_position": self.support_position}
+        return Housing(**{**own, **{name: -one.side * (at - one.centre_plane) for name, at in places.items()}})
 
 
 class PreloadSpring(Model):
@@ -163,7 +259,7 @@ class ShaftBearing(Model):
         Deform the cage in runs, as in a `Scene`.
     housing : Housing, optional
         Let the outer ring move with a housing of its own in runs, as in a `Scene`; with a `spring`, whose stiffness is then its
-        `support_axial`, what slides. One housing around several bearings is not modelled.
+        `support_axial`, what slides. One housing around all bearings is `Assembly.shared_housing`.
     defects : tuple of Pit, DepthMap or Waviness
         Where raceways and rollers are off their true form, as in a `Scene`.
     """

@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 
 from trbdyn import _core
 from trbdyn.errors import InputError
+from trbdyn.model.core_table import PARAMETERS
 from trbdyn.model.flatten import (
+    HOUSING_LOADS,
     Entry,
     Load,
     block_of,
@@ -127,12 +129,15 @@ class Seating:
         What acts on the shaft at the first bearing's roller-centre plane, by the names of the core's channels: ``"force_x"``,
         ``"moment_y"`` and so on (N, N m); what is not named is zero. With a ``"torque"`` (N m) the shaft turns under it, in place
         of the prescribed speed.
+    one_housing : bool
+        Whether all outer rings sit in one housing, which the scene of each bearing has in its own axes, and not each in its own.
     """
 
     seats: Mapping[str, Seat]
     body: RingBody
     shaft: Array
     loads: Mapping[str, Load] = field(default_factory=dict)
+    one_housing: bool = False
 
     @property
     def torque(self) -> Load | None:
@@ -276,18 +281,26 @@ def seat_all(seating: Seating, instruction_set: str = "") -> Seated:
     seats, body, shaft, loads = list(seating.seats.values()), seating.body, seating.shaft, seating.loads
     _check(seats, body, loads)
     placed = [seat.at(shaft) for seat in seats]
-    held = [build_model(seat.scene, instruction_set) for seat in placed]
-    found = [ring_motion(model, seat.scene) for model, seat in zip(held, placed, strict=True)]
+    # the first bearing has the housing that is around all
+    shared = [seating.one_housing and number > 0 for number in range(len(seats))]
+    scenes = [one.scene.replace(housing=None) if of else one.scene for one, of in zip(placed, shared, strict=True)]
+    held = [build_model(scene, instruction_set) for scene in scenes]
+    found = [ring_motion(model, scene) for model, scene in zip(held, scenes, strict=True)]
     motions = [motion for motion, _ in found]
-    motions[0] = _with_loads(motions[0], placed[0].scene, {**loads, **housing_hold(placed[0].scene, found[0][1])})
+    hold = housing_hold(placed[0].scene, found[0][1])
+    if seating.one_housing:
+        hold = _of_all(hold, placed, [equilibrium for _, equilibrium in found])
+    motions[0] = _with_loads(motions[0], placed[0].scene, {**loads, **hold})
     free = 2.0 if "torque" in loads else 1.0
-    models = tuple(_model(seat, body, number, free, instruction_set) for number, seat in enumerate(placed))
+    models = tuple(
+        _model(seat, body, number, free, shared[number], instruction_set) for number, seat in enumerate(placed)
+    )
     size, layouts = _core.state_layouts(models)
     vector, bearings, first = np.zeros(size), [], 0
     for number, name in enumerate(seating.seats):
         seat, (alone_motion, equilibrium), layout = placed[number], found[number], layouts[number]
-        alone = start_state(held[number], seat.scene, alone_motion, equilibrium)
-        pressed = pressed_rollers(held[number], seat.scene, alone_motion, alone)
+        alone = start_state(held[number], scenes[number], alone_motion, equilibrium)
+        pressed = pressed_rollers(held[number], scenes[number], alone_motion, alone)
         said = (*unusual(seat.scene, equilibrium), *((pressed,) if pressed else ()))
         own, whole = StateView(held[number].state_layout(), alone), StateView(layout, vector)
         for entry in own.names:
@@ -333,13 +346,28 @@ def _check(seats: Sequence[Seat], body: RingBody, loads: Mapping[str, Load]) -> 
                 raise InputError.of(("seats", number, "scene", name), own, limit)
 
 
+def _of_all(hold: Mapping[str, float], seats: Sequence[Seat], found: Sequence[Equilibrium]) -> dict[str, float]:
+    """What the support of one housing carries at the start: force (N), and moment through the apex of the first bearing (N m), of
+    which `hold` has what the first bearing does, and the weight.
+    """
+    sums = np.array([hold[name] for name in HOUSING_LOADS])
+    first = seats[0].scene.bearing.geometry.centre_plane + seats[0].mass_offset
+    for seat, equilibrium in zip(seats[1:], found[1:], strict=True):
+        force = -seat.axes(equilibrium.on_outer[:3])
+        moment = -seat.axes(np.array([*equilibrium.on_outer[3:], 0.0]))[:2]
+        own = seat.scene.bearing.geometry.centre_plane + seat.mass_offset
+        arm = first - (-own if seat.turned else own)  # of its apex
+        sums += np.concatenate([force, moment + arm * np.array([-force[1], force[0]])])
+    return dict(zip(HOUSING_LOADS, sums.tolist(), strict=True))
+
+
 def _with_loads(motion: RingMotion, scene: Scene, loads: Mapping[str, Load]) -> RingMotion:
     table, period = motion_table(scene, [0.0] * 5, loads=loads), loads_period(scene, loads)
     return replace(motion, table=table, period=(period or 0.0) if len(table) > 1 else 0.0)
 
 
-def _model(seat: Seat, body: RingBody, number: int, free: float, instruction_set: str) -> _core.Model:
-    """The core's model of a bearing on the shaft."""
+def _model(seat: Seat, body: RingBody, number: int, free: float, shared: bool, instruction_set: str) -> _core.Model:
+    """The core's model of a bearing on the shaft; `shared`: in the housing of the first one, which has its springs."""
     own = {
         "ring_free": free,
         "ring_offset": seat.mass_offset,
@@ -348,6 +376,9 @@ def _model(seat: Seat, body: RingBody, number: int, free: float, instruction_set
         "ring_turned": float(seat.turned),
         "ring_shift": seat.shift,
     }
+    if shared:
+        own |= {name: 0.0 for name in PARAMETERS if name.startswith(("outer_support_", "outer_damping"))}
+        own |= {"outer_carried": 1.0, "outer_turned": float(seat.turned)}
     entries = (
         scene_entries(seat.scene)
         | named_entries(body)

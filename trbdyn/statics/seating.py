@@ -116,7 +116,7 @@ def seating_of(assembly: Assembly) -> Seating:
         damping_turns=shaft.damping_turns,
     )
     place = np.concatenate([turn3 * found.displacement(shaft.mass_position), turn2 * found.tilt])
-    return Seating(seats, body, place, _loads(assembly, found))
+    return Seating(seats, body, place, _loads(assembly, found), assembly.shared_housing is not None)
 
 
 def _loads(assembly: Assembly, found: ShaftEquilibrium) -> dict[str, Load]:
