@@ -323,7 +323,7 @@ def test_the_sheet_is_a_table_and_plain_data() -> None:
     assert json.loads(json.dumps(found.to_dict()))["equivalent_load"] == pytest.approx(5200.0)
     with pytest.raises(
         trb.InputError,
-        match="must be a Scene, a Result, an Assembly, an AssemblyResult, a ShaftEquilibrium or a Spectrum",
+        match="must be a Scene, a Result, an Assembly, an AssemblyResult, a ShaftEquilibrium, a Fit or a Spectrum",
     ):
         trb.rating(BEARING)
 

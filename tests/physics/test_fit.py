@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import trbdyn as trb
 from trbdyn.model.tolerances import bore_limits, clearance_limits, limits, outside_limits
+from trbdyn.standards.sheet import Rating
 from trbdyn.statics.press_fit import PressFit
 
 ALUMINIUM = trb.Material(youngs_modulus=70e9, poisson_ratio=0.33, density=2700.0, expansion=23.5e-6)
@@ -327,3 +329,26 @@ def test_a_spring_takes_up_the_growth() -> None:
     cooled = trb.Temperatures(shaft_c=20.0, inner_ring_c=20.0, rollers_c=20.0, outer_ring_c=80.0, housing_c=80.0)
     with pytest.raises(trb.InputError, match="force"):
         trb.fit(one.replace(bearings=(left.replace(end_play=0.0), soft)), trb.Mounting(**SEAT), temperatures=cooled)
+
+
+def test_the_sheet_of_ratings_shows_the_fits() -> None:
+    """Of one bearing and of several, with the play of operation; of a bearing alone there is nothing to rate."""
+    warm = trb.Temperatures.uniform(80.0)
+    seat = trb.Mounting(**SEAT, housing_material=ALUMINIUM)
+    load = trb.ShaftLoad(position=0.0, force=(0.0, -3000.0, 1000.0))
+    for subject in (pair().replace(loads=(load,)), trb.Scene(trb.cases.rig_30310(), speed_rpm=2000, axial_load=5e3)):
+        found = trb.fit(subject, seat, temperatures=warm)
+        rated, plain = trb.rating(found), trb.rating(found.subject)
+        assert rated.life_hours == plain.life_hours
+        assert rated.fits is found
+        assert plain.fits is None
+        assert str(rated) == f"{plain}\n\n{found}"
+        assert "Fits of the seats" in str(rated)
+        shown = rated._shown()
+        assert [one.title for one in shown.parts][:2] == ["Fits of the seats", "What changes the play"]
+    assert isinstance(rated, Rating)
+    kept = json.loads(json.dumps(rated.to_dict()))["fits"]
+    assert kept["bearings"][""]["seats"][0]["operating"] == found[""].seats[0].operating
+    assert plain.to_dict()["fits"] is None
+    with pytest.raises(trb.InputError, match="a rating needs speed and loads"):
+        trb.rating(trb.fit(trb.cases.rig_30310(), seat))

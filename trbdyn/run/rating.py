@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Final, overload
 
 import numpy as np
 
 from trbdyn.base.expected import expect
+from trbdyn.errors import InputError
 from trbdyn.model.assembly import Assembly
+from trbdyn.model.bearing import Bearing
 from trbdyn.model.motion import History, value_at
 from trbdyn.model.scene import Scene
 from trbdyn.model.spectrum import Spectrum
@@ -19,6 +22,7 @@ from trbdyn.standards.sheet import Loading, Rating, at_equilibrium, lamina_loads
 from trbdyn.standards.spectrum import SpectrumRating, over_cases
 from trbdyn.standards.system import SystemRating, loading_of, system_of, system_sheet
 from trbdyn.statics.assembly import ShaftEquilibrium, equilibrium
+from trbdyn.statics.fit import Fit
 
 RECORDS: Final = 60
 """Records of a run that are evaluated, at most; evenly spread over its window."""
@@ -48,6 +52,17 @@ def rating(
 
 @overload
 def rating(
+    subject: Fit,
+    *,
+    cleanliness: str | None = None,
+    filtered: bool | None = None,
+    contamination: float | None = None,
+    reliability: float = 90.0,
+) -> Rating | SystemRating: ...
+
+
+@overload
+def rating(
     subject: Spectrum,
     *,
     cleanliness: str | None = None,
@@ -58,7 +73,7 @@ def rating(
 
 
 def rating(
-    subject: Scene | Result | Assembly | AssemblyResult | ShaftEquilibrium | Spectrum,
+    subject: Scene | Result | Assembly | AssemblyResult | ShaftEquilibrium | Fit | Spectrum,
     *,
     cleanliness: str | None = None,
     filtered: bool | None = None,
@@ -73,9 +88,10 @@ def rating(
 
     Parameters
     ----------
-    subject : Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium or Spectrum
+    subject : Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium, Fit or Spectrum
         A result needs the groups cage and rollers. Of an assembly each bearing has a sheet, under the loads of the equilibrium or
-        of its run, and the whole has lives. Of a spectrum the damages of its load cases add up.
+        of its run, and the whole has lives. Of what `trbdyn.fit` gives: the scene or assembly with its play of operation in the
+        mean, and the sheet shows the fits. Of a spectrum the damages of its load cases add up.
     cleanliness : {'13/10', '15/12', '17/14', '19/16', '21/18'}, optional
         Particles in the oil, the last two numbers of ISO 4406; that of the scene's lubricant by default, and 17/14 where that
         has none, which is said with what a neighbouring class gives.
@@ -118,7 +134,9 @@ def rating(
         "contamination": contamination,
         "reliability": reliability,
     }
-    expect("subject", subject, Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium, Spectrum)
+    expect("subject", subject, Scene, Result, Assembly, AssemblyResult, ShaftEquilibrium, Fit, Spectrum)
+    if isinstance(subject, Fit):
+        return _of_fit(subject, options)
     if isinstance(subject, Spectrum):
         return _of_spectrum(subject, options)
     if isinstance(subject, Scene):
@@ -126,10 +144,19 @@ def rating(
     if isinstance(subject, Result):
         return sheet(subject.scene, of_run(subject), **options)
     if isinstance(subject, Mapping):
-        return system_of({name: sheet(one.scene, of_run(one), **options) for name, one in subject.items()})
+        parts: Mapping[str, Any] = subject
+        return system_of({name: sheet(one.scene, of_run(one), **options) for name, one in parts.items()})
     if isinstance(subject, ShaftEquilibrium):
         return system_sheet(subject, **options)
     return system_sheet(equilibrium(subject), **options)
+
+
+def _of_fit(fits: Fit, options: dict[str, Any]) -> Rating | SystemRating:
+    if isinstance(fits.subject, Bearing):
+        limit = "must be those of a Scene or an Assembly: a rating needs speed and loads"
+        raise InputError.of("subject", "fits of a bearing alone", limit)
+    found: Rating | SystemRating = rating(fits.subject, **options)
+    return replace(found, fits=fits)
 
 
 def _of_spectrum(spectrum: Spectrum, options: dict[str, Any]) -> SpectrumRating | SystemRating:

@@ -24,6 +24,7 @@ from trbdyn.statics.start import contacts_at_start
 
 if TYPE_CHECKING:
     from trbdyn.model.scene import Scene
+    from trbdyn.statics.fit import Fit
 
 Array = NDArray[np.float64]
 
@@ -109,8 +110,27 @@ _ROWS: Final[dict[str, tuple[str, str, str]]] = {
 """Words, symbol and unit of each number, in the order of the sheet."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Fitted(Tabled):
+    """Ratings that show the fits by which the bearings sit, where they are known."""
+
+    fits: Fit | None = None
+
+    def __str__(self) -> str:
+        text = super().__str__()
+        return text if self.fits is None else f"{text}\n\n{self.fits}"
+
+    @property
+    def fit_tables(self) -> tuple[Shown, ...]:
+        """The tables of `trbdyn.fit`."""
+        if self.fits is None:
+            return ()
+        shown = self.fits._shown()
+        return (*shown.parts, replace(shown, parts=()))
+
+
 @dataclass(frozen=True)
-class Rating(Tabled):
+class Rating(Fitted):
     """The sheet. Numbers that cannot be told are None; `notes` says why, and where the others come from.
 
     Attributes
@@ -151,6 +171,8 @@ class Rating(Tabled):
         What an engineer must know: too small a load, speeds beyond the catalogue's, kappa out of range.
     notes : dict of str to str
         By name of a number, where it comes from or why there is none.
+    fits : Fit or None
+        How the bearing sits on its shaft and in its housing, where the rating is that of `trbdyn.fit`.
     """
 
     axial_load: float
@@ -208,7 +230,8 @@ class Rating(Tabled):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionaries, lists, numbers and text, as JSON takes them."""
-        return asdict(self) | {"warnings": list(self.warnings)}
+        fits = None if self.fits is None else self.fits.to_dict()
+        return asdict(replace(self, fits=None)) | {"warnings": list(self.warnings), "fits": fits}
 
     def _shown(self) -> Shown:
         listed = [row for row in self.rows if row.value is not None or row.note]
@@ -217,6 +240,7 @@ class Rating(Tabled):
             rows=tuple((f"{row.words} {row.symbol}", row.shown, row.unit, row.note) for row in listed),
             head=("name", "value", "unit", "where it comes from"),
             notes=(*self.warnings, WHICH_LIFE),
+            parts=self.fit_tables,
         )
 
 
@@ -384,7 +408,7 @@ def rated(
         loading.lamina_loads, contact_ratings(scene), weights=loading.weights, turning=turning_against_load(scene)
     )
     reference = _finite(laminas.reference_life)
-    notes["reference_life"] = f"ISO 16281:2025, {lamina.LAMINAS} laminas, {loading.source}"
+    notes["reference_life"] = f"ISO 16281:2025, Qc of ISO/TS 16281:2008, {lamina.LAMINAS} laminas, {loading.source}"
     reference_load = None if reference is None else C / reference ** (1.0 / iso281.LIFE_EXPONENT)
 
     viscosity = 1e6 * scene.lubricant.kinematic_viscosity
@@ -406,7 +430,7 @@ def rated(
         listed = zip(_NEIGHBOURS, lives, strict=True)
         notes["modified_life"] = ", ".join(f"{_digits(other)} with -/{code}" for code, other in listed)
 
-    over: dict[str, float | None] = {}
+    over: dict[str, Any] = {}
     for name, limit in (
         ("speed_over_reference", bearing.ratings.reference_speed_rpm),
         ("speed_over_limit", bearing.ratings.limiting_speed_rpm),

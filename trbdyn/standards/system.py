@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from trbdyn.base.shown import Shown, Tabled
-from trbdyn.standards.sheet import WHICH_LIFE, Loading, Rating, at_equilibrium, life_text, sheet
+from trbdyn.base.shown import Shown
+from trbdyn.standards.sheet import WHICH_LIFE, Fitted, Loading, Rating, at_equilibrium, life_text, sheet
 from trbdyn.standards.spectrum import SpectrumRating
 from trbdyn.statics.assembly import BearingOnShaft, ShaftEquilibrium
 
@@ -18,7 +18,7 @@ _LIVES: Final = ("life_hours", "modified_life_hours", "reference_life_hours", "m
 
 
 @dataclass(frozen=True)
-class SystemRating(Tabled):
+class SystemRating(Fitted):
     """Sheets of the bearings of an assembly, and the lives of the whole: none of its bearings has failed.
 
     Attributes
@@ -29,6 +29,8 @@ class SystemRating(Tabled):
         Basic and modified rating life of the whole (h); None where it is infinite or a bearing has none.
     reference_life_hours, modified_reference_life_hours : float or None
         The same with the reference lives of ISO 16281 (h).
+    fits : Fit or None
+        How the bearings sit on the shaft and in the housing, where the ratings are those of `trbdyn.fit`.
     """
 
     bearings: Mapping[str, Rating | SpectrumRating]
@@ -51,7 +53,13 @@ class SystemRating(Tabled):
         worst = (f"{name}: {one.worst}" for name, one in self.bearings.items() if isinstance(one, SpectrumRating))
         if cases := ", ".join(worst):
             said = (f"P is the steady load with the same life; Fa and Fr are those of the worst case, {cases}.", *said)
-        return Shown("ratings and lives", (head, *rows, row("all", self)), head=head, notes=(*said, WHICH_LIFE))
+        return Shown(
+            "ratings and lives",
+            (head, *rows, row("all", self)),
+            head=head,
+            notes=(*said, WHICH_LIFE),
+            parts=self.fit_tables,
+        )
 
 
 def system_life(lives: Sequence[float | None]) -> float | None:
@@ -84,7 +92,7 @@ def system_sheet(found: ShaftEquilibrium, **options: Any) -> SystemRating:
 def system_of(sheets: Mapping[str, Rating | SpectrumRating]) -> SystemRating:
     """The sheets of all bearings of a shaft, and the lives of the whole."""
     unknown = {life: any(_lacks(one, life) for one in sheets.values()) for life in _LIVES}
-    lives = {
+    lives: dict[str, Any] = {
         life: None if unknown[life] else system_life([getattr(one, life) for one in sheets.values()]) for life in _LIVES
     }
     return SystemRating(bearings=sheets, **lives)

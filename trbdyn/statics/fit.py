@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -161,6 +161,16 @@ class Fit(Mapping[str, BearingFit], Displayed):
             for seat in one.seats
             if seat.mean > 0.0 >= seat.operating
         )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dictionaries, lists, numbers and text, as JSON takes them."""
+        return {
+            "bearings": {
+                name: {"seats": [asdict(seat) for seat in one.seats], "parts": dict(one.parts)}
+                for name, one in self._bearings.items()
+            },
+            "plays": {name: {when: asdict(play) for when, play in plays.items()} for name, plays in self.plays.items()},
+        }
 
     def __str__(self) -> str:
         shown = self._shown()
