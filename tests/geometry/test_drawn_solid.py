@@ -12,6 +12,7 @@ import trbdyn as trb
 from trbdyn.cage.drawn_solid import drawn_solid, straightened, stress_rows, stress_tensors
 from trbdyn.cage.solid import EDGES, Elasticity, Solid
 from trbdyn.model.drawn.opened import library
+from trbdyn.study.definition import Base
 
 try:
     library()
@@ -119,6 +120,14 @@ def test_a_case_with_an_elastic_drawn_cage_runs(drawing: Path, tmp_path: Path) -
     changed = scene.bearing.replace({"name": "another"})
     with pytest.raises(trb.InputError, match="which has changed since"):
         drawn_solid(changed)
+
+
+def test_a_study_keeps_what_a_cage_was_read_from(bearing: trb.Bearing) -> None:
+    """A bearing written as tables and read back is the same, with a drawing, without opening it, and without one."""
+    for one in (bearing, trb.cases.rig_30310()):
+        scene = trb.Scene(one, speed_rpm=3000, axial_load=4930.0)
+        built, _ = Base.of(scene, trb.RunOptions()).build({"scene.speed_rpm": 2000})
+        assert built == scene.replace(speed_rpm=2000)
 
 
 def test_what_a_drawn_cage_cannot_do_is_refused(bearing: trb.Bearing, tmp_path: Path) -> None:

@@ -168,7 +168,7 @@ def bearing_from_table(table: Table) -> Bearing:
     values = _merged(base, without(table, "case", "named"))
     values = _with_traces(values, table, path)
     cage, own = values.get("cage"), _at(table, "cage")
-    if isinstance(cage, dict) and own.get("drawing") is not None:
+    if isinstance(cage, dict) and _is_to_be_read(own.get("drawing")):
         plain = build(Bearing, {**values, "cage": {name: own[name] for name in ("material",) if name in own}}, path)
         with located((*path, "cage")):
             drawn = _drawn(plain, cage["drawing"]).replace(**without(own, "drawing", "material"))
@@ -213,6 +213,11 @@ def _at(table: Table, *inside: str) -> Table:
         found = table.get(name)
         table = found if isinstance(found, dict) else {}
     return table
+
+
+def _is_to_be_read(drawing: object) -> bool:
+    """Whether a cage's drawing is a file that is to be read, and not the record of one that a cage was read from."""
+    return drawing is not None and not (isinstance(drawing, dict) and "sha256" in drawing)
 
 
 def _drawn(bearing: Bearing, given: object) -> Cage:
