@@ -519,6 +519,8 @@ class _Reader:
             pocket = Pocket(faces=tuple(faces))
         except InputError as error:
             raise FileError(f"{self.drawing.path}: pocket {index}: {error}") from None
+        if -self.tolerance < min(pocket.gaps(self.geometry).values()) < 0.0:
+            pocket = pocket.replace(allow_interference=True)  # pockets of one drawing differ by its rounding
         problems = pocket.problems(self.geometry)
         if problems:
             at = self._of_face(place, index, faces[int(problems[0].path[1])])
