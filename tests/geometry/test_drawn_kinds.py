@@ -1,4 +1,4 @@
-"""Drawings of every kind read back: a table of files, and curved faces over the tolerance of their facets."""
+"""Drawings of every kind read back: a table of files, STL beside STEP, and curved faces over the tolerance of their facets."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import trbdyn as trb
-from trbdyn.model.drawn.opened import library
+from trbdyn.model.drawn.opened import gmsh_model, library
 from trbdyn.model.drawn.read import DrawnCage, read_cage
 
 try:
@@ -73,6 +73,35 @@ def test_every_kind_is_recognised(name: str, drawings: ModuleType, rig: trb.Bear
         assert found.plays[play] == pytest.approx(value, abs=2.5 * TOLERANCE), play
     for end in ("large_end", "small_end"):
         assert any(face.part == end for face in whole.faces)
+
+
+def as_stl(step: Path, around: int) -> Path:
+    """A drawing as triangles, so many around a circle."""
+    path = step.with_suffix(".stl")
+    with gmsh_model() as gmsh:
+        gmsh.model.occ.importShapes(str(step))
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 8.0)
+        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", around)
+        gmsh.option.setNumber("Mesh.Binary", 1)
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(path))
+    return path
+
+
+@pytest.mark.slow
+def test_stl_gives_the_cage_of_the_step_file(drawings: ModuleType, rig: trb.Bearing, tmp_path: Path) -> None:
+    """Corners in an STL file have some seven digits: planes and plays are those of the polygons within two micrometres. Where the
+    triangles of the rims are so coarse that pitches differ, the file is refused."""
+    step = drawings.write("lands", rig, tmp_path / "cage.step")
+    found = read_cage(as_stl(step, 48), rig, tolerance=TOLERANCE)
+    assert found.n_pockets == 12
+    for play, value in PLANES.items():
+        assert found.plays[play] == pytest.approx(value, abs=2e-6), play
+    for name in BARS:
+        np.testing.assert_allclose(found.pockets[0].face(name).normal, rig.pocket.face(name).normal, atol=1e-4)
+    with pytest.raises(trb.FileError, match="no pitch is found"):
+        read_cage(as_stl(step, 24), rig, tolerance=TOLERANCE)
 
 
 def test_a_wrong_stl_file_is_refused(rig: trb.Bearing, tmp_path: Path) -> None:
