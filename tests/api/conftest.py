@@ -157,6 +157,7 @@ class StubScene:
     ring_body = housing = elastic_cage = None
     effects = SimpleNamespace(
         bodies="rollers_and_cage",
+        has_cage=True,
         films=True,
         traction="none",
         rolling_resistance=True,
