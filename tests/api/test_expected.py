@@ -21,12 +21,12 @@ ASSEMBLY = trb.Assembly.pair(
     speed_rpm=3000.0,
 )
 OF_SCENE: dict[str, Callable[[Any], Any]] = {
-    "plan": lambda given: trb.plan(given, {"torque": 0.02}),
     "cage_map": lambda given: trb.cage_map(given, [1000.0, 2000.0], [1000.0]),
 }
 OF_ANY: dict[str, Callable[[Any], Any]] = {
     name: getattr(trb, name) for name in ("Simulation", "stiffness", "uncertainty", "sensitivity")
 } | {
+    "plan": lambda given: trb.plan(given, {"torque": 0.02}),
     "optimise": lambda given: trb.optimise(given, {"scene.axial_load": (1e3, 2e3)}, {"torque": "least"}),
     "whirl_onset": lambda given: trb.whirl_onset(given, [1000.0, 2000.0]),
     "thermal": lambda given: trb.thermal(given, trb.HeatPaths(oil_flow=30.0)),
