@@ -143,7 +143,9 @@ def test_given_axes_keep_their_title_and_their_place(name: str, whirling: Result
     "name", ["cage_locus", "orbit_radius", "axial_motion", "tilt", "spectrum", "pocket_forces", "pocket_statistics"]
 )
 def test_a_run_without_a_cage_has_no_picture_of_it(name: str, whirling: Result) -> None:
-    whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False}))
+    whirling.scene.effects = SimpleNamespace(
+        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False})
+    )
     with pytest.raises(InputError, match="has no cage"):
         plot.PICTURES[name][0](whirling)
 
@@ -214,7 +216,9 @@ def test_all_saves_what_was_recorded(tmp_path: Path, whirling: Result) -> None:
     some = plot.all(whirling.select(["torque", "cage"]), tmp_path / "some")
     cage_and_torque = {"cage_locus", "axial_motion", "tilt", "spectrum", "poincare", "torque_split", "torque_sources"}
     assert {file.stem for file in some} == cage_and_torque
-    whirling.scene.effects = SimpleNamespace(**(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False}))
+    whirling.scene.effects = SimpleNamespace(
+        **(vars(whirling.scene.effects) | {"bodies": "rollers", "has_cage": False})
+    )
     assert not whirling.has_cage
     without_cage = whirling.select(["cage", "rollers", "pocket"])
     assert plot.drawable(without_cage) == ("spacing_angles", "pressure_map", "film_map", "attitude")
