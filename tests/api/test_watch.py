@@ -81,7 +81,7 @@ BEARING: Any = SimpleNamespace(
     name="",
     said="",
     seat=None,
-    scene=SimpleNamespace(ring_body=None, housing=None),
+    scene=SimpleNamespace(ring_body=None, housing=None, effects=SimpleNamespace(bodies="rollers_and_cage")),
     record_layout=[(name, place, ()) for place, name in enumerate(NAMES)],
 )
 
