@@ -181,7 +181,7 @@ def test_no_field_is_left_out() -> None:
     left_out = set(fields_of(trb.Scene)) - full - plain - free
     # a load that rotates needs a path of equilibria, a second each: its fields are tested in tests/physics/test_ring_path.py;
     # modes of a cage take some tenths of one: tests/physics/test_elastic_cage.py
-    # fields of a defect belong to its kind: tests/physics/test_defects.py; a drawing is a file: tests/geometry/test_drawn_solid.py
+    # fields of a defect belong to its kind: tests/physics/test_defects.py; a drawing is a file: tests/geometry
     left_out = {field for field in left_out if field[:3] != ("bearing", "cage", "drawing")}
     assert {field[0] for field in left_out} <= {"rotating_load", "elastic_cage", "defects"}
     assert len(free) > 10
