@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -97,3 +100,15 @@ def rig() -> Bearing:
 def straight_rig(rig: Bearing) -> Bearing:
     """The 30310 rig with a straight generator."""
     return rig.replace(roller=rig.roller.replace(profile=Profile.straight()))
+
+
+@pytest.fixture(scope="session")
+def drawings() -> ModuleType:
+    """The script that writes the example cages as STEP files."""
+    script = Path(__file__).resolve().parents[2] / "examples/cage_drawings/drawings.py"
+    spec = importlib.util.spec_from_file_location("cage_drawings", script)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

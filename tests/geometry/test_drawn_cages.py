@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from pathlib import Path
 from types import ModuleType
@@ -18,22 +17,6 @@ try:
     library()
 except ImportError as error:
     pytest.skip(str(error), allow_module_level=True)
-ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture(scope="module")
-def drawings() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("cage_drawings", ROOT / "examples/cage_drawings/drawings.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.fixture(scope="module")
-def rig() -> trb.Bearing:
-    return trb.cases.rig_30310()
 
 
 @pytest.fixture(scope="module")

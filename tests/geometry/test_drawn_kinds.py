@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from pathlib import Path
 from types import ModuleType
@@ -19,7 +18,6 @@ try:
     library()
 except ImportError as error:
     pytest.skip(str(error), allow_module_level=True)
-ROOT = Path(__file__).resolve().parents[2]
 BARS = {"leading_bar", "trailing_bar"}
 WALLS = {"large_end_wall", "small_end_wall"}
 PLANES = {"radial": 0.25e-3, "circumferential": 0.12e-3, "axial": 0.4e-3}
@@ -43,21 +41,6 @@ TABLE: dict[str, tuple[str, dict[str, Any], set[str], dict[str, float], int]] = 
     "relieved, one pocket broken": ("relieved", {"broken": True}, BARS | WALLS, PLANES, 2),
 }
 TOLERANCE = 1e-5
-
-
-@pytest.fixture(scope="module")
-def drawings() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("cage_drawings", ROOT / "examples/cage_drawings/drawings.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.fixture(scope="module")
-def rig() -> trb.Bearing:
-    return trb.cases.rig_30310()
 
 
 @pytest.mark.slow

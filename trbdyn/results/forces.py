@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.own_files import write_whole
-from trbdyn.base.shown import Displayed, Shown
+from trbdyn.base.shown import Shown, Tabled
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
 from trbdyn.results import observables
@@ -162,7 +162,7 @@ def _check_resolved(force: Force) -> None:
 
 
 @dataclass(frozen=True, repr=False)
-class ForceSpectrum(Displayed):
+class ForceSpectrum(Tabled):
     """The spectrum of a force; print it for the strongest lines.
 
     Attributes
@@ -185,11 +185,7 @@ class ForceSpectrum(Displayed):
     force: Force
     shaft_frequency: float
 
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
+    _headed = True
 
     def strongest(self, count: int = LINES) -> list[tuple[float, float]]:
         """Frequency (Hz) and amplitude (N) of the strongest peaks, strongest first."""
@@ -228,7 +224,7 @@ def force_spectrum(result: Derived, on: On, along: Along, segments: int) -> Forc
 
 
 @dataclass(frozen=True, repr=False)
-class OctaveLevels(Displayed):
+class OctaveLevels(Tabled):
     """Levels of a force by octaves or third octaves.
 
     Attributes
@@ -251,11 +247,7 @@ class OctaveLevels(Displayed):
     fraction: int
     force: Force
 
-    def __str__(self) -> str:
-        return self._shown().text(names=True)
-
-    def __repr__(self) -> str:
-        return str(self)
+    _headed = True
 
     def _shown(self) -> Shown:
         rows = tuple((name, f"{level:.1f}") for name, level in zip(self.names, self.level, strict=True))
@@ -294,7 +286,7 @@ def octave_levels(result: Derived, on: On, along: Along, fraction: int) -> Octav
 
 
 @dataclass(frozen=True, repr=False)
-class Sound(Displayed):
+class Sound(Tabled):
     """A sound file of a force.
 
     Attributes
@@ -319,12 +311,6 @@ class Sound(Displayed):
     seconds: float
     slower: float
     force: Force
-
-    def __str__(self) -> str:
-        return self._shown().text()
-
-    def __repr__(self) -> str:
-        return str(self)
 
     def _shown(self) -> Shown:
         rows = (
@@ -369,7 +355,7 @@ def sound(
 
 
 @dataclass(frozen=True, repr=False)
-class Rattle(Displayed):
+class Rattle(Tabled):
     """How often rollers hit the cage, and how hard; print it for a table.
 
     Every contact that begins is a hit, also one between two records. The impulse is that of the whole contact, so a roller that
@@ -400,12 +386,6 @@ class Rattle(Displayed):
     hits_by_face: dict[str, int]
     seconds: float
     turns: float
-
-    def __str__(self) -> str:
-        return self._shown().text()
-
-    def __repr__(self) -> str:
-        return str(self)
 
     def _shown(self) -> Shown:
         rows = (
