@@ -26,7 +26,7 @@ from trbdyn.errors import InputError
 from trbdyn.model.drawn.opened import STEP_ENDINGS, opened
 from trbdyn.model.outlines import cone_outline, cup_outline, rail_bands
 from trbdyn.model.profiles import profile_drop
-from trbdyn.plot.style import COLOURS, GREY, canvas, plain, styled
+from trbdyn.plot.style import COLOURS, GREY, canvas, colour_of, plain, styled
 
 if TYPE_CHECKING:
     from trbdyn.model.bearing import Bearing
@@ -184,7 +184,7 @@ def pocket_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
             label += f", {len(facets)} facets" if len(facets) > 1 else ""
             for face in facets:
                 corners = 1e3 * np.vstack([face.vertices, face.vertices[:1]])
-                look = {"color": COLOURS[index % len(COLOURS)], "linewidth": 1.8 / math.sqrt(len(facets))}
+                look = {"color": colour_of(index), "linewidth": 1.8 / math.sqrt(len(facets))}
                 end.plot(corners[:, 1], corners[:, 0], label=label if face is facets[0] else None, **look)
                 top.plot(corners[:, 2], corners[:, 1], **look)
         end.set(aspect="equal", xlabel="in the direction of rotation, t (mm)", ylabel="outward, n (mm)")
@@ -240,7 +240,7 @@ def cage_drawing(bearing: Bearing, pocket: int = 0) -> Figure:
             for index, surface in enumerate(facets.values() if place else ()):
                 corners = [1e3 * np.asarray(face.vertices)[:, [1, 2, 0]] for face in surface]
                 label = surface[0].name.replace("_", " ") + (f", {len(surface)} facets" if len(surface) > 1 else "")
-                colour = COLOURS[index % len(COLOURS)]
+                colour = colour_of(index)
                 ax.add_collection3d(
                     Poly3DCollection(corners, facecolor=colour, edgecolor=colour, linewidth=0.3, label=label),
                     autolim=False,

@@ -14,7 +14,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import Colormap, ListedColormap
+from matplotlib.colors import Colormap, ListedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
@@ -69,6 +69,13 @@ SAVE_DPI = 200
 
 OWN = "trbdyn"
 """Label of figures that a picture made for itself."""
+
+
+def colour_of(index: int) -> tuple[float, float, float]:
+    """A colour for each of many things: those of `COLOURS`, then the same ones half and more mixed with white."""
+    share = 1.0 / (1.0 + index // len(COLOURS))
+    red, green, blue = (1.0 - share * (1.0 - part) for part in to_rgb(COLOURS[index % len(COLOURS)]))
+    return red, green, blue
 
 
 @contextmanager
