@@ -25,14 +25,17 @@ static inline double trb_flank_gap(const trb_model *m, const trb_pocket_face *f,
 {
   const double *centre = m->centre + (size_t)roller * (size_t)m->n_lanes, *sphere = m->sphere + (size_t)roller * (size_t)m->n_lanes;
   const double  middle = trb_polygon_height(&f->surface, p->x), along = trb_dot(p->a, f->surface.normal);
-  double        gap = INFINITY, of_nodes = INFINITY;
+  double        gap = INFINITY, least[4] = {INFINITY, INFINITY, INFINITY, INFINITY};
   for (int end = 0; end < 2; end++) {
     const trb_sphere *last = &m->end_spheres[2 * roller + end];
     gap = trb_min(gap, middle + last->place * along - last->radius - m->pocket_film);
   }
   if (gap > 0.0) return gap;
-  for (int k = 0; k < m->n_nodes; k++) of_nodes = trb_min(of_nodes, middle + centre[k] * along - sphere[k] - m->pocket_film);
-  return of_nodes;
+  /* side by side: one least value alone would wait for each comparison */
+  for (int k = 0; k < m->n_nodes; k += 4)
+    for (int i = 0; i < 4 && k + i < m->n_nodes; i++)
+      least[i] = trb_min(least[i], middle + centre[k + i] * along - sphere[k + i] - m->pocket_film);
+  return trb_min(trb_min(least[0], least[1]), trb_min(least[2], least[3]));
 }
 
 /* Lower bound of the gap between a flank without profile and the ball around a facet, less the film's. The place and the radius of the spheres

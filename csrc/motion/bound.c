@@ -123,8 +123,10 @@ int trb_bound_holds_on_ring(const trb_bound *bound, const trb_arms *arms, const 
   double          step[TRB_PLACE_OF_ROLLER];
   if (!(length >= 0.0)) return 0;
   for (int i = 0; i < TRB_PLACE_OF_ROLLER; i++) step[i] = y_roller[i] - bound->roller[i];
-  now.shifted = apart(ring->centre, trb_v(from[0], from[1], from[2]));
-  now.leaned = apart(ring->axis, trb_v(from[3], from[4], from[5]));
+  if (ring != NULL) {
+    now.shifted = apart(ring->centre, trb_v(from[0], from[1], from[2]));
+    now.leaned = apart(ring->axis, trb_v(from[3], from[4], from[5]));
+  }
   return trb_way_on_ring(arms, &now, bound->roller, step, around, length) <= length;
 }
 
@@ -144,7 +146,7 @@ int trb_speed_bound_holds(const trb_speed_bound *bound, const trb_system *system
   /* distances of what meets from the roller's centre of mass, and from a ring's reference point */
   const double reach = m->params.total_length + m->params.roller_diameter, far = outside_of(m);
   double       passed = 0.0, speed = 0.0;
-  for (int b = 0; b < system->n_bodies; b++) passed = fmax(passed, offsets[b].speed);
+  for (int b = 0; b < system->n_bodies; b++) passed = trb_max(passed, offsets[b].speed);
   speed = passed * fabs(angle - bound->angle);
   for (int k = 0; k < system->n_moving; k++) {
     const trb_ring_pose *to = &bodies[system->moving[k]].ring, *from = &bound->ring[k];

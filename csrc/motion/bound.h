@@ -84,7 +84,8 @@ trb_ring_arms trb_ring_arms_of(const trb_system *system);
 unsigned trb_bounds_open(const trb_ring_arms *arms, const trb_ring_offset *rings, const double *interference, double share,
                          const double *place, const double *step, double turn);
 
-/* Of one interference with a ring; ring: in inertial coordinates; angle: of the roller about the bearing's axis, rad. */
+/* Of one interference with a ring; ring: in inertial coordinates, NULL where it is known to be where the bound was found; angle: of the roller
+ * about the bearing's axis, rad. */
 void trb_bound_set_on_ring(trb_bound *bound, double length, const trb_ring_pose *ring, const double *y_roller, double angle);
 int  trb_bound_holds_on_ring(const trb_bound *bound, const trb_arms *arms, const trb_ring_offset *offset, const trb_ring_pose *ring,
                              const double *y_roller, double angle);

@@ -143,7 +143,9 @@ static int holds(const trb_peak_look *p, const trb_ring_offset *offsets, int bat
   const double    *own = y + trb_state_roller(p->d->system, j), angle = turn_of(p, j, y);
   for (int i = 0; i < b->n; i++) {
     const int row = b->index[i], ring = b->pairs[i]->b;
-    if (!trb_bound_holds_on_ring(&p->bounds[row * z + j], &p->arms[row], &offsets[ring], &p->d->bodies[ring].ring, own, angle)) return 0;
+    /* where a ring without coordinates has moved, everything was forgotten */
+    const trb_ring_pose *moved = p->system.bodies[ring].size > 0 ? &p->d->bodies[ring].ring : NULL;
+    if (!trb_bound_holds_on_ring(&p->bounds[row * z + j], &p->arms[row], &offsets[ring], moved, own, angle)) return 0;
   }
   return trb_speed_bound_holds(&p->speeds[batch * z + j], p->d->system, offsets, p->d->bodies, own, angle);
 }
@@ -219,7 +221,7 @@ static void look_at_places(const trb_peak_look *p, const double *y, double *valu
 {
   const int z = p->normal.n_rollers;
   for (int j = 0; j < z; j++) {
-    const double *own = y + trb_state_roller(p->d->system, j), *next = y + trb_state_roller(p->d->system, (j + 1) % z);
+    const double *own = y + trb_state_roller(p->d->system, j), *next = y + trb_state_roller(p->d->system, j + 1 < z ? j + 1 : 0);
     const double  spacing = trb_nominal_angle(&p->normal, 1) + (next[TRB_ROLLER_psi] - own[TRB_ROLLER_psi]);
     write(p, TRB_PEAK_skew, j, fabs(own[TRB_ROLLER_skew]), values);
     write(p, TRB_PEAK_spacing_largest, j, spacing, values);
@@ -237,11 +239,11 @@ static int ring_rests(const trb_ring_pose *a, const trb_ring_pose *b)
 
 void trb_peak_look_at(trb_peak_look *look, double time, const double *y, double *values)
 {
-  trb_body_at before[TRB_MOST_BODIES];
-  memcpy(before, look->d->bodies, sizeof before);
+  trb_ring_pose before[TRB_MOST_BODIES];
+  for (int b = 0; b < look->system.n_bodies; b++) before[b] = look->d->bodies[b].ring;
   trb_dynamics_drive(look->d, time);
   for (int b = 0; b < look->system.n_bodies; b++)
-    if (look->system.bodies[b].size == 0 && !ring_rests(&before[b].ring, &look->d->bodies[b].ring)) trb_peak_look_forget(look);
+    if (look->system.bodies[b].size == 0 && !ring_rests(&before[b], &look->d->bodies[b].ring)) trb_peak_look_forget(look);
   memset(look->posed, 0, (size_t)look->normal.n_rollers * sizeof *look->posed);
   trb_dynamics_pose_hub(look->d, y);
   for (int j = 0; j < look->normal.n_rollers; j++) look->d->uneven[j] = trb_dynamics_spin_roller(look->d, j, y);
