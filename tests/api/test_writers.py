@@ -138,7 +138,7 @@ READERS = {
     "trbdyn.results.assembly.load",
     "trbdyn.results.file_source.assembly_in",
     "trbdyn.results.file_source.names_in",
-    "trbdyn.model.bearing.Cage.from_step",
+    "trbdyn.model.cage.Cage.from_step",
     "trbdyn.model.drawn.opened.opened",
     "trbdyn.model.drawn.read.read_cage",
     "trbdyn.model.roller.Profile.from_csv",

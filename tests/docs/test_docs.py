@@ -28,6 +28,7 @@ EXAMPLES = (
     "trbdyn.standards.iso281",
     "trbdyn.run.rating",
     "trbdyn.model.bearing",
+    "trbdyn.model.catalogued",
     "trbdyn.study.what_matters",
     "trbdyn.viewer",
     "trbdyn.viewer.gltf",

@@ -39,6 +39,8 @@ AREAS: dict[str, tuple[float, list[str]]] = {
         0.09,
         [
             "trbdyn/model/bearing.py",
+            "trbdyn/model/cage.py",
+            "trbdyn/model/ribs.py",
             "trbdyn/model/roller.py",
             "trbdyn/model/pocket*.py",
             "trbdyn/model/lubricants/*.py",

@@ -302,13 +302,7 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
-        """The model that `to_dict` described.
-
-        Raises
-        ------
-        InputError
-            If anything is wrong with the values.
-        """
+        """The model that `to_dict` described, or an `InputError` that says what is wrong with the values."""
         return cls.model_validate(values)
 
     def to_json(self) -> str:
@@ -317,13 +311,7 @@ class Model(Displayed, BaseModel, metaclass=_Listed):
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Self:
-        """The model that `to_json` wrote.
-
-        Raises
-        ------
-        InputError
-            If the text is no JSON or anything is wrong with the values.
-        """
+        """The model that `to_json` wrote, or an `InputError` that says what is wrong with the text or the values."""
         try:
             values = json.loads(text)
         except RecursionError:

@@ -9,35 +9,32 @@ change it where you know better.
 from __future__ import annotations
 
 import math
-import os
-import pathlib
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Final, Literal, Self
+from typing import Annotated, Any, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from trbdyn.base.shown import Shown, field_rows
-from trbdyn.base.validation import Gap, Length, Model, Number, Whole, unit
-from trbdyn.errors import MISSING, InputError, Path, Problem
-from trbdyn.model.assumed import RIG, assumed_inputs, with_assumed
+from trbdyn.base.validation import Length, Model, Number, Whole, unit
+from trbdyn.errors import InputError, Path, Problem
+from trbdyn.model.assumed import assumed_inputs, with_assumed
+from trbdyn.model.cage import Cage
 from trbdyn.model.cage_body import CageBody, Wall, cage_mass
-from trbdyn.model.cage_drawing import CageDrawing
 from trbdyn.model.cage_space import CageSpace
-from trbdyn.model.catalogue import fields_from_catalogue
+from trbdyn.model.catalogued import Catalogued
 from trbdyn.model.core_table import parameter
-from trbdyn.model.designations import designation as row_of
-from trbdyn.model.drawn.read import read_cage
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.flatten import bearing_geometry
 from trbdyn.model.geometry import Geometry
 from trbdyn.model.land import Land
 from trbdyn.model.material import Material, Roughness
-from trbdyn.model.pocket import Face, OtherPocket, Pocket, every_face
+from trbdyn.model.pocket import Face, Pocket, every_face
 from trbdyn.model.pocket_shapes import default_pocket
 from trbdyn.model.ratings import Ratings
+from trbdyn.model.ribs import Ribs
 from trbdyn.model.roller import Profile, Roller, Scatter
 
 __all__ = [
@@ -55,212 +52,7 @@ __all__ = [
 ]
 
 
-_TAPERED_RIBS: Final = frozenset({("inner", "large"), ("inner", "small")})
-_OUTER_RIBS: Final = frozenset({("outer", "large"), ("outer", "small")})
-_RIBS: Final[dict[str | None, frozenset[tuple[str, str]]]] = {
-    None: _TAPERED_RIBS,
-    "NU": _OUTER_RIBS,
-    "NJ": _OUTER_RIBS | {("inner", "large")},
-    "NUP": _OUTER_RIBS | _TAPERED_RIBS,
-    "N": _TAPERED_RIBS,
-}
-"""Ribs by the type of a bearing; None: tapered."""
-
-
-class Ribs(Model):
-    """Back-face rib (against the large ends) and front-face rib of the inner ring. Heights are above the raceway,
-    perpendicular to it. What is not given is assumed in proportion to the 30310 rig.
-
-    Parameters
-    ----------
-    contact_height : float
-        Height of the nominal contact of the large end (m); by default 1.667/14 of the roller's diameter.
-    edge_low, edge_high : float
-        Heights of the back-face rib's edges (m); by default 0.3/1.667 and 3.5/1.667 of the contact height.
-    front_clearance : float
-        Nominal gap between small end and front rib (m); by default 0.2/14 of the roller's diameter. The front rib's
-        face is perpendicular to the roller's axis.
-    front_low, front_high : float
-        Heights of the front rib's edges (m); by default 0.3/14 and 2/14 of the roller's diameter.
-    flanges : {'NU', 'NJ', 'NUP', 'N'}, optional
-        Which ribs a cylindrical bearing has, by its type in ISO 15; it must be given there, and nowhere else. NU: two of the
-        outer ring. NJ: these, and one of the inner ring, against the ends towards +z. NUP: two of each ring. N: two of the inner
-        ring. All have the contact height and the edges above; `front_clearance`, `front_low` and `front_high` are for cones.
-    clearance : float
-        Gap between a cylindrical roller in the middle and each rib (m); by default 1.5e-3 of the roller's diameter.
-    """
-
-    _assumed: ClassVar[bool] = True
-
-    contact_height: Annotated[Number, parameter("rib_contact_height", gt=0)] = RIG["contact_height"]
-    edge_low: Annotated[Number, parameter("rib_edge_low")] = RIG["edge_low"]
-    edge_high: Annotated[Number, parameter("rib_edge_high", gt=0)] = RIG["edge_high"]
-    front_clearance: Annotated[Number, parameter("front_rib_clearance")] = RIG["front_clearance"]
-    front_low: Annotated[Number, parameter("front_rib_low")] = RIG["front_low"]
-    front_high: Annotated[Number, parameter("front_rib_high", gt=0)] = RIG["front_high"]
-    flanges: Literal["NU", "NJ", "NUP", "N"] | None = None
-    clearance: Annotated[Number, parameter("rib_clearance")] = 0.0
-
-    @property
-    def places(self) -> frozenset[tuple[str, str]]:
-        """Of which ring, and against which end of the rollers they are; the large end of a cylinder is the one towards +z."""
-        return _RIBS[self.flanges]
-
-    def carry(self, force: float) -> bool:
-        """Whether ribs of a cylindrical bearing carry an axial force on the inner ring (N): NJ one towards -z, NUP either."""
-        return force < 0.0 if self.flanges == "NJ" else self.flanges == "NUP" and force != 0.0
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        given = self.model_fields_set
-        if {"contact_height", "edge_low"} <= given and self.edge_low >= self.contact_height:
-            limit = f"must be > edge_low, {self.edge_low:g}: between the rib's edges (m)"
-            raise InputError.of("contact_height", self.contact_height, limit)
-        if {"contact_height", "edge_high"} <= given and self.edge_high <= self.contact_height:
-            limit = f"must be < edge_high, {self.edge_high:g}: between the rib's edges (m)"
-            raise InputError.of("contact_height", self.contact_height, limit)
-        if {"front_high", "front_low"} <= given and self.front_high <= self.front_low:
-            raise InputError.of("front_high", self.front_high, f"must be > front_low, {self.front_low:g} (m)")
-        return self
-
-
-class Cage(Model):
-    """The cage and its pockets. What is not given is assumed in proportion to the 30310 rig: lengths with the roller's
-    diameter unless it is said otherwise.
-
-    Parameters
-    ----------
-    mass : float
-        Mass (kg); by default it follows from `body`, or else it is 0.2 kg times pitch diameter, roller diameter, roller
-        length and density of the material over those of the rig, a cage of steel.
-    inertia_axial, inertia_transverse : float
-        Moments of inertia about its axis, and about a transverse axis through its centre of mass (kg m2); by default
-        with mass and radius squared (what lies along the axis: with length squared), so that they follow a mass
-        that is changed; with a `body` they are its own, in proportion to the mass. Given ones must belong to the mass: no
-        cage has its mass outside of the bearing.
-    play_radial, play_circumferential : float
-        Cpr and Cpc: plays in the x-y plane, radial and circumferential, one-sided, measured to one roller with the cage
-        centred and the roller's large end touching its pocket (m); by default 0.25/14 and 0.12/14 of the diameter.
-    play_axial : float
-        Play along the roller's axis from large-end to small-end contact (m); by default 0.4/14 of the diameter.
-    offset : float
-        Axial position of the centre of mass from the roller-centre plane (m); that of the `body`, or 0 (assumed).
-    unbalance : float
-        Unbalance: mass times distance of the centre of mass from the axis of the pockets (kg m; 1 g mm is 1e-6 kg m).
-    unbalance_direction_deg : float
-        Direction of the centre of mass, from the middle of pocket 0 in the direction of positive rotation (deg).
-    rail_offset : float
-        Axial position of the large-end rail, where sensors look, from the roller-centre plane (m); by default 12/19.8
-        of the roller's length.
-    bar_width : float
-        Width of the bars' faces across the contact line (m); by default 3/14 of the diameter.
-    wall_inner, wall_outer : float
-        Inner and outer edge of the end walls' bands, outward of the roller's axis (m); by default 1.5/14 and 4.5/14 of
-        the diameter, at most 0.3 and 0.9 of the small end's radius.
-    wall_half_width : float
-        Half width of the end walls' bands (m); by default 6/14 of the diameter.
-    pocket : Pocket, optional
-        Faces of every pocket; without it the default pocket of `trbdyn.pocket_shapes` is built from the plays.
-    other_pockets : sequence of OtherPocket
-        Pockets that differ from the others.
-    material : Material, optional
-        What it is made of; that of the bearing by default.
-    body : CageBody, optional
-        Its rims and bars, from which mass, centre and moments of inertia follow.
-    drawing : CageDrawing, optional
-        The drawing it was read from (`from_step`); not together with a `body`.
-    """
-
-    _assumed: ClassVar[bool] = True
-
-    mass: Annotated[Number, parameter("cage_mass")] = RIG["mass"]
-    inertia_axial: Annotated[Number, parameter("cage_inertia_axial")] = RIG["inertia_axial"]
-    inertia_transverse: Annotated[Number, parameter("cage_inertia_transverse")] = RIG["inertia_transverse"]
-    play_radial: Length = RIG["play_radial"]
-    play_circumferential: Length = RIG["play_circumferential"]
-    play_axial: Gap = RIG["play_axial"]
-    offset: Annotated[Number, parameter("cage_offset")] = 0.0
-    unbalance: Annotated[Number, unit("kg m", ge=0)] = 0.0
-    unbalance_direction_deg: Annotated[Number, unit("deg")] = 0.0
-    rail_offset: Annotated[Number, parameter("cage_rail_offset")] = RIG["rail_offset"]
-    bar_width: Length = RIG["bar_width"]
-    wall_inner: Gap = RIG["wall_inner"]
-    wall_outer: Length = RIG["wall_outer"]
-    wall_half_width: Length = RIG["wall_half_width"]
-    pocket: Pocket | None = None
-    other_pockets: tuple[OtherPocket, ...] = ()
-    material: Material | None = None
-    body: CageBody | None = None
-    drawing: CageDrawing | None = None
-
-    @classmethod
-    def from_step(
-        cls,
-        path: str | os.PathLike[str],
-        bearing: Bearing,
-        *,
-        material: Material | None = None,
-        tolerance: float = 1e-6,
-        unit: str = "mm",
-        roller_plane: float | None = None,
-    ) -> Cage:
-        """A cage as drawn: its pockets with all faces that a roller can touch, plays, mass, centre and moments of inertia.
-
-        The cage is placed so that bars of both sides have the same gap and the large ends of the rollers just touch their walls.
-        Plane faces are exact, curved faces are facets. It needs the extra ``trbdyn[cad]``
-        (docs/theory/geometry.md#pockets-from-a-drawing).
-
-        Parameters
-        ----------
-        path : path-like
-            STEP file (``.step``, ``.stp``), which tells its unit, or STL file, of one solid.
-        bearing : Bearing
-            The bearing whose cage it is.
-        material : Material, optional
-            What it is made of; that of the bearing by default. Its density gives the mass.
-        tolerance : float
-            Largest distance between a curved face and its facets (m).
-        unit : {'mm', 'm', 'inch'}
-            Unit of an STL file.
-        roller_plane : float, optional
-            Height of the roller-centre plane above the cage's centre of volume, positive towards the large ends (m); needed where
-            no wall faces the large ends.
-
-        Raises
-        ------
-        InputError
-            If an argument is not allowed, or the cage does not belong to the bearing.
-        FileError
-            If the file cannot be read, or what is in it is not understood; the message names the face.
-        ImportError
-            If the extra is not installed.
-        """
-        drawn = read_cage(path, bearing, tolerance=tolerance, unit=unit, roller_plane=roller_plane)
-        density = (material or bearing.material).density
-        if density is None:
-            raise InputError.of(("material", "density"), None, "must be given: the cage's mass follows from it (kg/m3)")
-        return cls(**drawn.fields(density), material=material)
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        given = self.model_fields_set
-        if {"inertia_axial", "inertia_transverse"} <= given and self.inertia_axial > 2.0 * self.inertia_transverse:
-            limit = f"must be <= 2 inertia_transverse, {2 * self.inertia_transverse:g} (kg m2): no body has more"
-            raise InputError.of("inertia_axial", self.inertia_axial, limit)
-        if self.body is not None and self.drawing is not None:
-            raise InputError.of(
-                "body", "given", "must not be given together with a drawing, which has rims and bars of its own"
-            )
-        if {"wall_inner", "wall_outer"} <= given and self.wall_outer <= self.wall_inner:
-            raise InputError.of("wall_outer", self.wall_outer, f"must be > wall_inner, {self.wall_inner:g} (m)")
-        indices = [other.index for other in self.other_pockets]
-        for place, index in enumerate(indices):
-            if index in indices[:place]:
-                raise InputError.of(("other_pockets", place, "index"), index, "must differ from the other indices")
-        return self
-
-
-class Bearing(Model):
+class Bearing(Catalogued):
     """A single-row tapered or cylindrical roller bearing. What is not needed below (rollers, pitch diameter, cup's angle) has a
     default in proportion to the bearing's size, listed by `assumed`.
 
@@ -332,122 +124,6 @@ class Bearing(Model):
     width: Length | None = None
     ratings: Ratings = Ratings()
     estimates: tuple[Estimated, ...] = ()
-
-    @classmethod
-    def from_catalogue(
-        cls,
-        *,
-        bore: Any = MISSING,
-        outside: Any = MISSING,
-        width: Any = MISSING,
-        C: Any = MISSING,
-        e: float | None = None,
-        Y: float | None = None,
-        C0: float | None = None,
-        Y0: float | None = None,
-        Cu: float | None = None,
-        cup_width: float | None = None,
-        n_rollers: int | None = None,
-        roller_diameter: float | None = None,
-        roller_length: float | None = None,
-        pitch_diameter: float | None = None,
-        contact_angle_deg: float | None = None,
-        cage_mass: float | None = None,
-        maker_factor: float | None = None,
-        reference_speed_rpm: float | None = None,
-        limiting_speed_rpm: float | None = None,
-        flanges: str | None = None,
-        F: float | None = None,
-        E: float | None = None,
-        radial_clearance: float | None = None,
-        name: str = "",
-        **others: Any,
-    ) -> Bearing:
-        """A bearing from the numbers of a catalogue page; what is inside is estimated.
-
-        The angle of the cup follows from e = 1.5 tan(alpha) or Y = 0.4 cot(alpha) (ISO 281). Diameter, length and number of the
-        rollers and the maker's factor on C are the least unusual ones with this C; the rest is scaled from the 30310 rig.
-        See `estimated`. What is given here derives the others; a later ``replace(n_rollers=17)`` changes that number alone.
-
-        Parameters
-        ----------
-        bore, outside, width : float
-            Boundary dimensions d, D and T, of a cylindrical bearing B (m).
-        C, C0, Cu : float
-            Ratings and fatigue load limit, also called Pu (N); C alone is needed, the others are for `trbdyn.rating`.
-        e, Y, Y0 : float, optional
-            Calculation factors; e or Y, or the contact angle, must be given, and they must agree (1).
-        n_rollers : int, optional
-            Z.
-        roller_diameter, roller_length, pitch_diameter, cup_width : float, optional
-            Dwe, Lwe, Dpw, and the width of the cup, often called C beside T and B (m).
-        contact_angle_deg, cage_mass : float, optional
-            Half angle of the cup (deg); mass of the cage (kg).
-        maker_factor : float, optional
-            C over the rating of ISO 281 with b_m = 1.1, where it is known; 0.8 to 1.5 (1).
-        reference_speed_rpm, limiting_speed_rpm : float, optional
-            Speeds that the catalogue permits (rpm): kept for `trbdyn.rating`.
-        flanges : {'NU', 'NJ', 'NUP', 'N'}, optional
-            Type of a cylindrical bearing; without it the bearing is tapered. With it C0 tells the rollers' number times length.
-        F, E : float, optional
-            Diameters of the raceways of the inner and the outer ring of a cylindrical bearing (m).
-        radial_clearance : float, optional
-            Clearance of a cylindrical bearing in operation (m); by default half of group N of ISO 5753-1.
-        name : str
-            Name; by default the boundary dimensions.
-
-        Returns
-        -------
-        Bearing
-
-        Raises
-        ------
-        InputError
-            If a number is not allowed or contradicts another one, a name is unknown, or no rollers that fit the
-            dimensions come near this C.
-
-        Examples
-        --------
-        >>> import trbdyn as trb
-        >>> bearing = trb.Bearing.from_catalogue(bore=0.080, outside=0.140, width=0.03525, C=187e3, e=0.43)
-        >>> print(bearing.estimated[0])
-        cup_half_angle_deg = 16 deg (15.82 to 16.17): tan(alpha) = e/1.5 (ISO 281), e as rounded in the catalogue
-        >>> page = {"bore": 0.050, "outside": 0.090, "width": 0.020, "C": 69e3, "C0": 76.5e3, "F": 0.0595}
-        >>> cylindrical = trb.Bearing.from_catalogue(flanges="NU", **page)
-        >>> print(cylindrical.n_rollers, round(1e3 * cylindrical.roller.diameter, 2))
-        16 11.2
-        """
-        given = {name: value for name, value in locals().items() if name not in ("cls", "others")}
-        return cls(**fields_from_catalogue(**given, others=others))
-
-    @classmethod
-    def named(cls, designation: str, *, table: str | pathlib.Path | None = None, **known: Any) -> Bearing:
-        """A bearing by its designation: boundary dimensions and ratings of a table, the rest estimated as `from_catalogue` does.
-
-        `trbdyn.designation` shows which number is a fact and of which source, and which one is an estimate.
-
-        Parameters
-        ----------
-        designation : str
-            Such as ``"32208"`` or ``"LM67048/LM67010"``, see `trbdyn.designation`.
-        table : path-like, optional
-            A table of your own, see `trbdyn.designations`.
-        **known
-            What you know better, by the names of `from_catalogue`: ``C=95e3, n_rollers=17``.
-
-        Raises
-        ------
-        InputError
-            If there is no such row, or it cannot be right.
-
-        Examples
-        --------
-        >>> import trbdyn as trb
-        >>> bearing = trb.Bearing.named("32208")
-        >>> bearing.ratings.dynamic, bearing.estimated[0].path
-        (77700.0, 'cup_half_angle_deg')
-        """
-        return cls(**row_of(designation, table=table).fields(**known))
 
     @property
     def estimated(self) -> tuple[Estimated, ...]:

@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, Final
 from trbdyn.errors import Problem
 
 if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing, Cage, Material
+    from trbdyn.model.bearing import Bearing
+    from trbdyn.model.cage import Cage
+    from trbdyn.model.material import Material
 
 DENSEST: Final = 20e3
 """Density that no material of a cage exceeds (kg/m3): tungsten has 19300."""

@@ -28,7 +28,8 @@ from trbdyn.model.motion import History, common_period, joint_times, knot_table,
 from trbdyn.model.ring_body import Housing
 
 if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing, Material
+    from trbdyn.model.bearing import Bearing
+    from trbdyn.model.material import Material
     from trbdyn.model.pocket import Face
     from trbdyn.model.scene import Scene
 

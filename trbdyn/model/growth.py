@@ -32,7 +32,8 @@ from trbdyn.model.motion import is_constant
 from trbdyn.model.pocket import Face, Pocket
 
 if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing, Material
+    from trbdyn.model.bearing import Bearing
+    from trbdyn.model.material import Material
     from trbdyn.model.scene import Scene
 
 FloatArray = NDArray[np.float64]

@@ -30,7 +30,8 @@ from trbdyn.base.shipped import DATA
 from trbdyn.base.validation import Model
 from trbdyn.errors import MISSING, FileError, InputError, Problem, unknown_name
 from trbdyn.errors import Path as FieldPath
-from trbdyn.model.bearing import Bearing, Cage
+from trbdyn.model.bearing import Bearing
+from trbdyn.model.cage import Cage
 from trbdyn.model.cases import BEARINGS
 from trbdyn.model.effects import PRESETS, Effects, refuse_idle
 from trbdyn.model.lubricants import Lubricant, vg100

@@ -12,8 +12,8 @@ from scipy.interpolate import PchipInterpolator
 
 from trbdyn.base.validation import number_of
 from trbdyn.errors import InputError
-from trbdyn.model.bearing import Ribs
 from trbdyn.model.heat import PARTS, HeatPaths
+from trbdyn.model.ribs import Ribs
 
 if TYPE_CHECKING:
     import xarray
