@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray
 
 import trbdyn as trb
 from trbdyn.errors import InputError
@@ -87,6 +88,7 @@ def test_a_search_finds_a_better_design_and_goes_on_in_its_folder(kept: Path) ->
     tolerances = {RADIUS: (-1.0, 1.0)}
     limits = {"film_parameter_inner": (0.01, None)}
     how: dict[str, Any] = {"limits": limits, "tolerances": tolerances, "draws": 2, "options": OPTIONS, "folder": kept}
+    how["confirm"] = 3.0
     short = trb.optimise(SCENE, CHANGE, TORQUE, designs=10, **how)
     files = {path.name: path.stat().st_mtime_ns for path in kept.glob("*.h5")}
     long = trb.optimise(SCENE, CHANGE, TORQUE, designs=12, **how)
@@ -99,13 +101,57 @@ def test_a_search_finds_a_better_design_and_goes_on_in_its_folder(kept: Path) ->
     assert long.first.inputs == {RADIUS: 20.0, WARM: 50.0}
     assert long.chosen.values["torque"] < 0.8 * long.first.values["torque"]
     # the torque of a design is that of its worst draw
-    own = long.data.torque.values[long.data.design.values == long.chosen.number]
+    assert long.chosen.confirmed
+    own = long.data.torque.values[(long.data.design == long.chosen.number) & (long.data.length == 3.0)]
     assert len(own) == 2
     assert long.chosen.values["torque"] == own.max() > own.min()
     first, chosen = long.pair(duration=2e-4)
     assert chosen.scene.bearing.roller.profile.crown_radius == long.chosen.inputs[RADIUS]
     assert chosen.numbers()["torque"] < first.numbers()["torque"]
     assert "chosen" in str(long)
+
+
+def whirls_later(study: Any, **_: Any) -> xarray.Dataset:
+    """What runs would give whose torque is least at the largest radius, but in longer runs is large beyond 60 m."""
+    radius, length = (np.array([case.parameters[name] for case in study.cases], float) for name in (RADIUS, "length"))
+    torque = 2.0 - 0.01 * radius + np.where(length > 1.0, 0.1 + 3.0 * (radius > 60.0), 0.0)
+    columns = {
+        "torque": torque,
+        "settled": torque < 2.0,
+        "status": np.full(len(torque), "done"),
+        "message": np.full(len(torque), ""),
+    }
+    places = {name: ("case", [case.parameters[name] for case in study.cases]) for name in ("design", "length")}
+    return xarray.Dataset({name: ("case", column) for name, column in columns.items()}, places)
+
+
+def test_only_designs_that_longer_runs_confirm_are_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("trbdyn.study.optimise.run_study", whirls_later)
+    change = {RADIUS: (5.0, 100.0)}
+    short = trb.optimise(SCENE, change, TORQUE, designs=24, confirm=1.0)
+    assert short.chosen.inputs[RADIUS] > 90.0
+    assert not any(one.confirmed for one in short.designs)
+    for seed in range(2):
+        found = trb.optimise(SCENE, change, TORQUE, designs=28, seed=seed)
+        assert 40.0 < found.chosen.inputs[RADIUS] <= 60.0
+        assert all(one.confirmed for one in (*found.front, found.first))
+        assert sum(one.confirmed for one in found.designs) <= 8
+        assert found.chosen.expected["torque"] == found.chosen.values["torque"] < found.first.values["torque"]
+        # the search goes on below the radius that longer runs refute
+        assert np.median([one.inputs[RADIUS] for one in found.designs[-8:]]) < 65.0
+
+
+def test_a_longer_run_that_fails_refuses_the_design(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails_later(study: Any, **how: Any) -> xarray.Dataset:
+        data = whirls_later(study, **how)
+        data["status"] = data["status"].where(data["torque"] < 3.0, "failed")
+        data["message"] = data["message"].where(data["torque"] < 3.0, "the cage is torn")
+        return data
+
+    monkeypatch.setattr("trbdyn.study.optimise.run_study", fails_later)
+    found = trb.optimise(SCENE, {RADIUS: (5.0, 100.0)}, TORQUE, designs=24)
+    assert 40.0 < found.chosen.inputs[RADIUS] <= 60.0
+    assert set(found.refused) == {"the cage is torn"}
 
 
 def test_an_angle_of_bars_that_the_scene_has_not() -> None:
@@ -129,6 +175,7 @@ def test_an_angle_of_bars_that_the_scene_has_not() -> None:
         ({"limits": {"torque": (None, None)}}, "must be the largest value"),
         ({"designs": 4}, "at least 10"),
         ({"judged": "median"}, "judged"),
+        ({"confirm": 0.5}, "must be >= 1"),
     ],
 )
 def test_what_cannot_be_searched_for(changed: dict[str, Any], text: str) -> None:

@@ -329,7 +329,7 @@ class Pictures:
             made = []
             for number, row in enumerate(rows):
                 told = dict(zip(["pocket_force_peak", "torque"], row, strict=True))
-                made.append(Design(number, {}, {key: 1.1 * value for key, value in told.items()}, told))
+                made.append(Design(number, {}, {key: 1.1 * value for key, value in told.items()}, told, False))
             front = tuple(made[2:] if len(want) > 1 else made[2:3])
             scene = trb.cases.scene_30310(3000.0, 4930.0)
             found = Optimum(made[0], made[2], front, tuple(made), want, (), None, (scene, scene))

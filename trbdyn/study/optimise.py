@@ -1,11 +1,12 @@
 """The best designs within limits: plays, profiles or numbers of rollers are changed, each design is run over draws of its
-tolerances, and what was learned from all runs tells which designs come next (`trbdyn.study.guide`).
+tolerances, and what was learned from all runs tells which designs come next (`trbdyn.study.guide`). Short runs search; the best
+designs are run again, longer, and the change that this makes is learned, too.
 """
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
@@ -36,12 +37,15 @@ if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Limit = float | tuple[float | None, float | None]
 
 ROUND: Final = 8
 """Designs that are run side by side before the next ones are chosen."""
 FEWEST: Final = 10
 """Fewest designs."""
+CONFIRMED: Final = 0.25
+"""Largest share of the designs that is confirmed by longer runs, besides the first."""
 SHAPE_OF: Final = {
     name: shape for shape, build in SHAPES.items() for name in list(inspect.signature(build).parameters)[1:]
 }
@@ -60,15 +64,18 @@ class Design:
     inputs : dict of str to float
         What was changed, by its path.
     values : dict of str to float
-        Aims and limited quantities, over the draws of the tolerances.
+        Aims and limited quantities, over the draws of the tolerances; of a confirmed design those of its longer runs.
     expected : dict of str to float
-        The same as all runs together tell: with less chance in them.
+        The same as all runs together tell of longer runs, with less chance in them; of a confirmed design its values.
+    confirmed : bool
+        Whether it was run longer.
     """
 
     number: int
     inputs: dict[str, float]
     values: dict[str, float]
     expected: dict[str, float]
+    confirmed: bool
 
 
 @dataclass(frozen=True, repr=False)
@@ -85,7 +92,7 @@ class Optimum(Answer):
     chosen : Design
         The design of the front that is nearest to the best of all aims at once.
     front : tuple of Design
-        Designs that keep the limits and are beaten in all aims by no other one.
+        Designs that keep the limits and are beaten in all aims by no other one; of designs that were confirmed.
     designs : tuple of Design
         All that could be run.
     want : dict of str to str
@@ -93,7 +100,8 @@ class Optimum(Answer):
     refused : tuple of str
         Why others could not be run.
     data : xarray.Dataset
-        All runs, as `trbdyn.study.run` gives them; ``design`` and ``draw`` are coordinates.
+        All runs, as `trbdyn.study.run` gives them; ``design``, ``draw`` and ``length``
+        (over that of the search) are coordinates.
     subjects : tuple of Scene or Assembly
         What was run, of the first and of the chosen design without their tolerances.
     """
@@ -136,7 +144,17 @@ class Optimum(Answer):
             )
             for name, one in listed
         ]
-        notes = ["aims and limits as all runs together tell them; `pair` runs the first and the chosen design again"]
+        confirmed, moving = sum(one.confirmed for one in self.designs), 0
+        told = f"of the longer runs of {confirmed} designs" if confirmed else "as all runs together tell them"
+        notes = [f"aims and limits {told}; `pair` runs the first and the chosen design again"]
+        if confirmed:
+            longer = (self.data["design"] == self.chosen.number) & (self.data["length"] > 1.0)
+            moving = int((~self.data["settled"].values[longer].astype(bool)).sum())
+        if moving:
+            notes.append(
+                f"{moving} of {int(longer.sum())} longer runs of the chosen design are not known to have settled; a larger"
+                " `confirm` proves more"
+            )
         if self.refused:
             notes.append(f"{len(self.refused)} designs could not be run; the first: {self.refused[0]}")
         aims = ", ".join(f"{kind} {name}" for name, kind in self.want.items())
@@ -155,6 +173,7 @@ def optimise(
     draws: int = 4,
     judged: Literal["worst", "mean"] = "worst",
     designs: int = 64,
+    confirm: float = 10.0,
     seed: int = 0,
     options: RunOptions | None = None,
     **how: Unpack[Running],
@@ -162,7 +181,10 @@ def optimise(
     """The designs with the best results, of several aims the front.
 
     A third of the designs fills the space of the changes evenly. Then Gaussian processes are fitted to all results, and eight
-    designs at a time are run where they promise most. Needs the package scikit-learn of the extra `study`.
+    designs at a time are run where they promise most. What a short run promises, a longer one need not keep, as a whirl takes
+    time to grow. So before each eight the design that is the best then is run `confirm` times as long, and its new results
+    count. A fit to the changes that such runs make corrects the other designs. In the end designs are confirmed until the best
+    ones are. Needs the package scikit-learn of the extra `study`.
 
     Parameters
     ----------
@@ -184,6 +206,9 @@ def optimise(
         Whether the worst of its draws or their mean counts for a design.
     designs : int
         How many designs are run, at least 10.
+    confirm : float
+        How many times as long as those of the search the runs are that confirm a design, with the same draws. The first design
+        and at most a quarter of the others have such runs, and the front is made of designs that have. 1 for none.
     seed : int
         Of the designs, the draws and the search. The same seed finds the same designs.
     options : RunOptions, optional
@@ -223,14 +248,18 @@ def optimise(
         checked_bands(tolerances) if tolerances else (),
         _whole("draws", draws, 1) if tolerances else 1,
         judged,
+        _whole("designs", designs, FEWEST),
+        _longer(confirm),
         _whole("seed", seed, 0),
         RunOptions(revolutions=5.0, accuracy="fast") if options is None else options,
         Running(executor="threads") | how,
     )
-    count = _whole("designs", designs, FEWEST)
-    search.begin(max(count // 3, FEWEST - 4))
-    while (left := count - len(search.unit)) > 0:
+    search.begin(max(search.designs // 3, FEWEST - 4))
+    while (left := search.designs - len(search.unit)) > 0:
+        search.confirm_best(1)
         search.go_on(min(left, ROUND))
+    while search.confirm_best(ROUND):
+        pass
     return search.found()
 
 
@@ -245,6 +274,8 @@ class Search:
     tolerances: tuple[Band, ...]
     draws: int
     judged: str
+    designs: int
+    confirm: float
     seed: int
     options: RunOptions
     how: Running
@@ -268,7 +299,8 @@ class Search:
             if band.path not in {one.path for one in self.bands}:
                 self._given("tolerances", band)
         self.first = {band.path: self._given("change", band) for band in self.bands}
-        self.unit, self.columns = np.empty((0, len(self.bands))), np.empty((0, len(self.want) + len(self.limits)))
+        self.unit = np.empty((0, len(self.bands)))
+        self.short, self.long = (np.empty((0, len(self.want) + len(self.limits))) for _ in range(2))
         self.tables: list[dict[str, float]] = []
         self.parts: list[xarray.Dataset] = []
 
@@ -292,31 +324,95 @@ class Search:
         first = [(self.first[b.path] - low) / (high - low) for b, (low, high) in zip(self.bands, ends, strict=True)]
         even = self.aims.snapped(unit_draws(len(self.bands), count - 1, self.seed))
         self._run(np.vstack([first, even]))
-        if not np.isfinite(self.columns[0]).all():
+        if self.confirm > 1.0:
+            self._confirm([0])
+        if not self.ran[0]:
             raise InputError.of("scene", "as it is", f"cannot be run: {self.refused[0]}")
-        if np.isfinite(self.columns[1:]).all(axis=1).sum() < 2:
+        if self.ran[1:].sum() < 2:
             raise InputError.of("change", list(self.first), f"no designs can be run; the first: {self.refused[0]}")
 
     def go_on(self, count: int) -> None:
         """Runs the designs that promise most."""
         known = np.isfinite(self.unit).all(axis=1)
-        self._run(next_designs(self.unit[known], self.columns[known], self.aims, count, self.seed + len(self.unit)))
+        self._run(next_designs(self.unit[known], self.values[known], self.aims, count, self.seed + len(self.unit)))
+
+    def confirm_best(self, most: int) -> bool:
+        """Runs the designs longer that are the best as far as is known, at most so many; whether there were any."""
+        left = min(most, int(CONFIRMED * self.designs) - int(self.confirmed[1:].sum()))
+        smooth, front = self.smooth, self.front(self.ran)
+        waiting = front & ~self.confirmed
+        best: list[int] = []
+        while self.confirm > 1.0 and waiting.any() and len(best) < left:
+            best.append(self.aims.compromise(smooth, waiting))
+            waiting[best[-1]] = False
+        self._confirm(best)
+        return bool(best)
 
     def _run(self, unit: Array) -> None:
-        start = len(self.unit)
-        made = tuple(
-            self._case(start + k, row, draw, offset)
-            for k, row in enumerate(unit)
-            for draw, offset in enumerate(self.offsets)
-        )
-        data = run_study(Study(made, (), "optimise"), **self.how)
+        numbers = range(len(self.unit), len(self.unit) + len(unit))
+        self.unit = np.vstack([self.unit, unit])
+        tables, columns = self._judged(numbers, 1.0)
+        self.tables += tables
+        self.short = np.vstack([self.short, columns])
+        self.long = np.vstack([self.long, np.full_like(columns, np.nan)])
+
+    def _confirm(self, numbers: Sequence[int]) -> None:
+        if numbers:
+            tables, columns = self._judged(numbers, self.confirm)
+            self.long[numbers] = columns
+            # a design whose longer run fails cannot be run
+            self.short[numbers] += 0.0 * columns
+            for number, table in zip(numbers, tables, strict=True):
+                self.tables[number] = table
+
+    def _judged(self, numbers: Sequence[int], length: float) -> tuple[list[dict[str, float]], Array]:
+        """Runs designs over all draws, so many times as long as the options say, and judges each."""
+        draws = len(self.offsets)
+        made = [self._case(n, draw, offset, length) for n in numbers for draw, offset in enumerate(self.offsets)]
+        data = run_study(Study(tuple(made), (), "optimise"), **self.how)
         self._check_names(data)
         self.parts.append(data)
-        for k in range(len(unit)):
-            table, columns = self._judge(data.isel(case=slice(k * len(self.offsets), (k + 1) * len(self.offsets))))
-            self.tables.append(table)
-            self.columns = np.vstack([self.columns, columns])
-        self.unit = np.vstack([self.unit, unit])
+        found = [self._judge(data.isel(case=slice(k * draws, (k + 1) * draws))) for k in range(len(numbers))]
+        return [table for table, _ in found], np.array([columns for _, columns in found])
+
+    @property
+    def ran(self) -> Flags:
+        """Which designs could be run."""
+        return np.asarray(np.isfinite(self.short).all(axis=1))
+
+    @property
+    def confirmed(self) -> Flags:
+        """Which designs were run longer."""
+        return np.asarray(np.isfinite(self.long).all(axis=1))
+
+    @property
+    def values(self) -> Array:
+        """Results of longer runs: of confirmed designs as they are, of others with the least change that these make likely.
+
+        So no design is given up because another one failed, but where longer runs were made near to it.
+        """
+        known = np.isfinite(self.unit).all(axis=1)
+        ran, seen = self.ran & known, self.confirmed & known
+        values = self.short.copy()
+        if seen.any():
+            short = Fits(self.unit[ran], self.short[ran], self.seed)
+            change = Fits(self.unit[seen], self.long[seen] - short.predicted(self.unit[seen]), self.seed)
+            values[ran] += change.predicted(self.unit[ran], 1.0)
+        return np.where(self.confirmed[:, None], self.long, values)
+
+    @property
+    def smooth(self) -> Array:
+        """The same, of designs that were not confirmed as all runs together tell."""
+        values, fit = self.values, self.ran & np.isfinite(self.unit).all(axis=1)
+        told = values.copy()
+        told[fit] = Fits(self.unit[fit], values[fit], self.seed).predicted(self.unit[fit])
+        return np.where(self.confirmed[:, None], values, told)
+
+    def front(self, among: Flags) -> Flags:
+        """Which of some designs keep the limits and are beaten in all aims by no other one of them."""
+        front = among.copy()
+        front[among] = self.aims.front(self.smooth[among])
+        return front
 
     def inputs(self, row: Array) -> dict[str, float]:
         """What a design changes; of the subject as it is what it has."""
@@ -326,17 +422,19 @@ class Search:
             found[band.path] = int(value) if cells else float(value)
         return found
 
-    def _case(self, number: int, row: Array, draw: int, offset: Mapping[str, float]) -> Case:
-        changed = dict(self.first) if number == 0 else self.inputs(row)
+    def _case(self, number: int, draw: int, offset: Mapping[str, float], length: float) -> Case:
+        changed = dict(self.first) if number == 0 else self.inputs(self.unit[number])
         overrides: dict[str, Any] = {} if number == 0 else dict(changed)
         for band in self.tolerances:
             value = changed.get(band.path, self._given("tolerances", band)) + offset[band.path]
             overrides[band.path] = int(value) if is_whole(self.base, band) else value
-        parameters = {"design": number, "draw": draw, **changed}
+        parameters = {"design": number, "draw": draw, "length": length, **changed}
+        given = {name: getattr(self.options, name) for name in ("revolutions", "duration")}
+        options = self.options.replace({name: length * value for name, value in given.items() if value is not None})
         try:
-            return Case(parameters, self.built(overrides), self.options)
+            return Case(parameters, self.built(overrides), options)
         except InputError as error:
-            return Case(parameters, None, self.options, str(error).splitlines()[0])
+            return Case(parameters, None, options, str(error).splitlines()[0])
 
     def built(self, overrides: Mapping[str, Any]) -> Subject:
         """The subject with changes, and with estimates that follow from them."""
@@ -387,24 +485,20 @@ class Search:
         """The designs, and the best of them."""
         import xarray
 
-        ran, known = np.isfinite(self.columns).all(axis=1), np.isfinite(self.unit).all(axis=1)
-        fits = Fits(self.unit[ran & known], self.columns[ran & known], self.seed)
-        smooth = self.columns.copy()
-        smooth[ran & known] = fits.predicted(self.unit[ran & known])
-        numbers = np.flatnonzero(ran)
-        front = self.aims.front(smooth[ran])
+        smooth = self.smooth
+        front = self.front(self.confirmed if self.confirm > 1.0 else self.ran)
         if not front.any():
             least = {name: f"{side} {value:g}" for name, side, value in self.limits}
             raise InputError.of(
                 "limits", least, "no design keeps them; more designs, wider changes or other limits may"
             )
-        made = {int(n): self._design(int(n), smooth[n]) for n in numbers}
-        chosen = made[int(numbers[self.aims.compromise(smooth[ran], front)])]
+        made = {int(n): self._design(int(n), smooth[n]) for n in np.flatnonzero(self.ran)}
+        chosen = made[self.aims.compromise(smooth, front)]
         subjects = (self.subject, self.subject if chosen.number == 0 else self.built(chosen.inputs))
         return Optimum(
             first=made[0],
             chosen=chosen,
-            front=tuple(made[int(n)] for n in numbers[front]),
+            front=tuple(made[int(n)] for n in np.flatnonzero(front)),
             designs=tuple(made.values()),
             want=self.want,
             refused=self.refused,
@@ -418,7 +512,8 @@ class Search:
         for (name, side, line), value in zip(self.limits, smooth[len(signs) :], strict=True):
             told.setdefault(name, line + (value if side == "largest" else -value))
         inputs = self.first if number == 0 else self.inputs(self.unit[number])
-        return Design(number, dict(inputs), self.tables[number], {name: float(value) for name, value in told.items()})
+        expected = {name: float(value) for name, value in told.items()}
+        return Design(number, dict(inputs), self.tables[number], expected, bool(self.confirmed[number]))
 
 
 JUDGED: Final[dict[str, Any]] = {"worst": np.max, "mean": np.mean}
@@ -429,6 +524,12 @@ def _whole(field: str, value: Any, least: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         raise InputError.of(field, value, f"must be a whole number, at least {least}")
     return int(value)
+
+
+def _longer(confirm: Any) -> float:
+    if not 1.0 <= number_of("confirm", confirm) < np.inf:
+        raise InputError.of("confirm", confirm, "must be >= 1 and finite; 1 for no longer runs")
+    return float(confirm)
 
 
 def _wanted(want: Any) -> dict[str, str]:
