@@ -90,6 +90,7 @@ class _Sim:
     def __init__(self) -> None:
         self._core, self._accounts = _Core(), dict[str, Any]()
         self.options = SimpleNamespace(tolerances=SimpleNamespace(rtol=1e-6))
+        self.subject = SimpleNamespace(quantities=dict)
 
 
 def _window(work: float, loss: float, kinetic: float, elastic: float, **options: Any) -> tuple[str | None, list[str]]:

@@ -164,7 +164,13 @@ def tighter(options: RunOptions) -> RunOptions:
 
 
 def probe(
-    sim: Simulation, bearing: SeatedBearing, time: float, vector: Array, most_steps: int, length: float = LENGTH
+    sim: Simulation,
+    bearing: SeatedBearing,
+    time: float,
+    vector: Array,
+    most_steps: int,
+    length: float = LENGTH,
+    growth: float = GROWTH,
 ) -> Probe | None:
     """Repeat a piece of a run with its own tolerances and with tighter ones, which leaves the simulation as it is.
 
@@ -180,6 +186,8 @@ def probe(
         Steps with the tighter tolerances.
     length : float
         Bearing time of the piece (s).
+    growth : float
+        Time at its beginning that is left to vibrations to grow (s).
 
     Returns
     -------
@@ -194,7 +202,35 @@ def probe(
     own, _ = _run(sim, sim.options, times[:rows], vector, 4 * most_steps)
     if len(own) < rows:
         return None
-    return Probe(time, float(times[rows - 1]), *_compared(bearing, times[:rows], own, fine), steps)
+    return Probe(time, float(times[rows - 1]), *_compared(bearing, times[:rows], own, fine, growth), steps)
+
+
+def reached(sim: Simulation, time: float, vector: Array, until: float, most_steps: int) -> Array | None:
+    """The state at a knot of a load or speed, which steps end at: from an earlier one with the run's own tolerances.
+
+    Parameters
+    ----------
+    sim : Simulation
+        Whose run it is.
+    time, vector : float, ndarray
+        Where it begins (s), and the state there.
+    until : float
+        The time of the knot (s).
+    most_steps : int
+        Steps after which it is given up.
+
+    Returns
+    -------
+    ndarray or None
+        The state; None where it was not reached.
+    """
+    try:
+        core = sim._seated.open(time, vector, sim.options.settings())
+        rows = np.empty((1, core.row_length))
+        core.run(np.array([until]), rows, most_steps)
+    except (InputError, ValueError, _core.CoreStepError):
+        return None
+    return core.state() if math.isclose(core.time, until, rel_tol=1e-9) else None
 
 
 def _run(sim: Simulation, options: RunOptions, times: Array, vector: Array, most_steps: int) -> tuple[Array, int]:
@@ -211,7 +247,9 @@ def _run(sim: Simulation, options: RunOptions, times: Array, vector: Array, most
     return rows[:reached], steps
 
 
-def _compared(bearing: SeatedBearing, times: Array, own: Array, fine: Array) -> tuple[Difference, Difference]:
+def _compared(
+    bearing: SeatedBearing, times: Array, own: Array, fine: Array, growth: float
+) -> tuple[Difference, Difference]:
     """Differences of loss and load over a piece without its beginning, where vibrations grow to their size."""
     losses, load = [], slice(0, 0)
     for name, at, shape in bearing.record_layout:
@@ -219,7 +257,7 @@ def _compared(bearing: SeatedBearing, times: Array, own: Array, fine: Array) -> 
             losses.append(at)
         if name == "outer_load":
             load = slice(at, at + math.prod(shape))
-    begin = min(int(np.searchsorted(times, times[0] + (1.0 - 1e-9) * GROWTH)), (len(times) - 1) // 2)
+    begin = min(int(np.searchsorted(times, times[0] + (1.0 - 1e-9) * growth)), (len(times) - 1) // 2)
     ends = np.linspace(begin, len(times) - 1, BLOCKS + 1).astype(int)
 
     def means(rows: Array) -> tuple[Array, Array]:

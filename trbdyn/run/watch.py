@@ -22,9 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.errors import RunWarning
-from trbdyn.model.motion import value_at
+from trbdyn.model.motion import History, value_at
 from trbdyn.run import vibrations
 from trbdyn.run.vibrations import Probe
+from trbdyn.statics.seat import Seating
 
 if TYPE_CHECKING:
     from trbdyn.run.simulation import Simulation
@@ -107,6 +108,29 @@ class Span:
         return vibrations.taken(missing, damped, self.elastic / max(self.looks, 1), time - self.since)
 
 
+@dataclass(frozen=True)
+class Suspect:
+    """A span in which the integration takes much from vibrations.
+
+    Attributes
+    ----------
+    size, share : float
+        What it took, see `vibrations.taken`.
+    span : Span
+        The span.
+    until : float
+        Its end (s).
+    jump : Span, optional
+        The latest span before it in which a load or a speed had a knot.
+    """
+
+    size: float
+    share: float
+    span: Span
+    until: float
+    jump: Span | None
+
+
 @dataclass
 class Account:
     """What the watch has seen since a simulation began, and goes on with in the simulation's next run."""
@@ -115,8 +139,10 @@ class Account:
     said: set[str] = field(default_factory=set)
     small_steps: int = 0
     small_since: float = 0.0
-    suspect: tuple[float, Span, float] | None = None
-    """The span in which the integration took most from vibrations: how much, and its end (s)."""
+    suspect: Suspect | None = None
+    """The span in which the integration took most from vibrations."""
+    jump: Span | None = None
+    """The latest span in which a load or a speed had a knot."""
     probed: Probe | None = None
     notable: bool = True
     probe_steps: int = 0
@@ -149,6 +175,7 @@ class Watch:
         self._going_on = going_on
         self._suppressed = 0
         self._noted: set[str] = set()
+        self._knots = _knots(sim)
         now, time = self._energies(), sim._core.time
         if bearing.name not in sim._accounts:
             sim._accounts[bearing.name] = Account(Span(time, now, state=sim._core.state()), small_since=time)
@@ -182,6 +209,8 @@ class Watch:
         # windows of a short run are too short to see a vibration in
         if time - self._vibrating.since >= max(self._length, vibrations.SHORTEST):
             self._suspect(self._vibrating, now, time)
+            if np.any((self._knots > self._vibrating.since) & (self._knots <= time)):
+                self._account.jump = self._vibrating
             self._vibrating = Span(time, now, state=self._sim._core.state())
         if final and time > self._run.since:
             reason = self._judge(self._run, now, time, STOP) or reason
@@ -300,8 +329,8 @@ class Watch:
         account = self._account
         if not (vibrations.matter(share, size, damped=self._damped(now)) and time - span.since >= vibrations.SHORTEST):
             return
-        if account.suspect is None or size > account.suspect[0]:
-            account.suspect = (size, span, share)
+        if account.suspect is None or size > account.suspect.size:
+            account.suspect = Suspect(size, share, span, time, account.jump)
 
     def _judge_vibrations(self, now: dict[str, float], time: float) -> None:
         """Say what the integration takes from vibrations, if it does something to losses or loads: measured by a probe."""
@@ -311,15 +340,16 @@ class Watch:
             self._suspect(account.whole, now, time)
         if account.suspect is None:
             return
-        size, span, share = account.suspect
+        suspect = account.suspect
+        size, share = suspect.size, suspect.share
         # with next to no damping large vibrations go on growing, and where they are most of the elastic energy a probe scatters
         # with them: a difference within the scatter is then no proof that there is none
         unclear = size > (vibrations.SIZE if share > vibrations.GROWING else vibrations.MOST)
-        if size > account.probed_size and self._probe(span, vibrations.LENGTH, vibrations.STEPS):
+        if size > account.probed_size and self._probe(suspect, vibrations.LENGTH, vibrations.STEPS):
             account.probed_size = size
             account.notable = account.probed is None or account.probed.notable(certain=not unclear)
             if account.notable and account.probed is not None:
-                self._probe(span, vibrations.LONGER, vibrations.STEPS_LONGER)
+                self._probe(suspect, vibrations.LONGER, vibrations.STEPS_LONGER)
                 account.notable = account.probed.notable(certain=True) or (unclear and account.probed.open)
         if not account.notable:
             return
@@ -332,20 +362,49 @@ class Watch:
         if not damped:
             advice = "give the contacts the damping that they have (effects.damping), or try smaller tolerances"
         self._say(
-            f"near {span.since:.6g} s rollers vibrate on their raceways, and the integration {took}: {measured}; {advice}",
+            f"near {suspect.span.since:.6g} s rollers vibrate on their raceways, and the integration {took}: {measured}; "
+            f"{advice}",
             "vibrations",
         )
 
-    def _probe(self, span: Span, length: float, most: int) -> bool:
+    def _probe(self, suspect: Suspect, length: float, most: int) -> bool:
         """Repeat a piece with tighter tolerances, if there are steps left for it; what was measured before stays if it fails."""
         account, own = self._account, int(vibrations.STEPS_SHARE * self._sim.statistics["steps"])
         most = min(max(most, own), max(vibrations.STEPS_IN_ALL, own) - account.probe_steps)
-        if most < vibrations.LEAST_STEPS or span.state is None:
+        place = self._piece(suspect, length, most)
+        if most < vibrations.LEAST_STEPS or place is None:
             return False
-        found = vibrations.probe(self._sim, self._bearing, span.since, span.state, most, length)
+        since, state, length, growth = place
+        before = account.probed
+        if before is not None and before.since == since and before.until >= since + (1.0 - 1e-9) * length:
+            return False
+        found = vibrations.probe(self._sim, self._bearing, since, state, most, length, growth)
         account.probe_steps += most if found is None else found.steps
         account.probed = found or account.probed
         return True
+
+    def _piece(self, suspect: Suspect, length: float, most: int) -> tuple[float, Array, float, float] | None:
+        """Where a probe begins (s), the state there, its length and what is left to vibrations to grow (s).
+
+        A jump of a load or speed excites vibrations at once: the piece begins there, where the run has not lost them yet. What
+        follows the jump is compared up to the next knot, as other loads have other losses.
+        """
+        span = suspect.span
+        if span.state is None:
+            return None
+        usual = span.since, span.state, length, vibrations.GROWTH
+        ends = np.concatenate([[-math.inf], self._knots, [math.inf]])
+        common = np.minimum(ends[1:], suspect.until) - np.maximum(ends[:-1], span.since)
+        first, last = ends[(place := int(np.argmax(common))) : place + 2]
+        begin = span if first >= span.since else suspect.jump
+        rest = last - span.since
+        if common[place] < vibrations.SHORTEST or last - first < 2.0 * vibrations.SHORTEST:
+            return usual
+        if begin is None or begin.state is None or begin.since > first or span.since - first > vibrations.LENGTH:
+            return (*usual[:2], min(length, rest), usual[3]) if rest > 2.0 * vibrations.SHORTEST else usual
+        jump = max(float(self._knots[self._knots >= first - vibrations.SHORTEST][0]), begin.since)
+        state = vibrations.reached(self._sim, begin.since, begin.state, jump, most)
+        return usual if state is None else (jump, state, min(length, last - jump), float(first) - jump)
 
     def _damped(self, now: dict[str, float]) -> bool:
         """Whether contacts have damped anything since the simulation began."""
@@ -447,6 +506,14 @@ class Watch:
         if kind not in self._account.said:
             self._account.said.add(kind)
             warnings.warn(self._bearing.said + text, RunWarning, stacklevel=2)
+
+
+def _knots(sim: Simulation) -> Array:
+    """Times at which a load or a speed that does not repeat has a knot (s)."""
+    subject = sim.subject
+    given = () if isinstance(subject, Seating) else subject.quantities().values()
+    times = [q.times for q in given if isinstance(q, History) and not q.repeats]
+    return np.unique(np.concatenate([[], *times]))
 
 
 def _missing(then: dict[str, float], now: dict[str, float]) -> tuple[float, float, float]:
