@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -82,14 +83,15 @@ class TestInfluence:
 
 
 class TestCandidates:
-    def test_every_switch_is_an_effect_that_may_be_left_out_or_one_that_is_off(self) -> None:
+    def test_every_switch_is_an_effect_that_may_be_left_out(self) -> None:
         scene = rolling(oil_fill=0.1, pocket_film=1e-5)
         kinds = {one.name: one.kind for one in candidates(scene, wants_cage=False)}
         ours = {switch.name for switch in SWITCHES} - {"land that guides the cage"}
         assert {name for name, kind in kinds.items() if kind == "effect"} == ours
         least = scene.replace(effects=trb.Effects.minimal())
-        off = {one.name for one in candidates(least, wants_cage=False) if one.kind == "off"}
-        assert off == {"tilt and axial motion", "front rib", "pocket ends", "damping of contacts"}
+        on = {one.name for one in candidates(least, wants_cage=False) if one.kind == "effect"}
+        assert not on & {"tilt and axial motion", "front rib", "pocket ends", "damping of contacts"}
+        assert "cage" in on
 
     def test_averages_of_the_cage_need_it(self) -> None:
         assert "cage" not in {one.name for one in candidates(rolling(), wants_cage=True)}
@@ -310,6 +312,38 @@ def test_an_average_is_wanted_once_and_the_folder_is_there(capsys: pytest.Captur
     said = capsys.readouterr().err
     assert "there is no" in said
     assert said.count("\n") == 1
+
+
+def test_a_choice_whose_run_gives_no_averages_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The most exact choice is left, which is the probe that errors are counted from; no number is nan."""
+    real = Looker.probe
+
+    def probe(self: Looker, effects: Any, accuracy: str, cost: float = 1.0) -> Probe:
+        made = sum(name in effects for name in ("gravity", "front_rib", "lubrication", "pocket_edges"))
+        usual = "n_slices" in effects and accuracy != "reference"
+        lost = made and usual
+        return Probe({}, math.nan, "the rollers fell out") if lost else real(self, effects, accuracy, cost)
+
+    monkeypatch.setattr(Looker, "probe", probe)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        found = trb.plan(rolling(), {"torque": 0.1}, effort=3.0)
+        assert "nan" not in str(found)
+    assert math.isfinite(found.promised["torque"])
+    assert found.computing_s > 0.0
+
+
+def test_time_that_is_spent_ends_the_probes(monkeypatch: pytest.MonkeyPatch) -> None:
+    looker = Looker(checked(rolling(), WANT, None, 5.0))
+    looker.began -= 8.0
+    assert "allow more effort" in looker._alone(candidates(rolling(), wants_cage=False)[0]).failure
+
+
+def test_a_probe_without_an_average_is_no_base() -> None:
+    looker = Looker(checked(rolling(), WANT, None, 5.0))
+    short = Probe({"torque": np.array([1.0, math.nan])}, 1.0)
+    with pytest.raises(trb.InputError, match="too short for averages"):
+        looker._usable("usual", short)
 
 
 class TestPromise:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from trbdyn.model.assembly import Subject
     from trbdyn.model.effects import Effects
 
-Kind = Literal["effect", "off", "nodes", "tolerances", "as given"]
+Kind = Literal["effect", "nodes", "tolerances", "as given"]
 
 USUAL_NODES: Final = 16
 TRUE_NODES: Final = 32
@@ -26,14 +26,14 @@ TRUE_ACCURACY: Final = "reference"
 
 @dataclass(frozen=True)
 class Switch:
-    """An effect: what the model has without it and with it.
+    """An effect that may be left out.
 
     Attributes
     ----------
     name : str
         Short name.
-    without, with_it : mapping
-        Fields of `Effects`. Where ``with_it`` is empty, the effect needs numbers that only the user knows.
+    without : mapping
+        Fields of `Effects` of a model without it.
     needs_films : bool
         Whether it acts only where contacts have films.
     needs_cage : bool
@@ -42,33 +42,30 @@ class Switch:
 
     name: str
     without: Mapping[str, Any]
-    with_it: Mapping[str, Any] = field(default_factory=dict)
     needs_films: bool = False
     needs_cage: bool = False
 
 
 SWITCHES: Final = (
-    Switch("cage", {"bodies": "rollers_and_spacer", "guidance": "rollers"}, {"bodies": "rollers_and_cage"}),
-    Switch("tilt and axial motion", {"planar": True}, {"planar": False}),
-    Switch("gravity", {"gravity": False}, {"gravity": True}),
-    Switch("front rib", {"front_rib": False}, {"front_rib": True}),
-    Switch("pocket ends", {"pocket_ends": False}, {"pocket_ends": True}, needs_cage=True),
-    Switch("edges of pocket faces", {"pocket_edges": False}, {"pocket_edges": True}, needs_cage=True),
-    Switch("boundary friction", {"lubrication": "full_film"}, {"lubrication": "mixed"}, needs_films=True),
-    Switch("thermal reduction of films", {"thermal": False}, {"thermal": True}, needs_films=True),
+    Switch("cage", {"bodies": "rollers_and_spacer", "guidance": "rollers"}),
+    Switch("tilt and axial motion", {"planar": True}),
+    Switch("gravity", {"gravity": False}),
+    Switch("front rib", {"front_rib": False}),
+    Switch("pocket ends", {"pocket_ends": False}, needs_cage=True),
+    Switch("edges of pocket faces", {"pocket_edges": False}, needs_cage=True),
+    Switch("boundary friction", {"lubrication": "full_film"}, needs_films=True),
+    Switch("thermal reduction of films", {"thermal": False}, needs_films=True),
     Switch(
         "rolling resistance",
         {"rolling_resistance": False, "rolling_pressure_force": False},
-        {"rolling_resistance": True},
         needs_films=True,
     ),
     Switch(
         "pressure force of the rolling film",
         {"rolling_pressure_force": False},
-        {"rolling_pressure_force": True, "rolling_resistance": True},
         needs_films=True,
     ),
-    Switch("damping of contacts", {"damping": "off"}, {"damping": "film"}),
+    Switch("damping of contacts", {"damping": "off"}),
     Switch("drag of the oil", {"oil_fill": 0.0}),
     Switch("films in the pockets", {"pocket_film": 0.0}),
     Switch("land that guides the cage", {"guidance": "rollers"}, needs_cage=True),
@@ -83,9 +80,8 @@ class Candidate:
     ----------
     name : str
         As the table names it.
-    kind : {'effect', 'off', 'nodes', 'tolerances', 'as given'}
-        An effect that may be left out; one that the scene itself leaves out, which is looked at and stays out; fewer nodes;
-        looser tolerances; nodes and tolerances as the scene has them.
+    kind : {'effect', 'nodes', 'tolerances', 'as given'}
+        An effect that may be left out; fewer nodes; looser tolerances; nodes and tolerances as the scene has them.
     effects : mapping
         Fields of `Effects` that it changes.
     accuracy : str
@@ -114,11 +110,11 @@ def candidates(scene: Subject, *, wants_cage: bool) -> list[Candidate]:
         Whether a wanted average is one of the cage, so that it cannot be left out.
     """
     parts: list[Any] = list(scene.parts.values())
-    chosen = []
-    for switch in SWITCHES:
-        each = [one for one in (_of_switch(switch, part.effects) for part in parts) if one is not None]
-        if each and not (switch.name == "cage" and wants_cage):
-            chosen.append(next((one for one in each if one.kind == "effect"), each[0]))
+    chosen = [
+        Candidate(switch.name, "effect", switch.without)
+        for switch in SWITCHES
+        if any(_acts(switch, part.effects) for part in parts) and not (switch.name == "cage" and wants_cage)
+    ]
     chosen += [Candidate(f"{nodes} nodes", "nodes", numerics(nodes)) for nodes in NODES]
     chosen.append(Candidate("tolerances 'fast'", "tolerances", accuracy="fast"))
     given, *others = [{"quadrature": one.effects.quadrature, "n_slices": contact_line.nodes(one)} for one in parts]
@@ -127,19 +123,13 @@ def candidates(scene: Subject, *, wants_cage: bool) -> list[Candidate]:
     return chosen
 
 
-def _of_switch(switch: Switch, effects: Effects) -> Candidate | None:
-    """Without an effect that is on, or with one that is off; None where it cannot act, or its numbers are not known."""
+def _acts(switch: Switch, effects: Effects) -> bool:
+    """Whether the effect is on, and the model has what it acts on."""
     if (switch.needs_films and not effects.films) or (switch.needs_cage and not effects.has_cage):
-        return None
-    is_off = all(getattr(effects, name) == value for name, value in switch.without.items())
-    is_off |= "bodies" in switch.without and not effects.has_cage
-    if not is_off:
-        return None if _same(effects, switch.without) else Candidate(switch.name, "effect", switch.without)
-    return Candidate(switch.name, "off", switch.with_it) if switch.with_it else None
-
-
-def _same(effects: Effects, changes: Mapping[str, Any]) -> bool:
+        return False
+    if "bodies" in switch.without and not effects.has_cage:
+        return False
     try:
-        return effects.replace(**changes) == effects
+        return effects.replace(**switch.without) != effects
     except InputError:
-        return True
+        return False

@@ -21,7 +21,7 @@ UNSEEN_SHARE: Final = 0.5
 """What a short probe cannot see: an error of this size, and this share of the errors of model, numerics and settling that it
 sees. Assumed; held against long runs by benchmarks/plan_proof.py."""
 TRIES: Final = 4
-"""Choices that are run as a whole at most."""
+"""Choices that are run as a whole at most; where none is as exact as its parts, the most exact choice is taken."""
 AND: Final = " and "
 USUAL: Final = f"{USUAL_NODES} nodes, tolerances '{USUAL_ACCURACY}'"
 EXACT: Final = f"{TRUE_NODES} nodes, tolerances '{TRUE_ACCURACY}'"
@@ -87,24 +87,25 @@ def decide(wishes: Wishes, seen: Seen, looker: Looker) -> Decision:
         rate=seen.base.rate,
     )
     struck = set[str]()
-    for _ in range(TRIES):
+    for tries in range(TRIES + 1):
         effects, numbers = _options(wishes, seen, struck)
+        if tries == TRIES or USUAL in struck:
+            effects, numbers = [], [one for one in numbers if one.name == EXACT]
         choice = choose(task, effects, numbers, wishes.budget)
         made = _made(choice, seen)
         changes, accuracy = _settings(choice, made)
-        found = looker.probe(changes, accuracy, cost=TRUTH_IN_PROBES if choice.numerics == EXACT else 1.0)
+        exact = choice.numerics == EXACT
+        found = seen.truth if exact and not made else looker.probe(changes, accuracy, TRUTH_IN_PROBES if exact else 1.0)
         whole = errors_of(looker.influences(found, seen.truth), wishes)
         seen_errors = whole + ground.drift
         if found.failure or np.any(seen_errors + unseen_of(seen_errors) > np.maximum(choice.bounds, 0.8 * wish)):
-            worst = _worst(choice, [*effects, *numbers], wish)
-            if worst:
-                struck.add(worst)
-                continue
+            struck.add(_worst(choice, [*effects, *numbers], wish) or USUAL)
+            continue
         break
     unseen = unseen_of(whole + ground.drift)
     bounds = whole + ground.drift + unseen
     errors = bounds + (choice.errors - choice.bounds)
-    cost = looker.seconds(found) * (looker.settle + choice.averaging)
+    cost = found.rate * (looker.settle + choice.averaging)
     affordable = wishes.budget is None or cost <= 1.1 * wishes.budget
     within = bool(np.all(errors <= wish * (1.0 + 1e-9))) and affordable
     choice = replace(choice, bounds=bounds, errors=errors, cost=cost, within=within)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+import time as clock
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
+
+import numpy as np
 
 from trbdyn.errors import InputError, LoadError, StepError
 from trbdyn.model.assembly import ShaftBearing
@@ -30,6 +33,9 @@ OF_GROUND: Final = 0.25
 OF_OTHER_START: Final = 0.15
 OF_PROBES: Final = 0.6
 """Shares of the effort for the run that all stands on, for one from another start, and for the probes."""
+MOST_EFFORT: Final = 1.5
+"""Processor time over the effort after which no further candidate is looked at: what the watch over the runs measures is not
+known beforehand."""
 PROBE_TURNS: Final = 100.0
 """Most turns of the shaft of a probe."""
 LEAST_AVERAGING: Final = 12.0
@@ -42,10 +48,6 @@ TRUTH_IN_PROBES: Final = 4.0
 """Computing time of the most exact probe over that of the others, about."""
 LEAST_SAVING: Final = 0.03
 """Share of the computing time that a simplification must save; more where two runs of one probe took times that differ more."""
-OF_CLOCK: Final = 0.2
-"""Length of the run that the machine is timed with, over that of a probe."""
-BASE: Final = "base"
-AGAIN: Final = "base, again"
 
 
 @dataclass
@@ -91,26 +93,6 @@ class Seen:
         return warned[0] if warned and not self.base.warned else ""
 
 
-class Clock:
-    """Computing times as they would be on a machine that does nothing else: beside each probe a short run, always the same, is
-    timed, and the slower it is the less a probe's time counts.
-
-    Parameters
-    ----------
-    timed : callable
-        Runs it, and gives its processor time for a second of bearing time (s).
-    """
-
-    def __init__(self, timed: Callable[[], float]) -> None:
-        self.timed, self.fastest = timed, math.inf
-
-    def at_rest(self, rate: float) -> float:
-        """A processor time for a second of bearing time over that of the short run now."""
-        now = self.timed()
-        self.fastest = min(self.fastest, now)
-        return rate / now
-
-
 class Looker:
     """The runs of one plan.
 
@@ -135,6 +117,7 @@ class Looker:
         self.keep = Length(period, max(every, 1e-6), tuple(groups), wishes.effort)
         self.usual = with_effects(scene, numerics(USUAL_NODES))
         self.notes: list[str] = []
+        self.began = clock.process_time()
 
     def look(self) -> Seen:
         """Make all runs but those of whole choices.
@@ -165,7 +148,7 @@ class Looker:
         """Time in which the motion follows a change of the model, at the begin of a probe and of the run of the plan (s)."""
         return TRANSIENT * self.length.duration
 
-    def probe(self, effects: Mapping[str, Any], accuracy: str, cost: float = 1.0, share: float = 1.0) -> Probe:
+    def probe(self, effects: Mapping[str, Any], accuracy: str, cost: float = 1.0) -> Probe:
         """Run the scene with other effects from the state that all probes start from.
 
         Parameters
@@ -176,23 +159,16 @@ class Looker:
             Preset of the tolerances.
         cost : float
             Computing time that is expected, over that of the usual probe.
-        share : float
-            Length over that of the other probes.
         """
         try:
             scene = changed(self.usual, effects, self.ground.start)
         except InputError as error:
             return Probe({}, math.nan, str(error).splitlines()[0])
-        length = replace(self.length, patience=self.length.patience * cost, duration=self.length.duration * share)
-        return probe(scene, accuracy, length, self.wishes.names)
+        return probe(scene, accuracy, replace(self.length, patience=cost * self.length.patience), self.wishes.names)
 
     def influences(self, other: Probe, base: Probe) -> dict[str, Influence]:
         """What differs between two probes, by the name of the average."""
         return {name: influence(other, base, self.ground.size, name) for name in self.wishes.names}
-
-    def seconds(self, found: Probe) -> float:
-        """Processor time of a probe for a second of bearing time, as on a machine that does nothing else (s)."""
-        return self.clock.at_rest(found.rate) * self.clock.fastest
 
     def _share(self, share: float) -> Length:
         """A run that goes on as long as a share of the effort lasts."""
@@ -236,33 +212,42 @@ class Looker:
 
     def _probe_all(self, found: list[Candidate]) -> Seen:
         """The usual and the most exact choice, and each candidate alone."""
-        number = (1.0 + OF_CLOCK) * (len(found) + 3) + TRUTH_IN_PROBES
+        number = len(found) + 3 + TRUTH_IN_PROBES
         self.length = self._length(OF_PROBES / number, self.ground.rate, PROBE_TURNS)
-        self.clock = Clock(lambda: self.probe({}, USUAL_ACCURACY, share=OF_CLOCK).rate)
-        base = self.probe({}, USUAL_ACCURACY)
-        truth = self.probe(numerics(TRUE_NODES), TRUE_ACCURACY, 2.0 * TRUTH_IN_PROBES)
-        exact = self.clock.at_rest(truth.rate)
-        for one, name in ((base, "usual"), (truth, "most exact")):
-            if one.failure:
-                allowed = f"is not enough, or the {name} probe failed: {one.failure} (s)"
-                raise InputError.of("effort", self.wishes.effort, allowed)
-        rates, probes = {BASE: self.clock.at_rest(base.rate)}, {}
-        for candidate in found:
-            probes[candidate.name] = self.probe(candidate.effects, candidate.accuracy)
-            rates[candidate.name] = self.clock.at_rest(probes[candidate.name].rate)
-        rates[AGAIN] = self.clock.at_rest(self.probe({}, USUAL_ACCURACY).rate)
-        fastest = self.clock.fastest
-        base = replace(base, rate=0.5 * (rates[BASE] + rates[AGAIN]) * fastest)
+        base = self._usable("usual", self.probe({}, USUAL_ACCURACY, PATIENCE))
+        self.length = replace(self.length, steps=PATIENCE * base.steps)
+        truth = self._usable("most exact", self.probe(numerics(TRUE_NODES), TRUE_ACCURACY, 2.0 * TRUTH_IN_PROBES))
+        probes = {one.name: self._alone(one) for one in found}
+        again = self._usable("second usual", self.probe({}, USUAL_ACCURACY))
         return Seen(
             ground=self.ground,
-            base=base,
-            truth=replace(truth, rate=exact * fastest),
+            base=replace(base, rate=0.5 * (base.rate + again.rate)),
+            truth=truth,
             candidates=found,
-            probes={name: replace(one, rate=rates[name] * fastest) for name, one in probes.items()},
+            probes=probes,
             usual_error=self.influences(base, truth),
             alone={name: self.influences(one, base) for name, one in probes.items()},
-            least_saving=max(LEAST_SAVING, abs(rates[AGAIN] / rates[BASE] - 1.0)),
+            least_saving=max(LEAST_SAVING, abs(again.rate / base.rate - 1.0)),
         )
+
+    def _alone(self, one: Candidate) -> Probe:
+        """A candidate by itself, while the effort lasts."""
+        if clock.process_time() - self.began > MOST_EFFORT * self.wishes.effort:
+            return Probe({}, math.nan, "no time was left for it; allow more effort")
+        return self.probe(one.effects, one.accuracy)
+
+    def _usable(self, name: str, found: Probe) -> Probe:
+        """A probe that others are compared with.
+
+        Raises
+        ------
+        InputError
+            If it failed, or a batch has no value of a wanted average.
+        """
+        if not found.failure and all(np.isfinite(batch).all() for batch in found.batches.values()):
+            return found
+        why = found.failure or "it is too short for averages of each of its parts"
+        raise InputError.of("effort", self.wishes.effort, f"is not enough, or the {name} probe failed: {why} (s)")
 
 
 def thrown(part: Scene | ShaftBearing) -> Start:

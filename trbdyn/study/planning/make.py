@@ -170,8 +170,6 @@ def _said(one: Candidate, wishes: Wishes, seen: Seen, decision: Decision, ratio:
     told = [name for name in wishes.names if abs(alone[name].change) > alone[name].half_width]
     if found.failure:
         return f"cannot be run: {found.failure}"
-    if one.kind == "off":
-        return f"off in the scene, stays off{', though it changes ' + ', '.join(told) if told else ''}"
     taken, kept = ("left out", "kept") if one.kind == "effect" else ("taken", "not taken")
     if one in decision.made:
         return taken

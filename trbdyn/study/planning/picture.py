@@ -46,7 +46,7 @@ def draw(plan: Plan) -> Any:
 
 
 def _label(row: Row) -> str:
-    name = {"effect": f"without {row.name}", "off": f"with {row.name} (off in the scene)"}.get(row.kind, row.name)
+    name = f"without {row.name}" if row.kind == "effect" else row.name
     return f"{name}  ✓" if row.chosen else name
 
 

@@ -53,13 +53,16 @@ class Length:
     groups : tuple of str
         Groups of records.
     patience : float
-        Processor time after which a probe is ended (s).
+        Processor time after which a run is ended (s) that has taken more than `steps`.
+    steps : float
+        Steps before which it is not ended: what the watch over a run measures beside it may take longer than the run.
     """
 
     duration: float
     save_every: float
     groups: tuple[Any, ...]
     patience: float
+    steps: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -71,17 +74,20 @@ class Probe:
     batches : dict of str to ndarray
         The wanted averages in each batch.
     rate : float
-        Processor time for a second of bearing time, with records (s).
+        Processor time of the steps for a second of bearing time (s).
     failure : str
         Why it cannot be used; empty if it can.
     warned : tuple of str
         What the watch over the run said.
+    steps : float
+        How many steps it took.
     """
 
     batches: dict[str, Array]
     rate: float
     failure: str = ""
     warned: tuple[str, ...] = ()
+    steps: float = 0.0
 
 
 TOO_LONG: Final = "it took much longer than was expected"
@@ -95,7 +101,7 @@ class Ran:
     Attributes
     ----------
     rate : float
-        Processor time for a second of bearing time (s).
+        Processor time of the steps for a second of bearing time (s).
     failure : str
         Why it cannot be used; empty if it can.
     records : Records or None
@@ -103,21 +109,24 @@ class Ran:
     end : Start or None
         The state at its end. What is held begins at its place there only where the model counts displacements from the start:
         another model places it again.
+    steps : float
+        How many steps it took.
     """
 
     rate: float
     failure: str
     records: Records | None = None
     end: Start | None = None
+    steps: float = 0.0
 
 
 def run_quietly(subject: Subject, accuracy: str, length: Length) -> Ran:
     """Run a scene or an assembly as long as patience lasts, without warnings."""
     impatient = False
 
-    def look(_: Simulation) -> bool:
+    def look(now: Simulation) -> bool:
         nonlocal impatient
-        impatient = clock.process_time() - began > length.patience
+        impatient = clock.process_time() - began > length.patience and now.statistics["steps"] > length.steps
         return impatient
 
     with warnings.catch_warnings():
@@ -131,7 +140,8 @@ def run_quietly(subject: Subject, accuracy: str, length: Length) -> Ran:
                 save_groups=length.groups,
                 callback=look,
             )
-            spent = clock.process_time() - began
+            stepping = result.stats["stepping_s"] / max(result.stats["wall_s"], 1e-300)
+            spent = stepping * (clock.process_time() - began)
         except (InputError, LoadError, StepError) as error:
             return Ran(math.nan, str(error).splitlines()[0])
     if result.message.startswith(
@@ -143,7 +153,7 @@ def run_quietly(subject: Subject, accuracy: str, length: Length) -> Ran:
         end = end.replace(displacement=None, housing_load=None)
     bearing = max(float(records.time[-1] - records.time[0]), 1e-300)
     failure = "" if result.success else TOO_LONG if impatient else result.message
-    return Ran(spent / bearing, failure, records, end)
+    return Ran(spent / bearing, failure, records, end, simulation.statistics["steps"])
 
 
 def probe(subject: Subject, accuracy: str, length: Length, names: Sequence[str]) -> Probe:
@@ -163,7 +173,7 @@ def probe(subject: Subject, accuracy: str, length: Length, names: Sequence[str])
     ran = run_quietly(subject, accuracy, length)
     if ran.records is None or ran.failure:
         return Probe({}, ran.rate, ran.failure)
-    return Probe(in_batches(ran.records, names, TRANSIENT), ran.rate, warned=ran.records.warnings)
+    return Probe(in_batches(ran.records, names, TRANSIENT), ran.rate, "", ran.records.warnings, ran.steps)
 
 
 @singledispatch

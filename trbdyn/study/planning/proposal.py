@@ -32,11 +32,11 @@ class Row:
     ----------
     name : str
         Its name.
-    kind : {'effect', 'off', 'nodes', 'tolerances', 'as given', 'truth', 'start'}
-        An effect that may be left out; one that the scene leaves out itself; fewer nodes; looser tolerances; nodes and
-        tolerances as the scene has them; the usual nodes and tolerances against the most exact probe. 'start': another start.
+    kind : {'effect', 'nodes', 'tolerances', 'as given', 'truth', 'start'}
+        An effect that may be left out; fewer nodes; looser tolerances; nodes and tolerances as the scene has them; the usual
+        nodes and tolerances against the most exact probe. 'start': another start.
     influence : dict of str to Influence
-        What leaving it out (for an effect that the scene leaves out: putting it in) changes in each wanted average.
+        What it changes in each wanted average.
     time_ratio : float
         Computing time with the change over that without it; nan where it could not be run.
     decision : str
@@ -234,7 +234,7 @@ def _cells(plan: Plan) -> list[list[str]]:
 
 
 def _name(row: Row) -> str:
-    return {"effect": f"without {row.name}", "off": f"with {row.name}"}.get(row.kind, row.name)
+    return f"without {row.name}" if row.kind == "effect" else row.name
 
 
 def words(found: Influence | None) -> str:
