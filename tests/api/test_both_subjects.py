@@ -267,14 +267,20 @@ def test_torque_map(name: str) -> None:
     assert "Friction torque of the shaft" in str(found)
 
 
-def test_sensitivity(name: str) -> None:
+def test_sensitivity(name: str, tmp_path: Path) -> None:
     bearing = trb.Bearing.from_catalogue(bore=0.050, outside=0.110, width=0.02925, C=125e3, e=0.35, name="30310")
     subject = SUBJECTS[name].with_part(next(reversed(SUBJECTS[name].parts)), bearing=bearing)
     path = "cup_half_angle_deg" if name == "scene" else "bearings[1].bearing.cup_half_angle_deg"
     quantity = "outer_load_mean" if name == "scene" else "right_outer_load_mean"
-    found = trb.sensitivity(subject, quantity, revolutions=0.01, paths=[path], starts=2)
+    how: dict[str, Any] = {"revolutions": 0.01, "paths": [path], "starts": 2, "folder": tmp_path}
+    found = trb.sensitivity(subject, quantity, **how)
     assert found.influences[0].estimated.path == path
     assert found.influences[0].span > 0.0
+    kept = (tmp_path / "index.jsonl").read_text()
+    assert trb.sensitivity(subject, quantity, **how) == found
+    assert (tmp_path / "index.jsonl").read_text() == kept  # nothing was run again
+    with pytest.raises(InputError, match=r"quantity = .* must give a number"):
+        trb.sensitivity(subject, str, **how)
     with pytest.raises(InputError, match="paths"):
         trb.sensitivity(subject, paths=["nothing"])
 

@@ -15,7 +15,7 @@ from trbdyn.base.validation import Model
 from trbdyn.base.version import __version__
 from trbdyn.errors import FileError, InputError
 from trbdyn.model.assembly import Subject
-from trbdyn.results.result import load
+from trbdyn.results.assembly import load
 from trbdyn.run.options import RunOptions
 from trbdyn.study import gather
 from trbdyn.study.definition import Case, Study

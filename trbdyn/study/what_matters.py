@@ -13,25 +13,27 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trbdyn.base.expected import expect
 from trbdyn.base.shown import Shown, Tabled
-from trbdyn.errors import InputError, LoadError, StepError, unknown_name
+from trbdyn.errors import InputError, unknown_name
 from trbdyn.model.assembly import Assembly, Subject
 from trbdyn.model.estimated import Estimated
 from trbdyn.model.scene import Scene, Start
-from trbdyn.run.simulation import Simulation
+from trbdyn.run.options import RunOptions
+from trbdyn.study.definition import Case, Study
 from trbdyn.study.drawn_bearing import belongs_together
+from trbdyn.study.runner import Running
+from trbdyn.study.runner import run as run_study
 
 if TYPE_CHECKING:
-    from trbdyn.model.bearing import Bearing
-    from trbdyn.results.assembly import AssemblyResult
-    from trbdyn.results.result import Result
+    import xarray
 
+    from trbdyn.model.bearing import Bearing
 
 Array = NDArray[np.float64]
 
@@ -41,6 +43,8 @@ REPEATS: Final = 4
 BILLIONTH: Final = 1e-9
 CHANCE: Final = 0.05
 """Chance that any end of a table without influences is told apart."""
+MEASURED: Final = "measured"
+"""Name of the observable that a function of the result gives."""
 LEAST_SHARE: Final = 1e-5
 """Difference over the result below which nothing is told apart: the tolerances of the runs are not finer."""
 
@@ -118,6 +122,7 @@ def sensitivity(
     accuracy: str = "fast",
     paths: Sequence[str] | None = None,
     starts: int = STARTS,
+    **how: Unpack[Running],
 ) -> Sensitivity:
     """Which estimated inputs of a scene's bearing, or of the bearings of an assembly, matter for a result.
 
@@ -143,6 +148,8 @@ def sensitivity(
         Only these inputs; all estimates by default.
     starts : int
         Starts of each run, at least 2: that of the scene, and others. More starts tell smaller influences apart.
+    **how
+        Folder, executor, workers and progress bar of the runs: `trbdyn.study.Running`.
 
     Returns
     -------
@@ -152,7 +159,7 @@ def sensitivity(
     Raises
     ------
     InputError
-        If the bearing has no estimates, a name is unknown, or the result is no number.
+        If the bearing has no estimates, a name is unknown, the result is no number, or the scene cannot be run.
 
     Examples
     --------
@@ -168,23 +175,34 @@ def sensitivity(
         raise InputError.of("starts", starts, "must be a whole number from 2 to 1000: one start shows no scatter")
     chosen = _chosen(subject, paths)
     name = quantity if isinstance(quantity, str) else getattr(quantity, "__name__", "result")
+    options = RunOptions(revolutions=revolutions, accuracy=accuracy)
     begun = [_begun(subject, k) for k in range(starts)]
+    how = Running(executor="threads") | how
+    key, watched = (quantity, {}) if isinstance(quantity, str) else (MEASURED, {MEASURED: quantity})
 
-    def measured(prefix: str, bearing: Bearing) -> Array:
-        runs = [
-            Simulation(one.with_part(prefix, bearing=bearing), accuracy=accuracy).run(revolutions=revolutions)
-            for one in begun
-        ]
-        return np.array([_number(run, quantity, name) for run in runs])
+    def ran(cases: Sequence[Case]) -> xarray.Dataset:
+        return run_study(Study(tuple(cases), (), "sensitivity"), observables=watched, **how)
 
     first, part = next(iter(subject.parts)), subject.part
     diameter = part.bearing.roller.diameter
-    same = [part.bearing] + [
-        part.bearing.replace({"roller.diameter": diameter * (1.0 + k * BILLIONTH)}) for k in range(1, REPEATS)
+    same = []
+    for k in range(REPEATS):
+        change = {"roller.diameter": diameter * (1.0 + k * BILLIONTH)} if k else {}
+        same += _cases(begun, first, partial(part.bearing.replace, change), options, f"estimate {k}")
+    base = _base(ran(same), key, name).reshape(REPEATS, starts)
+    moved = []
+    for prefix, entry in chosen:
+        for end in (entry.low, entry.high):
+            bearing = None if end == entry.value else partial(_moved, subject.parts[prefix].bearing, entry, end)
+            moved += _cases(begun, prefix, bearing, options, f"{prefix}{entry.path} {end:.6g}")
+    # in a folder the runs of the estimate are done, and stand in its dataset beside the others
+    kept = same if how.get("folder") is not None else []
+    found = _values(ran([*kept, *moved]).isel(case=slice(len(kept), None)), key, starts)
+    ends = [(low, high) for (low, _), (high, _) in zip(found[::2], found[1::2], strict=True)]
+    notes = [
+        "; ".join(f"{end:.4g}: {why}" for end, (_, why) in zip((entry.low, entry.high), both, strict=True) if why)
+        for (_, entry), both in zip(chosen, zip(found[::2], found[1::2], strict=True), strict=True)
     ]
-    base = np.array([measured(first, bearing) for bearing in same])
-    of_each = [_ends(subject.parts[prefix].bearing, entry, partial(measured, prefix)) for prefix, entry in chosen]
-    ends, notes = zip(*of_each, strict=True)
     limits = told_from(base, ends)
     influences = [
         _influence(_named(prefix, entry), float(base.mean()), *of_entry, note)
@@ -250,20 +268,54 @@ def _chosen(subject: Subject, paths: Sequence[str] | None) -> list[tuple[str, Es
     return list(known.values()) if paths is None else [known[path] for path in paths]
 
 
-def _number(result: Result | AssemblyResult, quantity: str | Callable[[Any], float], name: str) -> float:
-    if isinstance(quantity, str):
-        values = result.numbers()
-        numbers = [
-            key for key, value in values.items() if isinstance(value, int | float) and not isinstance(value, bool)
-        ]
-        if quantity not in numbers:
-            raise InputError.of("quantity", quantity, unknown_name(quantity, numbers))
-        return float(values[quantity])
-    found: Any = quantity(result)
-    try:
-        return float(found)
-    except (TypeError, ValueError):
-        raise InputError.of("quantity", name, f"must give a number, not {found!r}") from None
+def _cases(
+    begun: Sequence[Subject], prefix: str, bearing: Callable[[], Bearing] | None, options: RunOptions, words: str
+) -> list[Case]:
+    """A bearing in place of that of a part, from all starts; none where it cannot be built, or there is nothing to run."""
+    subjects: Sequence[Subject | None] = [None] * len(begun)
+    why = ""
+    if bearing is not None:
+        try:
+            made = bearing()
+            subjects = [one.with_part(prefix, bearing=made) for one in begun]
+        except InputError as error:
+            why = str(error)
+    return [Case({"input": words, "start": k}, one, options, why) for k, one in enumerate(subjects)]
+
+
+def _base(data: xarray.Dataset, key: str, name: str) -> Array:
+    """The result of the runs with the estimates.
+
+    Raises
+    ------
+    InputError
+        If one failed, or a result is no number.
+    """
+    for status, message in zip(data["status"].values, data["message"].values, strict=True):
+        if status != "done":
+            raise InputError.of("scene", "as it is", f"cannot be run: {message}")
+    numbers = {
+        str(other): np.asarray(values, dtype=float)
+        for other, values in data.data_vars.items()
+        if values.dims == ("case",) and values.dtype.kind in "fi" and other != "wall_time"
+    }
+    if key in numbers and np.isfinite(numbers[key]).all():
+        return numbers[key]
+    mistake = str(data["message"].values[0]).partition("; ")[2] or "it gave none"
+    limit = f"must give a number for each run: {mistake}" if key == MEASURED else unknown_name(name, numbers)
+    raise InputError.of("quantity", name, limit)
+
+
+def _values(data: xarray.Dataset, key: str, starts: int) -> list[tuple[Array | None, str]]:
+    """The result from all starts at each end of a band, or why there is none."""
+    found: list[tuple[Array | None, str]] = []
+    for k in range(0, data.sizes["case"], starts):
+        rows = data.isel(case=slice(k, k + starts))
+        failed = [str(m) for s, m in zip(rows["status"].values, rows["message"].values, strict=True) if s != "done"]
+        values = np.asarray(rows[key].values, dtype=float) if key in rows and not failed else np.full(starts, np.nan)
+        good = bool(np.isfinite(values).all())
+        found.append((values, "") if good else (None, _reason(failed[0]) if failed else "the result is no number"))
+    return found
 
 
 def _begun(subject: Subject, number: int) -> Subject:
@@ -283,22 +335,6 @@ def _start(start: Start, number: int) -> Start:
     return Start.unequal(number, spread=0.3)
 
 
-def _ends(bearing: Bearing, entry: Estimated, measured: Callable[[Bearing], Array]) -> tuple[Pair, str]:
-    """The result at both ends of a band, and why there is none."""
-    found: list[Array | None] = []
-    notes = []
-    for target in (entry.low, entry.high):
-        if target == entry.value:
-            found.append(None)
-            continue
-        try:
-            found.append(measured(_moved(bearing, entry, target)))
-        except (InputError, LoadError, StepError) as error:
-            found.append(None)
-            notes.append(f"{target:.4g}: {_reason(error)}")
-    return (found[0], found[1]), "; ".join(notes)
-
-
 def _influence(
     entry: Estimated, value: float, ends: Pair, limits: tuple[float | None, float | None], note: str
 ) -> Influence:
@@ -309,9 +345,9 @@ def _influence(
     return Influence(entry, at[0], at[1], max(apart), told, note)
 
 
-def _reason(error: Exception) -> str:
+def _reason(text: str) -> str:
     """Why a bearing cannot be built or run, in a line: every problem of an error that has several."""
-    return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
+    return "; ".join(line.strip() for line in text.splitlines() if line.strip())
 
 
 def _moved(bearing: Bearing, entry: Estimated, value: float) -> Bearing:
