@@ -32,9 +32,10 @@ static inline double trb_flank_gap(const trb_model *m, const trb_pocket_face *f,
   }
   if (gap > 0.0) return gap;
   /* side by side: one least value alone would wait for each comparison */
-  for (int k = 0; k < m->n_nodes; k += 4)
-    for (int i = 0; i < 4 && k + i < m->n_nodes; i++)
-      least[i] = trb_min(least[i], middle + centre[k + i] * along - sphere[k + i] - m->pocket_film);
+  int k = 0;
+  for (; k + 4 <= m->n_nodes; k += 4)
+    for (int i = 0; i < 4; i++) least[i] = trb_min(least[i], middle + centre[k + i] * along - sphere[k + i] - m->pocket_film);
+  for (; k < m->n_nodes; k++) least[0] = trb_min(least[0], middle + centre[k] * along - sphere[k] - m->pocket_film);
   return trb_min(trb_min(least[0], least[1]), trb_min(least[2], least[3]));
 }
 
