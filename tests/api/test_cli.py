@@ -105,6 +105,8 @@ def test_run_of_a_shipped_case_with_changes(fake: type[FakeSimulation], tmp_path
         "--quiet",
         "--summary",
         "s.json",
+        "--report",
+        "r.html",
     ]
     words += ["--set", "scene.speed_rpm=1000", "--set", "start.kind=equal", "--set", "run.integrator='erk'"]
     words += ["--set", "bearing.cage.mass=0.3"]
@@ -119,6 +121,13 @@ def test_run_of_a_shipped_case_with_changes(fake: type[FakeSimulation], tmp_path
     assert call["run"]["progress"] is False
     assert load(tmp_path / "a.h5").scene.speed_rpm == 1000.0
     assert json.loads((tmp_path / "s.json").read_text())["success"] is True
+    assert (tmp_path / "r.html").read_text().startswith("<!")
+
+
+def test_a_report_that_could_not_be_written_is_refused_before_the_run(fake: type[FakeSimulation]) -> None:
+    assert main(["run", "rig_30310", "--report", "r.pdf"]) == 2
+    assert main(["run", "rig_30310", "--summary", "one.html", "--report", "one.html"]) == 2
+    assert fake.calls == []
 
 
 def test_run_names_its_file_after_the_case(fake: type[FakeSimulation], tmp_path: Path) -> None:

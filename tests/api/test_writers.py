@@ -342,8 +342,8 @@ def test_a_pdf_replaces_nothing_unasked(tmp_path: Path, monkeypatch: pytest.Monk
 # ---- commands ----
 
 COMMANDS: dict[str, tuple[list[str], list[str]]] = {
-    "run": (["rig_30310", "-o", "a.h5", "--summary", "a.json"], ["a.h5", "a.json"]),
-    "resume": (["cut.h5", "--summary", "a.json"], ["a.json"]),
+    "run": (["rig_30310", "-o", "a.h5", "--summary", "a.json", "--report", "a.html"], ["a.h5", "a.json", "a.html"]),
+    "resume": (["cut.h5", "--summary", "a.json", "--report", "a.html"], ["a.json", "a.html"]),
     "plot": (["run.h5", "-o", ".", "--only", "tilt"], ["tilt.png"]),
     "report": (["run.h5", "-o", "a.html"], ["a.html"]),
     "view": (["run.h5", "-o", "a.html", "--gltf", "a.glb", "--no-open"], ["a.html", "a.glb"]),

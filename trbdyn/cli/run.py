@@ -46,8 +46,8 @@ def add_run_parsers(
     run.add_argument(
         "--checkpoint-every", type=float, metavar="S", help="bearing time between checkpoints (s), to resume from"
     )
-    run.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
-    run.add_argument("--overwrite", action="store_true", help="replace result and summary if they are there")
+    run.add_argument("--overwrite", action="store_true", help="replace result, summary and report if they are there")
+    _add_written(run)
     add_set(run)
     run.set_defaults(command=_run)
 
@@ -55,9 +55,14 @@ def add_run_parsers(
     resume.add_argument("file", metavar="FILE", help="its result file; the checkpoint lies beside it")
     resume.add_argument("--instruction-set", metavar="NAME", help="kernel variant, in place of the one it began with")
     resume.add_argument("--quiet", action="store_true", help="no progress bar, no summary")
-    resume.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
-    resume.add_argument("--overwrite", action="store_true", help="replace the summary if it is there")
+    resume.add_argument("--overwrite", action="store_true", help="replace summary and report if they are there")
+    _add_written(resume)
     resume.set_defaults(command=_resume)
+
+
+def _add_written(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    parser.add_argument("--report", metavar="HTML", help="write the report of the run, with its pictures")
 
 
 def _wanted(text: str) -> tuple[str, float]:
@@ -83,7 +88,7 @@ def _run(options: argparse.Namespace) -> int:
         changes["revolutions"] = None
     name = f"{Path(options.case).stem}.h5" if options.output is None else options.output
     output = output_path(name, overwrite=options.overwrite, reads=[options.case])
-    _check_summary(options.summary, [options.case, output], overwrite=options.overwrite)
+    _check_written(options, [options.case, output])
     given = run.model_fields_set | changes.keys()
     result = simulate(
         subject, run.replace(**changes), output, quiet=options.quiet, overwrite=options.overwrite, given=given
@@ -91,16 +96,20 @@ def _run(options: argparse.Namespace) -> int:
     return _finish(result, output, options)
 
 
-def _check_summary(summary_file: str | None, others: Sequence[str | Path], *, overwrite: bool) -> None:
-    """See before a run that its summary can be written."""
-    if summary_file is not None:
-        output_path(summary_file, overwrite=overwrite, field="summary", reads=others)
+def _check_written(options: argparse.Namespace, others: Sequence[str | Path]) -> None:
+    """See before a run that its summary and its report can be written."""
+    from trbdyn.reporting import HTML
+
+    taken = list(others)
+    for field, endings in (("summary", ()), ("report", HTML)):
+        if (file := getattr(options, field)) is not None:
+            taken.append(output_path(file, overwrite=options.overwrite, field=field, endings=endings, reads=taken))
 
 
 def _resume(options: argparse.Namespace) -> int:
     from trbdyn.run.resume import resume
 
-    _check_summary(options.summary, [file_path(options.file, "file")], overwrite=options.overwrite)
+    _check_written(options, [file_path(options.file, "file")])
     with warnings.catch_warnings(record=True) as notes:
         warnings.simplefilter("always", UserWarning)
         try:
@@ -119,12 +128,16 @@ def _how_to_go_on(output: Path) -> str:
 
 
 def _finish(result: Result | AssemblyResult, output: Path, options: argparse.Namespace) -> int:
-    """Write and print the summary; the exit code says whether the run reached its end."""
+    """Write summary and report, print the summary; the exit code says whether the run reached its end."""
     from trbdyn.results import summary
 
     one = result.parts[0]
     if options.summary is not None:
         summary.write_json(result.summary(), options.summary, overwrite=options.overwrite)
+    if options.report is not None:
+        from trbdyn.reporting import report
+
+        report(result, options.report, overwrite=options.overwrite)
     if not options.quiet:
         say(result.overview)
         say(f"\n{len(one)} records in {output}: {one.meta.get('kept', '')}")
