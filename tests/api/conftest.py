@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from trbdyn import _core
 from trbdyn.model.motion import History
 from trbdyn.results.fields import Field
+from trbdyn.results.file_format import RunInfo
 from trbdyn.results.result import Result
+from trbdyn.results.sources import MemorySource
 
 Z, SLOTS = 12, 4
 RADIAL_PLAY, AXIAL_PLAY = 0.25e-3, 0.4e-3
@@ -46,6 +48,16 @@ class Synthetic:
             "final_time": float(self.column("time")[-1]),
             "final_state": np.arange(5.0),
         }
+
+    def result(self, scene: Any, records: NDArray[np.float64] | None = None, **changes: Any) -> Result:
+        """The run as a result in memory, with its own records or with others."""
+        rows = self.records if records is None else records
+        arrays = {}
+        for name, offset, shape in self.layout:
+            arrays[name] = rows[:, offset : offset + int(np.prod(shape))].reshape(len(rows), *shape)
+            arrays[name].flags.writeable = False
+        info = RunInfo(scene=scene.to_dict(), **{"geometry": self.geometry} | self.ending() | changes)
+        return Result(MemorySource(self.fields, len(rows), arrays), info, scene)
 
     def column(self, name: str) -> NDArray[np.float64]:
         """A field of the records."""
@@ -184,8 +196,7 @@ class StubScene:
 
 def result_of(run: Synthetic, **changes: Any) -> Result:
     """The run as a result in memory."""
-    about = {"scene": StubScene(), "geometry": run.geometry, "fields": run.fields} | run.ending() | changes
-    return Result.from_records(run.records, run.layout, **about)
+    return run.result(**{"scene": StubScene()} | changes)
 
 
 @pytest.fixture

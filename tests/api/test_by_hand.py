@@ -27,7 +27,6 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     late = run.column("time") >= 0.0999
     position = run.column("cage_position")
     position[~late, :2] *= 0.3
-    from_records = Result.from_records
     from types import SimpleNamespace
 
     scene = SimpleNamespace(**{name: getattr(build()[1].scene, name) for name in ("bearing", "effects")})
@@ -39,8 +38,7 @@ def settled_late(build: Callable[..., tuple[Any, Result]], change: Callable[[Any
     scene.axial_load, scene.radial_load = build()[1].scene.axial_load, 0.0
     scene.lubricant = build()[1].scene.lubricant
     scene.misalignment_x = scene.misalignment_y = 0.0
-    about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
-    return run, from_records(run.records, run.layout, **about)
+    return run, run.result(scene)
 
 
 NAMES = ("outer_load", "inner_load", "rib_load", "outer_pressure", "inner_pressure", "rib_pressure", "roller_skew")
@@ -124,9 +122,7 @@ def test_quantiles_and_means_of_the_whirl(build: Callable[..., tuple[Any, Result
     saw = np.abs(np.mod(200.0 * time, 2.0) - 1.0)
     unit = run.column("cage_position")[:, :2] / (0.9 * play)
     run.column("cage_position")[:, :2] = unit * (0.5 + 0.4 * saw[:, np.newaxis]) * play
-    values = Result.from_records(
-        run.records, run.layout, scene=result.scene, geometry=run.geometry, fields=run.fields, **run.ending()
-    ).summary()
+    values = run.result(result.scene).summary()
     assert values["axis_distance_over_cpr"] == pytest.approx(0.7, abs=2e-3)
     assert values["axis_distance_over_cpr_p05"] == pytest.approx(0.52, abs=5e-3)
     assert values["axis_distance_over_cpr_p95"] == pytest.approx(0.88, abs=5e-3)
@@ -252,9 +248,7 @@ def test_slip_of_the_set_is_the_mean_of_its_rollers(build: Callable[..., tuple[A
     run, result = build(n=201)
     speed = run.column("roller_orbit_speed")
     speed[:, 0] *= 0.9
-    values = Result.from_records(
-        run.records, run.layout, scene=result.scene, geometry=run.geometry, fields=run.fields, **run.ending()
-    )
+    values = run.result(result.scene)
     expected = 1.0 - (11.0 * 0.999 + 0.9 * 0.999) / 12.0
     np.testing.assert_allclose(values.cage_slip, expected, rtol=1e-9)
 
@@ -286,8 +280,7 @@ def test_wall_time_of_a_turn_is_what_the_statistics_tell(
     stats: dict[str, float], wanted: float | None, synthetic: Any, whirling: Result
 ) -> None:
     """That of stepping, which the run measured; only where it did not, the whole wall time over the turns."""
-    about = {"scene": whirling.scene, "geometry": synthetic.geometry, "fields": synthetic.fields} | synthetic.ending()
-    result = Result.from_records(synthetic.records, synthetic.layout, **(about | {"stats": stats}))
+    result = synthetic.result(whirling.scene, stats=stats)
     found = result.summary()["wall_s_per_revolution"]
     assert found == (None if wanted is None else pytest.approx(wanted))
 
@@ -304,9 +297,7 @@ def test_turns_are_those_of_all_rollers_and_not_of_the_fastest(build: Callable[.
     """0.18 s at 20.831 turns a second are 3.75 turns; one roller of twelve that gains half a turn adds a twenty-fourth."""
     run, _ = build(n=1801, duration=0.18)
     run.column("roller_orbit_angle")[:, 11] += np.pi * run.column("time") / 0.18
-    from_records, scene = Result.from_records, build()[1].scene
-    about = {"scene": scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
-    found = from_records(run.records, run.layout, **about).settling()
+    found = run.result(build()[1].scene).settling()
     assert (found.answer, found.reason) == ("unknown", "only 3.8 turns of the cage")
 
 
@@ -317,6 +308,5 @@ def test_settling_knows_the_cage_by_the_size_of_its_play(build: Callable[..., tu
     grows = np.linspace(0.3, 0.5, 4001)[:, None] * clearance
     place = run.column("cage_position")
     place[:, :2] *= grows / np.linalg.norm(place[:, :2], axis=1, keepdims=True)
-    about = {"scene": result.scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
-    found = Result.from_records(run.records, run.layout, **about).settling()
+    found = run.result(result.scene).settling()
     assert found.answer == "drifting"

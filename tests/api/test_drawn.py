@@ -46,8 +46,7 @@ def uneven(synthetic: Any, whirling: Result) -> Result:
     )
     force[:, :, 3] = 0.0
     assert time.size == 400
-    about = {"scene": whirling.scene, "geometry": synthetic.geometry, "fields": synthetic.fields} | synthetic.ending()
-    return Result.from_records(synthetic.records[keep], synthetic.layout, **about)
+    return synthetic.result(whirling.scene, synthetic.records[keep])
 
 
 def data(line: Any) -> tuple[Array, Array]:

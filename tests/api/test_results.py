@@ -210,15 +210,6 @@ def test_selection_and_windows(whirling: Result) -> None:
         whirling.select("cage")
 
 
-def test_records_must_fit_the_layout(synthetic: Any, stub_scene: Any) -> None:
-    about = {"scene": stub_scene, "geometry": {}, "fields": synthetic.fields} | synthetic.ending()
-    with pytest.raises(InputError, match="records"):
-        Result.from_records(synthetic.records[:, :100], synthetic.layout, **about)
-    chosen = Result.from_records(synthetic.records, synthetic.layout, groups=["torque"], **about)
-    assert chosen.groups == ("time", "torque")
-    assert not np.shares_memory(chosen.inner_torque, synthetic.records)
-
-
 @pytest.mark.parametrize("where", ["memory", "pieces", "file", "window"])
 @pytest.mark.parametrize("how", ["pickle", "copy", "deepcopy"])
 def test_results_can_be_copied_and_sent(tmp_path: Path, whirling: Result, how: str, where: str) -> None:
@@ -256,10 +247,8 @@ def test_xarray_has_names_units_and_coordinates(whirling: Result) -> None:
 
 
 def test_no_records_make_no_trouble(synthetic: Any, stub_scene: Any) -> None:
-    synthetic.records = synthetic.records[:0]
-    about = {"scene": stub_scene, "geometry": {}, "fields": synthetic.fields, "final_time": 0.0, "final_state": None}
-    about |= {"success": False, "message": "failed at once", "stats": {}, "counters": {}}
-    empty = Result.from_records(synthetic.records, synthetic.layout, **about)
+    about = {"success": False, "message": "failed at once", "final_time": 0.0, "final_state": None, "geometry": {}}
+    empty = synthetic.result(stub_scene, synthetic.records[:0], stats={}, counters={}, **about)
     assert empty.duration == empty.revolutions == 0.0
     assert empty.summary()["success"] is False
 

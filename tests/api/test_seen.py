@@ -184,8 +184,8 @@ class Pictures:
     def __init__(self, synthetic: Any, whirling: Result) -> None:
         records = in_small(synthetic)
         geometry = {name: 1e-3 * (10 + k) for k, name in enumerate(trb.cases.rig_30310().geometry.__dict__)}
-        about = {"geometry": geometry | synthetic.geometry, "fields": synthetic.fields} | synthetic.ending()
-        self.result = Result.from_records(records, synthetic.layout, scene=whirling.scene, **about)
+        about = {"records": records, "geometry": geometry | synthetic.geometry}
+        self.result = synthetic.result(whirling.scene, **about)
 
         class Free(type(whirling.scene)):  # type: ignore[misc]
             ring_body = trb.RingBody(mass=1.0, inertia_axial=1e-3, inertia_transverse=1e-3)
@@ -194,8 +194,8 @@ class Pictures:
 
         seat = {"shift": 2e-6, "mass_offset": -0.05, "turned": False}
         meta = {"assembly": {"bearing": "left", "bearings": ["left", "right"], "seat": seat}}
-        self.free = Result.from_records(records, synthetic.layout, scene=Free(), **about)
-        self.seated = Result.from_records(records, synthetic.layout, scene=Free(), meta=meta, **about)
+        self.free = synthetic.result(Free(), **about)
+        self.seated = synthetic.result(Free(), meta=meta, **about)
 
     def of_result(self) -> Iterator[tuple[str, Any]]:
         of_rings = ("ring_orbit", "ring_motion", "housing_orbit", "housing_motion")

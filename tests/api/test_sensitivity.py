@@ -80,9 +80,7 @@ class TestIndicators:
         circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         position[:, :2] = 0.5 * result.clearances.radial * factor[:, np.newaxis] * circle
         position[:, 1] -= 0.3 * result.clearances.radial
-        from_records = type(result).from_records
-        about = {"scene": result.scene, "geometry": run.geometry, "fields": run.fields} | run.ending()
-        assert indicators.orbit_growth(from_records(run.records, run.layout, **about)) == pytest.approx(growth, abs=0.2)
+        assert indicators.orbit_growth(run.result(result.scene)) == pytest.approx(growth, abs=0.2)
 
     def test_too_short_a_run_has_no_growth(self, build: Callable[..., Any]) -> None:
         assert math.isnan(indicators.orbit_growth(build(n=401, duration=0.04)[1]))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from trbdyn.base.shown import Displayed, Shown
 from trbdyn.errors import FileError, InputError
@@ -18,10 +18,10 @@ from trbdyn.model.scene import Scene
 from trbdyn.results import fields as field_table
 from trbdyn.results import peaks as peak_table
 from trbdyn.results.derived import Derived
-from trbdyn.results.fields import Field, Layout
+from trbdyn.results.fields import Field
 from trbdyn.results.file_format import RunInfo
 from trbdyn.results.peaks import Peaks
-from trbdyn.results.sources import MemorySource, Source, WindowSource
+from trbdyn.results.sources import Source, WindowSource
 from trbdyn.results.summary import Summary, summary
 
 if TYPE_CHECKING:
@@ -89,85 +89,6 @@ class Result(Derived, Displayed):
         self._info = info
         self._scene = scene
         self._fields = {field.name: field for field in source.fields}
-
-    @classmethod
-    def from_records(
-        cls,
-        records: ArrayLike,
-        layout: Layout,
-        *,
-        scene: Scene,
-        success: bool,
-        message: str,
-        stats: Mapping[str, Any],
-        counters: Mapping[str, int],
-        final_time: float,
-        final_state: ArrayLike | None,
-        geometry: Mapping[str, float],
-        meta: Mapping[str, Any] | None = None,
-        groups: Sequence[str] | None = None,
-        fields: Sequence[Field] | None = None,
-        warnings: Sequence[str] = (),
-        peaks: Mapping[str, Array] | None = None,
-    ) -> Self:
-        """A result from full records in memory.
-
-        Parameters
-        ----------
-        records : array_like, shape (n, record_length)
-            The records.
-        layout : sequence of (name, offset, shape)
-            Places of the fields in a record.
-        scene : Scene
-            The scene that was run.
-        success, message, stats, counters, final_time, final_state, geometry, meta
-            See the class.
-        groups : sequence of str, optional
-            Groups of fields to keep; all by default, and then the arrays are views into `records`.
-        fields : sequence of Field, optional
-            The table that describes the fields; the core's by default.
-        warnings : sequence of str
-            What the watch over the run found.
-        peaks : mapping of str to ndarray, optional
-            Peaks of the whole run.
-
-        Returns
-        -------
-        Result
-
-        Raises
-        ------
-        InputError
-            If a group is unknown or the records are shorter than the layout says.
-        """
-        rows = np.asarray(records, dtype=float)
-        length = max((offset + int(np.prod(shape)) for _, offset, shape in layout), default=0)
-        if rows.ndim != 2 or rows.shape[1] < length:
-            raise InputError.of("records", rows.shape, f"must have the shape (n, {length})")
-        places = {name: (offset, shape) for name, offset, shape in layout}
-        kept = field_table.select(field_table.table() if fields is None else fields, groups)
-        kept = tuple(field for field in kept if field.name in places)
-        arrays: dict[str, Array] = {}
-        for field in kept:
-            offset, shape = places[field.name]
-            values = rows[:, offset : offset + int(np.prod(shape))].reshape(rows.shape[0], *shape)
-            values = values if groups is None else values.copy()
-            values.flags.writeable = False
-            arrays[field.name] = values
-        info = RunInfo(
-            scene=scene.to_dict(),
-            success=bool(success),
-            message=message,
-            stats=dict(stats),
-            counters=dict(counters),
-            warnings=tuple(warnings),
-            final_time=float(final_time),
-            final_state=None if final_state is None else np.array(final_state, dtype=float),
-            geometry=dict(geometry),
-            meta=dict(meta or {}),
-            peaks=dict(peaks or {}),
-        )
-        return cls(MemorySource(kept, rows.shape[0], arrays), info, scene)
 
     def __getitem__(self, name: str) -> Array:
         """A field by its name.
