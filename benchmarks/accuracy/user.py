@@ -24,6 +24,8 @@ COLUMNS: Final = {
     "wall_s_file": "s: the same, written to a file",
     "memory_over_bare": "1: wall time of the run in memory over that of the steps alone",
     "file_over_bare": "1: wall time of the run with a file over that of the steps alone",
+    "process_memory_over_bare": "1: processor time of all threads of the run in memory over that of the steps alone",
+    "process_file_over_bare": "1: the same of the run with a file",
 }
 
 
@@ -34,7 +36,9 @@ def scene_of(case: Case) -> Scene:
 
 
 def times_of(case: Case, accuracy: str, turns: float, repeats: int) -> dict[str, list[float]]:
-    """Wall times a turn (s) of each repeat: of the steps alone, of the run in memory, of the run with a file.
+    """Times a turn (s) of each repeat: of the steps alone, of the run in memory, of the run with a file.
+
+    Wall times by these names; processor times of all threads by the same with ``process_`` before them.
 
     Parameters
     ----------
@@ -67,24 +71,30 @@ def times_of(case: Case, accuracy: str, turns: float, repeats: int) -> dict[str,
         "memory": lambda _: in_memory(),
         "file": to_file,
     }
-    found: dict[str, list[float]] = {name: [] for name in kinds}
+    found: dict[str, list[float]] = {f"{before}{name}": [] for before in ("", "process_") for name in kinds}
     for _ in range(repeats):
         for name, run in kinds.items():
             with tempfile.TemporaryDirectory() as folder:  # removed outside the time that counts
-                began = clock.perf_counter()
+                began, spent = clock.perf_counter(), clock.process_time()
                 run(folder)
                 found[name].append((clock.perf_counter() - began) / turns)
+                found[f"process_{name}"].append((clock.process_time() - spent) / turns)
     return found
 
 
-def columns_of(walls: dict[str, list[float]]) -> dict[str, float]:
+def columns_of(times: dict[str, list[float]]) -> dict[str, float]:
     """The entries of a row of results, which `COLUMNS` describes, for what `times_of` gave: medians of the repeats.
 
     A ratio is the median of the ratios within a repeat, as the speed of a machine drifts.
     """
-    named = {f"wall_s_{name}": float(np.median(values)) for name, values in walls.items()}
-    bare = np.array(walls["bare"])
-    return named | {f"{name}_over_bare": float(np.median(walls[name] / bare)) for name in ("memory", "file")}
+    named = {f"wall_s_{name}": float(np.median(times[name])) for name in ("bare", "memory", "file")}
+    for before in ("", "process_"):
+        bare = np.array(times[f"{before}bare"])
+        named |= {
+            f"{before}{name}_over_bare": float(np.median(times[f"{before}{name}"] / bare))
+            for name in ("memory", "file")
+        }
+    return named
 
 
 def rows_of(case: Case, presets: dict[str, float], turns: float, repeats: int) -> list[dict[str, Any]]:

@@ -138,10 +138,15 @@ def test_ratios_of_a_users_run_are_those_within_a_repeat(monkeypatch: pytest.Mon
     monkeypatch.syspath_prepend(str(BENCHMARKS))
     from accuracy import user
 
-    found = user.columns_of({"bare": [1.0, 2.0, 2.0], "memory": [1.1, 2.2, 2.2], "file": [1.3, 2.4, 2.6]})
+    wall = {"bare": [1.0, 2.0, 2.0], "memory": [1.1, 2.2, 2.2], "file": [1.3, 2.4, 2.6]}
+    processor = {"process_bare": [1.0, 2.0, 2.0], "process_memory": [1.5, 3.0, 3.2], "process_file": [2.0, 4.0, 4.4]}
+    found = user.columns_of(wall | processor)
     assert found["wall_s_file"] == pytest.approx(2.4)
     assert found["memory_over_bare"] == pytest.approx(1.1)
     assert found["file_over_bare"] == pytest.approx(1.3)
+    assert found["process_memory_over_bare"] == pytest.approx(1.5)
+    assert found["process_file_over_bare"] == pytest.approx(2.0)
+    assert set(found) == set(user.COLUMNS)
 
 
 @pytest.mark.slow
